@@ -1,0 +1,58 @@
+"""The recent past of one stream, long enough for the longest segment and the latest action."""
+
+from collections import deque
+from typing import Generic, TypeVar
+
+from action_fusion.samples import Sample
+from actum.node import SECOND_NS
+from actum.stamps import Order, StampGuard
+
+LONGEST_SEGMENT_NS = 60 * SECOND_NS
+LOOK_BACK_NS = 9 * SECOND_NS // 10
+"""How long before a segment an object may have been seen last; recordings played in a row are a second apart."""
+
+LATEST_ACTION_NS = 4 * SECOND_NS
+"""An action may come this long after its segment's end: two seconds of waiting, two of skew."""
+
+HELD_NS = LONGEST_SEGMENT_NS + LOOK_BACK_NS + LATEST_ACTION_NS
+
+
+S = TypeVar("S", bound=Sample)
+
+
+class Buffer(Generic[S]):
+    """Samples of one stream with rising stamps, the last `HELD_NS` of them.
+
+    `answered_until_ns` is the end of the latest segment that was answered from it: older samples come too late.
+    """
+
+    def __init__(self) -> None:
+        self._samples: deque[S] = deque()
+        self._guard = StampGuard()
+        self.answered_until_ns = -1
+
+    @property
+    def newest_ns(self) -> int:
+        """Stamp of the newest sample, -1 where there is none."""
+        return self._samples[-1].stamp_ns if self._samples else -1
+
+    def judge(self, sample: S) -> Order:
+        """Judge a sample's place: only time that went back is a restart, a new session with a later stamp is not."""
+        order = self._guard.judge(sample.stamp_ns, sample.session_id)
+        return Order.NEXT if sample.stamp_ns > self.newest_ns else order
+
+    def append(self, sample: S) -> None:
+        """Add the next sample, and let go of what is too old."""
+        self._samples.append(sample)
+        while self._samples[0].stamp_ns < sample.stamp_ns - HELD_NS:
+            self._samples.popleft()
+
+    def clear(self) -> None:
+        """Forget everything: the source's time has gone back."""
+        self._samples.clear()
+        self.answered_until_ns = -1
+
+    def between(self, start_ns: int, end_ns: int) -> list[S]:
+        """List the samples with start <= stamp <= end that are of the same session as the last of them."""
+        window = [sample for sample in self._samples if start_ns <= sample.stamp_ns <= end_ns]
+        return [sample for sample in window if sample.session_id == window[-1].session_id]

@@ -1,0 +1,136 @@
+"""The fusion's pure step: it waits until a segment's streams have reached its end, and answers once."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from action_fusion.buffers import LOOK_BACK_NS, Buffer, S
+from action_fusion.fusion import fuse, rejected
+from action_fusion.samples import ObjectsSample, PostureSample, objects_sample, posture_sample
+from action_fusion.settings import Settings
+from actum import keys
+from actum.messages import Action, Event, Message, Objects, Posture
+from actum.node import SECOND_NS, Tally, Tick
+from actum.stamps import Order
+
+WAIT_NS = 22 * SECOND_NS // 10
+"""Two seconds of skew, and two ticks' grace for the tick that starts the count."""
+
+REMEMBERED = 10_000
+AGENTS = 16
+
+
+@dataclass
+class Pending:
+    """An action that waits for its streams; `since_ns` is the first tick after it came."""
+
+    action: Action
+    end_ns: int
+    since_ns: int | None = None
+
+
+class ActionFusion:
+    """Joins each recognised action with the object it is applied to: exactly one event per segment.
+
+    Only samples with stamps up to the segment's end count, so that skew between the streams changes nothing.
+    """
+
+    name = "action_fusion"
+    inputs: tuple[keys.Topic, ...] = (keys.POSTURE, keys.OBJECTS, keys.ACTION)
+
+    def __init__(self, settings: Settings) -> None:
+        self.tally = Tally()
+        self._settings = settings
+        self._postures: dict[int, Buffer[PostureSample]] = {}
+        self._objects: Buffer[ObjectsSample] = Buffer()
+        self._pending: list[Pending] = []
+        self._answered: dict[tuple[str, int, int | None, str | None], None] = {}
+
+    def handle(self, message: Message | Tick) -> Iterable[Message]:
+        """Take one posture, objects message, action or tick; return the events it completes."""
+        match message:
+            case Posture():
+                return self._posture(message)
+            case Objects():
+                return self._take(self._objects, objects_sample(message, self.tally), self._pending, "objects")
+            case Action(final=True):
+                return self._action(message)
+            case Tick():
+                return self._tick(message)
+        return []
+
+    def _posture(self, posture: Posture) -> list[Event]:
+        concerned = [pending for pending in self._pending if pending.action.agent == posture.agent]
+        sample = posture_sample(posture, self.tally)
+        return self._take(self._buffer(posture.agent), sample, concerned, f"posture of agent {posture.agent}")
+
+    def _take(self, buffer: Buffer[S], sample: S, concerned: list[Pending], what: str) -> list[Event]:
+        """Add a sample to its stream and answer what waited for it."""
+        order = buffer.judge(sample)
+        if order is Order.STALE:
+            self.tally.reject("stale_stamp", f"{what} at {sample.stamp_ns} after {buffer.newest_ns}")
+            return []
+        events = []
+        if order is Order.RESTART:
+            events = [self._answer(pending) for pending in list(concerned)]
+            buffer.clear()
+            self._answered.clear()
+        if sample.stamp_ns <= buffer.answered_until_ns:
+            self.tally.reject("late", f"{what} at {sample.stamp_ns}, answered up to {buffer.answered_until_ns}")
+        buffer.append(sample)
+        return events + self._complete()
+
+    def _action(self, action: Action) -> list[Event]:
+        segment = (action.segment_id, action.start_ns, action.end_ns, action.reason)
+        if segment in self._answered:
+            self.tally.reject("duplicate_segment", f"{action.segment_id!r} from {action.start_ns} to {action.end_ns}")
+            return []
+        self._answered[segment] = None
+        if len(self._answered) > REMEMBERED:
+            del self._answered[next(iter(self._answered))]
+        if not action.valid:
+            return [rejected(action, action.reason or "rejected without a reason")]
+        if action.action is None or action.end_ns is None or action.end_ns < action.start_ns:
+            self.tally.reject("bad_action", f"final action of {action.segment_id!r} without a label or an end")
+            return [rejected(action, "final action without a label or an end")]
+        bare = action.model_copy(update={"maps": None, "trace": None})
+        self._pending.append(Pending(bare, action.end_ns))
+        return self._complete()
+
+    def _tick(self, tick: Tick) -> list[Event]:
+        """Answer what has waited long enough with what is there."""
+        events = []
+        for pending in list(self._pending):
+            if pending.since_ns is None:
+                pending.since_ns = tick.monotonic_ns
+            elif tick.monotonic_ns - pending.since_ns >= WAIT_NS:
+                events.append(self._answer(pending))
+        return events
+
+    def _complete(self) -> list[Event]:
+        """Answer what has all its samples. Stamps rise, so the sample at the end itself is the last that counts."""
+        return [self._answer(pending) for pending in list(self._pending) if self._is_complete(pending)]
+
+    def _is_complete(self, pending: Pending) -> bool:
+        postures = self._postures.get(pending.action.agent)
+        if postures is None:
+            return False
+        return min(postures.newest_ns, self._objects.newest_ns) >= pending.end_ns
+
+    def _answer(self, pending: Pending) -> Event:
+        self._pending.remove(pending)
+        action, end_ns = pending.action, pending.end_ns
+        postures = self._buffer(action.agent)
+        for buffer in (postures, self._objects):
+            buffer.answered_until_ns = max(buffer.answered_until_ns, end_ns)
+        return fuse(
+            action,
+            postures.between(action.start_ns, end_ns),
+            self._objects.between(action.start_ns - LOOK_BACK_NS, end_ns),
+            self._settings,
+        )
+
+    def _buffer(self, agent: int) -> Buffer[PostureSample]:
+        """Find an agent's stream; a new one takes the place of the agent who has been away for longest."""
+        if agent not in self._postures and len(self._postures) == AGENTS:
+            del self._postures[min(self._postures, key=lambda other: self._postures[other].newest_ns)]
+        return self._postures.setdefault(agent, Buffer())

@@ -1,0 +1,95 @@
+"""What fusion keeps of a posture and of an objects message: the few numbers it needs, checked once."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum import geometry
+from actum.messages import Joint, Objects, Posture
+from actum.node import Tally
+from actum.skeletons import INDEX
+
+Array = NDArray[np.float64]
+
+FURTHEST_M = 100.0
+RIGID_TOLERANCE = 1e-3
+
+
+@dataclass(frozen=True)
+class Body:
+    """A valid posture's frame and joints; a joint (3,), metric egocentric, is NaN where it is missing."""
+
+    ego_from_camera: Array
+    head: Array
+    left_hand: Array
+    right_hand: Array
+
+
+@dataclass(frozen=True)
+class Sample:
+    """What every sample carries: its capture stamp, and the session of its source."""
+
+    stamp_ns: int
+    session_id: str
+
+
+@dataclass(frozen=True)
+class PostureSample(Sample):
+    """A posture; `body` is None where it is invalid and only tells that time went on."""
+
+    seq: int | None
+    body: Body | None
+
+
+@dataclass(frozen=True)
+class ObjectsSample(Sample):
+    """The objects seen in one image: positions (3,) in the camera frame, and names, by id."""
+
+    positions_m: dict[int, Array]
+    names: dict[int, str]
+
+
+def posture_sample(posture: Posture, tally: Tally) -> PostureSample:
+    """Read a posture; one that says it is valid and cannot be is counted as `bad_posture`."""
+    body = _body(posture) if posture.valid else None
+    if posture.valid and body is None:
+        tally.reject("bad_posture", f"agent {posture.agent} at {posture.stamp_ns}: no joints_m or no rigid frame")
+    return PostureSample(posture.stamp_ns, posture.session_id, posture.seq, body)
+
+
+def objects_sample(message: Objects, tally: Tally) -> ObjectsSample:
+    """Read the objects that were seen, not remembered; absurdly far ones are counted as `bad_object`."""
+    seen = [found for found in message.objects if found.seen] if message.valid else []
+    near = [found for found in seen if max(map(abs, found.position_m)) < FURTHEST_M]
+    if len(near) < len(seen):
+        tally.reject("bad_object", f"an object beyond {FURTHEST_M:g} m at {message.stamp_ns}")
+    return ObjectsSample(
+        message.stamp_ns,
+        message.session_id,
+        {found.id: np.array(found.position_m, dtype=np.float64) for found in near},
+        {found.id: found.name for found in near},
+    )
+
+
+def _body(posture: Posture) -> Body | None:
+    if posture.joints_m is None or posture.ego_from_camera is None:
+        return None
+    ego_from_camera = geometry.from_flat(posture.ego_from_camera)
+    if not _is_rigid(ego_from_camera):
+        return None
+    head, left, right = (posture.joints_m[INDEX[name]] for name in ("head", "left_hand", "right_hand"))
+    return Body(ego_from_camera, _point(head), _point(left), _point(right))
+
+
+def _point(joint: Joint) -> Array:
+    """Read a joint; missing, non-finite and absurd ones become NaN."""
+    point = np.full(3, np.nan) if joint is None else np.array(joint, dtype=np.float64)
+    return point if bool((np.abs(point) < FURTHEST_M).all()) else np.full(3, np.nan)
+
+
+def _is_rigid(transform: Array) -> bool:
+    rotation = transform[:3, :3]
+    if np.abs(rotation).max() > 2 or np.abs(transform[:3, 3]).max() > FURTHEST_M:
+        return False
+    return bool(np.allclose(rotation @ rotation.T, np.eye(3), atol=RIGID_TOLERANCE))

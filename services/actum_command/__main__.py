@@ -1,0 +1,69 @@
+"""`actum`, or `python -m actum_command`."""
+
+from typing import Annotated
+
+import typer
+
+from actum import keys
+from actum_command import demo, doctor, importing_commands, learning, marks, scene, streaming, system, watching
+from actum_command.context import connect, console, fail
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Online recognition of what a person does and to which object. ACTUM_CONNECT names the router, "
+    "ACTUM_SENSOR the viewpoint.",
+)
+app.command("demo")(demo.demo)
+app.command("up")(system.up)
+app.command("router")(system.router)
+app.add_typer(marks.app, name="segment")
+app.command("record")(streaming.record)
+app.command("play")(streaming.play)
+app.add_typer(importing_commands.app, name="import")
+app.command("train")(learning.train_command)
+app.command("evaluate")(learning.evaluate_command)
+app.command("simulate")(scene.simulate)
+app.command("scene")(scene.scene)
+
+WATCHABLE = {topic.leaf.removesuffix("/{}"): topic for topic in keys.TOPICS}
+
+
+@app.command("watch")
+def watch(
+    topics: Annotated[list[str] | None, typer.Argument(help=f"any of {', '.join(WATCHABLE)}; default: event")] = None,
+) -> None:
+    """Print what happens, one line per message, until Ctrl-C."""
+    unknown = [name for name in topics or [] if name not in WATCHABLE]
+    if unknown:
+        fail(f"no topic {unknown[0]!r}: use any of {', '.join(WATCHABLE)}")
+    with connect() as client:
+        try:
+            for line in watching.lines(client, [WATCHABLE[name] for name in topics or ["event"]]):
+                console.print(line, soft_wrap=True)
+        except KeyboardInterrupt:
+            return
+
+
+@app.command("doctor")
+def diagnose() -> None:
+    """Check router, services, rates and versions; exit 1 if anything is wrong."""
+    with connect() as client:
+        findings = doctor.examine(client)
+    console.print(doctor.table(findings))
+    problems = [problem for finding in findings for problem in finding.problems]
+    for problem in problems:
+        console.print(f"[red]{problem}[/red]")
+    if problems:
+        raise typer.Exit(1)
+    console.print("[green]all services are there, alive and of one version[/green]")
+
+
+def main() -> None:
+    """Run the command line."""
+    app()
+
+
+if __name__ == "__main__":
+    main()

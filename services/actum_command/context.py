@@ -1,0 +1,31 @@
+"""What every command needs: the console, the settings, and a clear way to fail."""
+
+from typing import NoReturn
+
+import typer
+from rich.console import Console
+
+from actum.runtime import Client, RouterUnreachableError
+from actum.settings import ServiceSettings
+
+console = Console(highlight=False)
+errors = Console(stderr=True, highlight=False)
+
+
+def settings() -> ServiceSettings:
+    """Read the connection from the environment or the configuration file."""
+    return ServiceSettings()
+
+
+def fail(message: str) -> NoReturn:
+    """Say what went wrong and end with code 1."""
+    errors.print(f"[red]actum:[/red] {message}", soft_wrap=True)
+    raise typer.Exit(1)
+
+
+def connect(wait_s: float = 5.0) -> Client:
+    """Open a session with the router, or fail saying how to get one."""
+    try:
+        return Client(settings(), wait_s)
+    except RouterUnreachableError as error:
+        fail(str(error))

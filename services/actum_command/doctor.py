@@ -1,0 +1,98 @@
+"""`actum doctor`: is everything there, alive, and of one version?"""
+
+import time
+from dataclasses import dataclass
+
+from rich.table import Table
+
+from actum import __version__, keys
+from actum.codec import schema_name
+from actum.messages import MESSAGES, Info, Status
+from actum.runtime import Client
+
+EXPECTED = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
+STATUS_S = 2.5
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One service as it was found."""
+
+    service: str
+    instances: int
+    version: str
+    state: str
+    rates: str
+    rejects: str
+    latency: str
+    problems: tuple[str, ...]
+
+
+def examine(client: Client) -> list[Finding]:
+    """Look at every service that is expected or found alive."""
+    statuses = _statuses(client)
+    tokens = [key.split("/")[-2] for key in client.alive()]
+    infos = {info.service: info for info in client.infos()}
+    names = [*EXPECTED, *sorted(set(tokens) - set(EXPECTED))]
+    return [_finding(name, tokens.count(name), infos.get(name), statuses.get(name)) for name in names]
+
+
+def table(findings: list[Finding]) -> Table:
+    """Lay the findings out, one service a row."""
+    result = Table("service", "alive", "version", "state", "rates (Hz)", "rejected", "latency p50/p99 (ms)")
+    for finding in findings:
+        colour = "red" if finding.problems else "green"
+        alive = f"[{colour}]{finding.instances or 'no'}[/{colour}]"
+        result.add_row(
+            finding.service, alive, finding.version, finding.state, finding.rates, finding.rejects, finding.latency
+        )
+    return result
+
+
+def _statuses(client: Client) -> dict[str, Status]:
+    """Collect what each service says of itself within a little over two reports."""
+    found: dict[str, Status] = {}
+    listening = client.listen(keys.pattern(keys.STATUS, client.sensor))
+    deadline = time.monotonic() + STATUS_S
+    while time.monotonic() < deadline:
+        received = listening.take()
+        if received is None:
+            time.sleep(0.02)
+        elif isinstance(received.message, Status):
+            found[received.message.service] = received.message
+    return found
+
+
+def _finding(name: str, instances: int, info: Info | None, status: Status | None) -> Finding:
+    return Finding(
+        service=name,
+        instances=instances,
+        version=info.version if info else "",
+        state=status.state if status else "",
+        rates=_rates(status) if status else "",
+        rejects=", ".join(f"{kind} {n}" for kind, n in status.rejects.items()) if status else "",
+        latency=f"{status.latency_ms['p50']:.2f} / {status.latency_ms['p99']:.2f}"
+        if status and status.latency_ms
+        else "",
+        problems=tuple(_problems(name, instances, info, status)),
+    )
+
+
+def _rates(status: Status) -> str:
+    prefix = f"{keys.BASE}/{status.sensor}/"
+    return ", ".join(f"{key.removeprefix(prefix)} {rate:g}" for key, rate in status.rates.items())
+
+
+def _problems(name: str, instances: int, info: Info | None, status: Status | None) -> list[str]:
+    if not instances:
+        return [f"{name} is not running: start it with 'python -m {name}' or 'actum up'"]
+    problems = []
+    if status is None:
+        problems.append(f"{name} is alive but sent no status in {STATUS_S:g} s")
+    if info is None:
+        problems.append(f"{name} does not answer on its info key")
+    elif missing := {schema_name(message) for message in MESSAGES} - set(info.schemas):
+        problems.append(
+            f"{name} is version {info.version}, this is {__version__}: it lacks {', '.join(sorted(missing))}"
+        )
+    return problems

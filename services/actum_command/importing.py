@@ -1,0 +1,91 @@
+"""Public skeleton sets turned into recordings."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from actum.recording import Recorder
+from sensor_gateway import msr_action3d, utkinect
+from sensor_gateway.takes import Take
+
+SENSOR = "kinect0"
+Progress = Callable[[int, int], None]
+"""Told after each file: how many are done, of how many."""
+
+NOTES = {
+    utkinect.DUPLICATE_ROW: "duplicate rows dropped",
+    utkinect.OVERLAPPING_PAIR: "pairs of segments that overlap, kept",
+}
+
+
+@dataclass
+class ImportReport:
+    """What an import wrote and what it found; as text, one line each."""
+
+    files: int = 0
+    frames: int = 0
+    invalid_frames: int = 0
+    segments: int = 0
+    excluded: int = 0
+    skipped: list[str] = field(default_factory=list)
+    notes: Counter[str] = field(default_factory=Counter)
+
+    def add(self, take: Take) -> None:
+        """Count one written take."""
+        self.files += 1
+        self.frames += len(take.frames)
+        self.invalid_frames += sum(not frame.valid for frame in take.frames)
+        self.segments += sum(mark.kind == "start" for mark in take.marks)
+        self.excluded += "excluded" in take.fields
+        self.skipped += take.skipped
+        self.notes += take.notes
+
+    def lines(self) -> list[str]:
+        """Say it for people."""
+        said = [
+            f"{self.files} recordings, {self.frames} frames, {self.segments} labelled segments",
+            f"{self.invalid_frames} frames without a skeleton, kept as invalid",
+        ]
+        if self.excluded:
+            said.append(f"{self.excluded} recordings marked excluded: training skips them unless told otherwise")
+        if self.skipped:
+            said.append(f"{len(self.skipped)} segments without bounds skipped: {', '.join(self.skipped)}")
+        return said + [f"{self.notes[kind]} {words}" for kind, words in NOTES.items() if self.notes[kind]]
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines())
+
+
+def import_msr_action3d(src: Path, out: Path, progress: Progress) -> ImportReport:
+    """Write one recording per sequence, `out/a01_s01_e01.mcap`.
+
+    Raises:
+        DatasetError: `src` does not hold the set, or a file of it is damaged.
+    """
+    files = msr_action3d.sequence_files(src)
+    takes = (msr_action3d.read_sequence(file, SENSOR) for file in files)
+    return _import("msr-action3d", takes, len(files), out, progress)
+
+
+def import_utkinect(src: Path, out: Path, progress: Progress) -> ImportReport:
+    """Write one recording per continuous recording with its labelled segments, `out/s01_e01.mcap`.
+
+    Raises:
+        DatasetError: `src` does not hold the set with its corrected labels, or a file of it is damaged.
+    """
+    files = utkinect.recording_files(src)
+    labels = utkinect.read_labels(src)
+    takes = (utkinect.read_labelled(file, SENSOR, labels) for file in files)
+    return _import("utkinect", takes, len(files), out, progress)
+
+
+def _import(source: str, takes: Iterable[Take], total: int, out: Path, progress: Progress) -> ImportReport:
+    report = ImportReport()
+    for take in takes:
+        with Recorder(out / f"{take.name}.mcap", person=take.person, source=source, **take.fields) as recorder:
+            for message in (*take.frames, *take.marks):
+                recorder.write(message)
+        report.add(take)
+        progress(report.files, total)
+    return report

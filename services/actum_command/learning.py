@@ -1,0 +1,103 @@
+"""`actum train` and `actum evaluate`."""
+
+import json
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum.recording import Recording, RecordingError
+from actum_command.context import console, fail
+from actum_command.progress import bars
+from model_trainer.evaluation import Evaluation, evaluate, leave_one_person_out
+from model_trainer.report import report
+from model_trainer.samples import samples_from, select
+from model_trainer.training import TrainingError, train
+from som_classifier.model import Model, ModelError
+from som_classifier.presets import PRESETS, Preset
+
+Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of them")]
+PersonOption = Annotated[str | None, typer.Option(help="only these persons, e.g. 1,3,5")]
+PresetOption = Annotated[str, typer.Option(help=f"one of {', '.join(PRESETS)}")]
+AllOption = Annotated[bool, typer.Option("--all", help="also recordings marked as excluded")]
+SeedOption = Annotated[int, typer.Option(min=0, help="the same seed makes the same model")]
+
+
+def train_command(
+    files: Files,
+    output: Annotated[Path, typer.Option("-o", "--output", help="the model file to write")],
+    preset: PresetOption = "paper",
+    person: PersonOption = None,
+    seed: SeedOption = 0,
+    with_excluded: AllOption = False,
+) -> None:
+    """Train a model on labelled recordings."""
+    began_s = time.monotonic()
+    recordings = chosen(files, person, with_excluded)
+    try:
+        with bars() as progress:
+            samples = samples_from(recordings, progress)
+            model = train(samples.usable, preset_named(preset), seed, progress)
+        model.save(output)
+    except (RecordingError, TrainingError, OSError) as error:
+        fail(str(error))
+    for unusable in samples.unusable:
+        console.print(f"left out {unusable.segment_id} of {unusable.file}: {unusable.reason}")
+    console.print(
+        f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
+        f"{time.monotonic() - began_s:.1f} s, written to {output}"
+    )
+
+
+def evaluate_command(
+    files: Annotated[list[Path], typer.Argument(help="MODEL and recordings, or only recordings")],
+    person: PersonOption = None,
+    json_file: Annotated[Path | None, typer.Option("--json", help="write every prediction here")] = None,
+    by_person: Annotated[
+        bool, typer.Option("--leave-one-person-out", help="train anew without each person, test on them")
+    ] = False,
+    preset: PresetOption = "paper",
+    seed: SeedOption = 0,
+    with_excluded: AllOption = False,
+) -> None:
+    """Test a model on labelled recordings, or a preset on each person with all others as training."""
+    began_s = time.monotonic()
+    try:
+        with bars() as progress:
+            if by_person:
+                recordings = chosen(files, person, with_excluded)
+                result = leave_one_person_out(recordings, preset_named(preset), seed, progress)
+            else:
+                model = Model.load(files[0])
+                result = evaluate(model, chosen(files[1:], person, with_excluded), progress)
+    except (RecordingError, TrainingError, ModelError) as error:
+        fail(str(error))
+    _show(result, time.monotonic() - began_s, json_file)
+
+
+def preset_named(name: str) -> Preset:
+    """Look a preset up by name."""
+    if name not in PRESETS:
+        fail(f"no preset {name!r}: use one of {', '.join(PRESETS)}")
+    return PRESETS[name]
+
+
+def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[Recording]:
+    """Open the recordings that are meant; none is an error."""
+    people = None if person is None else [name.strip() for name in person.split(",")]
+    try:
+        recordings = select(files, people, with_excluded)
+    except RecordingError as error:
+        fail(str(error))
+    if not recordings:
+        fail(f"no recordings of person {person or '(any)'} in {', '.join(map(str, files)) or 'nothing'}")
+    return recordings
+
+
+def _show(result: Evaluation, seconds: float, json_file: Path | None) -> None:
+    if result.n == 0:
+        fail("no labelled segment in these recordings: a label stands in a start mark, see actum record --label")
+    console.print(report(result, seconds))
+    if json_file is not None:
+        json_file.write_text(json.dumps(result.as_json(), indent=1))

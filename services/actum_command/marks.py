@@ -1,0 +1,94 @@
+"""`actum segment`: start and end marks from the command line."""
+
+from typing import Annotated, Literal
+
+import typer
+
+from actum import keys
+from actum.messages import Segment
+from actum.runtime import Client
+from actum_command.context import connect, console, fail
+
+WAIT_S = 5.0
+
+app = typer.Typer(no_args_is_help=True, help="Mark the start and the end of an action.")
+
+Id = Annotated[str, typer.Argument(help="any name, new for each action")]
+AgentOption = Annotated[int | None, typer.Option(min=1, help="whose action; default: who is nearest to the camera")]
+HandOption = Annotated[str | None, typer.Option(help="left or right: the hand that acts")]
+LabelOption = Annotated[str | None, typer.Option(help="what it is, for recording examples")]
+StampOption = Annotated[int | None, typer.Option(min=0, help="capture time (ns) on the sensor's clock; default: now")]
+
+
+@app.command()
+def start(
+    segment_id: Id,
+    agent: AgentOption = None,
+    hand: HandOption = None,
+    label: LabelOption = None,
+    stamp_ns: StampOption = None,
+) -> None:
+    """Mark the start of an action."""
+    with connect() as client:
+        _put(client, _mark(client, "start", segment_id, agent, hand, label, stamp_ns))
+
+
+@app.command()
+def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
+    """Mark the end of an action."""
+    with connect() as client:
+        _put(client, _mark(client, "end", segment_id, stamp_ns=stamp_ns))
+
+
+@app.command()
+def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOption = None) -> None:
+    """Switch by keyboard: Enter starts, Enter ends, Ctrl-D leaves."""
+    with connect() as client:
+        number = 0
+        while _waits_for_enter(f"Enter starts action {number + 1}, Ctrl-D leaves "):
+            number += 1
+            segment_id = f"toggle-{client.run}-{number}"
+            _put(client, _mark(client, "start", segment_id, agent, hand, label))
+            ended = _waits_for_enter("Enter ends it ")
+            _put(client, _mark(client, "end", segment_id))
+            if not ended:
+                return
+
+
+def _mark(
+    client: Client,
+    kind: Literal["start", "end"],
+    segment_id: str,
+    agent: int | None = None,
+    hand: str | None = None,
+    label: str | None = None,
+    stamp_ns: int | None = None,
+) -> Segment:
+    if hand not in (None, "left", "right"):
+        fail(f"--hand is {hand!r}: use left or right")
+    return Segment.model_validate(
+        {
+            "sensor": client.sensor,
+            "kind": kind,
+            "segment_id": segment_id,
+            "agent": agent,
+            "hand": hand,
+            "label": label,
+            "stamp_ns": stamp_ns,
+        }
+    )
+
+
+def _put(client: Client, mark: Segment) -> None:
+    if not client.wait_for_subscriber(keys.SEGMENT, WAIT_S):
+        fail(f"nobody listens on {keys.key_of(mark)} within {WAIT_S:g} s: is the classifier running? See actum doctor")
+    client.put(mark)
+    console.print(f"{mark.kind} {mark.segment_id}")
+
+
+def _waits_for_enter(prompt: str) -> bool:
+    try:
+        input(prompt)
+    except EOFError:
+        return False
+    return True

@@ -1,0 +1,82 @@
+"""What `actum play` puts: recordings in a row, with the stamps, numbers and names of one live session."""
+
+from collections.abc import Collection, Iterator, Sequence
+from typing import Any
+
+from actum import keys
+from actum.joining import joined
+from actum.messages import Message, Segment
+from actum.recording import Recording
+
+IMAGES = frozenset({keys.COLOR, keys.DEPTH})
+
+
+def schedule(
+    recordings: Sequence[Recording],
+    session_id: str,
+    start_ns: int,
+    sensor: str | None = None,
+    topics: Collection[keys.Topic] | None = None,
+) -> Iterator[Message]:
+    """Yield the recordings' messages one recording after another in order of stamp, the first stamp being `start_ns`.
+
+    Stamps rise by a second or more between recordings; intervals and gaps in the numbers inside a recording are
+    exact. Streams carry the play's session; marks keep their ids, with `#2` … where an earlier recording has used
+    them, lose their labels (nothing live may know them) and their numbers (they are put by this player). `sensor`
+    renames the viewpoint. `topics` are played, by default `playable_topics` of each recording.
+
+    Raises:
+        RecordingError: a recording is damaged.
+    """
+    taken: set[str] = set()
+
+    def renamed(recording: Recording) -> Iterator[Message]:
+        chosen = playable_topics(recording) if topics is None else topics
+        return map(_Names(session_id, sensor, taken).renamed, recording.messages(chosen))
+
+    return joined(map(renamed, recordings), start_ns)
+
+
+def playable_topics(recording: Recording) -> frozenset[keys.Topic]:
+    """Choose marks and captured streams; a derived stream only where the stream it derives from was not recorded."""
+    chosen = {keys.SKELETON, keys.SEGMENT, *IMAGES}
+    if keys.SKELETON not in recording.topics:
+        chosen.add(keys.POSTURE)
+    if not IMAGES & recording.topics:
+        chosen.add(keys.OBJECTS)
+    return recording.topics & chosen
+
+
+class _Names:
+    """The new names in one recording: the viewpoint, its sessions, its segments. `taken` is shared by a play."""
+
+    def __init__(self, session_id: str, sensor: str | None, taken: set[str]) -> None:
+        self._session_id = session_id
+        self._sensor = sensor
+        self._taken = taken
+        self._sessions: dict[str, str] = {}
+        self._segments: dict[str, str] = {}
+
+    def renamed(self, message: Message) -> Message:
+        update: dict[str, Any] = {} if self._sensor is None else {"sensor": self._sensor}
+        if isinstance(message, Segment):
+            update |= {"segment_id": self._segment(message.segment_id), "label": None, "seq": None}
+        elif hasattr(message, "session_id"):
+            update["session_id"] = self._session(message.session_id)
+        return message.model_copy(update=update)
+
+    def _session(self, recorded: str) -> str:
+        if recorded not in self._sessions:
+            count = len(self._sessions) + 1
+            self._sessions[recorded] = self._session_id if count == 1 else f"{self._session_id}.{count}"
+        return self._sessions[recorded]
+
+    def _segment(self, recorded: str) -> str:
+        if recorded not in self._segments:
+            unique, count = recorded, 1
+            while unique in self._taken:
+                count += 1
+                unique = f"{recorded}#{count}"
+            self._taken.add(unique)
+            self._segments[recorded] = unique
+        return self._segments[recorded]

@@ -1,0 +1,87 @@
+"""What `actum record` does with each message: store it, and give every mark the stamp it was resolved to."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from actum import keys
+from actum.messages import Action, Message, Posture, Segment, Skeleton
+from actum.node import SECOND_NS, Tally
+from actum.recording import Recorder
+
+STREAMS = frozenset(
+    {keys.SKELETON, keys.POSTURE, keys.OBJECTS, keys.SEGMENT, keys.ACTION, keys.EVENT, keys.TRUTH},
+)
+IMAGES = frozenset({keys.COLOR, keys.DEPTH})
+SKEW_NS = 2 * SECOND_NS
+"""How much later than a segment's final action its mark may still arrive."""
+
+
+@dataclass(frozen=True)
+class _Held:
+    """A mark without a stamp, with the newest frame's stamp and the time when it came."""
+
+    mark: Segment
+    newest_ns: int | None
+    received_ns: int
+
+
+class StreamRecorder:
+    """Stores the messages of the given topics.
+
+    A mark without a stamp waits for its segment's final action, which says where the classifier put it; at the end
+    those left get the stamp of the frame that was newest when they came. `label` is given to start marks without one.
+    """
+
+    def __init__(self, recorder: Recorder, topics: Collection[keys.Topic] = STREAMS, label: str | None = None) -> None:
+        self.tally = Tally()
+        self._recorder = recorder
+        self._topics = topics
+        self._label = label
+        self._newest_ns: int | None = None
+        self._held: list[_Held] = []
+        self._finals: dict[str, tuple[Action, int]] = {}
+
+    def take(self, message: Message, received_ns: int) -> None:
+        """Take one message and the time it was received at (ns)."""
+        if isinstance(message, Skeleton | Posture):
+            self._newest_ns = message.stamp_ns
+        if isinstance(message, Action) and message.final:
+            self._finals[message.segment_id] = message, received_ns
+            self._resolve(message)
+        if keys.address_of(message).topic not in self._topics:
+            return
+        if isinstance(message, Segment):
+            self._mark(message, received_ns)
+        else:
+            self._recorder.write(message, received_ns)
+
+    def close(self) -> None:
+        """Store the marks that no final action has resolved; one that came before any frame is counted and lost."""
+        for held in self._held:
+            self._place(held, held.newest_ns)
+        self._held = []
+
+    def _mark(self, mark: Segment, received_ns: int) -> None:
+        if mark.kind == "start" and mark.label is None:
+            mark = mark.model_copy(update={"label": self._label})
+        if mark.stamp_ns is not None:
+            self._recorder.write(mark, received_ns)
+            return
+        self._held.append(_Held(mark, self._newest_ns, received_ns))
+        final, answered_ns = self._finals.get(mark.segment_id, (None, 0))
+        if final is not None and received_ns - answered_ns <= SKEW_NS:
+            self._resolve(final)
+
+    def _resolve(self, final: Action) -> None:
+        """Store the waiting marks of an answered segment."""
+        answered = [held for held in self._held if held.mark.segment_id == final.segment_id]
+        self._held = [held for held in self._held if held.mark.segment_id != final.segment_id]
+        for held in answered:
+            resolved_ns = final.start_ns if held.mark.kind == "start" else final.end_ns
+            self._place(held, held.newest_ns if resolved_ns is None else resolved_ns)
+
+    def _place(self, held: _Held, stamp_ns: int | None) -> None:
+        if stamp_ns is None:
+            self.tally.reject("mark_without_stamp", f"{held.mark.segment_id}: it came before any frame")
+            return
+        self._recorder.write(held.mark.model_copy(update={"stamp_ns": stamp_ns}), held.received_ns)

@@ -1,0 +1,89 @@
+"""`actum record` and `actum play`: streams to files and back."""
+
+import threading
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum import keys
+from actum.messages import Message, Skeleton
+from actum.node import SECOND_NS
+from actum.recording import Recorder, Recording, RecordingError
+from actum.runtime import Client, Pace, stop_on_signals
+from actum_command.context import connect, console, fail
+from actum_command.playing import schedule
+from actum_command.recorder import IMAGES, STREAMS, StreamRecorder
+from model_trainer.samples import select
+
+LEAD_IN_S = 0.3
+WAIT_S = 5.0
+
+
+def record(
+    output: Annotated[Path, typer.Argument(help="the file to write")],
+    person: Annotated[str, typer.Option(help="who acts; kept in the file, used to split training from test")] = "",
+    label: Annotated[str | None, typer.Option(help="what is done in the segments marked while recording")] = None,
+    images: Annotated[bool, typer.Option(help="also store images (faces are personal data)")] = False,
+    seconds: Annotated[float | None, typer.Option(min=0, help="stop by itself; default: at Ctrl-C")] = None,
+) -> None:
+    """Record a sensor's streams and marks to a file."""
+    stop = stop_on_signals()
+    deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
+    counts = 0
+    with connect() as client, Recorder(output, person=person, source=client.sensor) as recorder:
+        stream = StreamRecorder(recorder, STREAMS | IMAGES if images else STREAMS, label)
+        listening = client.listen(keys.everything(client.sensor))
+        console.print(f"recording actum/{client.sensor}/** to {output}; Ctrl-C ends")
+        while not stop.is_set() and time.monotonic() < deadline_s:
+            received = listening.take()
+            if received is None:
+                stop.wait(0.005)
+            elif received.message is not None:
+                counts += 1
+                stream.take(received.message, time.time_ns())
+        stream.close()
+    console.print(f"{counts} messages, written to {output}")
+
+
+def play(
+    files: Annotated[list[Path], typer.Argument(help="recordings, or folders of them, played one after another")],
+    speed: Annotated[float, typer.Option(min=0.01, help="1 is the pace at which it was captured")] = 1.0,
+    person: Annotated[str | None, typer.Option(help="only these persons, e.g. 2,4")] = None,
+    with_excluded: Annotated[bool, typer.Option("--all", help="also recordings marked as excluded")] = False,
+) -> None:
+    """Put recordings on their keys as a live sensor would, with their marks but without their labels."""
+    people = None if person is None else person.split(",")
+    try:
+        recordings = select(files, people, with_excluded)
+    except RecordingError as error:
+        fail(str(error))
+    if not recordings:
+        fail(f"no recordings to play in {', '.join(map(str, files))}")
+    stop = stop_on_signals()
+    with connect() as client:
+        if not client.wait_for_subscriber(keys.SKELETON, WAIT_S):
+            fail(f"nobody listens on {keys.key(keys.SKELETON, client.sensor)}: is the preprocessor running?")
+        counts = put_all(client, recordings, speed, stop)
+    console.print(f"played {len(recordings)} recordings: {counts} messages")
+
+
+def put_all(client: Client, recordings: list[Recording], speed: float, stop: threading.Event) -> int:
+    """Put recordings at a multiple of their pace; return the number of messages."""
+    session_id = f"play-{client.run}"
+    start_ns = time.time_ns()
+    client.put(_lead_in(client.sensor, session_id, start_ns - SECOND_NS))
+    stop.wait(LEAD_IN_S)
+    pace, counts = Pace(speed), 0
+    for message in schedule(recordings, session_id, start_ns, client.sensor):
+        if not pace.wait(message.stamp_ns, stop):
+            break
+        client.put(message)
+        counts += 1
+    return counts
+
+
+def _lead_in(sensor: str, session_id: str, stamp_ns: int) -> Message:
+    """An empty frame of the new session: everything downstream starts anew before the first mark comes."""
+    return Skeleton(stamp_ns=stamp_ns, sensor=sensor, agents=[], session_id=session_id)

@@ -1,0 +1,100 @@
+"""Child processes, kept alive and stopped together."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Self
+
+RESTART_S = (0.5, 1.0, 2.0, 4.0, 8.0)
+STEADY_S = 30.0
+TERM_S = 5.0
+
+
+@dataclass(frozen=True)
+class Program:
+    """A Python module to run as a process of its own, with its environment."""
+
+    name: str
+    module: str
+    arguments: Sequence[str] = ()
+    environment: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass
+class _Child:
+    program: Program
+    process: subprocess.Popen[bytes]
+    started_s: float
+    restarts: int = 0
+    due_s: float | None = None
+
+
+class Supervisor:
+    """Starts programs, restarts those that end by themselves, and stops all at the end.
+
+    Their output goes to `log`, or to this process's own.
+    """
+
+    def __init__(self, log: Path | None = None) -> None:
+        self._log: IO[bytes] | None = log.open("ab") if log else None
+        self._children: list[_Child] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
+        self.stop()
+
+    def start(self, program: Program) -> None:
+        """Start one program."""
+        self._children.append(_Child(program, self._spawn(program), time.monotonic()))
+
+    def check(self) -> list[str]:
+        """Restart what has ended, with back-off; return a line for each program that did."""
+        lines = []
+        now_s = time.monotonic()
+        for child in self._children:
+            if child.due_s is None and child.process.poll() is not None:
+                steady = now_s - child.started_s > STEADY_S
+                child.restarts = 0 if steady else child.restarts
+                delay_s = RESTART_S[min(child.restarts, len(RESTART_S) - 1)]
+                child.due_s = now_s + delay_s
+                lines.append(
+                    f"{child.program.name} ended with code {child.process.returncode}: restart in {delay_s:g} s"
+                )
+            elif child.due_s is not None and now_s >= child.due_s:
+                child.process, child.started_s, child.due_s = self._spawn(child.program), now_s, None
+                child.restarts += 1
+        return lines
+
+    def stop(self) -> None:
+        """Ask every process to end, and make those that do not."""
+        for child in self._children:
+            if child.process.poll() is None:
+                child.process.send_signal(signal.SIGTERM)
+        deadline_s = time.monotonic() + TERM_S
+        for child in self._children:
+            try:
+                child.process.wait(timeout=max(deadline_s - time.monotonic(), 0.01))
+            except subprocess.TimeoutExpired:
+                child.process.kill()
+                child.process.wait()
+        self._children.clear()
+        if self._log:
+            self._log.close()
+            self._log = None
+
+    def _spawn(self, program: Program) -> subprocess.Popen[bytes]:
+        return subprocess.Popen(
+            [sys.executable, "-m", program.module, *program.arguments],
+            env={**os.environ, **program.environment},
+            stdin=subprocess.DEVNULL,
+            stdout=self._log,
+            stderr=subprocess.STDOUT if self._log else None,
+        )

@@ -1,0 +1,77 @@
+"""`actum up` and `actum router`: the whole system, or its router alone."""
+
+import logging
+import socket
+import tempfile
+import threading
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum.runtime import serve_router, stop_on_signals
+from actum.settings import DEFAULT_ENDPOINT, ServiceSettings
+from actum_command import processes
+from actum_command.context import console, fail, settings
+from actum_command.supervising import Program, Supervisor
+
+CHECK_S = 0.2
+
+
+def router(
+    listen: Annotated[str | None, typer.Option(help=f"endpoint; default {DEFAULT_ENDPOINT} unless --config")] = None,
+    config: Annotated[Path | None, typer.Option(help="a Zenoh JSON5 configuration", exists=True)] = None,
+) -> None:
+    """Run the embedded Zenoh router."""
+    logging.basicConfig(level="INFO", format="router: %(message)s")
+    endpoint = listen or (None if config else settings().connect)
+    if endpoint is not None:
+        refuse_taken(endpoint)
+    serve_router(endpoint, config, stop_on_signals())
+
+
+def up(
+    source: Annotated[str, typer.Option(help="simulator, recording, msr-action3d or utkinect")] = "simulator",
+    path: Annotated[Path | None, typer.Option(help="what a source from files plays")] = None,
+    model: Annotated[
+        Path | None, typer.Option(help="the model; it may come or change later", envvar="ACTUM_MODEL")
+    ] = None,
+    actor: Annotated[int, typer.Option(min=0, help="simulator: who acts")] = 0,
+) -> None:
+    """Run router and all services here, restart what ends, until Ctrl-C."""
+    here = settings()
+    refuse_taken(here.connect)
+    arguments = ["--source", source, "--actor", str(actor), *(["--path", str(path)] if path else [])]
+    programs = [processes.router(here), *processes.services(here, model), processes.gateway(here, arguments)]
+    if source == "simulator":
+        programs.append(processes.scene(here))
+    console.print(f"actum is up on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
+    supervise(programs, stop_on_signals())
+
+
+def supervise(programs: list[Program], stop: threading.Event) -> None:
+    """Keep programs running until stopped."""
+    with Supervisor() as supervisor:
+        for program in programs:
+            supervisor.start(program)
+        while not stop.wait(CHECK_S):
+            for line in supervisor.check():
+                console.print(f"[yellow]{line}[/yellow]")
+
+
+def refuse_taken(endpoint: str) -> None:
+    """Fail if something already listens where the router is to listen."""
+    host, _, port = endpoint.removeprefix("tcp/").rpartition(":")
+    if not endpoint.startswith("tcp/") or not port.isdigit():
+        return
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host.strip("[]") or "0.0.0.0", int(port)))
+        except OSError as error:
+            fail(f"{endpoint} cannot be listened on ({error.strerror}): stop what runs there or set ACTUM_CONNECT")
+
+
+def log_file(name: str, here: ServiceSettings) -> Path:
+    """Where the output of background processes goes."""
+    return Path(tempfile.gettempdir()) / f"actum-{name}-{here.instance}.log"

@@ -1,0 +1,1 @@
+"""Objects by the fiducial markers on them."""

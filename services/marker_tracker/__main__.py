@@ -1,0 +1,14 @@
+"""Run the marker tracker: `python -m marker_tracker`."""
+
+from actum.runtime import run
+from marker_tracker.node import MarkerTracker
+from marker_tracker.settings import Settings
+
+
+def main() -> None:
+    """Serve until SIGTERM."""
+    run(Settings, MarkerTracker)
+
+
+if __name__ == "__main__":
+    main()

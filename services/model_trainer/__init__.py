@@ -1,0 +1,1 @@
+"""Models from labelled recordings, and their evaluation."""

@@ -1,0 +1,152 @@
+"""Labelled segments of recordings become training samples, through the very nodes that run live."""
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum import keys
+from actum.messages import Message, Posture, Segment, Skeleton
+from actum.node import Numbering, Tally, Tick, replay
+from actum.recording import Recording
+from model_trainer.progress import Progress, silent
+from pose_preprocessor.node import PosePreprocessor
+from som_classifier.model import Model
+from som_classifier.segments import Closed, Segmenter
+
+Array = NDArray[np.float64]
+STREAMS = (keys.SKELETON, keys.SEGMENT)
+
+
+@dataclass(frozen=True, eq=False)
+class SegmentSample:
+    """One labelled action: its usable frames as the classifier gets them.
+
+    Attributes:
+        joints: (n, 15, 3), scaled, egocentric.
+        motion: (n, 5), metres since the frame before.
+    """
+
+    label: str
+    joints: Array
+    motion: Array
+    person: str
+    file: str
+    segment_id: str
+
+
+@dataclass(frozen=True)
+class Unusable:
+    """A labelled segment that no sample could be made of, and why."""
+
+    file: str
+    segment_id: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Samples:
+    """What recordings hold to learn from."""
+
+    usable: list[SegmentSample]
+    unusable: list[Unusable]
+
+
+def select(
+    paths: Iterable[Path], people: Collection[str] | None = None, with_excluded: bool = False
+) -> list[Recording]:
+    """Open the recordings of some people, or of all, folders searched for `*.mcap`.
+
+    Recordings whose metadata say `excluded: true` are left out unless asked for.
+
+    Raises:
+        RecordingError: a file is no recording.
+    """
+    recordings = [Recording(file) for path in paths for file in _files(path)]
+    return [
+        recording
+        for recording in recordings
+        if (people is None or recording.person in people)
+        and (with_excluded or recording.metadata.get("excluded") != "true")
+    ]
+
+
+def sensors(recording: Recording) -> list[str]:
+    """Name the viewpoints that have marks in a recording."""
+    return sorted({mark.sensor for mark in recording.messages((keys.SEGMENT,))})
+
+
+def classifier_input(recording: Recording, sensor: str) -> Iterator[tuple[int, Message]]:
+    """Yield, with its stamp (ns), each message that the classifier of this sensor would have got."""
+    preprocessor, numbering = PosePreprocessor(), Numbering()
+    for message in recording.messages(STREAMS):
+        if message.sensor == sensor:
+            arriving = preprocessor.handle(message) if isinstance(message, Skeleton) else [message]
+            for posture_or_mark in arriving:
+                yield message.stamp_ns, numbering.numbered(posture_or_mark)
+
+
+def samples_from(recordings: Sequence[Recording], progress: Progress = silent) -> Samples:
+    """Cut every labelled segment out of the recordings.
+
+    Raises:
+        RecordingError: a file is damaged.
+    """
+    samples = Samples([], [])
+    for done, recording in enumerate(recordings):
+        progress("reading recordings", done, len(recordings))
+        for sensor in sensors(recording):
+            for closed in closed_segments(classifier_input(recording, sensor)):
+                _collect(samples, recording, closed)
+    progress("reading recordings", len(recordings), len(recordings))
+    return samples
+
+
+def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[Closed]:
+    """Return the segments that the classifier's own bookkeeping closes, in that order."""
+    collector = _Collector()
+    for _ in replay(collector, messages):
+        raise AssertionError("the collector puts nothing")
+    return collector.closed
+
+
+class _Collector:
+    """A node that keeps what the segmenter closes."""
+
+    name = "collector"
+    inputs: tuple[keys.Topic, ...] = (keys.POSTURE, keys.SEGMENT)
+
+    def __init__(self) -> None:
+        self.tally = Tally()
+        self.closed: list[Closed] = []
+        self._segmenter = Segmenter(self.tally)
+
+    def handle(self, message: Message | Tick) -> list[Message]:
+        match message:
+            case Posture():
+                self.closed += self._segmenter.posture(message)[1]
+            case Segment():
+                self.closed += self._segmenter.mark(message)
+            case Tick():
+                self.closed += self._segmenter.tick(message)
+        return []
+
+
+def _files(path: Path) -> list[Path]:
+    return sorted(path.rglob("*.mcap")) if path.is_dir() else [path]
+
+
+def _collect(samples: Samples, recording: Recording, closed: Closed) -> None:
+    if closed.label is None:
+        return
+    file = str(recording.path)
+    joints = [frame.joints for frame in closed.frames if frame.joints is not None]
+    motion = [frame.motion for frame in closed.frames if frame.motion is not None]
+    if closed.reason or len(joints) < Model.min_frames:
+        reason = closed.reason or f"{len(joints)} usable frames, at least {Model.min_frames} are needed"
+        samples.unusable.append(Unusable(file, closed.segment_id, reason))
+        return
+    sample = SegmentSample(closed.label, np.stack(joints), np.stack(motion), recording.person, file, closed.segment_id)
+    samples.usable.append(sample)

@@ -1,0 +1,1 @@
+"""From the skeleton in the camera frame to scaled, egocentric postures."""

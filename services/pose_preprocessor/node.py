@@ -1,0 +1,134 @@
+"""The preprocessor's pure step: each agent of a skeleton frame becomes one posture."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum import geometry, keys
+from actum.messages import Agent, Joint, Message, Posture, Skeleton
+from actum.node import SECOND_NS, Tally, Tick
+from actum.skeletons import PARTS
+from actum.stamps import Order, StampGuard
+from pose_preprocessor.checks import BadFrameError, measured
+from pose_preprocessor.settings import Settings
+
+GAP_NS = SECOND_NS // 2
+_PART_JOINTS = np.array(list(PARTS.values()))
+
+
+class _Previous:
+    """An agent's last usable frame."""
+
+    def __init__(self, stamp_ns: int, camera_joints: NDArray[np.float64], ego_joints: NDArray[np.float64]) -> None:
+        self.stamp_ns = stamp_ns
+        self.camera_joints = camera_joints
+        self.ego_joints = ego_joints
+
+
+class PosePreprocessor:
+    """Rejects bad frames, expresses the others in the actor's own frame, scaled and metric (paper, section 2.1)."""
+
+    name = "pose_preprocessor"
+    inputs = (keys.SKELETON,)
+
+    def __init__(self, settings: Settings | None = None) -> None:
+        self.tally = Tally()
+        self._settings = settings or Settings()
+        self._order = StampGuard()
+        self._previous: dict[int, _Previous] = {}
+        self._last_seq: int | None = None
+
+    def handle(self, message: Message | Tick) -> Iterable[Message]:
+        """Turn a skeleton into one posture per agent, or one for agent 0 when nobody is there."""
+        if not isinstance(message, Skeleton):
+            return []
+        order = self._order.judge(message.stamp_ns, message.session_id)
+        if order is Order.STALE:
+            self.tally.reject("stale_stamp", f"skeleton at {message.stamp_ns} after {self._order.newest_ns}")
+            return []
+        if order is Order.RESTART:
+            self._previous.clear()
+        missed = self._missed(message, order)
+        agents = self._distinct_agents(message)
+        if not agents:
+            reason = message.reason or "no person"
+            return [self._invalid(message, 0, reason, missed, [])]
+        present = [agent.agent for agent in agents]
+        return [self._posture(message, agent, missed, present) for agent in agents]
+
+    def _missed(self, message: Skeleton, order: Order) -> int:
+        last, self._last_seq = self._last_seq, message.seq
+        if last is None or message.seq is None or order is Order.RESTART:
+            return 0
+        return max(message.seq - last - 1, 0)
+
+    def _distinct_agents(self, message: Skeleton) -> list[Agent]:
+        agents = {agent.agent: agent for agent in message.agents}
+        if len(agents) < len(message.agents):
+            self.tally.reject("repeated_agent", f"{len(message.agents)} agents, {len(agents)} distinct")
+        return list(agents.values())
+
+    def _posture(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
+        try:
+            if not frame.valid:
+                raise BadFrameError("invalid_skeleton", frame.reason or "the source says so")
+            return self._valid(frame, agent, missed, present)
+        except (BadFrameError, geometry.DegenerateError) as error:
+            kind = error.kind if isinstance(error, BadFrameError) else "coincident_joints"
+            self.tally.reject(kind, f"agent {agent.agent} at {frame.stamp_ns}: {error}")
+            return self._invalid(frame, agent.agent, f"{kind}: {error}", missed, present)
+
+    def _valid(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
+        joints = measured(agent.joints, self._settings.reach_limit_m, self._settings.bone_limit_m)
+        previous = self._previous.get(agent.agent)
+        if previous is not None and np.array_equal(previous.camera_joints, joints):
+            raise BadFrameError("repeated_joints", "the same joints as in the frame before")
+        ego_from_camera = geometry.ego_from_camera(joints)
+        ego_joints = geometry.apply(ego_from_camera, joints)
+        standard = geometry.scaled(joints)
+        standard_ego = geometry.apply(geometry.ego_from_camera(standard), standard)
+        motion = self._motion(previous, frame.stamp_ns, ego_joints)
+        self._previous[agent.agent] = _Previous(frame.stamp_ns, joints, ego_joints)
+        return Posture(
+            stamp_ns=frame.stamp_ns,
+            sensor=frame.sensor,
+            agent=agent.agent,
+            joints_m=_listed(ego_joints),
+            joints=_listed(standard_ego),
+            ego_from_camera=geometry.flat(ego_from_camera),
+            motion=motion,
+            agents=present,
+            missed=missed,
+            session_id=frame.session_id,
+        )
+
+    def _motion(self, previous: _Previous | None, stamp_ns: int, ego_joints: NDArray[np.float64]) -> list[float]:
+        """Mean displacement (m) of each part's joints since the last usable frame, 0 after a gap."""
+        if previous is None or stamp_ns - previous.stamp_ns > GAP_NS:
+            return [0.0] * len(PARTS)
+        steps = ego_joints - previous.ego_joints
+        lengths = np.sqrt(np.einsum("ij,ij->i", steps, steps))
+        motion: list[float] = lengths[_PART_JOINTS].mean(axis=1).tolist()
+        return motion
+
+    def _invalid(self, frame: Skeleton, agent: int, reason: str, missed: int, present: list[int]) -> Posture:
+        return Posture(
+            stamp_ns=frame.stamp_ns,
+            sensor=frame.sensor,
+            valid=False,
+            reason=reason,
+            agent=agent,
+            joints_m=None,
+            joints=None,
+            ego_from_camera=None,
+            motion=None,
+            agents=present,
+            missed=missed,
+            session_id=frame.session_id,
+        )
+
+
+def _listed(joints: NDArray[np.float64]) -> list[Joint]:
+    listed: list[Joint] = joints.tolist()
+    return listed

@@ -1,0 +1,16 @@
+"""`python -m sensor_gateway`."""
+
+import time
+
+from actum.runtime import run_source
+from sensor_gateway.settings import Settings
+from sensor_gateway.sources import source_of
+
+
+def main() -> None:
+    """Serve until SIGTERM."""
+    run_source(Settings, lambda settings: source_of(settings, start_ns=time.time_ns()))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,45 @@
+"""What the actor is to do: a list of actions, each on one object."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sensor_gateway.simulator.chance import stream
+from sensor_gateway.simulator.parameters import load_parameters
+
+ACTIONS: tuple[str, ...] = ("push", "pull", "put", "lift", "point")
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One repetition: an action of `ACTIONS` on the object with that id.
+
+    Raises:
+        ValueError: there is no such action or object.
+    """
+
+    action: str
+    object_id: int
+
+    def __post_init__(self) -> None:
+        if self.action not in ACTIONS:
+            raise ValueError(f"no action {self.action!r}: use one of {', '.join(ACTIONS)}")
+        if self.object_id not in object_ids():
+            raise ValueError(f"no object {self.object_id}: use one of {object_ids()}")
+
+
+def object_ids() -> tuple[int, ...]:
+    """List the ids of the scene's objects."""
+    return tuple(item.id for item in load_parameters().objects.items)
+
+
+def balanced_programme(repetitions: int, seed: int) -> list[Sample]:
+    """Shuffle `repetitions` of each action; the objects take turns within every action."""
+    rng = stream("programme", seed)
+    ids = rng.permutation(object_ids())
+    samples = [
+        Sample(action, int(ids[(row + repetition) % len(ids)]))
+        for row, action in enumerate(ACTIONS)
+        for repetition in range(repetitions)
+    ]
+    return [samples[i] for i in np.asarray(rng.permutation(len(samples)))]

@@ -1,0 +1,72 @@
+"""The source that the settings name."""
+
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+
+from actum.messages import Message
+from actum.node import SECOND_NS, Source, Tally
+from sensor_gateway.msr_action3d import MsrAction3dSource
+from sensor_gateway.recording_source import RecordingSource
+from sensor_gateway.settings import Settings
+from sensor_gateway.simulator import Simulator, balanced_programme
+from sensor_gateway.utkinect import UtKinectSource
+
+ROUND = 4
+"""Repetitions of each action before an endless scene is drawn anew."""
+
+FROM_FILES: Mapping[str, Callable[[Path, str], Source]] = {
+    "recording": RecordingSource,
+    "msr-action3d": MsrAction3dSource,
+    "utkinect": UtKinectSource,
+}
+
+
+class SourceError(ValueError):
+    """The settings name no usable source."""
+
+
+def source_of(settings: Settings, start_ns: int) -> Source:
+    """Build the source; a simulated scene's stamps begin at `start_ns`.
+
+    Raises:
+        SourceError: a source from files has no path.
+    """
+    if settings.source == "simulator":
+        return EndlessSimulator(settings, start_ns) if settings.repetitions == 0 else _scene(settings, start_ns)
+    if settings.path is None:
+        raise SourceError(f"source {settings.source} needs --path (ACTUM_PATH): the file or folder to play")
+    return FROM_FILES[settings.source](settings.path, settings.sensor)
+
+
+class EndlessSimulator:
+    """One simulated scene after another, as one stream."""
+
+    name = "sensor_gateway"
+    paced = True
+
+    def __init__(self, settings: Settings, start_ns: int) -> None:
+        self.tally = Tally()
+        self._settings = settings
+        self._start_ns = start_ns
+
+    def frames(self) -> Iterator[list[Message]]:
+        """Yield frames for ever."""
+        start_ns, seed = self._start_ns, self._settings.seed
+        while True:
+            scene = self._settings.model_copy(update={"repetitions": ROUND, "seed": seed})
+            for messages in _scene(scene, start_ns, session_id=f"simulator-{self._start_ns}").frames():
+                yield messages
+                newest_ns = messages[0].stamp_ns
+            start_ns, seed = newest_ns + SECOND_NS, seed + 1
+
+
+def _scene(settings: Settings, start_ns: int, session_id: str | None = None) -> Simulator:
+    return Simulator(
+        balanced_programme(settings.repetitions, settings.seed),
+        actor_seed=settings.actor,
+        seed=settings.seed,
+        sensor=settings.sensor,
+        image_hz=settings.image_hz,
+        start_ns=start_ns,
+        session_id=session_id,
+    )

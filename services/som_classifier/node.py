@@ -1,0 +1,163 @@
+"""The classifier's pure step: postures and marks become partial and final actions."""
+
+from collections.abc import Iterable, Iterator
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum import keys
+from actum.messages import Action, Message, Posture, Segment, Tensor
+from actum.node import Tally, Tick
+from som_classifier.model import Model, Recognition
+from som_classifier.model_file import ModelFile
+from som_classifier.segments import Closed, OpenSegment, Segmenter
+from som_classifier.settings import Settings
+from som_classifier.streams import Frame
+
+POLL_TICKS = 5
+
+
+class ModelSource(Protocol):
+    """Where a new model may come from while the node runs."""
+
+    def poll(self, tally: Tally) -> Model | None:
+        """Return a model that is new since the last call."""
+        ...
+
+
+class SomClassifier:
+    """Estimates the action while a segment is open, and answers it once when it closes."""
+
+    name = "som_classifier"
+    inputs = (keys.POSTURE, keys.SEGMENT)
+
+    def __init__(
+        self, model: Model | None = None, source: ModelSource | None = None, publish_trace: bool = False
+    ) -> None:
+        self.tally = Tally(state="running" if model else "no model")
+        self._segmenter = Segmenter(self.tally)
+        self._model = model
+        if model is not None:
+            self.tally.details["model"] = model.id
+        self._source = source
+        self._publish_trace = publish_trace
+        self._ticks = 0
+        self._sensor = "unknown"
+
+    @classmethod
+    def configured(cls, settings: Settings) -> "SomClassifier":
+        """Build the node as the settings say; the model file need not exist yet."""
+        node = cls(source=ModelFile(settings.model) if settings.model else None, publish_trace=settings.publish_maps)
+        node._reload()
+        return node
+
+    def handle(self, message: Message | Tick) -> Iterable[Message]:
+        """Take a posture, a mark or a tick; return the actions it gives rise to."""
+        if isinstance(message, Message):
+            self._sensor = message.sensor
+        match message:
+            case Posture():
+                return list(self._posture(message))
+            case Segment():
+                return [self._answer(closed) for closed in self._segmenter.mark(message)]
+            case Tick():
+                return self._tick(message)
+            case _:
+                return []
+
+    def _tick(self, tick: Tick) -> list[Message]:
+        self._ticks += 1
+        if self._ticks % POLL_TICKS == 0:
+            self._reload()
+        return [self._answer(closed) for closed in self._segmenter.tick(tick)]
+
+    def _reload(self) -> None:
+        model = self._source.poll(self.tally) if self._source else None
+        if model is None:
+            return
+        self._model, self.tally.state = model, "running"
+        self.tally.details["model"] = model.id
+        for frame in self._segmenter.frames:
+            frame.cells = None
+
+    def _posture(self, posture: Posture) -> Iterator[Action]:
+        frame, closed = self._segmenter.posture(posture)
+        if frame is not None:
+            for segment in self._segmenter.open_at(posture.agent, posture.stamp_ns):
+                yield from self._partial(segment, posture)
+        for answer in closed:
+            yield self._answer(answer)
+
+    def _partial(self, segment: OpenSegment, posture: Posture) -> Iterator[Action]:
+        frames = self._segmenter.frames_of(segment)
+        recognition = self._recognise(frames)
+        if recognition is not None and segment.start_ns is not None:
+            yield Action(
+                stamp_ns=posture.stamp_ns,
+                sensor=posture.sensor,
+                agent=posture.agent,
+                segment_id=segment.segment_id,
+                start_ns=segment.start_ns,
+                end_ns=None,
+                final=False,
+                action=recognition.label,
+                confidence=recognition.confidence,
+                activations=recognition.activations,
+                part=recognition.part,
+                frames=sum(frame.valid for frame in frames),
+                missed=sum(frame.missed for frame in frames),
+                hand=segment.hand,
+            )
+
+    def _recognise(self, frames: list[Frame]) -> Recognition | None:
+        model = self._model
+        seen = [(frame, frame.motion) for frame in frames if frame.motion is not None]
+        if model is None or len(seen) < model.min_frames:
+            return None
+        cells = np.stack([_cells(model, frame) for frame, _ in seen])
+        return model.recognise(cells, np.stack([motion for _, motion in seen]))
+
+    def _answer(self, closed: Closed) -> Action:
+        recognition = None if closed.reason else self._recognise(closed.frames)
+        reason = closed.reason or (None if recognition else self._why_not(closed))
+        if reason:
+            self.tally.reject("rejected_segment", f"{closed.segment_id}: {reason}")
+        return Action(
+            stamp_ns=closed.end_ns,
+            sensor=self._sensor,
+            valid=reason is None,
+            reason=reason,
+            agent=closed.agent,
+            segment_id=closed.segment_id,
+            start_ns=closed.start_ns,
+            end_ns=closed.end_ns,
+            final=True,
+            action=recognition.label if recognition else None,
+            confidence=recognition.confidence if recognition else 0.0,
+            activations=recognition.activations if recognition else {},
+            part=recognition.part if recognition else None,
+            frames=sum(frame.valid for frame in closed.frames),
+            missed=closed.missed,
+            hand=closed.hand,
+            trace=_tensor(recognition.trace) if recognition and self._publish_trace else None,
+        )
+
+    def _why_not(self, closed: Closed) -> str:
+        if self._model is None:
+            return "no model"
+        frames = sum(frame.valid for frame in closed.frames)
+        return f"too few frames: {frames}, at least {self._model.min_frames} are needed"
+
+
+def _cells(model: Model, frame: Frame) -> NDArray[np.intp]:
+    """Look up a frame's best-matching units, once."""
+    if frame.cells is None:
+        assert frame.joints is not None
+        frame.cells = model.cells(frame.joints)
+    return frame.cells
+
+
+def _tensor(array: NDArray[np.float64]) -> Tensor:
+    little = np.ascontiguousarray(array, dtype="<f4")
+    return Tensor(dtype="<f4", shape=list(little.shape), data=little.tobytes())

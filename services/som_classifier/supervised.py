@@ -1,0 +1,88 @@
+"""The third layer: one neuron per action on the second map's activity (paper, section 2.1)."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def activity(excess2: Array, contrast: float) -> Array:
+    """Return the second map's activity y = exp(−(d² − d²_min) / contrast), 1 at the winner.
+
+    The paper's exp(−s / 10⁶) is 1 everywhere in floating point at any usual scale of the input, so the contrast
+    is set relative to the distances between training vectors and the winner's own distance is taken off.
+
+    Args:
+        excess2: d² − d²_min of each neuron.
+        contrast: in the same unit as d².
+    """
+    return np.exp(excess2 / -contrast)
+
+
+@dataclass(frozen=True, eq=False)
+class SupervisedLayer:
+    """Neurons that answer with the cosine between the input and their weights.
+
+    Attributes:
+        weights: (actions, inputs), rows of unit length, read-only.
+    """
+
+    weights: Array
+
+    def __post_init__(self) -> None:
+        weights = np.array(self.weights, dtype=np.float64, order="C")
+        if weights.ndim != 2 or not np.allclose(np.linalg.norm(weights, axis=1), 1.0):
+            raise ValueError(f"weights of shape {weights.shape} are no vectors of unit length, one per action")
+        weights.setflags(write=False)
+        object.__setattr__(self, "weights", weights)
+
+    @classmethod
+    def random(cls, actions: int, inputs: int, rng: np.random.Generator) -> "SupervisedLayer":
+        """Make an untrained layer: weights drawn from U(0, 1), then made unit length."""
+        weights = rng.random((actions, inputs))
+        return cls(weights / np.linalg.norm(weights, axis=1, keepdims=True))
+
+    def cosines(self, x: Array) -> Array:
+        """Return each neuron's activity x·w / ‖x‖‖w‖, shape (actions,)."""
+        return self.weights @ (x / np.sqrt(x @ x))
+
+    def train(
+        self,
+        inputs: Array,
+        targets: NDArray[np.intp],
+        beta: float,
+        epochs: int,
+        rng: np.random.Generator,
+        report: Callable[[int, int], None] = lambda done, total: None,
+    ) -> "SupervisedLayer":
+        """Return the layer after showing it every row of (n, inputs) once per epoch, in random order.
+
+        Args:
+            targets: (n,), the index of the neuron that is to answer 1; the others are to answer 0.
+        """
+        weights = self.weights.copy()
+        unit_inputs = inputs / np.linalg.norm(inputs, axis=1, keepdims=True)
+        desired = np.eye(len(weights))[targets]
+        for epoch in range(epochs):
+            for index in rng.permutation(len(inputs)):
+                adapt(weights, unit_inputs[index], desired[index], beta)
+            report(epoch + 1, epochs)
+        return SupervisedLayer(weights)
+
+
+def adapt(weights: Array, x: Array, desired: Array, beta: float) -> None:
+    """Apply the delta rule w += β x (d − y) in place and make the weights unit length again.
+
+    The paper prints [y − d], which drives each neuron away from what it should answer.
+
+    Args:
+        weights: (actions, inputs), rows of unit length.
+        x: (inputs,), of unit length.
+        desired: (actions,).
+    """
+    error = desired - weights @ x
+    weights += np.multiply.outer(beta * error, x)
+    weights /= np.sqrt(np.einsum("ij,ij->i", weights, weights))[:, None]

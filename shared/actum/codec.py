@@ -1,0 +1,114 @@
+"""Messages to and from the wire: a msgpack map, an encoding that names the schema, a small attachment."""
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import msgpack
+from pydantic import ValidationError
+
+from actum import keys
+from actum.messages import Message
+
+ENCODING = re.compile(r"application/msgpack;(?P<schema>[a-z0-9_.]+)/(?P<version>\d{1,6})")
+DEPTH_LIMIT_ERRORS = (ValueError, TypeError, RecursionError, msgpack.exceptions.UnpackException)
+
+
+class DecodeError(ValueError):
+    """A payload that is no message of its key; `kind` is the name it is counted under."""
+
+    def __init__(self, kind: str, detail: str) -> None:
+        super().__init__(f"{kind}: {detail}")
+        self.kind = kind
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What is put on a key, ready for the wire."""
+
+    key: str
+    payload: bytes
+    encoding: str
+    attachment: bytes
+
+
+def schema_name(message: Message | type[Message]) -> str:
+    """Name a message's schema with its version, e.g. `actum.skeleton/1`."""
+    return f"{message.SCHEMA}/{message.VERSION}"
+
+
+def encode(message: Message) -> Frame:
+    """Pack a message; the attachment repeats `[version, seq, stamp_ns]`."""
+    payload = msgpack.packb(message.model_dump(), use_bin_type=True)
+    attachment = msgpack.packb([message.VERSION, message.seq, message.stamp_ns])
+    return Frame(keys.key_of(message), payload, f"application/msgpack;{schema_name(message)}", attachment)
+
+
+def decode(key: str, payload: bytes, encoding: str = "") -> Message:
+    """Unpack what stood on a key. Unknown fields are ignored, the key's sensor and name are filled in.
+
+    Raises:
+        DecodeError: of kind `unknown_key`, `too_large`, `wrong_schema`, `higher_version`, `not_msgpack`,
+            `not_a_map`, `wrong_fields` or `wrong_key`.
+    """
+    try:
+        address = keys.parse(key)
+    except keys.InvalidKeyError as error:
+        raise DecodeError("unknown_key", str(error)) from None
+    topic = address.topic
+    if len(payload) > topic.max_bytes:
+        raise DecodeError("too_large", f"{len(payload)} bytes on {key}, at most {topic.max_bytes}")
+    _check_encoding(encoding, topic.message)
+    return _validated(key, address, _unpack(key, payload))
+
+
+def sequence_of(attachment: bytes) -> int | None:
+    """Read `seq` from an attachment, or None where it is absent or foreign."""
+    try:
+        _version, seq, _stamp_ns = msgpack.unpackb(attachment)
+    except DEPTH_LIMIT_ERRORS:
+        return None
+    return seq if isinstance(seq, int) else None
+
+
+def _check_encoding(encoding: str, expected: type[Message]) -> None:
+    """Accept the key's own schema up to our version; any other encoding is a plain client's: version 1."""
+    match = ENCODING.fullmatch(encoding)
+    if match is None:
+        return
+    if match["schema"] != expected.SCHEMA:
+        raise DecodeError("wrong_schema", f"{match['schema']} where {expected.SCHEMA} belongs")
+    if int(match["version"]) > expected.VERSION:
+        raise DecodeError(
+            "higher_version", f"{encoding}: this is version {expected.VERSION} of {expected.SCHEMA}; update actum"
+        )
+
+
+def _unpack(key: str, payload: bytes) -> dict[str, Any]:
+    try:
+        fields = msgpack.unpackb(payload, raw=False, strict_map_key=True)
+    except DEPTH_LIMIT_ERRORS as error:
+        raise DecodeError("not_msgpack", f"{key}: {type(error).__name__} {error}") from None
+    if not isinstance(fields, dict):
+        raise DecodeError("not_a_map", f"{key}: a {type(fields).__name__}, not a map with string keys")
+    return fields
+
+
+def _validated(key: str, address: keys.Address, fields: dict[str, Any]) -> Message:
+    fields.setdefault("sensor", address.sensor)
+    try:
+        message = address.topic.message.model_validate(fields)
+        actual = keys.key_of(message)
+    except (ValidationError, keys.InvalidKeyError) as error:
+        raise DecodeError("wrong_fields", f"{key}: {_first_line(error)}") from None
+    if actual != key:
+        raise DecodeError("wrong_key", f"a message for {actual} on {key}")
+    return message
+
+
+def _first_line(error: ValueError) -> str:
+    if not isinstance(error, ValidationError):
+        return str(error)
+    first = error.errors(include_input=False, include_url=False)[0]
+    field = ".".join(str(part) for part in first["loc"])
+    return f"{field}: {first['msg']} ({error.error_count()} problems)"

@@ -1,0 +1,126 @@
+"""Rigid transforms (4x4, `b_from_a` maps coordinates in a to coordinates in b) and the egocentric frame.
+
+The egocentric frame is right-handed: x to the actor's left, y up along the trunk, z forward.
+"""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.skeletons import INDEX
+
+Array = NDArray[np.float64]
+
+BONES: tuple[tuple[int, int, float], ...] = tuple(
+    (INDEX[parent], INDEX[child], length_m)
+    for parent, child, length_m in (
+        ("torso", "neck", 0.24),
+        ("neck", "head", 0.20),
+        ("neck", "left_shoulder", 0.18),
+        ("left_shoulder", "left_elbow", 0.28),
+        ("left_elbow", "left_hand", 0.32),
+        ("neck", "right_shoulder", 0.18),
+        ("right_shoulder", "right_elbow", 0.28),
+        ("right_elbow", "right_hand", 0.32),
+        ("torso", "left_hip", 0.26),
+        ("left_hip", "left_knee", 0.42),
+        ("left_knee", "left_foot", 0.44),
+        ("torso", "right_hip", 0.26),
+        ("right_hip", "right_knee", 0.42),
+        ("right_knee", "right_foot", 0.44),
+    )
+)
+"""The skeleton as a tree walked out from the torso: parent, child, standard length in metres."""
+
+_PARENTS = np.array([parent for parent, _, _ in BONES])
+_CHILDREN = np.array([child for _, child, _ in BONES])
+_LENGTHS_M = np.array([length for _, _, length in BONES])
+_SMALLEST_M = 1e-3
+
+
+class DegenerateError(ValueError):
+    """Joints coincide or lie in line, so that no frame or direction is defined."""
+
+
+def invert(b_from_a: Array) -> Array:
+    """Invert a rigid transform."""
+    a_from_b = np.eye(4)
+    a_from_b[:3, :3] = b_from_a[:3, :3].T
+    a_from_b[:3, 3] = -b_from_a[:3, :3].T @ b_from_a[:3, 3]
+    return a_from_b
+
+
+def apply(b_from_a: Array, points_a: Array) -> Array:
+    """Map points of shape (…, 3) from frame a to frame b."""
+    mapped: Array = points_a @ b_from_a[:3, :3].T + b_from_a[:3, 3]
+    return mapped
+
+
+def flat(transform: Array) -> list[float]:
+    """Write a transform as its 16 numbers, row-major."""
+    numbers: list[float] = transform.ravel().tolist()
+    return numbers
+
+
+def from_flat(numbers: list[float]) -> Array:
+    """Read a transform from its 16 numbers, row-major."""
+    return np.array(numbers, dtype=np.float64).reshape(4, 4)
+
+
+def ego_from_camera(joints: Array) -> Array:
+    """Build the paper's egocentric frame from hips and torso (section 2.1, figure 3).
+
+    The origin is the projection of the torso on the line through the hips; the axes lie along the hip line,
+    from the origin to the torso, and along the normal of their plane.
+
+    Args:
+        joints: (15, 3) in any right-handed frame, here called camera.
+
+    Raises:
+        DegenerateError: the hips coincide, or the torso lies on their line.
+    """
+    right_hip, left_hip, torso = (joints[INDEX[name]] for name in ("right_hip", "left_hip", "torso"))
+    left = _unit(left_hip - right_hip, "the hips coincide")
+    origin = right_hip + ((torso - right_hip) @ left) * left
+    up = _unit(torso - origin, "the torso lies on the line through the hips")
+    rotation = np.stack([left, up, _cross(left, up)])
+    ego = np.eye(4)
+    ego[:3, :3] = rotation
+    ego[:3, 3] = -rotation @ origin
+    return ego
+
+
+def scaled(joints: Array) -> Array:
+    """Give each bone its standard length, keeping its direction, walking out from the torso.
+
+    Raises:
+        DegenerateError: a bone has no length, so that its direction is undefined.
+    """
+    bones = joints[_CHILDREN] - joints[_PARENTS]
+    lengths = np.sqrt(np.einsum("ij,ij->i", bones, bones))
+    if lengths.min() < _SMALLEST_M:
+        raise DegenerateError("two joined joints coincide")
+    bones *= (_LENGTHS_M / lengths)[:, None]
+    result = np.empty_like(joints)
+    result[INDEX["torso"]] = joints[INDEX["torso"]]
+    for parent, child, bone in zip(_PARENTS, _CHILDREN, bones, strict=True):
+        result[child] = result[parent] + bone
+    return result
+
+
+def standard_lengths() -> Mapping[tuple[int, int], float]:
+    """List the standard bone lengths (m) by parent and child joint."""
+    return MappingProxyType({(parent, child): length for parent, child, length in BONES})
+
+
+def _unit(vector: Array, problem: str) -> Array:
+    length = float(np.sqrt(vector @ vector))
+    if length < _SMALLEST_M:
+        raise DegenerateError(problem)
+    return vector / length
+
+
+def _cross(a: Array, b: Array) -> Array:
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])

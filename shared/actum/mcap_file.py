@@ -1,0 +1,120 @@
+"""Reads MCAP files of any origin, whole, broken off or damaged: metadata and messages as they lie in the file."""
+
+import os
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO, cast
+
+import zstandard
+from mcap.exceptions import EndOfFile, McapError
+from mcap.records import Channel, McapRecord, Message, Metadata, Schema
+from mcap.stream_reader import StreamReader
+from mcap.writer import MCAP0_MAGIC
+
+DAMAGE = (McapError, zstandard.ZstdError, ValueError, OverflowError, RuntimeError, KeyError, struct.error, MemoryError)
+"""What the library and its decompressors raise on bytes that are no MCAP."""
+
+REMEDY = "name a recording made by `actum record` or `actum import`"
+
+
+class RecordingError(ValueError):
+    """A file that is no usable recording: which, what is wrong, what to do."""
+
+    def __init__(self, path: Path, problem: str, remedy: str) -> None:
+        super().__init__(f"{path}: {problem}; {remedy}")
+        self.path = path
+
+
+@dataclass(frozen=True)
+class StoredMessage:
+    """A message as it lies in the file."""
+
+    publish_ns: int
+    key: str
+    payload: bytes
+    encoding: str
+
+
+class McapFile:
+    """A file read from its start on each pass. `truncated` tells whether a pass has found it to break off."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.truncated = False
+
+    def metadata(self, name: str) -> dict[str, str]:
+        """Return the first metadata record of that name; empty where there is none.
+
+        Raises:
+            RecordingError: the file cannot be opened, is no MCAP, or is damaged.
+        """
+        for record in self._records():
+            if isinstance(record, Metadata) and record.name == name:
+                return dict(record.metadata)
+        return {}
+
+    def stored(self) -> Iterator[StoredMessage]:
+        """Yield the messages in the order of the file, up to its end or to where it breaks off.
+
+        Raises:
+            RecordingError: as `metadata`.
+        """
+        schemas: dict[int, str] = {}
+        channels: dict[int, Channel] = {}
+        for record in self._records():
+            match record:
+                case Schema():
+                    schemas[record.id] = record.name
+                case Channel():
+                    channels[record.id] = record
+                case Message():
+                    channel = channels.get(record.channel_id)
+                    if channel is None:
+                        raise self._damaged(f"a message of the unknown channel {record.channel_id}")
+                    encoding = channel.metadata.get("encoding", _encoding(schemas.get(channel.schema_id, "")))
+                    yield StoredMessage(record.publish_time, channel.topic, record.data, encoding)
+
+    def _records(self) -> Iterator[McapRecord]:
+        with self._opened() as file:
+            reader = StreamReader(cast(BinaryIO, _Exact(file)), validate_crcs=True)
+            try:
+                yield from reader.records
+            except EndOfFile:
+                self.truncated = True
+            except DAMAGE as error:
+                raise self._damaged(f"{type(error).__name__}: {error}") from None
+
+    def _opened(self) -> BinaryIO:
+        try:
+            file = self.path.open("rb")
+        except OSError as error:
+            raise RecordingError(self.path, error.strerror or str(error), REMEDY) from None
+        if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
+            file.close()
+            raise RecordingError(self.path, "no MCAP file", REMEDY)
+        file.seek(0)
+        return file
+
+    def _damaged(self, what: str) -> RecordingError:
+        return RecordingError(self.path, f"damaged ({what})", "record or import it again")
+
+
+class _Exact:
+    """A file that gives as many bytes as asked for or says that it has ended: the library takes fewer for all."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._left = os.fstat(file.fileno()).st_size
+
+    def read(self, length: int) -> bytes:
+        if length > self._left:
+            raise EndOfFile
+        self._left -= length
+        return self._file.read(length)
+
+
+def _encoding(schema: str) -> str:
+    """Name the encoding by the channel's schema, where no metadata of ours does."""
+    return f"application/msgpack;{schema}" if schema else ""

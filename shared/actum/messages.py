@@ -1,0 +1,255 @@
+"""Every message that crosses a Zenoh key, as frozen models; the JSON Schemas are generated from here.
+
+Units are SI and named in the field where not obvious. Positions are in the sensor's camera frame (metres,
+x right, y down, z forward) unless the field says otherwise. Transforms are 4x4, row-major, 16 numbers.
+"""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+
+Stamp = Annotated[int, Field(ge=0, lt=2**62)]
+Seq = Annotated[int, Field(ge=0, lt=2**62)]
+AgentId = Annotated[int, Field(ge=0, lt=2**31)]
+Point = Annotated[list[float], Field(min_length=3, max_length=3)]
+Joint = Point | None
+Joints = Annotated[list[Joint], Field(min_length=15, max_length=15)]
+FinitePoint = Annotated[list[FiniteFloat], Field(min_length=3, max_length=3)]
+Quaternion = Annotated[list[FiniteFloat], Field(min_length=4, max_length=4)]
+Transform = Annotated[list[FiniteFloat], Field(min_length=16, max_length=16)]
+Intrinsics = Annotated[list[FiniteFloat], Field(min_length=9, max_length=9)]
+SegmentId = Annotated[str, Field(min_length=1, max_length=200)]
+Hand = Literal["left", "right"]
+
+
+class Message(BaseModel):
+    """What every message carries: capture time on the sensor's clock, number per key, viewpoint, validity.
+
+    `seq` is filled in by the runtime where a node leaves it out.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="ignore", strict=True, ser_json_inf_nan="constants")
+    SCHEMA: ClassVar[str]
+    VERSION: ClassVar[int] = 1
+
+    stamp_ns: Stamp
+    seq: Seq | None = None
+    sensor: str
+    valid: bool = True
+    reason: str | None = None
+
+
+class Model(BaseModel):
+    """A part of a message."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore", strict=True)
+
+
+class Tensor(Model):
+    """A dense array: `dtype` in NumPy's notation with byte order, C order."""
+
+    dtype: str
+    shape: list[int]
+    data: bytes
+
+
+class Agent(Model):
+    """One tracked person of a skeleton frame."""
+
+    agent: Annotated[int, Field(ge=1, lt=2**31)]
+    joints: Joints
+    confidence: Annotated[list[float], Field(min_length=15, max_length=15)]
+
+
+class Skeleton(Message):
+    """All agents of one captured frame, camera frame; `agents` is empty when nobody is there."""
+
+    SCHEMA = "actum.skeleton"
+    agents: list[Agent]
+    session_id: str = ""
+
+
+class Image(Message):
+    """A colour (`jpeg`, `bgr8`) or depth (`depth16_mm`, little-endian) image with its camera."""
+
+    SCHEMA = "actum.image"
+    format: Literal["jpeg", "bgr8", "depth16_mm"]
+    width: Annotated[int, Field(gt=0)]
+    height: Annotated[int, Field(gt=0)]
+    data: bytes
+    K: Intrinsics
+    distortion: list[FiniteFloat]
+    skeleton_from_image: Transform
+    session_id: str = ""
+
+
+class Posture(Message):
+    """One agent's posture, egocentric (x left, y up, z forward).
+
+    `joints_m` are the measured joints in metres, `joints` the same posture with standard bone lengths.
+    `motion` is the mean displacement (m) of each part of `skeletons.PARTS` since the last valid frame.
+    `agents` names every agent of the captured frame, `missed` the frames lost just before this one.
+    """
+
+    SCHEMA = "actum.posture"
+    agent: AgentId
+    joints_m: Joints | None
+    joints: Joints | None
+    ego_from_camera: Transform | None
+    motion: Annotated[list[FiniteFloat], Field(min_length=5, max_length=5)] | None
+    frame: str = "egocentric"
+    agents: list[AgentId] = []
+    missed: Annotated[int, Field(ge=0)] = 0
+    session_id: str = ""
+
+
+class TrackedObject(Model):
+    """One object's pose in the skeleton's camera frame; `seen` is false while it is only remembered."""
+
+    id: Annotated[int, Field(ge=0, lt=2**31)]
+    name: str
+    position_m: FinitePoint
+    quaternion_xyzw: Quaternion
+    confidence: FiniteFloat
+    seen: bool
+
+
+class Objects(Message):
+    """All objects of one image."""
+
+    SCHEMA = "actum.objects"
+    objects: list[TrackedObject]
+    session_id: str = ""
+
+
+class Segment(Message):
+    """A start or end mark; anyone may put one with just `kind` and `segment_id`."""
+
+    SCHEMA = "actum.segment"
+    stamp_ns: Stamp | None = None  # type: ignore[assignment]
+    kind: Literal["start", "end"]
+    segment_id: SegmentId
+    agent: Annotated[int, Field(ge=1, lt=2**31)] | None = None
+    hand: Hand | None = None
+    label: str | None = None
+
+
+class Action(Message):
+    """What the classifier sees in a segment: partial per frame while it is open, `final` once at its end."""
+
+    SCHEMA = "actum.action"
+    agent: AgentId
+    segment_id: SegmentId
+    start_ns: Stamp
+    end_ns: Stamp | None
+    final: bool
+    action: str | None
+    confidence: FiniteFloat
+    activations: dict[str, FiniteFloat]
+    part: str | None
+    frames: int
+    missed: int
+    hand: Hand | None = None
+    maps: dict[str, Tensor] | None = None
+    trace: Tensor | None = None
+
+
+class ActedObject(Model):
+    """The object an action is applied to, and how close the hand came to it."""
+
+    id: int
+    name: str
+    distance_m: FiniteFloat
+
+
+class HeldObject(Model):
+    """The object in the hand."""
+
+    id: int
+    name: str
+
+
+class Motion(Model):
+    """How the object moved over the segment, in the level frame of its first posture: right, up, forward."""
+
+    displacement_m: FinitePoint
+
+
+class Event(Message):
+    """The product: what was done, to which object, and what became of it."""
+
+    SCHEMA = "actum.event"
+    agent: AgentId
+    segment_id: SegmentId
+    start_ns: Stamp
+    end_ns: Stamp
+    action: str | None
+    confidence: FiniteFloat
+    activations: dict[str, FiniteFloat]
+    object: ActedObject | None
+    held: HeldObject | None
+    hand: Hand | None
+    objects_present: list[int]
+    distances_m: dict[str, FiniteFloat]
+    motion: Motion | None
+    result: str | None
+    sentence: str
+    frames: int
+    missed: int
+
+
+class Status(Message):
+    """A service's health, once a second: rates in Hz per key, counts since start, latency of handling."""
+
+    SCHEMA = "actum.status"
+    service: str
+    instance: str
+    uptime_s: float
+    rates: dict[str, float]
+    handled: dict[str, int]
+    drops: dict[str, int]
+    rejects: dict[str, int]
+    last_error: str | None
+    latency_ms: dict[str, float]
+    state: str
+
+
+class Info(Message):
+    """What a service is: answered on its queryable."""
+
+    SCHEMA = "actum.info"
+    service: str
+    instance: str
+    version: str
+    schemas: list[str]
+    joint_names: list[str]
+    model: str | None = None
+    calibration: str | None = None
+
+
+class Truth(Message):
+    """What the simulated scene really did: put at the start and at the end of each action."""
+
+    SCHEMA = "actum.truth"
+    kind: Literal["start", "end"]
+    segment_id: SegmentId
+    agent: Annotated[int, Field(ge=1, lt=2**31)]
+    hand: Hand
+    action: str
+    object_id: int
+    object_name: str
+    displacement_m: FinitePoint | None
+
+
+MESSAGES: tuple[type[Message], ...] = (
+    Skeleton,
+    Image,
+    Posture,
+    Objects,
+    Segment,
+    Action,
+    Event,
+    Status,
+    Info,
+    Truth,
+)

@@ -1,0 +1,115 @@
+"""The shape of a service: a pure step over messages and ticks, and its replay without any transport."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from actum import keys
+from actum.messages import Message
+
+SECOND_NS = 1_000_000_000
+TICK_NS = SECOND_NS // 10
+SETTLE_NS = 70 * SECOND_NS
+
+
+@dataclass(frozen=True)
+class Tick:
+    """The passing of time, 10 Hz. It only bounds waiting and is never compared with a stamp."""
+
+    monotonic_ns: int
+
+
+@dataclass
+class Tally:
+    """What a node counts: rejects by kind, the newest complaint, its state in one word or two.
+
+    `details` says what is in use (`model`, `calibration`), for `info`.
+    """
+
+    rejects: Counter[str] = field(default_factory=Counter)
+    last_error: str | None = None
+    state: str = "running"
+    details: dict[str, str] = field(default_factory=dict)
+
+    def reject(self, kind: str, detail: str = "") -> None:
+        """Count one piece of bad input."""
+        self.rejects[kind] += 1
+        self.last_error = f"{kind}: {detail}" if detail else kind
+
+
+class Node(Protocol):
+    """A service's core: state inside; no socket, no clock, no sleep."""
+
+    tally: Tally
+
+    @property
+    def name(self) -> str:
+        """The service's name, as in its keys."""
+        ...
+
+    @property
+    def inputs(self) -> tuple[keys.Topic, ...]:
+        """The topics it takes."""
+        ...
+
+    def handle(self, message: Message | Tick) -> Iterable[Message]:
+        """Take one message or tick and return what is to be put."""
+        ...
+
+
+class Source(Protocol):
+    """A sensor: frames in the order of their stamps. The runtime decides when each is put."""
+
+    tally: Tally
+
+    @property
+    def name(self) -> str:
+        """The service's name, as in its keys."""
+        ...
+
+    @property
+    def paced(self) -> bool:
+        """True where the runtime must pace the frames by their stamps; false where reading them takes the time."""
+        ...
+
+    def frames(self) -> Iterator[list[Message]]:
+        """Yield the messages of one captured instant, all with the same stamp."""
+        ...
+
+
+class Numbering:
+    """Gives each message its number on its key."""
+
+    def __init__(self) -> None:
+        self._next: Counter[str] = Counter()
+
+    def numbered(self, message: Message) -> Message:
+        """Return the message with `seq` set; a number already there is kept and counted on from."""
+        key = keys.key_of(message)
+        if message.seq is not None:
+            self._next[key] = message.seq + 1
+            return message
+        seq = self._next[key]
+        self._next[key] += 1
+        return message.model_copy(update={"seq": seq})
+
+
+def replay(node: Node, messages: Iterable[tuple[int, Message]], settle_ns: int = SETTLE_NS) -> Iterator[Message]:
+    """Feed a node messages at their arrival times (ns), with ticks between, and yield what it puts.
+
+    Ticks go on for `settle_ns` after the last message, so that everything that waits is answered.
+    """
+    numbering = Numbering()
+    inputs = tuple(topic.message for topic in node.inputs)
+    now = next_tick = 0
+    for arrival_ns, message in messages:
+        next_tick = next_tick or arrival_ns
+        while next_tick <= arrival_ns:
+            yield from map(numbering.numbered, node.handle(Tick(next_tick)))
+            next_tick += TICK_NS
+        now = arrival_ns
+        if isinstance(message, inputs):
+            yield from map(numbering.numbered, node.handle(message))
+    for tick in range(max(next_tick, now), now + settle_ns, TICK_NS):
+        yield from map(numbering.numbered, node.handle(Tick(tick)))

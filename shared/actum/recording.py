@@ -1,0 +1,204 @@
+"""Recordings: MCAP files whose channels are Zenoh keys and whose messages are the payloads as they crossed them.
+
+`publish_time` is a message's stamp, `log_time` the time of its receipt, `sequence` its number on its key. A metadata
+record `actum.recording` holds `person`, `source` and free fields.
+"""
+
+from collections import Counter
+from collections.abc import Collection, Iterator
+from functools import cache, cached_property
+from heapq import merge
+from itertools import groupby
+from operator import attrgetter
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from mcap.writer import Writer
+
+from actum import codec, keys, schemas
+from actum.mcap_file import McapFile, RecordingError, StoredMessage
+from actum.messages import Image, Message, Segment
+from actum.node import Numbering
+
+__all__ = ["Recorder", "Recording", "RecordingError"]
+
+METADATA = "actum.recording"
+MESSAGE_ENCODING = "msgpack"
+SCHEMA_ENCODING = "jsonschema"
+CHUNK_BYTES = 256 * 1024
+"""What a crash may cost: about three seconds of a skeleton stream."""
+
+SEQUENCE_MODULUS = 2**32
+
+
+class Recorder:
+    """Writes a recording. The file carries the suffix `.part` until it is closed, and is readable up to a crash.
+
+    Left by an exception, a `with` block leaves the `.part` file; otherwise the file takes its name.
+    """
+
+    def __init__(self, path: Path, *, person: str, source: str, **fields: str) -> None:
+        self.path = path
+        self._part = path.with_name(path.name + ".part")
+        self._numbering = Numbering()
+        self._schemas: dict[str, int] = {}
+        self._channels: dict[str, int] = {}
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._file = self._part.open("wb")
+        self._writer = Writer(self._file, chunk_size=CHUNK_BYTES)
+        self._writer.start()
+        self._writer.add_metadata(METADATA, {"person": person, "source": source, **fields})
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if kind is None:
+            self.close()
+        else:
+            self._finish()
+
+    def close(self) -> None:
+        """Finish the file and give it its name."""
+        self._finish()
+        self._part.replace(self.path)
+
+    def write(self, message: Message, log_time_ns: int | None = None) -> None:
+        """Store one message, numbered on its key where it has no number.
+
+        Raises:
+            ValueError: a mark whose stamp is not resolved.
+        """
+        if message.stamp_ns is None:
+            raise ValueError(f"a recorded message needs its stamp: {message!r}")
+        numbered = self._numbering.numbered(message)
+        frame = codec.encode(numbered)
+        assert numbered.seq is not None
+        self._writer.add_message(
+            channel_id=self._channel(frame, message),
+            log_time=message.stamp_ns if log_time_ns is None else log_time_ns,
+            data=frame.payload,
+            publish_time=message.stamp_ns,
+            sequence=numbered.seq % SEQUENCE_MODULUS,
+        )
+
+    def _channel(self, frame: codec.Frame, message: Message) -> int:
+        if frame.key not in self._channels:
+            self._channels[frame.key] = self._writer.register_channel(
+                frame.key, MESSAGE_ENCODING, self._schema(message), {"encoding": frame.encoding}
+            )
+        return self._channels[frame.key]
+
+    def _schema(self, message: Message) -> int:
+        name = codec.schema_name(message)
+        if name not in self._schemas:
+            self._schemas[name] = self._writer.register_schema(name, SCHEMA_ENCODING, _json_schema(type(message)))
+        return self._schemas[name]
+
+    def _finish(self) -> None:
+        self._writer.finish()  # type: ignore[no-untyped-call]
+        self._file.close()
+
+
+class Recording:
+    """A recording to read. Nothing but its metadata is held; messages are read from the file on each pass.
+
+    Raises:
+        RecordingError: the file cannot be opened, is no MCAP, or is damaged.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.skipped: Counter[str] = Counter()
+        """What the newest pass left out, by kind: foreign channels and messages that do not decode."""
+        self._file = McapFile(path)
+        self.metadata = self._file.metadata(METADATA)
+
+    @property
+    def truncated(self) -> bool:
+        """Whether a pass has found the file to break off; what lies before the break was read."""
+        return self._file.truncated
+
+    @property
+    def person(self) -> str:
+        """Who acts, or "" where the file does not say."""
+        return self.metadata.get("person", "")
+
+    @property
+    def source(self) -> str:
+        """Where the recording comes from, or "" where the file does not say."""
+        return self.metadata.get("source", "")
+
+    @cached_property
+    def topics(self) -> frozenset[keys.Topic]:
+        """The topics that at least one message lies on."""
+        addresses = {key: _address(key) for key in {stored.key for stored in self._file.stored()}}
+        return frozenset(address.topic for address in addresses.values() if address is not None)
+
+    def messages(self, topics: Collection[keys.Topic] | None = None) -> Iterator[Message]:
+        """Yield the messages of these topics, or of all, in order of `publish_time`.
+
+        At one stamp, start marks come before everything else and end marks after it. Images are streamed, each key's
+        in the order it was written; all else is sorted.
+
+        Raises:
+            RecordingError: the file is damaged.
+        """
+        self.skipped.clear()
+        small, image_keys = self._indexed(topics)
+        images = [self._of_key(key) for key in sorted(image_keys)]
+        in_order = merge(small, *images, key=attrgetter("publish_ns"))
+        for _, instant in groupby(in_order, key=attrgetter("publish_ns")):
+            yield from sorted(self._decoded(instant), key=_rank)
+
+    def _indexed(self, topics: Collection[keys.Topic] | None) -> tuple[list[StoredMessage], set[str]]:
+        """Sort all that is small by stamp, and name the keys of the images."""
+        addresses: dict[str, keys.Address | None] = {}
+        small: list[StoredMessage] = []
+        image_keys: set[str] = set()
+        for stored in self._file.stored():
+            address = addresses.setdefault(stored.key, _address(stored.key))
+            if address is None:
+                self.skipped["unknown_key"] += 1
+            elif topics is None or address.topic in topics:
+                if address.topic.message is Image:
+                    image_keys.add(stored.key)
+                else:
+                    small.append(stored)
+        return sorted(small, key=attrgetter("publish_ns")), image_keys
+
+    def _of_key(self, key: str) -> Iterator[StoredMessage]:
+        return (stored for stored in self._file.stored() if stored.key == key)
+
+    def _decoded(self, instant: Iterator[StoredMessage]) -> Iterator[Message]:
+        for stored in instant:
+            try:
+                message = codec.decode(stored.key, stored.payload, stored.encoding)
+            except codec.DecodeError as error:
+                self.skipped[error.kind] += 1
+                continue
+            if message.stamp_ns is None:
+                message = message.model_copy(update={"stamp_ns": stored.publish_ns})
+            yield message
+
+
+@cache
+def _json_schema(kind: type[Message]) -> bytes:
+    return schemas.committed(schemas.file_name(kind)).encode()
+
+
+def _address(key: str) -> keys.Address | None:
+    try:
+        return keys.parse(key)
+    except keys.InvalidKeyError:
+        return None
+
+
+def _rank(message: Message) -> int:
+    """Order within one stamp: a segment holds the frames at its own bounds."""
+    if not isinstance(message, Segment):
+        return 1
+    return 0 if message.kind == "start" else 2

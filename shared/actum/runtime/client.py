@@ -1,0 +1,133 @@
+"""A session for programs beside the services: commands, tests, benchmarks."""
+
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Self
+
+import zenoh
+
+from actum import keys
+from actum.codec import DecodeError, decode
+from actum.messages import Info, Message
+from actum.runtime.inbox import Subscriber, subscribe
+from actum.runtime.outbox import Outbox
+from actum.runtime.session import RouterUnreachableError, client_config, connected
+from actum.settings import ServiceSettings
+
+OPEN_S = 5.0
+POLL_S = 0.05
+DEEP_RING = 8192
+
+
+@dataclass(frozen=True)
+class Received:
+    """A sample as a message, or why it is none."""
+
+    key: str
+    message: Message | None
+    error: DecodeError | None
+    size: int
+
+
+class Listening:
+    """An open subscription: iterate it; `close` ends the iteration from another thread."""
+
+    def __init__(self, subscriber: Subscriber) -> None:
+        self._subscriber = subscriber
+
+    def __iter__(self) -> Iterator[Received]:
+        for sample in self._subscriber:
+            yield _received(sample)
+
+    def take(self) -> Received | None:
+        """Return the next sample if there is one."""
+        sample = self._subscriber.try_recv()
+        return None if sample is None else _received(sample)
+
+    def close(self) -> None:
+        """End the subscription."""
+        self._subscriber.undeclare()
+
+
+class Client:
+    """Puts and listens on one sensor's keys.
+
+    Raises:
+        RouterUnreachableError: no router answered within `wait_s`.
+    """
+
+    def __init__(self, settings: ServiceSettings, wait_s: float = OPEN_S) -> None:
+        self.sensor = settings.sensor
+        self.run = format(time.time_ns() // 1_000_000, "x")
+        self._session = _open(settings, wait_s)
+        self._outbox = Outbox(self._session)
+        self._listening: list[Listening] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
+        for listening in self._listening:
+            listening.close()
+        self._session.close()
+
+    def put(self, message: Message) -> None:
+        """Put a message on its key."""
+        self._outbox.put(message)
+
+    def put_raw(self, key: str, payload: bytes, encoding: str = "") -> None:
+        """Put bytes as a plain client does."""
+        self._session.put(key, payload, encoding=encoding)
+
+    def listen(self, key_expr: str, ring: int = DEEP_RING) -> Listening:
+        """Subscribe to a key expression, without history."""
+        listening = Listening(subscribe(self._session, key_expr, ring, recovered=False))
+        self._listening.append(listening)
+        return listening
+
+    def wait_for_subscriber(self, topic: keys.Topic, timeout_s: float) -> bool:
+        """Wait until somebody subscribes to this sensor's key of the topic."""
+        publisher = self._session.declare_publisher(keys.key(topic, self.sensor))
+        self._outbox.declare(keys.key(topic, self.sensor))
+        deadline = time.monotonic() + timeout_s
+        while not publisher.matching_status.matching:  # type: ignore[attr-defined]
+            if time.monotonic() > deadline:
+                return False
+            threading.Event().wait(POLL_S)
+        return True
+
+    def alive(self) -> list[str]:
+        """List the liveliness tokens of this sensor's services."""
+        replies = self._session.liveliness().get(f"{keys.BASE}/{self.sensor}/alive/**", timeout=1.0)
+        return sorted(str(reply.ok.key_expr) for reply in replies if reply.ok is not None)
+
+    def infos(self) -> list[Info]:
+        """Ask every service of this sensor what it is."""
+        replies = self._session.get(keys.pattern(keys.INFO, self.sensor), timeout=1.0)
+        found = [_received(reply.ok).message for reply in replies if reply.ok is not None]
+        return [info for info in found if isinstance(info, Info)]
+
+    def connected(self) -> bool:
+        """Tell whether there is a router now."""
+        return connected(self._session)
+
+
+def _open(settings: ServiceSettings, wait_s: float) -> zenoh.Session:
+    deadline = time.monotonic() + wait_s
+    while True:
+        try:
+            return zenoh.open(client_config(settings))
+        except zenoh.ZError:
+            if time.monotonic() > deadline:
+                raise RouterUnreachableError(settings.connect) from None
+
+
+def _received(sample: zenoh.Sample) -> Received:
+    key, payload = str(sample.key_expr), sample.payload.to_bytes()
+    try:
+        return Received(key, decode(key, payload, str(sample.encoding)), None, len(payload))
+    except DecodeError as error:
+        return Received(key, None, error, len(payload))

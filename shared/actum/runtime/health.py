@@ -1,0 +1,27 @@
+"""A service's health as a file, for container health checks: `python -m actum.runtime.health FILE`."""
+
+import sys
+import time
+from pathlib import Path
+
+FRESH_S = 5.0
+
+
+def write_health(path: Path, healthy: bool) -> None:
+    """Say that the service works and has a router now, or take that back."""
+    if healthy:
+        path.touch()
+    else:
+        path.unlink(missing_ok=True)
+
+
+def is_healthy(path: Path) -> bool:
+    """Whether the service has said so within the last seconds."""
+    try:
+        return time.time() - path.stat().st_mtime < FRESH_S
+    except FileNotFoundError:
+        return False
+
+
+if __name__ == "__main__":
+    sys.exit(0 if is_healthy(Path(sys.argv[1])) else 1)

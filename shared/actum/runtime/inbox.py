@@ -1,0 +1,62 @@
+"""Subscribers with rings, each read by a thread of its own, so that no stream can stall another."""
+
+import threading
+from collections.abc import Callable, Iterable
+
+import zenoh
+from zenoh import ext, handlers
+
+from actum import keys
+
+Subscriber = zenoh.Subscriber[zenoh.Handler[zenoh.Sample]] | ext.AdvancedSubscriber[zenoh.Handler[zenoh.Sample]]
+
+RECOVERED = (keys.SEGMENT, keys.ACTION, keys.EVENT)
+HISTORY_DEPTH = 16
+
+
+def subscribe(session: zenoh.Session, key_expr: str, ring: int, recovered: bool) -> Subscriber:
+    """Declare a subscriber; one that recovers asks publishers again for what it missed."""
+    channel: handlers.RingChannel[zenoh.Sample] = handlers.RingChannel(ring)
+    if not recovered:
+        return session.declare_subscriber(key_expr, channel)
+    return ext.declare_advanced_subscriber(
+        session,
+        key_expr,
+        channel,
+        history=ext.HistoryConfig(detect_late_publishers=True, max_samples=HISTORY_DEPTH),
+        recovery=ext.RecoveryConfig(heartbeat=True, periodic_queries=None),
+    )
+
+
+class Inbox:
+    """The subscriptions of one node."""
+
+    def __init__(self, session: zenoh.Session, topics: Iterable[keys.Topic], sensor: str) -> None:
+        self._subscribers = [
+            subscribe(session, keys.pattern(topic, sensor), topic.ring, topic in RECOVERED) for topic in topics
+        ]
+        self._threads: list[threading.Thread] = []
+
+    def start(self, receive: Callable[[zenoh.Sample], None]) -> None:
+        """Call `receive` for each sample, from one thread per subscriber."""
+        for subscriber in self._subscribers:
+            thread = threading.Thread(target=_drain, args=(subscriber, receive), daemon=True)
+            thread.start()
+            self._threads.append(thread)
+
+    def close(self) -> None:
+        """End the subscriptions and wait for their threads."""
+        for subscriber in self._subscribers:
+            subscriber.undeclare()
+        for thread in self._threads:
+            thread.join(timeout=1.0)
+
+    @property
+    def working(self) -> bool:
+        """Whether every thread still reads."""
+        return all(thread.is_alive() for thread in self._threads)
+
+
+def _drain(subscriber: Subscriber, receive: Callable[[zenoh.Sample], None]) -> None:
+    for sample in subscriber:
+        receive(sample)

@@ -1,0 +1,102 @@
+"""What a service tells about itself once a second."""
+
+import time
+from collections import Counter, deque
+
+import numpy as np
+
+from actum import __version__, keys
+from actum.codec import schema_name
+from actum.messages import MESSAGES, Info, Message, Status
+from actum.node import Tally
+from actum.settings import ServiceSettings
+from actum.skeletons import JOINTS
+
+LATENCIES = 1000
+
+
+class Meter:
+    """Counts what comes in, per key, and how long handling takes; thread-safe under the runtime's lock."""
+
+    def __init__(self, name: str, tally: Tally, settings: ServiceSettings) -> None:
+        self._name = name
+        self._tally = tally
+        self._settings = settings
+        self._started_ns = time.monotonic_ns()
+        self._reported_ns = self._started_ns
+        self._handled: Counter[str] = Counter()
+        self._reported: Counter[str] = Counter()
+        self._drops: Counter[str] = Counter()
+        self._last_seq: dict[str, int] = {}
+        self._latencies_ms: deque[float] = deque(maxlen=LATENCIES)
+
+    def received(self, key: str, message: Message) -> None:
+        """Count a message, and the ones that its number says are missing before it."""
+        self._handled[key] += 1
+        if message.seq is not None:
+            last = self._last_seq.get(key, message.seq)
+            self._drops[key] += max(message.seq - last - 1, 0)
+            self._last_seq[key] = message.seq
+
+    def put(self, key: str) -> None:
+        """Count a message of our own."""
+        self._handled[key] += 1
+
+    def rejected(self, kind: str, detail: str) -> None:
+        """Count a payload that is no message."""
+        self._tally.reject(kind, detail)
+
+    def took(self, milliseconds: float) -> None:
+        """Note how long one message took from arrival to the last put."""
+        self._latencies_ms.append(milliseconds)
+
+    def status(self) -> Status:
+        """Report the last second."""
+        now_ns = time.monotonic_ns()
+        elapsed_s = max((now_ns - self._reported_ns) / 1e9, 1e-6)
+        rates = {key: round((n - self._reported[key]) / elapsed_s, 2) for key, n in self._handled.items()}
+        self._reported, self._reported_ns = Counter(self._handled), now_ns
+        return Status(
+            stamp_ns=time.time_ns(),
+            sensor=self._settings.sensor,
+            service=self._name,
+            instance=self._settings.instance,
+            uptime_s=round((now_ns - self._started_ns) / 1e9, 3),
+            rates=rates,
+            handled=dict(self._handled),
+            drops={key: n for key, n in self._drops.items() if n},
+            rejects=dict(self._tally.rejects),
+            last_error=self._tally.last_error,
+            latency_ms=_percentiles(list(self._latencies_ms)),
+            state=self._tally.state,
+        )
+
+    def info(self) -> Info:
+        """Say what this service is."""
+        return Info(
+            stamp_ns=time.time_ns(),
+            sensor=self._settings.sensor,
+            service=self._name,
+            instance=self._settings.instance,
+            version=__version__,
+            schemas=[schema_name(message) for message in MESSAGES],
+            joint_names=list(JOINTS),
+            model=self._tally.details.get("model"),
+            calibration=self._tally.details.get("calibration"),
+        )
+
+    @property
+    def keys(self) -> dict[str, str]:
+        """The service's own keys, by what they carry."""
+        sensor, name = self._settings.sensor, self._name
+        return {
+            "alive": keys.alive(sensor, name, self._settings.instance),
+            "info": keys.key(keys.INFO, sensor, name),
+        }
+
+
+def _percentiles(values_ms: list[float]) -> dict[str, float]:
+    if not values_ms:
+        return {}
+    p50, p99 = np.percentile(values_ms, [50, 99]).tolist()
+    return {"p50": round(p50, 3), "p99": round(p99, 3)}

@@ -1,0 +1,86 @@
+"""Puts messages on their keys, numbered, with the quality of service that the table of topics gives."""
+
+import threading
+
+import zenoh
+from zenoh import ext
+
+from actum import keys
+from actum.codec import Frame, encode
+from actum.messages import Action, Message
+from actum.node import Numbering
+
+CACHE_DEPTH = 64
+HEARTBEAT_S = 0.5
+_CONGESTION = {"drop": zenoh.CongestionControl.DROP, "block": zenoh.CongestionControl.BLOCK}
+_PRIORITY = {
+    "interactive_high": zenoh.Priority.INTERACTIVE_HIGH,
+    "data_high": zenoh.Priority.DATA_HIGH,
+    "data_low": zenoh.Priority.DATA_LOW,
+    "background": zenoh.Priority.BACKGROUND,
+}
+Publisher = zenoh.Publisher | ext.AdvancedPublisher
+
+
+class Outbox:
+    """One publisher per key and kind, declared when first needed."""
+
+    def __init__(self, session: zenoh.Session) -> None:
+        self._session = session
+        self._numbering = Numbering()
+        self._publishers: dict[tuple[str, bool], Publisher] = {}
+        self._lock = threading.Lock()
+
+    def put(self, message: Message) -> None:
+        """Number and put one message."""
+        with self._lock:
+            frame = encode(self._numbering.numbered(message))
+            self._publisher(frame.key, _is_cached(message)).put(
+                frame.payload, encoding=frame.encoding, attachment=frame.attachment
+            )
+
+    def put_frame(self, frame: Frame) -> None:
+        """Put what is already packed, as it is."""
+        with self._lock:
+            self._publisher(frame.key, keys.parse(frame.key).topic.cached).put(
+                frame.payload, encoding=frame.encoding, attachment=frame.attachment
+            )
+
+    def declare(self, key: str) -> None:
+        """Declare a key's publisher ahead of the first put."""
+        with self._lock:
+            self._publisher(key, keys.parse(key).topic.cached)
+
+    def _publisher(self, key: str, cached: bool) -> Publisher:
+        if (key, cached) not in self._publishers:
+            topic = keys.parse(key).topic
+            declare = self._declare_cached if cached else self._declare_plain
+            self._publishers[key, cached] = declare(key, topic)
+        return self._publishers[key, cached]
+
+    def _declare_plain(self, key: str, topic: keys.Topic) -> Publisher:
+        return self._session.declare_publisher(
+            key,
+            congestion_control=_CONGESTION[topic.congestion],
+            priority=_PRIORITY[topic.priority],
+            express=topic.priority in ("interactive_high", "data_high"),
+        )
+
+    def _declare_cached(self, key: str, topic: keys.Topic) -> Publisher:
+        return ext.declare_advanced_publisher(
+            self._session,
+            key,
+            congestion_control=_CONGESTION[topic.congestion],
+            priority=_PRIORITY[topic.priority],
+            express=True,
+            cache=ext.CacheConfig(CACHE_DEPTH),
+            sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT_S),
+            publisher_detection=True,
+        )
+
+
+def _is_cached(message: Message) -> bool:
+    """Every final answer counts; a partial one is soon replaced by the next."""
+    if isinstance(message, Action):
+        return message.final
+    return keys.address_of(message).topic.cached

@@ -1,0 +1,45 @@
+"""The embedded router: a Zenoh session in router mode."""
+
+import json
+import logging
+import threading
+from pathlib import Path
+
+import zenoh
+
+log = logging.getLogger("actum")
+
+
+def router_config(listen: str | None, config_file: Path | None) -> zenoh.Config:
+    """Build the router's configuration from a JSON5 file or the defaults, with the endpoint to listen on."""
+    config = zenoh.Config.from_file(config_file) if config_file else _default_config()
+    if listen is not None:
+        config.insert_json5("listen/endpoints", json.dumps([listen]))
+    return config
+
+
+def serve_router(listen: str | None, config_file: Path | None, stop: threading.Event) -> None:
+    """Route until stopped.
+
+    Raises:
+        zenoh.ZError: the endpoint is taken, or the configuration is refused.
+    """
+    session = zenoh.open(router_config(listen, config_file))
+    log.info("router %s listens on %s", session.zid(), listen or config_file)
+    try:
+        stop.wait()
+    finally:
+        session.close()
+
+
+def _default_config() -> zenoh.Config:
+    config = zenoh.Config()
+    for path, value in {
+        "mode": "router",
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+        "transport/shared_memory/enabled": False,
+        "adminspace/enabled": True,
+    }.items():
+        config.insert_json5(path, json.dumps(value))
+    return config

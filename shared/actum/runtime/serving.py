@@ -1,0 +1,193 @@
+"""The life of a service: connect, subscribe, step, report, and leave cleanly."""
+
+import logging
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from typing import TypeVar
+
+import zenoh
+
+from actum.codec import DecodeError, decode, encode
+from actum.keys import key_of
+from actum.messages import Message
+from actum.node import TICK_NS, Node, Source, Tally, Tick
+from actum.runtime.health import write_health
+from actum.runtime.inbox import Inbox
+from actum.runtime.meter import Meter
+from actum.runtime.outbox import Outbox
+from actum.runtime.session import connected, open_session
+from actum.settings import ServiceSettings
+
+log = logging.getLogger("actum")
+S = TypeVar("S", bound=ServiceSettings)
+REPORT_S = 1.0
+
+
+def run(settings_type: type[S], build: Callable[[S], Node]) -> None:
+    """Serve a node until SIGTERM or SIGINT; the process's whole life."""
+    settings = settings_type(_cli_parse_args=True)
+    node = build(settings)
+    _live(NodeService(node, settings), settings, node.name)
+
+
+def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
+    """Serve a source until SIGTERM or SIGINT; the process's whole life."""
+    settings = settings_type(_cli_parse_args=True)
+    source = build(settings)
+    _live(SourceService(source, settings), settings, source.name)
+
+
+def stop_on_signals() -> threading.Event:
+    """Return an event that SIGTERM and SIGINT set."""
+    stop = threading.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: stop.set())
+    return stop
+
+
+def _live(service: "Service", settings: ServiceSettings, name: str) -> None:
+    logging.basicConfig(level=os.environ.get("ACTUM_LOG", "INFO"), format=f"{name}: %(message)s")
+    stop = stop_on_signals()
+    session = open_session(settings, stop)
+    if session is None:
+        return
+    try:
+        service.serve(session, stop)
+    finally:
+        session.close()
+    sys.exit(1 if service.failed else 0)
+
+
+class Service:
+    """What nodes and sources share: the way out, the report, the token and the description."""
+
+    def __init__(self, name: str, tally: Tally, settings: ServiceSettings) -> None:
+        self.failed = False
+        self._settings = settings
+        self._meter = Meter(name, tally, settings)
+        self._lock = threading.Lock()
+
+    def serve(self, session: zenoh.Session, stop: threading.Event) -> None:
+        """Work until stopped."""
+        outbox = Outbox(session)
+        token = session.liveliness().declare_token(self._meter.keys["alive"])
+        queryable = session.declare_queryable(self._meter.keys["info"], self._answer_info)
+        reporter = threading.Thread(target=self._report, args=(session, outbox, stop), daemon=True)
+        reporter.start()
+        try:
+            self._work(session, outbox, stop)
+        finally:
+            stop.set()
+            reporter.join(timeout=0.5)
+            queryable.undeclare()
+            token.undeclare()
+
+    def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event) -> None:
+        raise NotImplementedError
+
+    def _healthy(self) -> bool:
+        return True
+
+    def _answer_info(self, query: zenoh.Query) -> None:
+        with query:
+            with self._lock:
+                frame = encode(self._meter.info())
+            query.reply(frame.key, frame.payload, encoding=frame.encoding)
+
+    def _report(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event) -> None:
+        while not stop.wait(REPORT_S):
+            with self._lock:
+                status = self._meter.status()
+            outbox.put(status)
+            if self._settings.health_file is not None:
+                write_health(self._settings.health_file, self._healthy() and connected(session))
+
+
+class NodeService(Service):
+    """A node: messages in, messages out, ticks between."""
+
+    def __init__(self, node: Node, settings: ServiceSettings) -> None:
+        super().__init__(node.name, node.tally, settings)
+        self._node = node
+        self._inbox: Inbox | None = None
+
+    def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event) -> None:
+        self._inbox = Inbox(session, self._node.inputs, self._settings.sensor)
+        self._inbox.start(lambda sample: self._receive(sample, outbox, stop))
+        try:
+            while not stop.wait(TICK_NS / 1e9):
+                self._step(Tick(time.monotonic_ns()), outbox)
+        finally:
+            self._inbox.close()
+
+    def _healthy(self) -> bool:
+        return self._inbox is not None and self._inbox.working
+
+    def _receive(self, sample: zenoh.Sample, outbox: Outbox, stop: threading.Event) -> None:
+        """Handle one sample; bad input is counted, a bug ends the process."""
+        began_ns = time.perf_counter_ns()
+        key = str(sample.key_expr)
+        try:
+            message = decode(key, sample.payload.to_bytes(), str(sample.encoding))
+        except DecodeError as error:
+            with self._lock:
+                self._meter.rejected(error.kind, str(error))
+            return
+        try:
+            with self._lock:
+                self._meter.received(key, message)
+            self._step(message, outbox)
+            self._meter.took((time.perf_counter_ns() - began_ns) / 1e6)
+        except Exception:
+            log.exception("a bug, met while handling a message on %s", key)
+            self.failed = True
+            stop.set()
+
+    def _step(self, message: Message | Tick, outbox: Outbox) -> None:
+        with self._lock:
+            for output in self._node.handle(message):
+                outbox.put(output)
+
+
+class SourceService(Service):
+    """A source: each frame is put when its stamp is due."""
+
+    def __init__(self, source: Source, settings: ServiceSettings) -> None:
+        super().__init__(source.name, source.tally, settings)
+        self._source = source
+
+    def _work(self, _session: zenoh.Session, outbox: Outbox, stop: threading.Event) -> None:
+        pace = Pace(speed=1.0)
+        for messages in self._source.frames():
+            if self._source.paced and messages and not pace.wait(messages[0].stamp_ns, stop):
+                return
+            for message in messages:
+                outbox.put(message)
+                with self._lock:
+                    self._meter.put(key_of(message))
+            if stop.is_set():
+                return
+        self._source.tally.state = "source ended"
+        log.info("the source has ended")
+        stop.wait()
+
+
+class Pace:
+    """Lets stamps pass at the speed at which they were captured, or a multiple of it."""
+
+    def __init__(self, speed: float) -> None:
+        self._speed = speed
+        self._origin: tuple[int, int] | None = None
+
+    def wait(self, stamp_ns: int, stop: threading.Event) -> bool:
+        """Wait until the stamp is due; False if stopped meanwhile."""
+        if self._origin is None:
+            self._origin = stamp_ns, time.monotonic_ns()
+        first_stamp_ns, began_ns = self._origin
+        due_ns = began_ns + (stamp_ns - first_stamp_ns) / self._speed
+        delay_s = (due_ns - time.monotonic_ns()) / 1e9
+        return not (stop.wait(delay_s) if delay_s > 0 else stop.is_set())

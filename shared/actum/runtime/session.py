@@ -1,0 +1,70 @@
+"""Opening a Zenoh session to the router, patiently and interruptibly."""
+
+import json
+import logging
+import threading
+from typing import Any
+
+import zenoh
+
+from actum.settings import ServiceSettings
+
+log = logging.getLogger("actum")
+
+OPEN_TIMEOUT_MS = 500
+RETRY_S = 0.2
+
+
+class RouterUnreachableError(RuntimeError):
+    """No router answered at the configured endpoint."""
+
+    def __init__(self, endpoint: str) -> None:
+        super().__init__(f"no router answers at {endpoint}: start one with 'actum router' or set ACTUM_CONNECT")
+
+
+def client_config(settings: ServiceSettings) -> zenoh.Config:
+    """Build a client's configuration: one router, no discovery, no shared memory.
+
+    Multicast and gossip do not cross container networks, and shared memory loses messages silently when a
+    reader is descheduled.
+    """
+    config = zenoh.Config.from_file(settings.zenoh_config) if settings.zenoh_config else zenoh.Config()
+    for path, value in _client_values(settings.connect).items():
+        config.insert_json5(path, json.dumps(value))
+    return config
+
+
+def _client_values(endpoint: str) -> dict[str, Any]:
+    return {
+        "mode": "client",
+        "connect/endpoints": [endpoint],
+        "connect/timeout_ms": OPEN_TIMEOUT_MS,
+        "connect/retry": {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2},
+        "listen/endpoints": [],
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+        "transport/shared_memory/enabled": False,
+    }
+
+
+def open_session(settings: ServiceSettings, stop: threading.Event) -> zenoh.Session | None:
+    """Wait for the router, saying so once; None if stopped before it came."""
+    config = client_config(settings)
+    waiting = False
+    while not stop.is_set():
+        try:
+            session = zenoh.open(config)
+        except zenoh.ZError:
+            if not waiting:
+                log.warning("no router at %s yet: waiting for it", settings.connect)
+            waiting = True
+            stop.wait(RETRY_S)
+            continue
+        log.info("connected to %s", settings.connect)
+        return session
+    return None
+
+
+def connected(session: zenoh.Session) -> bool:
+    """Tell whether the session has a router now."""
+    return bool(session.info.routers_zid())

@@ -1,0 +1,34 @@
+"""The JSON Schemas of the messages, generated from the models and committed beside this file."""
+
+import json
+from importlib.resources import files
+from pathlib import Path
+
+from actum.codec import schema_name
+from actum.messages import MESSAGES, Message
+
+
+def file_name(message: type[Message]) -> str:
+    """Name a message's schema file, e.g. `actum.skeleton.1.json`."""
+    return f"{schema_name(message).replace('/', '.')}.json"
+
+
+def generated() -> dict[str, str]:
+    """Generate every schema file's text by its name."""
+    return {file_name(message): _text(message) for message in MESSAGES}
+
+
+def committed(name: str) -> str:
+    """Read a schema file as it stands in the package."""
+    return files(__name__).joinpath(name).read_text()
+
+
+def write(folder: Path) -> None:
+    """Write every schema file."""
+    for name, text in generated().items():
+        (folder / name).write_text(text)
+
+
+def _text(message: type[Message]) -> str:
+    schema = {"$id": schema_name(message), **message.model_json_schema(mode="validation")}
+    return json.dumps(schema, indent=2, sort_keys=True) + "\n"

@@ -1,0 +1,7 @@
+"""`python -m actum.schemas`: write the schema files anew."""
+
+from pathlib import Path
+
+from actum.schemas import write
+
+write(Path(__file__).parent)

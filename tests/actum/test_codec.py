@@ -1,0 +1,99 @@
+import msgpack
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from actum import codec, schemas
+from actum.messages import MESSAGES, Action, Segment, Skeleton
+from people import STANDING, skeleton
+
+KEY = "actum/kinect0/skeleton"
+
+
+def test_a_message_survives_the_wire() -> None:
+    message = skeleton(7, STANDING, seq=3)
+    frame = codec.encode(message)
+    assert frame.key == KEY
+    assert frame.encoding == "application/msgpack;actum.skeleton/1"
+    assert codec.decode(frame.key, frame.payload, frame.encoding) == message
+    assert msgpack.unpackb(frame.attachment) == [1, 3, 7]
+
+
+def test_the_payload_is_a_plain_map_that_stock_msgpack_reads() -> None:
+    plain = msgpack.unpackb(codec.encode(skeleton(7, STANDING)).payload)
+    assert plain["agents"][0]["joints"][0] == STANDING[0].tolist()
+    assert plain["sensor"] == "kinect0"
+
+
+def test_a_mark_needs_only_kind_and_segment_id() -> None:
+    mark = codec.decode("actum/kinect0/segment", msgpack.packb({"kind": "start", "segment_id": "a"}))
+    assert mark == Segment(sensor="kinect0", kind="start", segment_id="a")
+
+
+def test_unknown_fields_are_ignored() -> None:
+    fields = {"kind": "end", "segment_id": "a", "mood": ["sunny", 3]}
+    assert isinstance(codec.decode("actum/kinect0/segment", msgpack.packb(fields)), Segment)
+
+
+def test_a_missing_joint_is_null() -> None:
+    joints = [None, *STANDING[1:].tolist()]
+    fields = {"stamp_ns": 1, "agents": [{"agent": 1, "joints": joints, "confidence": [1.0] * 15}]}
+    decoded = codec.decode(KEY, msgpack.packb(fields))
+    assert isinstance(decoded, Skeleton)
+    assert decoded.agents[0].joints[0] is None
+
+
+@pytest.mark.parametrize(
+    ("kind", "key", "payload", "encoding"),
+    [
+        ("unknown_key", "actum/kinect0/nothing", b"\x80", ""),
+        ("not_msgpack", KEY, b"\xc1\xff", ""),
+        ("not_a_map", KEY, msgpack.packb([1, 2]), ""),
+        ("not_msgpack", KEY, msgpack.packb({1: 2}), ""),
+        ("wrong_fields", KEY, msgpack.packb({"stamp_ns": "soon", "agents": []}), ""),
+        ("wrong_fields", KEY, msgpack.packb({"stamp_ns": -1, "agents": []}), ""),
+        ("higher_version", KEY, msgpack.packb({"stamp_ns": 1, "agents": []}), "application/msgpack;actum.skeleton/2"),
+        ("wrong_schema", KEY, msgpack.packb({"stamp_ns": 1, "agents": []}), "application/msgpack;actum.event/1"),
+        ("wrong_key", KEY, msgpack.packb({"stamp_ns": 1, "sensor": "other", "agents": []}), ""),
+        ("too_large", KEY, b"\x00" * 1_000_001, ""),
+    ],
+)
+def test_what_is_no_message_is_named(kind: str, key: str, payload: bytes, encoding: str) -> None:
+    with pytest.raises(codec.DecodeError) as caught:
+        codec.decode(key, payload, encoding)
+    assert caught.value.kind == kind
+
+
+def test_a_plain_clients_encoding_means_version_one() -> None:
+    payload = msgpack.packb({"stamp_ns": 1, "agents": []})
+    for encoding in ("", "zenoh/bytes", "application/octet-stream"):
+        assert codec.decode(KEY, payload, encoding).stamp_ns == 1
+
+
+@given(st.binary(max_size=200))
+def test_random_bytes_never_pass_unnamed(payload: bytes) -> None:
+    try:
+        codec.decode(KEY, payload)
+    except codec.DecodeError as error:
+        assert error.kind in {"not_msgpack", "not_a_map", "wrong_fields"}
+
+
+def test_deeply_nested_bytes_are_refused() -> None:
+    with pytest.raises(codec.DecodeError):
+        codec.decode(KEY, b"\x91" * 100_000)
+
+
+def test_rejections_have_a_reason_and_no_action() -> None:
+    action = Action(
+        stamp_ns=1, sensor="kinect0", valid=False, reason="no person", agent=0, segment_id="a", start_ns=0, end_ns=1,
+        final=True, action=None, confidence=0.0, activations={}, part=None, frames=0, missed=0,
+    )  # fmt: skip
+    frame = codec.encode(action)
+    assert frame.key == "actum/kinect0/action/0"
+    assert codec.decode(frame.key, frame.payload, frame.encoding) == action
+
+
+@pytest.mark.parametrize("message", MESSAGES, ids=lambda message: message.SCHEMA)
+def test_the_committed_schema_is_the_generated_one(message: type) -> None:
+    name = schemas.file_name(message)
+    assert schemas.committed(name) == schemas.generated()[name], "run python -m actum.schemas"

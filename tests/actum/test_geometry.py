@@ -1,0 +1,86 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from actum import geometry
+from actum.skeletons import INDEX
+from people import STANDING
+
+ANGLES = st.floats(-np.pi, np.pi)
+SHIFTS = st.floats(-3, 3)
+SIZES = st.floats(0.5, 1.5)
+
+
+def turned(joints: np.ndarray, heading: float, shift: tuple[float, float, float], size: float = 1.0) -> np.ndarray:
+    """Move, turn about the vertical and scale a person."""
+    c, s = np.cos(heading), np.sin(heading)
+    return size * joints @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]).T + np.array(shift)
+
+
+def test_a_person_facing_the_camera() -> None:
+    ego = geometry.ego_from_camera(STANDING)
+    forward, left = ego[2, :3], ego[0, :3]
+    assert forward @ -STANDING[INDEX["torso"]] > 0, "forward points to the camera"
+    assert left @ np.array([1.0, 0.0, 0.0]) > 0.99, "the actor's left is the image's right"
+    assert geometry.apply(ego, STANDING)[INDEX["head"], 1] > 0, "the head is up"
+
+
+def test_the_origin_is_the_torsos_projection_on_the_hip_line() -> None:
+    joints = np.zeros((15, 3))
+    joints[INDEX["right_hip"]] = [-0.1, 0.0, 2.0]
+    joints[INDEX["left_hip"]] = [0.3, 0.0, 2.0]
+    joints[INDEX["torso"]] = [0.05, -0.25, 2.0]
+    ego = geometry.ego_from_camera(joints)
+    np.testing.assert_allclose(geometry.apply(ego, np.array([0.05, 0.0, 2.0])), 0, atol=1e-12)
+    np.testing.assert_allclose(geometry.apply(ego, joints[INDEX["torso"]]), [0, 0.25, 0], atol=1e-12)
+    np.testing.assert_allclose(geometry.apply(ego, joints[INDEX["left_hip"]]), [0.25, 0, 0], atol=1e-12)
+
+
+@given(ANGLES, st.tuples(SHIFTS, SHIFTS, SHIFTS))
+def test_the_metric_posture_does_not_know_where_the_actor_stands(
+    heading: float, shift: tuple[float, float, float]
+) -> None:
+    here = geometry.apply(geometry.ego_from_camera(STANDING), STANDING)
+    moved = turned(STANDING, heading, shift)
+    there = geometry.apply(geometry.ego_from_camera(moved), moved)
+    np.testing.assert_allclose(there, here, atol=1e-9)
+
+
+@given(ANGLES, st.tuples(SHIFTS, SHIFTS, SHIFTS), SIZES)
+def test_the_scaled_posture_does_not_know_the_actors_size_either(
+    heading: float, shift: tuple[float, float, float], size: float
+) -> None:
+    def scaled_ego(joints: np.ndarray) -> np.ndarray:
+        standard = geometry.scaled(joints)
+        return geometry.apply(geometry.ego_from_camera(standard), standard)
+
+    np.testing.assert_allclose(scaled_ego(turned(STANDING, heading, shift, size)), scaled_ego(STANDING), atol=1e-9)
+
+
+def test_scaling_keeps_each_bones_direction_and_gives_it_its_length() -> None:
+    standard = geometry.scaled(STANDING)
+    for parent, child, length_m in geometry.BONES:
+        before, after = STANDING[child] - STANDING[parent], standard[child] - standard[parent]
+        np.testing.assert_allclose(after, before / np.linalg.norm(before) * length_m, atol=1e-12)
+
+
+@given(ANGLES, st.tuples(SHIFTS, SHIFTS, SHIFTS))
+def test_the_transform_is_rigid_and_its_inverse_undoes_it(heading: float, shift: tuple[float, float, float]) -> None:
+    ego = geometry.ego_from_camera(turned(STANDING, heading, shift))
+    np.testing.assert_allclose(ego[:3, :3] @ ego[:3, :3].T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(ego[:3, :3]) == pytest.approx(1.0)
+    np.testing.assert_allclose(geometry.invert(ego) @ ego, np.eye(4), atol=1e-12)
+
+
+def test_joints_without_a_frame_are_refused() -> None:
+    with pytest.raises(geometry.DegenerateError, match="hips"):
+        geometry.ego_from_camera(np.zeros((15, 3)))
+    with pytest.raises(geometry.DegenerateError, match="coincide"):
+        geometry.scaled(np.ones((15, 3)))
+
+
+def test_flat_transforms_are_row_major() -> None:
+    transform = np.arange(16.0).reshape(4, 4)
+    assert geometry.flat(transform) == [float(i) for i in range(16)]
+    np.testing.assert_array_equal(geometry.from_flat(geometry.flat(transform)), transform)

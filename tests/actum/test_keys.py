@@ -1,0 +1,44 @@
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from actum import keys
+
+CHUNKS = st.from_regex(keys.CHUNK, fullmatch=True)
+NAMED = [topic for topic in keys.TOPICS if "{}" in topic.leaf]
+PLAIN = [topic for topic in keys.TOPICS if "{}" not in topic.leaf]
+
+
+@given(st.sampled_from(NAMED), CHUNKS, CHUNKS)
+def test_a_built_key_parses_to_what_it_was_built_from(topic: keys.Topic, sensor: str, name: str) -> None:
+    assert keys.parse(keys.key(topic, sensor, name)) == keys.Address(topic, sensor, name)
+
+
+@given(st.sampled_from(PLAIN), CHUNKS)
+def test_a_key_without_name_parses_to_what_it_was_built_from(topic: keys.Topic, sensor: str) -> None:
+    assert keys.parse(keys.key(topic, sensor)) == keys.Address(topic, sensor, None)
+
+
+def test_the_documented_keys() -> None:
+    assert keys.key(keys.SKELETON, "kinect0") == "actum/kinect0/skeleton"
+    assert keys.key(keys.COLOR, "kinect0") == "actum/kinect0/image/color"
+    assert keys.key(keys.POSTURE, "kinect0", 1) == "actum/kinect0/posture/1"
+    assert keys.key(keys.EVENT, "kinect0", 0) == "actum/kinect0/event/0"
+    assert keys.key(keys.STATUS, "kinect0", "action_fusion") == "actum/kinect0/status/action_fusion"
+    assert keys.alive("kinect0", "action_fusion", "host-1") == "actum/kinect0/alive/action_fusion/host-1"
+    assert keys.pattern(keys.POSTURE) == "actum/*/posture/*"
+
+
+@pytest.mark.parametrize("sensor", ["", "Kinect", "a/b", "a*", "kinect 0", "ä"])
+def test_a_sensor_outside_the_charset_is_refused(sensor: str) -> None:
+    with pytest.raises(keys.InvalidKeyError):
+        keys.key(keys.SKELETON, sensor)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "actum", "actum/kinect0", "actum/kinect0/posture", "actum/kinect0/skeleton/1", "other/kinect0/skeleton"],
+)
+def test_what_is_no_key_of_ours_is_refused(text: str) -> None:
+    with pytest.raises(keys.InvalidKeyError):
+        keys.parse(text)

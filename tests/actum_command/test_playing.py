@@ -1,0 +1,168 @@
+"""A play is the recordings in a row as one live session, and tells no answers."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from actum import keys
+from actum.joining import PAUSE_NS
+from actum.messages import Action, Image, Message, Objects, Posture, Segment, Skeleton
+from actum.recording import Recorder, Recording
+from actum_command.playing import playable_topics, schedule
+
+Record = Callable[..., Recording]
+
+
+@pytest.fixture
+def record(tmp_path: Path) -> Record:
+    def write(name: str, *messages: Message) -> Recording:
+        path = tmp_path / f"{name}.mcap"
+        with Recorder(path, person="1", source="test") as recorder:
+            for message in messages:
+                recorder.write(message)
+        return Recording(path)
+
+    return write
+
+
+def skeleton(stamp_ns: int, seq: int | None = None, session_id: str = "then") -> Skeleton:
+    return Skeleton(stamp_ns=stamp_ns, seq=seq, sensor="kinect0", agents=[], session_id=session_id)
+
+
+def mark(kind: str, stamp_ns: int, segment_id: str = "one", label: str | None = None) -> Segment:
+    return Segment.model_validate(
+        {"stamp_ns": stamp_ns, "sensor": "kinect0", "kind": kind, "segment_id": segment_id, "label": label}
+    )
+
+
+def image(stamp_ns: int) -> Image:
+    return Image(
+        stamp_ns=stamp_ns,
+        sensor="kinect0",
+        format="jpeg",
+        width=1,
+        height=1,
+        data=b"jpeg",
+        K=[1.0] * 9,
+        distortion=[],
+        skeleton_from_image=[1.0] * 16,
+        session_id="then",
+    )
+
+
+def posture(stamp_ns: int) -> Posture:
+    return Posture(
+        stamp_ns=stamp_ns,
+        sensor="kinect0",
+        agent=1,
+        joints_m=None,
+        joints=None,
+        ego_from_camera=None,
+        motion=None,
+        session_id="then",
+    )
+
+
+def objects(stamp_ns: int) -> Objects:
+    return Objects(stamp_ns=stamp_ns, sensor="kinect0", objects=[], session_id="then")
+
+
+def action(stamp_ns: int) -> Action:
+    return Action(
+        stamp_ns=stamp_ns,
+        sensor="kinect0",
+        agent=1,
+        segment_id="one",
+        start_ns=0,
+        end_ns=stamp_ns,
+        final=True,
+        action="push",
+        confidence=1.0,
+        activations={},
+        part=None,
+        frames=1,
+        missed=0,
+    )
+
+
+def test_each_recording_is_shifted_whole_and_marks_move_with_their_frames(record: Record) -> None:
+    first = record("first", mark("start", 100), skeleton(100), skeleton(133), mark("end", 133))
+    second = record("second", skeleton(7), mark("start", 9, "two"), skeleton(40), mark("end", 40, "two"))
+    played = list(schedule([first, second], "play", start_ns=1000))
+    begin = 1033 + PAUSE_NS
+    assert [(type(message), message.stamp_ns) for message in played] == [
+        (Segment, 1000),
+        (Skeleton, 1000),
+        (Skeleton, 1033),
+        (Segment, 1033),
+        (Skeleton, begin),
+        (Segment, begin + 2),
+        (Skeleton, begin + 33),
+        (Segment, begin + 33),
+    ]
+
+
+def test_numbers_keep_their_gaps_and_go_on_between_recordings(record: Record) -> None:
+    first = record("first", skeleton(1, 3), skeleton(2, 5), image(2))
+    second = record("second", image(3), skeleton(3, 50), skeleton(4, 51))
+    played = list(schedule([first, second], "play", start_ns=0))
+    assert [m.seq for m in played if isinstance(m, Skeleton)] == [3, 5, 6, 7]
+    assert [m.seq for m in played if isinstance(m, Image)] == [0, 1]
+
+
+def test_streams_carry_the_plays_session_and_a_restart_stays_visible(record: Record) -> None:
+    first = record("first", skeleton(1, session_id="a"), skeleton(2, session_id="b"))
+    second = record("second", skeleton(1, session_id="b"))
+    played = list(schedule([first, second], "play", start_ns=0))
+    assert [m.session_id for m in played if isinstance(m, Skeleton)] == ["play", "play.2", "play"]
+
+
+def test_one_session_of_all_streams_is_the_plays_own(record: Record) -> None:
+    played = schedule([record("first", skeleton(1), image(1), objects(2))], "play", start_ns=0)
+    assert {getattr(message, "session_id", None) for message in played} == {"play"}
+
+
+def test_no_label_and_no_result_is_played(record: Record) -> None:
+    recording = record("first", mark("start", 1, label="push"), skeleton(1), mark("end", 2), action(2))
+    played = list(schedule([recording], "play", start_ns=0))
+    assert [type(message) for message in played] == [Segment, Skeleton, Segment]
+    assert all(message.label is None for message in played if isinstance(message, Segment))
+
+
+def test_marks_are_numbered_by_whoever_puts_them(record: Record) -> None:
+    played = schedule([record("first", mark("start", 1), mark("end", 2))], "play", start_ns=0)
+    assert [message.seq for message in played] == [None, None]
+
+
+def test_segment_ids_stay_unless_an_earlier_recording_used_them(record: Record) -> None:
+    takes = [record(f"take{i}", mark("start", 1), mark("end", 2), mark("start", 3, f"own{i}")) for i in range(3)]
+    takes.append(record("last", mark("start", 1, "one#2")))
+    played = schedule(takes, "play", start_ns=0)
+    ids = [message.segment_id for message in played if isinstance(message, Segment)]
+    assert ids == ["one", "one", "own0", "one#2", "one#2", "own1", "one#3", "one#3", "own2", "one#2#2"]
+
+
+def test_a_repeated_mark_inside_a_recording_stays_a_repetition(record: Record) -> None:
+    played = schedule([record("first", mark("start", 1), mark("start", 1), mark("end", 2))], "play", start_ns=0)
+    assert {message.segment_id for message in played if isinstance(message, Segment)} == {"one"}
+
+
+def test_derived_streams_are_played_only_where_their_source_is_missing(record: Record) -> None:
+    derived = (posture(1), objects(1), mark("start", 1))
+    assert playable_topics(record("bare", *derived)) == {keys.POSTURE, keys.OBJECTS, keys.SEGMENT}
+    assert playable_topics(record("body", *derived, skeleton(1))) == {keys.SKELETON, keys.OBJECTS, keys.SEGMENT}
+    assert playable_topics(record("view", *derived, image(1))) == {keys.POSTURE, keys.COLOR, keys.SEGMENT}
+
+
+def test_only_the_topics_asked_for_are_played(record: Record) -> None:
+    recording = record("first", skeleton(1), image(1), mark("start", 1))
+    played = schedule([recording], "play", start_ns=0, topics={keys.SKELETON})
+    assert [type(message) for message in played] == [Skeleton]
+    assert list(schedule([recording], "play", start_ns=0, topics=())) == []
+
+
+def test_the_viewpoint_can_be_renamed(record: Record) -> None:
+    recording = record("first", skeleton(1), mark("start", 1))
+    played = schedule([recording], "play", start_ns=0, sensor="door")
+    assert [keys.key_of(message) for message in played] == ["actum/door/segment", "actum/door/skeleton"]

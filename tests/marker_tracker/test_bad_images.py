@@ -1,0 +1,118 @@
+"""Images that cannot be used are counted by kind, answered as invalid, and survived."""
+
+import math
+import struct
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from actum.messages import Image
+from marker_tracker.node import MarkerTracker
+from marker_tracker.settings import Settings
+
+IDENTITY = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+
+
+def jpeg_header(width: int, height: int) -> bytes:
+    """Write a JPEG by hand up to and with its frame header: SOI, APP0, SOF0 of one component, SOS."""
+    app0 = b"\xff\xe0\x00\x10JFIF\x00\x01\x01\x00\x00\x01\x00\x01\x00\x00"
+    sof0 = b"\xff\xc0" + struct.pack(">HBHHB", 11, 8, height, width, 1) + b"\x01\x11\x00"
+    sos = b"\xff\xda\x00\x08\x01\x01\x00\x00\x3f\x00"
+    return b"\xff\xd8" + app0 + sof0 + sos
+
+
+def small(**fields: Any) -> Image:
+    message = {
+        "stamp_ns": 1,
+        "sensor": "kinect0",
+        "format": "bgr8",
+        "width": 64,
+        "height": 48,
+        "data": bytes(64 * 48 * 3),
+        "K": [60.0, 0.0, 32.0, 0.0, 60.0, 24.0, 0.0, 0.0, 1.0],
+        "distortion": [],
+        "skeleton_from_image": IDENTITY,
+    }
+    return Image.model_validate(message | fields)
+
+
+CASES = {
+    "huge header": (small(format="jpeg", data=jpeg_header(30000, 30000)), "image_too_large"),
+    "huge header, honest message": (
+        small(format="jpeg", data=jpeg_header(30000, 30000), width=30000, height=30000),
+        "image_too_large",
+    ),
+    "huge raw": (small(width=30000, height=30000), "image_too_large"),
+    "header of another size": (small(format="jpeg", data=jpeg_header(65, 48)), "image_size_mismatch"),
+    "header without pixels": (small(format="jpeg", data=jpeg_header(64, 48)), "undecodable_image"),
+    "header without a size": (small(format="jpeg", data=b"\xff\xd8\xff\xe0\x00\x04ab"), "undecodable_image"),
+    "header cut short": (small(format="jpeg", data=jpeg_header(64, 48)[:24]), "undecodable_image"),
+    "no JPEG": (small(format="jpeg", data=b"\x89PNG\r\n\x1a\n" + bytes(100)), "undecodable_image"),
+    "no data": (small(format="jpeg", data=b""), "undecodable_image"),
+    "raw too short": (small(data=bytes(64 * 48 * 3 - 1)), "image_size_mismatch"),
+    "raw too long": (small(data=bytes(64 * 48 * 3 + 1)), "image_size_mismatch"),
+    "focal length zero": (small(K=[0.0, 0.0, 32.0, 0.0, 60.0, 24.0, 0.0, 0.0, 1.0]), "bad_calibration"),
+    "focal length negative": (small(K=[60.0, 0.0, 32.0, 0.0, -60.0, 24.0, 0.0, 0.0, 1.0]), "bad_calibration"),
+    "K column-major": (small(K=[60.0, 0.0, 0.0, 0.0, 60.0, 0.0, 32.0, 24.0, 1.0]), "bad_calibration"),
+    "three coefficients": (small(distortion=[0.1, 0.1, 0.1]), "bad_calibration"),
+    "absurd coefficient": (small(distortion=[2.0**31, 0.0, 0.0, 0.0]), "bad_calibration"),
+    "extrinsics zero": (small(skeleton_from_image=[0.0] * 16), "bad_calibration"),
+    "extrinsics mirrored": (small(skeleton_from_image=[-1.0, *IDENTITY[1:]]), "bad_calibration"),
+}
+
+
+@pytest.mark.parametrize(("image", "kind"), CASES.values(), ids=CASES.keys())
+def test_it_is_counted_by_kind_and_answered_as_invalid(image, kind) -> None:
+    tracker = MarkerTracker(Settings())
+    (answer,) = tracker.handle(image)
+    assert tracker.tally.rejects == {kind: 1}
+    assert (answer.valid, answer.objects, answer.stamp_ns) == (False, [], image.stamp_ns)
+    assert answer.reason.startswith(kind)
+
+
+def test_a_good_image_right_after_bad_ones_is_handled(image_of, pose_at) -> None:
+    tracker = MarkerTracker(Settings(marker_size_m=0.12))
+    for stamp_ns, (bad, _) in enumerate(CASES.values()):
+        list(tracker.handle(bad.model_copy(update={"stamp_ns": stamp_ns})))
+    (answer,) = tracker.handle(image_of([(3, 0.12, pose_at((0.0, 0.0, 0.8)))], stamp_ns=1000))
+    assert [found.id for found in answer.objects] == [3]
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.binary(max_size=300), st.sampled_from([b"", b"\xff\xd8", b"\xff\xd8\xff\xe1", jpeg_header(64, 48)]))
+def test_random_bytes_are_survived(tail, head) -> None:
+    tracker = MarkerTracker(Settings())
+    (answer,) = tracker.handle(small(format="jpeg", data=head + tail))
+    assert answer.valid == (not tracker.tally.rejects)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.integers(1, 40), st.integers(1, 40), st.randoms())
+def test_tiny_images_of_noise_are_survived(width, height, random) -> None:
+    tracker = MarkerTracker(Settings())
+    (answer,) = tracker.handle(small(width=width, height=height, data=random.randbytes(width * height * 3)))
+    assert (answer.valid, answer.objects) == (True, [])
+
+
+finite = st.floats(allow_nan=False, allow_infinity=False)
+calibrated = st.floats(-100, 100)
+
+
+def test_no_calibration_breaks_the_tracker(image_of, pose_at) -> None:
+    image = image_of([(3, 0.12, pose_at((0.0, 0.0, 0.8), (0.4, 0.0, 0.0)))])
+
+    @settings(max_examples=100, deadline=None)
+    @given(
+        st.lists(st.one_of(finite, calibrated), min_size=4, max_size=4),
+        st.lists(st.one_of(finite, calibrated), max_size=14),
+    )
+    def check(k: list[float], distortion: list[float]) -> None:
+        matrix = [k[0], 0.0, k[1], 0.0, k[2], k[3], 0.0, 0.0, 1.0]
+        tracker = MarkerTracker(Settings())
+        (answer,) = tracker.handle(image.model_copy(update={"K": matrix, "distortion": distortion}))
+        assert all(math.isfinite(number) for found in answer.objects for number in found.position_m)
+        assert answer.objects or tracker.tally.rejects
+
+    check()

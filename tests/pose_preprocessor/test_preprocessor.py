@@ -1,0 +1,103 @@
+import numpy as np
+import pytest
+
+from actum import geometry
+from actum.messages import Agent, Posture, Skeleton
+from actum.skeletons import INDEX, PARTS
+from people import FRAME_NS, STANDING, reaches, reaching, skeleton
+from pose_preprocessor.node import PosePreprocessor
+
+
+def postures(*frames: Skeleton, node: PosePreprocessor | None = None) -> list[Posture]:
+    node = node or PosePreprocessor()
+    return [posture for frame in frames for posture in node.handle(frame) if isinstance(posture, Posture)]
+
+
+def with_joint(name: str, value: list[float] | None) -> Skeleton:
+    joints: list[list[float] | None] = STANDING.tolist()
+    joints[INDEX[name]] = value
+    return Skeleton(
+        stamp_ns=1, sensor="kinect0", agents=[Agent(agent=1, joints=joints, confidence=[1.0] * 15)], session_id="test"
+    )
+
+
+def test_a_posture_holds_the_measured_and_the_scaled_joints_and_how_to_get_back() -> None:
+    [posture] = postures(skeleton(5, STANDING))
+    assert (posture.stamp_ns, posture.agent, posture.valid, posture.agents) == (5, 1, True, [1])
+    assert posture.ego_from_camera and posture.joints_m and posture.joints
+    back = geometry.apply(geometry.invert(geometry.from_flat(posture.ego_from_camera)), np.array(posture.joints_m))
+    np.testing.assert_allclose(back, STANDING, atol=1e-12)
+    upper_arm = np.array(posture.joints[INDEX["left_elbow"]]) - np.array(posture.joints[INDEX["left_shoulder"]])
+    assert np.linalg.norm(upper_arm) == pytest.approx(0.28)
+
+
+def test_motion_is_each_parts_mean_displacement_in_metres() -> None:
+    moved = reaching(0.1)
+    first, second = postures(skeleton(0, STANDING), skeleton(FRAME_NS, moved))
+    assert first.motion == [0.0] * 5
+    arm = list(PARTS["right_arm"])
+    expected = np.linalg.norm(moved[arm] - STANDING[arm], axis=1).mean()
+    assert second.motion == pytest.approx([expected, 0, 0, 0, 0], abs=1e-9)
+
+
+def test_motion_starts_anew_after_a_gap_and_after_a_restart() -> None:
+    node = PosePreprocessor()
+    late = skeleton(2_000_000_000, reaching(0.5))
+    restarted = skeleton(2_000_000_000 + FRAME_NS, reaching(0.9), session_id="other")
+    _, after_gap, after_restart = postures(skeleton(0, STANDING), late, restarted, node=node)
+    assert after_gap.motion == after_restart.motion == [0.0] * 5
+
+
+@pytest.mark.parametrize(
+    ("kind", "frame"),
+    [
+        ("missing_joint", with_joint("left_hand", None)),
+        ("not_finite", with_joint("left_hand", [0.0, float("nan"), 2.0])),
+        ("absurd_joint", with_joint("left_hand", [2.0**31, 0.0, 2.0])),
+        ("absurd_bone", with_joint("left_hand", [0.3, 0.1, 5.0])),
+        ("coincident_joints", with_joint("left_hand", STANDING[INDEX["left_elbow"]].tolist())),
+        ("coincident_joints", with_joint("left_hip", STANDING[INDEX["right_hip"]].tolist())),
+    ],
+)
+def test_a_bad_frame_is_published_invalid_counted_and_survived(kind: str, frame: Skeleton) -> None:
+    node = PosePreprocessor()
+    [posture] = postures(frame, node=node)
+    assert not posture.valid
+    assert posture.reason and kind in posture.reason
+    assert posture.joints is None
+    assert node.tally.rejects[kind] == 1
+    [after] = postures(skeleton(2, STANDING), node=node)
+    assert after.valid
+
+
+def test_a_tracker_that_repeats_itself_has_lost_the_person() -> None:
+    node = PosePreprocessor()
+    first, again, moved = postures(
+        skeleton(0, STANDING), skeleton(FRAME_NS, STANDING), skeleton(2 * FRAME_NS, reaching(0.1)), node=node
+    )
+    assert (first.valid, again.valid, moved.valid) == (True, False, True)
+    assert node.tally.rejects["repeated_joints"] == 1
+
+
+def test_older_and_repeated_stamps_are_dropped_and_counted() -> None:
+    node = PosePreprocessor()
+    frames = [skeleton(stamp, reaching(i / 9)) for i, stamp in enumerate((10, 20, 20, 15, 30))]
+    assert [posture.stamp_ns for posture in postures(*frames, node=node)] == [10, 20, 30]
+    assert node.tally.rejects["stale_stamp"] == 2
+
+
+def test_nobody_there_still_lets_time_pass() -> None:
+    [posture] = postures(skeleton(7))
+    assert (posture.agent, posture.valid, posture.reason) == (0, False, "no person")
+
+
+def test_every_agent_has_a_posture_that_names_all_of_the_frame() -> None:
+    two = postures(skeleton(7, STANDING, STANDING + np.array([1.0, 0.0, 0.5])))
+    assert [(posture.agent, posture.agents) for posture in two] == [(1, [1, 2]), (2, [1, 2])]
+
+
+def test_lost_frames_are_handed_on() -> None:
+    frames = [frame for frame in reaches(10) if frame.seq not in (3, 4)]
+    missed = {posture.stamp_ns // FRAME_NS: posture.missed for posture in postures(*frames)}
+    assert missed[5] == 2
+    assert sum(missed.values()) == 2

@@ -1,0 +1,95 @@
+"""A recording played as a sensor is what the sensor put, under the configured name."""
+
+from pathlib import Path
+
+import msgpack
+import pytest
+from mcap.writer import Writer
+
+from actum.joining import PAUSE_NS
+from actum.messages import Image, Message, Objects, Segment, Skeleton
+from actum.recording import Recorder, RecordingError
+from sensor_gateway.recording_source import RecordingSource
+from sensor_gateway.takes import DatasetError
+
+
+def skeleton(stamp_ns: int, seq: int) -> Skeleton:
+    return Skeleton(stamp_ns=stamp_ns, seq=seq, sensor="kinect0", agents=[], session_id="then")
+
+
+def image(stamp_ns: int, seq: int) -> Image:
+    return Image(
+        stamp_ns=stamp_ns,
+        seq=seq,
+        sensor="kinect0",
+        format="jpeg",
+        width=1,
+        height=1,
+        data=b"jpeg",
+        K=[1.0] * 9,
+        distortion=[],
+        skeleton_from_image=[1.0] * 16,
+        session_id="then",
+    )
+
+
+def record(path: Path, *messages: Message) -> Path:
+    with Recorder(path, person="1", source="test") as recorder:
+        for message in messages:
+            recorder.write(message)
+    return path
+
+
+def test_skeletons_and_images_come_instant_by_instant_as_the_configured_sensor(tmp_path: Path) -> None:
+    mark = Segment(stamp_ns=10, sensor="kinect0", kind="start", segment_id="one")
+    objects = Objects(stamp_ns=10, sensor="kinect0", objects=[])
+    source = RecordingSource(
+        record(tmp_path / "a.mcap", skeleton(10, 4), image(10, 2), mark, objects, skeleton(20, 6)), "door"
+    )
+    door = {"sensor": "door"}
+    assert source.paced
+    first, second = source.frames()
+    assert sorted(first, key=lambda message: message.SCHEMA) == [
+        image(10, 2).model_copy(update=door),
+        skeleton(10, 4).model_copy(update=door),
+    ]
+    assert second == [skeleton(20, 6).model_copy(update=door)]
+
+
+def test_a_folder_is_played_in_order_of_name_with_a_pause_between(tmp_path: Path) -> None:
+    record(tmp_path / "b.mcap", skeleton(5, 0))
+    record(tmp_path / "a.mcap", skeleton(100, 7))
+    frames = [frame for instant in RecordingSource(tmp_path, "kinect0").frames() for frame in instant]
+    assert [(frame.stamp_ns, frame.seq) for frame in frames] == [(100, 7), (100 + PAUSE_NS, 8)]
+
+
+def test_bad_messages_of_a_file_are_counted(tmp_path: Path) -> None:
+    with (tmp_path / "a.mcap").open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        channel = writer.register_channel("actum/kinect0/skeleton", "msgpack", 0)
+        for payload in (b"\xc1", msgpack.packb({"stamp_ns": 3, "agents": []})):
+            writer.add_message(channel, log_time=0, data=payload, publish_time=3)
+        writer.finish()
+    source = RecordingSource(tmp_path / "a.mcap", "kinect0")
+    assert [[frame.stamp_ns for frame in instant] for instant in source.frames()] == [[3]]
+    assert source.tally.rejects == {"not_msgpack": 1}
+
+
+def test_a_broken_end_is_counted(tmp_path: Path) -> None:
+    path = record(tmp_path / "a.mcap", skeleton(3, 0))
+    path.write_bytes(path.read_bytes()[:-20])
+    source = RecordingSource(path, "kinect0")
+    assert len(list(source.frames())) == 1
+    assert source.tally.rejects == {"truncated_recording": 1}
+
+
+def test_what_is_no_recording_is_refused_at_once(tmp_path: Path) -> None:
+    (tmp_path / "a.mcap").write_text("not this")
+    with pytest.raises(RecordingError, match="no MCAP file"):
+        RecordingSource(tmp_path, "kinect0")
+
+
+def test_a_folder_without_recordings_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(DatasetError, match=r"no \*\.mcap there"):
+        RecordingSource(tmp_path, "kinect0")
