@@ -1,5 +1,6 @@
 """What every command needs: the console, the settings, and a clear way to fail."""
 
+import sys
 from typing import NoReturn
 
 import typer
@@ -8,7 +9,9 @@ from rich.console import Console
 from actum.runtime import Client, RouterUnreachableError
 from actum.settings import ServiceSettings
 
-console = Console(highlight=False)
+UNATTENDED_WIDTH = 110
+
+console = Console(highlight=False, width=None if sys.stdout.isatty() else UNATTENDED_WIDTH)
 errors = Console(stderr=True, highlight=False)
 
 

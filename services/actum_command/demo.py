@@ -46,7 +46,8 @@ def demo(
         learned = _train(training, model)
         baseline = nearest_neighbour([Recording(training)], [Recording(test)])
         score = _run_live(here, model, repetitions)
-    console.print(table(score), summary(score, learned, baseline))
+    console.print(table(score))
+    console.print(summary(score, learned, baseline), soft_wrap=True)
     if len(score.events) < repetitions * len(ACTIONS):
         fail(f"only {len(score.events)} of {repetitions * len(ACTIONS)} events came; see {log_file('demo', here)}")
 
@@ -70,11 +71,15 @@ def _run_live(here: ServiceSettings, model: Path, repetitions: int) -> Score:
     arguments = ["--source", "simulator", "--actor", str(ACTOR), "--seed", str(TEST_SEED)]
     arguments += ["--repetitions", str(repetitions)]
     with Supervisor(log_file("demo", here)) as supervisor:
-        for program in (processes.router(here), *processes.services(here, model), processes.scene(here)):
+        services = processes.services(here, model, processes.simulated_objects())
+        for program in (processes.router(here), *services, processes.scene(here)):
             supervisor.start(program)
         with connect(READY_S) as client:
             _wait_until_ready(client)
-            console.print(f"router, {', '.join(processes.SERVICES)} and sensor_gateway run as processes of their own")
+            console.print(
+                f"router, {', '.join(processes.SERVICES)} and sensor_gateway run as processes of their own",
+                soft_wrap=True,
+            )
             score = Score()
             listening = client.listen(keys.everything(here.sensor))
             supervisor.start(processes.gateway(here, arguments))
@@ -103,4 +108,4 @@ def _collect(listening: Listening, score: Score, expected: int, supervisor: Supe
             score.truths[received.message.segment_id] = received.message
         elif isinstance(received.message, Event):
             score.events[received.message.segment_id] = received.message
-            console.print(line(score, received.message, expected))
+            console.print(line(score, received.message, expected), soft_wrap=True)

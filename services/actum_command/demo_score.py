@@ -48,7 +48,7 @@ def line(score: Score, event: Event, expected: int) -> str:
 def table(score: Score) -> Table:
     """Lay out the paper's table 2 beside this run."""
     result = Table("action", title="table 2 of the paper, and this run")
-    for heading in ("paper: tests", "recognised", "object right", "here: tests", "recognised", "object right"):
+    for heading in ("paper: tests", "action", "object", "here: tests", "action", "object"):
         result.add_column(heading, justify="right")
     rows = {action: (*counts, *_counts(score, action)) for action, counts in TABLE_2.items()}
     for action, counts in rows.items():

@@ -1,10 +1,12 @@
 """The processes of a whole system, as programs to supervise."""
 
-from collections.abc import Sequence
+import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from actum.settings import ServiceSettings
 from actum_command.supervising import Program
+from sensor_gateway.simulator.parameters import load_parameters
 
 SERVICES = ("pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
@@ -20,9 +22,16 @@ def router(settings: ServiceSettings) -> Program:
     return Program("router", "actum_command", ["router", "--listen", settings.connect], common(settings))
 
 
-def services(settings: ServiceSettings, model: Path | None) -> list[Program]:
-    """The four services behind the sensor."""
-    environment = common(settings)
+def simulated_objects() -> dict[str, str]:
+    """The environment that tells the tracker what carries which marker in the simulated scene."""
+    objects = load_parameters().objects
+    specs = {item.id: {"name": item.name, "size_m": objects.marker_size_m} for item in objects.items}
+    return {"ACTUM_OBJECTS": json.dumps(specs)}
+
+
+def services(settings: ServiceSettings, model: Path | None, objects: Mapping[str, str]) -> list[Program]:
+    """The four services behind the sensor; `objects` is environment that tells the tracker what it may see."""
+    environment = {**common(settings), **objects}
     if model is not None:
         environment["ACTUM_MODEL"] = str(model)
     return [Program(name, name, (), environment) for name in SERVICES]

@@ -1,18 +1,17 @@
 """The simulated scene seen from outside: its examples as recordings, its truth as marks."""
 
 import threading
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from actum import keys
-from actum.messages import Message, Segment, Truth
+from actum.messages import Segment, Truth
 from actum.recording import Recorder
 from actum.runtime import Client, stop_on_signals
 from actum_command.context import connect, console
-from sensor_gateway.simulator import Simulator, balanced_programme
+from sensor_gateway.simulator import Simulator, balanced_programme, labelled_stream
 
 POLL_S = 0.005
 
@@ -32,9 +31,8 @@ def write_examples(output: Path, repetitions: int, actor: int, seed: int) -> Non
     """Record a balanced programme with its labels."""
     simulator = Simulator(balanced_programme(repetitions, seed), actor, seed, image_hz=0)
     with Recorder(output, person=f"simulated {actor}", source="simulator", seed=str(seed)) as recorder:
-        for messages in simulator.frames():
-            for message in _labelled(messages):
-                recorder.write(message)
+        for message in labelled_stream(simulator):
+            recorder.write(message)
 
 
 def scene() -> None:
@@ -58,11 +56,3 @@ def mark_truth(client: Client, stop: threading.Event) -> None:
 def mark_of(truth: Truth) -> Segment:
     """The mark that a switch would have put: no action, no object, no hand."""
     return Segment(stamp_ns=truth.stamp_ns, sensor=truth.sensor, kind=truth.kind, segment_id=truth.segment_id)
-
-
-def _labelled(messages: list[Message]) -> Iterator[Message]:
-    for message in messages:
-        yield message
-        if isinstance(message, Truth):
-            label = message.action if message.kind == "start" else None
-            yield mark_of(message).model_copy(update={"label": label})

@@ -42,7 +42,8 @@ def up(
     here = settings()
     refuse_taken(here.connect)
     arguments = ["--source", source, "--actor", str(actor), *(["--path", str(path)] if path else [])]
-    programs = [processes.router(here), *processes.services(here, model), processes.gateway(here, arguments)]
+    objects = processes.simulated_objects() if source == "simulator" else {}
+    programs = [processes.router(here), *processes.services(here, model, objects), processes.gateway(here, arguments)]
     if source == "simulator":
         programs.append(processes.scene(here))
     console.print(f"actum is up on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from rich.markup import escape
 
 from actum import keys
-from actum.messages import Action, Event, Message, Objects, Posture, Segment, Skeleton, Status
+from actum.messages import Action, Event, Message, Objects, Segment, Skeleton, Status
 from actum.runtime import Client, Received
 
 
@@ -27,30 +27,36 @@ def line(received: Received) -> str:
 
 def describe(message: Message) -> str:
     """Say the gist of a message in one line."""
-    if not message.valid and not isinstance(message, Event | Action):
+    if isinstance(message, Event):
+        return describe_event(message)
+    if isinstance(message, Action):
+        return _describe_action(message)
+    if not message.valid:
         return f"[yellow]not valid: {escape(message.reason or '')}[/yellow]"
+    return _describe_stream(message)
+
+
+def _describe_action(action: Action) -> str:
+    if not action.valid:
+        return f"[yellow]{escape(action.segment_id)} rejected: {escape(action.reason or '')}[/yellow]"
+    kind = "final" if action.final else "so far"
+    return f"{escape(action.segment_id)} {kind}: {action.action} {action.confidence:.2f}, {action.frames} frames"
+
+
+def _describe_stream(message: Message) -> str:
     match message:
-        case Event():
-            return describe_event(message)
-        case Action() if not message.valid:
-            return f"[yellow]{escape(message.segment_id)} rejected: {escape(message.reason or '')}[/yellow]"
-        case Action():
-            kind = "final" if message.final else "so far"
-            return f"{escape(message.segment_id)} {kind}: {message.action} {message.confidence:.2f} ({message.frames} frames)"
         case Skeleton():
-            return f"{len(message.agents)} agents at {message.stamp_ns / 1e9:.3f} s"
-        case Posture():
-            return f"agent {message.agent} at {message.stamp_ns / 1e9:.3f} s"
+            gist = f"{len(message.agents)} agents"
         case Objects():
-            return (
-                ", ".join(f"{o.id} {escape(o.name)}{'' if o.seen else ' (hidden)'}" for o in message.objects) or "none"
-            )
+            gist = ", ".join(f"{o.id} {escape(o.name)}{'' if o.seen else ' (hidden)'}" for o in message.objects)
         case Segment():
-            return f"{message.kind} {escape(message.segment_id)}"
+            gist = f"{message.kind} {escape(message.segment_id)}"
         case Status():
             return f"{message.state}, {sum(message.rates.values()):.0f} messages/s"
         case _:
-            return f"at {message.stamp_ns} ns" if message.stamp_ns is not None else ""
+            gist = message.SCHEMA
+    stamp = "" if message.stamp_ns is None else f" at {message.stamp_ns / 1e9:.3f} s"
+    return f"{gist}{stamp}"
 
 
 def describe_event(event: Event) -> str:

@@ -149,7 +149,8 @@ class _Trunk:
 
     def shoulder(self, side: int) -> Array:
         """Return a shoulder joint; side +1 is the left."""
-        return self.along(TRUNK - SHOULDER_DROP) + side * SHOULDER_SIDE * self._height_m * self._leant_across
+        across = side * SHOULDER_SIDE * self._height_m * self._leant_across
+        return np.asarray(self.along(TRUNK - SHOULDER_DROP) + across)
 
     def _lean_to(self, lean_rad: Array) -> None:
         """Rotate the spine and the shoulder line from upright towards the hand."""
@@ -163,7 +164,7 @@ class _Trunk:
         return (offset_m * self.left).sum(-1, keepdims=True), (offset_m * self.forward).sum(-1, keepdims=True)
 
     def _distance(self, hand_m: Array) -> Array:
-        return np.linalg.norm(hand_m - self.shoulder(self._side), axis=-1)
+        return np.asarray(np.linalg.norm(hand_m - self.shoulder(self._side), axis=-1))
 
     def _needed_lean(self, actor: Actor, lean_rad: Array, hand_m: Array) -> Array:
         """Find by bisection how much further to lean so that the arm is stretched comfortably at most."""

@@ -28,6 +28,7 @@ def draw_room(camera: Pinhole, camera_height_m: float) -> Canvas:
     room[round(horizon) :] = FLOOR
     cv2.rectangle(room, (0, round(horizon) - 10), (camera.width, round(horizon)), shade(WALL[0], 1.08), -1)
     _draw_window(room, camera)
+    _draw_picture(room, camera)
     return room
 
 
@@ -35,7 +36,7 @@ def draw_table(
     camera: Pinhole, parameters: Parameters, names: Sequence[str], lanes_x_m: Array
 ) -> tuple[Canvas, Canvas]:
     """Draw the table on its own; return the picture and the mask of where it is."""
-    picture = np.zeros((camera.height, camera.width, 3), dtype=np.uint8)
+    picture = np.full((camera.height, camera.width, 3), shade(WOOD, 0.9), dtype=np.uint8)
     mask = np.zeros((camera.height, camera.width), dtype=np.uint8)
     table, y = parameters.table, parameters.table_y_m
     half, floor = table.width_m / 2, parameters.camera.height_m
@@ -80,3 +81,14 @@ def _draw_window(room: Canvas, camera: Pinhole) -> None:
     cv2.rectangle(room, corner, opposite, (250, 250, 250), 5, cv2.LINE_AA)
     middle = (corner[0] + opposite[0]) // 2
     cv2.line(room, (middle, corner[1]), (middle, opposite[1]), (250, 250, 250), 4)
+
+
+def _draw_picture(room: Canvas, camera: Pinhole) -> None:
+    """Hang a landscape on the wall."""
+    frame = camera.project(np.array([[-1.75, -0.95, WALL_Z_M], [-0.85, -0.35, WALL_Z_M]]))
+    (left, top), (right, bottom) = np.round(frame).astype(int).tolist()
+    cv2.rectangle(room, (left, top), (right, bottom), (214, 196, 150), -1)
+    hills = np.array([[left, bottom], [left + 40, top + 40], [left + 75, bottom - 22], [left + 100, top + 52]])
+    cv2.fillPoly(room, [np.vstack([hills, [[right, bottom - 14], [right, bottom]]]).astype(np.int32)], (120, 150, 110))
+    cv2.circle(room, (right - 28, top + 22), 10, (150, 215, 245), -1, cv2.LINE_AA)
+    cv2.rectangle(room, (left, top), (right, bottom), (70, 90, 110), 4, cv2.LINE_AA)

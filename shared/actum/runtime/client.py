@@ -80,7 +80,7 @@ class Client:
 
     def put_raw(self, key: str, payload: bytes, encoding: str = "") -> None:
         """Put bytes as a plain client does."""
-        self._session.put(key, payload, encoding=encoding)
+        self._session.put(key, payload, encoding=encoding, congestion_control=zenoh.CongestionControl.BLOCK)
 
     def listen(self, key_expr: str, ring: int = DEEP_RING) -> Listening:
         """Subscribe to a key expression, without history."""

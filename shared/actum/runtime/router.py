@@ -7,6 +7,8 @@ from pathlib import Path
 
 import zenoh
 
+from actum.runtime.serving import wait_for
+
 log = logging.getLogger("actum")
 
 
@@ -27,7 +29,7 @@ def serve_router(listen: str | None, config_file: Path | None, stop: threading.E
     session = zenoh.open(router_config(listen, config_file))
     log.info("router %s listens on %s", session.zid(), listen or config_file)
     try:
-        stop.wait()
+        wait_for(stop)
     finally:
         session.close()
 

@@ -12,10 +12,10 @@ from typing import TypeVar
 import zenoh
 
 from actum.codec import DecodeError, decode, encode
+from actum.health import write_health
 from actum.keys import key_of
 from actum.messages import Message
 from actum.node import TICK_NS, Node, Source, Tally, Tick
-from actum.runtime.health import write_health
 from actum.runtime.inbox import Inbox
 from actum.runtime.meter import Meter
 from actum.runtime.outbox import Outbox
@@ -25,6 +25,7 @@ from actum.settings import ServiceSettings
 log = logging.getLogger("actum")
 S = TypeVar("S", bound=ServiceSettings)
 REPORT_S = 1.0
+SLICE_S = 0.1
 
 
 def run(settings_type: type[S], build: Callable[[S], Node]) -> None:
@@ -47,6 +48,19 @@ def stop_on_signals() -> threading.Event:
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.set())
     return stop
+
+
+def wait_for(stop: threading.Event, seconds: float = float("inf")) -> bool:
+    """Wait until stopped or for so long; True if stopped.
+
+    The wait is cut into slices: a signal that the kernel hands to one of Zenoh's threads does not end a wait of the
+    main thread, and its handler runs only once that thread moves.
+    """
+    deadline_s = time.monotonic() + seconds
+    while (left_s := deadline_s - time.monotonic()) > 0:
+        if stop.wait(min(left_s, SLICE_S)):
+            return True
+    return stop.is_set()
 
 
 def _live(service: "Service", settings: ServiceSettings, name: str) -> None:
@@ -173,7 +187,7 @@ class SourceService(Service):
                 return
         self._source.tally.state = "source ended"
         log.info("the source has ended")
-        stop.wait()
+        wait_for(stop)
 
 
 class Pace:
@@ -189,5 +203,4 @@ class Pace:
             self._origin = stamp_ns, time.monotonic_ns()
         first_stamp_ns, began_ns = self._origin
         due_ns = began_ns + (stamp_ns - first_stamp_ns) / self._speed
-        delay_s = (due_ns - time.monotonic_ns()) / 1e9
-        return not (stop.wait(delay_s) if delay_s > 0 else stop.is_set())
+        return not wait_for(stop, (due_ns - time.monotonic_ns()) / 1e9)

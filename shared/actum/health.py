@@ -1,5 +1,9 @@
-"""A service's health as a file, for container health checks: `python -m actum.runtime.health FILE`."""
+"""A service's health as a file, for container health checks: `python -m actum.health`.
 
+The check runs every few seconds beside each service, so it imports nothing that is slow to import.
+"""
+
+import os
 import sys
 import time
 from pathlib import Path
@@ -24,4 +28,4 @@ def is_healthy(path: Path) -> bool:
 
 
 if __name__ == "__main__":
-    sys.exit(0 if is_healthy(Path(sys.argv[1])) else 1)
+    sys.exit(0 if is_healthy(Path(os.environ["ACTUM_HEALTH_FILE"])) else 1)

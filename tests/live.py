@@ -1,0 +1,140 @@
+"""Real processes for system tests: a router and services of one system, on a port of their own."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from actum.messages import Message
+from actum.runtime import Client, Listening
+from actum.settings import ServiceSettings
+
+PATIENCE_S = 30.0
+POLL_S = 0.02
+
+
+def free_endpoint() -> str:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+def wait_until(condition: Callable[[], bool], what: str, patience_s: float = PATIENCE_S) -> None:
+    """Wait on a condition; fail naming it."""
+    deadline_s = time.monotonic() + patience_s
+    while not condition():
+        assert time.monotonic() < deadline_s, f"waited {patience_s:g} s in vain: {what}"
+        threading.Event().wait(POLL_S)
+
+
+@dataclass
+class Running:
+    """A process and what it prints."""
+
+    process: subprocess.Popen[bytes]
+    log: Path
+
+    def said(self) -> str:
+        return self.log.read_text()
+
+    def terminate(self) -> float:
+        """Send SIGTERM and return how long it took to end, in seconds."""
+        began_s = time.monotonic()
+        self.process.send_signal(signal.SIGTERM)
+        self.process.wait(timeout=PATIENCE_S)
+        return time.monotonic() - began_s
+
+
+@dataclass
+class System:
+    """Processes that share a router's endpoint and a sensor."""
+
+    folder: Path
+    settings: ServiceSettings
+    running: list[Running] = field(default_factory=list)
+
+    @property
+    def environment(self) -> dict[str, str]:
+        return {
+            **os.environ,
+            "ACTUM_CONNECT": self.settings.connect,
+            "ACTUM_SENSOR": self.settings.sensor,
+            "OPENBLAS_NUM_THREADS": "1",
+        }
+
+    def start(self, module: str, *arguments: str, environment: Mapping[str, str] | None = None) -> Running:
+        log = self.folder / f"{module}-{len(self.running)}.log"
+        with log.open("wb") as output:
+            process = subprocess.Popen(
+                [sys.executable, "-m", module, *arguments],
+                env={**self.environment, **(environment or {})},
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+            )
+        running = Running(process, log)
+        self.running.append(running)
+        return running
+
+    def start_router(self) -> Running:
+        return self.start("actum_command", "router", "--listen", self.settings.connect)
+
+    def actum(self, *arguments: str, timeout_s: float = 60.0) -> subprocess.CompletedProcess[str]:
+        """Run a command of ours to its end."""
+        return subprocess.run(
+            [sys.executable, "-m", "actum_command", *arguments],
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            timeout=timeout_s,
+            stdin=subprocess.DEVNULL,
+            check=False,
+        )
+
+    def client(self) -> Client:
+        return Client(self.settings, wait_s=PATIENCE_S)
+
+    def wait_for_services(self, client: Client, *names: str) -> None:
+        def alive() -> set[str]:
+            return {key.split("/")[-2] for key in client.alive()}
+
+        wait_until(lambda: alive() >= set(names), f"{names} are alive")
+
+    def stop(self) -> None:
+        for running in self.running:
+            if running.process.poll() is None:
+                running.process.terminate()
+        for running in self.running:
+            running.process.wait(timeout=PATIENCE_S)
+
+
+@contextmanager
+def system(folder: Path) -> Iterator[System]:
+    made = System(folder, ServiceSettings(connect=free_endpoint(), sensor="kinect0"))
+    try:
+        yield made
+    finally:
+        made.stop()
+
+
+def collect(
+    listening: Listening, kind: type[Message], done: Callable[[list], bool], patience_s: float = PATIENCE_S
+) -> list:
+    """Gather messages of a kind until enough are there."""
+    found: list = []
+
+    def enough() -> bool:
+        while (received := listening.take()) is not None:
+            if isinstance(received.message, kind):
+                found.append(received.message)
+        return done(found)
+
+    wait_until(enough, f"enough {kind.__name__} messages, {len(found)} so far", patience_s)
+    return found

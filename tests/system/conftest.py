@@ -1,0 +1,27 @@
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from live import System, system
+
+from actum.recording import Recording
+from actum_command.scene import write_examples
+from model_trainer.samples import samples_from
+from model_trainer.training import train
+from som_classifier.presets import PAPER
+
+
+@pytest.fixture
+def running(tmp_path: Path) -> Iterator[System]:
+    with system(tmp_path) as made:
+        yield made
+
+
+@pytest.fixture(scope="session")
+def scene_model(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A model of the simulated scene."""
+    folder = tmp_path_factory.mktemp("scene-model")
+    write_examples(folder / "examples.mcap", repetitions=4, actor=0, seed=1)
+    model = train(samples_from([Recording(folder / "examples.mcap")]).usable, PAPER)
+    model.save(folder / "model.npz")
+    return folder / "model.npz"

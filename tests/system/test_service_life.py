@@ -1,0 +1,110 @@
+"""Each service alone: it waits for the router, serves, and leaves cleanly."""
+
+import msgpack
+import pytest
+from live import System, collect, wait_until
+from people import STANDING, reaches, skeleton
+
+from actum import codec, keys
+from actum.messages import Posture, Status
+
+SERVICES = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
+pytestmark = pytest.mark.system
+
+
+@pytest.mark.parametrize("name", SERVICES)
+def test_a_service_started_before_the_router_waits_for_it_serves_and_leaves(running: System, name: str) -> None:
+    service = running.start(name)
+    wait_until(lambda: "waiting for it" in service.said(), "it says that it waits")
+    running.start_router()
+    with running.client() as client:
+        running.wait_for_services(client, name)
+        status = collect(client.listen(keys.pattern(keys.STATUS, client.sensor)), Status, bool)[0]
+        assert (status.service, status.valid, status.rejects) == (name, True, {})
+        [info] = client.infos()
+        assert "actum.skeleton/1" in info.schemas
+        assert info.joint_names[0] == "head"
+    assert service.terminate() < 2.0
+    assert service.process.returncode == 0
+    assert service.said().count("waiting for it") == 1, "it says so once"
+
+
+@pytest.mark.parametrize("name", SERVICES)
+def test_a_service_that_never_found_its_router_leaves_cleanly_too(running: System, name: str) -> None:
+    service = running.start(name)
+    wait_until(lambda: "waiting for it" in service.said(), "it says that it waits")
+    assert service.terminate() < 2.0
+    assert service.process.returncode == 0
+
+
+def test_a_service_survives_its_routers_death(running: System) -> None:
+    router = running.start_router()
+    preprocessor = running.start("pose_preprocessor")
+    with running.client() as client:
+        running.wait_for_services(client, "pose_preprocessor")
+        router.process.kill()
+        router.process.wait()
+        running.start_router()
+        wait_until(client.connected, "the session has its router again")
+        postures = client.listen(keys.pattern(keys.POSTURE, client.sensor))
+        running.wait_for_services(client, "pose_preprocessor")
+        assert client.wait_for_subscriber(keys.SKELETON, 10.0)
+        client.put(skeleton(1, STANDING))
+        assert collect(postures, Posture, bool)[0].valid
+    assert preprocessor.process.poll() is None
+
+
+def test_bad_payloads_are_counted_in_status_and_survived(running: System) -> None:
+    running.start_router()
+    running.start("pose_preprocessor")
+    with running.client() as client:
+        running.wait_for_services(client, "pose_preprocessor")
+        assert client.wait_for_subscriber(keys.SKELETON, 10.0)
+        statuses = client.listen(keys.pattern(keys.STATUS, client.sensor))
+        postures = client.listen(keys.pattern(keys.POSTURE, client.sensor))
+        key = keys.key(keys.SKELETON, client.sensor)
+        good = codec.encode(skeleton(1, STANDING))
+        client.put_raw(key, b"\xc1 no msgpack")
+        client.put_raw(key, msgpack.packb([1, 2, 3]))
+        client.put_raw(key, msgpack.packb({"stamp_ns": "soon", "agents": []}))
+        client.put_raw(key, good.payload, "application/msgpack;actum.skeleton/9")
+        client.put_raw(key, bytes(2_000_000))
+        client.put_raw(key, good.payload, good.encoding)
+        assert collect(postures, Posture, bool)[0].stamp_ns == 1
+        expected = {"not_msgpack": 1, "not_a_map": 1, "wrong_fields": 1, "higher_version": 1, "too_large": 1}
+        last = collect(statuses, Status, lambda found: bool(found) and found[-1].rejects == expected)[-1]
+        assert last.last_error is not None
+
+
+def test_numbers_that_are_missing_are_reported_as_drops(running: System) -> None:
+    running.start_router()
+    running.start("pose_preprocessor")
+    with running.client() as client:
+        running.wait_for_services(client, "pose_preprocessor")
+        assert client.wait_for_subscriber(keys.SKELETON, 10.0)
+        statuses = client.listen(keys.pattern(keys.STATUS, client.sensor))
+        for frame in reaches(10):
+            if frame.seq not in (3, 4, 5):
+                client.put(frame)
+        key = keys.key(keys.SKELETON, client.sensor)
+        collect(statuses, Status, lambda found: bool(found) and found[-1].drops == {key: 3})
+
+
+def test_two_of_a_kind_have_tokens_of_their_own(running: System) -> None:
+    running.start_router()
+    running.start("pose_preprocessor", "--instance", "one")
+    running.start("pose_preprocessor", "--instance", "two")
+    with running.client() as client:
+        wait_until(
+            lambda: client.alive() == [keys.alive("kinect0", "pose_preprocessor", n) for n in ("one", "two")],
+            "both tokens are there",
+        )
+
+
+def test_tokens_go_with_their_process(running: System) -> None:
+    running.start_router()
+    service = running.start("action_fusion")
+    with running.client() as client:
+        running.wait_for_services(client, "action_fusion")
+        service.process.kill()
+        wait_until(lambda: client.alive() == [], "the token is gone")
