@@ -27,6 +27,8 @@ NAMES = {1: "cup", 2: "box", 3: "book"}
 HEAD: Place = (0.0, 0.75, 0.05)
 REST_RIGHT: Place = (0.2, 0.1, 0.2)
 REST_LEFT: Place = (-0.2, 0.1, 0.2)
+ELBOW_RIGHT: Place = (0.25, 0.15, -0.05)
+ELBOW_LEFT: Place = (-0.25, 0.15, -0.05)
 
 
 def at(seconds: float) -> int:
@@ -73,10 +75,12 @@ class Stance:
 
 @dataclass(frozen=True)
 class Scene:
-    """An actor's hands, their leaning torso (rad), and the objects; `hidden` says when an object is covered."""
+    """An actor's arms, their leaning torso (rad), and the objects; `hidden` says when an object is covered."""
 
     right_hand: Path = lambda _: REST_RIGHT
     left_hand: Path = lambda _: REST_LEFT
+    right_elbow: Path = lambda _: ELBOW_RIGHT
+    left_elbow: Path = lambda _: ELBOW_LEFT
     objects: Mapping[int, Path] = field(default_factory=dict)
     hidden: Callable[[int, float], bool] = lambda _id, _time: False
     lean: Callable[[float], float] = lambda _: 0.0
@@ -84,10 +88,11 @@ class Scene:
 
     def posture(self, seconds: float, seq: int | None = None, agent: int = 1, **fields: Any) -> Posture:
         ego_from_camera = self._ego_from_actor(seconds) @ geometry.invert(self.stance.camera_from_actor())
-        places = {"head": HEAD, "right_hand": self.right_hand(seconds), "left_hand": self.left_hand(seconds)}
         joints: list[list[float] | None] = [[0.0, 0.0, 0.0]] * 15
-        for name, place in places.items():
+        for name in ("right_hand", "left_hand", "right_elbow", "left_elbow"):
+            place = getattr(self, name)(seconds)
             joints[INDEX[name]] = geometry.apply(self._ego_from_actor(seconds), np.array(place)).tolist()
+        joints[INDEX["head"]] = geometry.apply(self._ego_from_actor(seconds), np.array(HEAD)).tolist()
         message = {
             "stamp_ns": at(seconds),
             "seq": seq,

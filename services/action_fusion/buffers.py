@@ -14,6 +14,9 @@ LOOK_BACK_NS = 9 * SECOND_NS // 10
 LATEST_ACTION_NS = 4 * SECOND_NS
 """An action may come this long after its segment's end: two seconds of waiting, two of skew."""
 
+ANSWERED = 16
+"""How many of the last answered segments are remembered, to tell what comes too late for them."""
+
 HELD_NS = LONGEST_SEGMENT_NS + LOOK_BACK_NS + LATEST_ACTION_NS
 
 
@@ -21,15 +24,12 @@ S = TypeVar("S", bound=Sample)
 
 
 class Buffer(Generic[S]):
-    """Samples of one stream with rising stamps, the last `HELD_NS` of them.
-
-    `answered_until_ns` is the end of the latest segment that was answered from it: older samples come too late.
-    """
+    """Samples of one stream with rising stamps, the last `HELD_NS` of them."""
 
     def __init__(self) -> None:
         self._samples: deque[S] = deque()
         self._guard = StampGuard()
-        self.answered_until_ns = -1
+        self._answered: deque[range] = deque(maxlen=ANSWERED)
 
     @property
     def newest_ns(self) -> int:
@@ -50,7 +50,15 @@ class Buffer(Generic[S]):
     def clear(self) -> None:
         """Forget everything: the source's time has gone back."""
         self._samples.clear()
-        self.answered_until_ns = -1
+        self._answered.clear()
+
+    def answered(self, start_ns: int, end_ns: int) -> None:
+        """Note that a segment has been answered: samples of it that still come are too late."""
+        self._answered.append(range(start_ns, end_ns + 1))
+
+    def too_late(self, stamp_ns: int) -> bool:
+        """Tell whether a sample belongs to a segment that has been answered without it."""
+        return any(stamp_ns in segment for segment in self._answered)
 
     def between(self, start_ns: int, end_ns: int) -> list[S]:
         """List the samples with start <= stamp <= end that are of the same session as the last of them."""

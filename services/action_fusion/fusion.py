@@ -42,9 +42,9 @@ def fuse(
         settings: thresholds and labels.
     """
     hands = _hands(action)
-    actor = proximity.actor(postures, action.start_ns, hands)
+    actor = proximity.actor(postures, action.start_ns)
     seen = tracks(frames, action.start_ns)
-    evidence = [] if actor is None else [_evidence(track, actor) for track in seen]
+    evidence = [] if actor is None else [_evidence(track, actor, hands) for track in seen]
     pointing = action.action in settings.pointing_labels
     chosen = _pointed_at(evidence, settings) if pointing else _acted_on(evidence, settings)
     motion = _motion(chosen, postures, settings)
@@ -103,11 +103,11 @@ def _hands(action: Action) -> tuple[Hand, ...]:
     return ("right", "left") if hand is None else (hand,)
 
 
-def _evidence(track: Track, actor: Actor) -> Evidence:
-    view = actor.view(track)
-    distances = {hand: proximity.smallest_distance(view, path) for hand, path in actor.hands.items()}
-    angles = {hand: proximity.pointing_angle(view, path, actor.head) for hand, path in actor.hands.items()}
-    near_hand, pointing_hand = min(distances, key=distances.__getitem__), min(angles, key=angles.__getitem__)
+def _evidence(track: Track, actor: Actor, hands: Sequence[Hand]) -> Evidence:
+    view, head = actor.view(track), actor.head()
+    distances = {hand: proximity.smallest_distance(view, actor.hand(hand)) for hand in hands}
+    angles = {hand: proximity.pointing_angle(view, actor.fingertip(hand), head) for hand in hands}
+    near_hand, pointing_hand = min(hands, key=distances.__getitem__), min(hands, key=angles.__getitem__)
     return Evidence(track, distances[near_hand], near_hand, angles[pointing_hand], pointing_hand, track.shift())
 
 
@@ -123,7 +123,7 @@ def _acted_on(evidence: Sequence[Evidence], settings: Settings) -> Evidence | No
 
 
 def _pointed_at(evidence: Sequence[Evidence], settings: Settings) -> Evidence | None:
-    """Take the object nearest to the ray from the head through the hand."""
+    """Take the object nearest to the ray from the head through the fingertip."""
     candidates = [e for e in evidence if math.degrees(e.angle) <= settings.pointing_limit_deg]
     return min(candidates, key=lambda e: e.angle, default=None)
 

@@ -74,8 +74,8 @@ class ActionFusion:
             events = [self._answer(pending) for pending in list(concerned)]
             buffer.clear()
             self._answered.clear()
-        if sample.stamp_ns <= buffer.answered_until_ns:
-            self.tally.reject("late", f"{what} at {sample.stamp_ns}, answered up to {buffer.answered_until_ns}")
+        if buffer.too_late(sample.stamp_ns):
+            self.tally.reject("late", f"{what} at {sample.stamp_ns}, after its segment was answered")
         buffer.append(sample)
         return events + self._complete()
 
@@ -121,7 +121,7 @@ class ActionFusion:
         action, end_ns = pending.action, pending.end_ns
         postures = self._buffer(action.agent)
         for buffer in (postures, self._objects):
-            buffer.answered_until_ns = max(buffer.answered_until_ns, end_ns)
+            buffer.answered(action.start_ns, end_ns)
         return fuse(
             action,
             postures.between(action.start_ns, end_ns),
@@ -130,7 +130,9 @@ class ActionFusion:
         )
 
     def _buffer(self, agent: int) -> Buffer[PostureSample]:
-        """Find an agent's stream; a new one takes the place of the agent who has been away for longest."""
-        if agent not in self._postures and len(self._postures) == AGENTS:
-            del self._postures[min(self._postures, key=lambda other: self._postures[other].newest_ns)]
-        return self._postures.setdefault(agent, Buffer())
+        """Find an agent's stream; a new one takes the place of the one not heard of for longest."""
+        buffer = self._postures.pop(agent, None) or Buffer()
+        if len(self._postures) == AGENTS:
+            del self._postures[next(iter(self._postures))]
+        self._postures[agent] = buffer
+        return buffer

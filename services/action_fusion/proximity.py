@@ -5,44 +5,66 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from action_fusion.samples import Array, Body, PostureSample
+from action_fusion.samples import Array, PostureSample
 from action_fusion.tracks import Track
 from actum.messages import Hand
+from actum.skeletons import INDEX
 
 HOLDING_SHARE = 1 / 3
 """The last part of a pointing action, in which the arm is out."""
 
+FINGER_M = 0.10
+"""How far the stretched index finger ends beyond the hand joint, on the line of the forearm."""
+
+ARMS: dict[Hand, tuple[int, int]] = {
+    "right": (INDEX["right_elbow"], INDEX["right_hand"]),
+    "left": (INDEX["left_elbow"], INDEX["left_hand"]),
+}
+
+
+_SMALLEST_M = 1e-9
+
 
 @dataclass(frozen=True)
 class Actor:
-    """A segment's valid postures as arrays: rotation and translation of ego_from_camera, joints in the ego frame."""
+    """A segment's p valid postures: rotation and translation of ego_from_camera, joints (p, 15, 3) in the ego frame."""
 
     stamps_ns: Array
     rotations: Array
     translations: Array
-    head: Array
-    hands: dict[Hand, Array]
+    joints_m: Array
 
     def view(self, track: Track) -> Array:
-        """Bring an object into the actor's egocentric frame of each posture, at its capture time: (p, 3)."""
+        """Bring an object into the egocentric frame of each posture, at its capture time: (p, 3)."""
         positions = track.at(self.stamps_ns)
         moved: Array = np.einsum("pij,pj->pi", self.rotations, positions) + self.translations
         return moved
 
+    def head(self) -> Array:
+        """Return the head's path (p, 3)."""
+        return self.joints_m[:, INDEX["head"]]
 
-def actor(postures: Sequence[PostureSample], start_ns: int, hands: Sequence[Hand]) -> Actor | None:
+    def hand(self, hand: Hand) -> Array:
+        """Return a hand's path (p, 3)."""
+        return self.joints_m[:, ARMS[hand][1]]
+
+    def fingertip(self, hand: Hand) -> Array:
+        """Return where the hand's stretched index finger ends (p, 3)."""
+        elbow, wrist = self.joints_m[:, ARMS[hand][0]], self.hand(hand)
+        forearm = wrist - elbow
+        length = np.linalg.norm(forearm, axis=1, keepdims=True)
+        tip: Array = wrist + FINGER_M * forearm / np.maximum(length, _SMALLEST_M)
+        return tip
+
+
+def actor(postures: Sequence[PostureSample], start_ns: int) -> Actor | None:
     """Stack a segment's valid postures; None where there is none. Stamps count from `start_ns`."""
     stamped = [(sample.stamp_ns - start_ns, sample.body) for sample in postures if sample.body is not None]
     if not stamped:
         return None
-    bodies = [body for _, body in stamped]
-    return Actor(
-        np.array([stamp for stamp, _ in stamped], dtype=np.float64),
-        np.stack([body.ego_from_camera[:3, :3] for body in bodies]),
-        np.stack([body.ego_from_camera[:3, 3] for body in bodies]),
-        np.stack([body.head for body in bodies]),
-        {hand: np.stack([_hand(body, hand) for body in bodies]) for hand in hands},
-    )
+    frames = np.stack([body.ego_from_camera for _, body in stamped])
+    stamps_ns = np.array([stamp for stamp, _ in stamped], dtype=np.float64)
+    return Actor(stamps_ns, frames[:, :3, :3], frames[:, :3, 3], np.stack([body.joints_m for _, body in stamped]))
 
 
 def smallest_distance(object_ego: Array, hand_ego: Array) -> float:
@@ -51,21 +73,16 @@ def smallest_distance(object_ego: Array, hand_ego: Array) -> float:
     return float(np.nanmin(distances)) if np.isfinite(distances).any() else np.inf
 
 
-def pointing_angle(object_ego: Array, hand_ego: Array, head_ego: Array) -> float:
-    """Compute the median angle (rad) between head-to-hand and head-to-object over the segment's last part.
+def pointing_angle(object_ego: Array, fingertip_ego: Array, head_ego: Array) -> float:
+    """Compute the median angle (rad) between head-to-fingertip and head-to-object over the segment's last part.
 
-    Infinite where head and hand are never known together.
+    Infinite where head and arm are never known together.
     """
-    known = np.isfinite(hand_ego).all(axis=1) & np.isfinite(head_ego).all(axis=1)
-    held = np.flatnonzero(known)
-    held = held[-max(1, round(len(held) * HOLDING_SHARE)) :]
+    known = np.flatnonzero(np.isfinite(fingertip_ego + head_ego).all(axis=1))
+    held = known[-max(1, round(len(known) * HOLDING_SHARE)) :]
     if not len(held):
         return np.inf
-    ray, sight = hand_ego[held] - head_ego[held], object_ego[held] - head_ego[held]
+    ray, sight = fingertip_ego[held] - head_ego[held], object_ego[held] - head_ego[held]
     lengths = np.linalg.norm(ray, axis=1) * np.linalg.norm(sight, axis=1)
-    cosines = np.einsum("ij,ij->i", ray, sight) / np.maximum(lengths, 1e-9)
+    cosines = np.einsum("ij,ij->i", ray, sight) / np.maximum(lengths, _SMALLEST_M)
     return float(np.median(np.arccos(np.clip(cosines, -1.0, 1.0))))
-
-
-def _hand(body: Body, hand: Hand) -> Array:
-    return body.left_hand if hand == "left" else body.right_hand

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from actum import geometry
 from actum.messages import Joint, Objects, Posture
 from actum.node import Tally
-from actum.skeletons import INDEX
 
 Array = NDArray[np.float64]
 
@@ -18,12 +17,10 @@ RIGID_TOLERANCE = 1e-3
 
 @dataclass(frozen=True)
 class Body:
-    """A valid posture's frame and joints; a joint (3,), metric egocentric, is NaN where it is missing."""
+    """A valid posture's frame, and its joints (15, 3), metric egocentric, NaN where one is missing."""
 
     ego_from_camera: Array
-    head: Array
-    left_hand: Array
-    right_hand: Array
+    joints_m: Array
 
 
 @dataclass(frozen=True)
@@ -78,8 +75,7 @@ def _body(posture: Posture) -> Body | None:
     ego_from_camera = geometry.from_flat(posture.ego_from_camera)
     if not _is_rigid(ego_from_camera):
         return None
-    head, left, right = (posture.joints_m[INDEX[name]] for name in ("head", "left_hand", "right_hand"))
-    return Body(ego_from_camera, _point(head), _point(left), _point(right))
+    return Body(ego_from_camera, np.stack([_point(joint) for joint in posture.joints_m]))
 
 
 def _point(joint: Joint) -> Array:

@@ -37,6 +37,7 @@ class PosePreprocessor:
         self._settings = settings or Settings()
         self._order = StampGuard()
         self._previous: dict[int, _Previous] = {}
+        self._previous_ns: int | None = None
         self._last_seq: int | None = None
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
@@ -49,11 +50,16 @@ class PosePreprocessor:
             return []
         if order is Order.RESTART:
             self._previous.clear()
-        missed = self._missed(message, order)
+            self._previous_ns = None
+        postures = self._postures(message, self._missed(message, order))
+        self._previous_ns = message.stamp_ns
+        self._forget_the_gone(message)
+        return postures
+
+    def _postures(self, message: Skeleton, missed: int) -> list[Posture]:
         agents = self._distinct_agents(message)
         if not agents:
-            reason = message.reason or "no person"
-            return [self._invalid(message, 0, reason, missed, [])]
+            return [self._invalid(message, 0, message.reason or "no person", missed, [])]
         present = [agent.agent for agent in agents]
         return [self._posture(message, agent, missed, present) for agent in agents]
 
@@ -63,6 +69,13 @@ class PosePreprocessor:
             return 0
         return max(message.seq - last - 1, 0)
 
+    def _forget_the_gone(self, frame: Skeleton) -> None:
+        """Let go of those who have left: a tracker that numbers people anew at each return would pile them up."""
+        present = {agent.agent for agent in frame.agents}
+        for agent in self._previous.keys() - present:
+            if frame.stamp_ns - self._previous[agent].stamp_ns > GAP_NS:
+                del self._previous[agent]
+
     def _distinct_agents(self, message: Skeleton) -> list[Agent]:
         agents = {agent.agent: agent for agent in message.agents}
         if len(agents) < len(message.agents):
@@ -70,9 +83,10 @@ class PosePreprocessor:
         return list(agents.values())
 
     def _posture(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
+        if not frame.valid:
+            self.tally.reject("invalid_skeleton", f"agent {agent.agent} at {frame.stamp_ns}: {frame.reason}")
+            return self._invalid(frame, agent.agent, frame.reason or "invalid skeleton", missed, present)
         try:
-            if not frame.valid:
-                raise BadFrameError("invalid_skeleton", frame.reason or "the source says so")
             return self._valid(frame, agent, missed, present)
         except (BadFrameError, geometry.DegenerateError) as error:
             kind = error.kind if isinstance(error, BadFrameError) else "coincident_joints"
@@ -99,6 +113,7 @@ class PosePreprocessor:
             ego_from_camera=geometry.flat(ego_from_camera),
             motion=motion,
             agents=present,
+            previous_ns=self._previous_ns,
             missed=missed,
             session_id=frame.session_id,
         )
@@ -124,6 +139,7 @@ class PosePreprocessor:
             ego_from_camera=None,
             motion=None,
             agents=present,
+            previous_ns=self._previous_ns,
             missed=missed,
             session_id=frame.session_id,
         )

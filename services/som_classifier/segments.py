@@ -4,22 +4,29 @@ A segment is the frames with start <= stamp <= end. It closes once its posture s
 after two seconds of waiting for it. Which frames belong to it is decided by stamps alone.
 """
 
-from collections import OrderedDict
+from collections import OrderedDict, deque
 from dataclasses import dataclass, field
 
 from actum.messages import Hand, Posture, Segment
-from actum.node import SECOND_NS, Tally, Tick
+from actum.node import Tally, Tick
 from actum.stamps import Order
-from som_classifier.streams import Frame, Stream
+from som_classifier.streams import LONGEST_NS, SKEW_NS, Frame, Streams
 
-LONGEST_NS = 60 * SECOND_NS
-SKEW_NS = 2 * SECOND_NS
 REMEMBERED = 10_000
+LATE_FOR = 16
+NO_END = "start without end: no end within 60 s"
 
 
 @dataclass
 class OpenSegment:
-    """A segment under way. `start_ns` is None until the first posture where none had been seen before."""
+    """A segment under way.
+
+    Attributes:
+        start_ns: None until the first posture where none had been seen before.
+        agent: whose it is, where the mark says so.
+        nearest: whose it is otherwise, once that can be told.
+        waiting_since_ns: the tick from which on its end, or the frames up to its end, have been waited for.
+    """
 
     segment_id: str
     start_ns: int | None
@@ -27,7 +34,13 @@ class OpenSegment:
     hand: Hand | None
     label: str | None
     end_ns: int | None = None
+    nearest: int | None = None
     waiting_since_ns: int | None = None
+
+    @property
+    def whose(self) -> int | None:
+        """The agent, as far as it is known."""
+        return self.nearest if self.agent is None else self.agent
 
 
 @dataclass(frozen=True)
@@ -57,33 +70,33 @@ class Segmenter:
 
     def __init__(self, tally: Tally) -> None:
         self._tally = tally
-        self._streams: dict[int, Stream] = {}
+        self._streams = Streams()
         self._open: OrderedDict[str, OpenSegment] = OrderedDict()
         self._answered: OrderedDict[str, _Answered] = OrderedDict()
-        self._late_until: dict[int, int] = {}
+        self._late: deque[tuple[int, range]] = deque(maxlen=LATE_FOR)
         self._session: str | None = None
-        self._newest_ns: int | None = None
-        self._silent_since_ns: int | None = None
 
     @property
     def frames(self) -> list[Frame]:
         """List every remembered frame."""
-        return [frame for stream in self._streams.values() for frame in stream]
+        return list(self._streams)
 
     def posture(self, posture: Posture) -> tuple[Frame | None, list[Closed]]:
         """Take the next posture; return its frame, None if it is stale, and the segments it closes."""
         closed = self._restart(posture.session_id)
-        stream = self._streams.setdefault(posture.agent, Stream())
-        order, frame = stream.add(posture)
+        order, frame = self._streams.add(posture)
+        late = any(posture.agent == agent and posture.stamp_ns in stamps for agent, stamps in self._late)
+        what = f"posture of agent {posture.agent} at {posture.stamp_ns}"
         if frame is None:
-            late = posture.stamp_ns <= self._late_until.get(posture.agent, -1)
-            self._tally.reject("late" if late else "stale_stamp", f"posture of agent {posture.agent}")
+            self._tally.reject("late" if late else "stale_stamp", what)
             return None, closed
+        if posture.valid and not frame.valid:
+            self._tally.reject("bad_posture", f"{what}: missing, non-finite or absurd joints or motion")
         if order is Order.RESTART:
             closed += self._close_all("the source started anew")
-        elif posture.stamp_ns <= self._late_until.get(posture.agent, -1):
-            self._tally.reject("late", f"posture of agent {posture.agent} after its segment was answered")
-        self._advance(posture.stamp_ns)
+        elif late:
+            self._tally.reject("late", f"{what}, after its segment was answered")
+        self._begin_or_go_on(posture.stamp_ns)
         return frame, closed + self._settle()
 
     def mark(self, mark: Segment) -> list[Closed]:
@@ -94,18 +107,15 @@ class Segmenter:
         return self._start(mark) if mark.kind == "start" else self._end(mark)
 
     def tick(self, tick: Tick) -> list[Closed]:
-        """Give up waiting where two seconds, or a longest segment without postures, have gone by."""
-        if self._silent_since_ns is None:
-            self._silent_since_ns = tick.monotonic_ns
-        silent_ns = tick.monotonic_ns - self._silent_since_ns
+        """Give up waiting: two seconds for the frames up to an end, a longest segment for an end that may come."""
         closed = []
         for segment in list(self._open.values()):
-            if segment.end_ns is None:
-                if silent_ns > LONGEST_NS + SKEW_NS:
-                    closed.append(self._reject(segment, "start without end: no end within 60 s"))
-            elif segment.waiting_since_ns is None:
+            if segment.waiting_since_ns is None:
                 segment.waiting_since_ns = tick.monotonic_ns
-            elif tick.monotonic_ns - segment.waiting_since_ns > SKEW_NS:
+            waited_ns = tick.monotonic_ns - segment.waiting_since_ns
+            if segment.end_ns is None and waited_ns > LONGEST_NS + SKEW_NS:
+                closed.append(self._reject(segment, NO_END))
+            elif segment.end_ns is not None and waited_ns > SKEW_NS:
                 closed.append(self._close(segment))
         return closed
 
@@ -114,7 +124,7 @@ class Segmenter:
         return [
             segment
             for segment in self._open.values()
-            if segment.agent == agent
+            if segment.whose == agent
             and segment.start_ns is not None
             and segment.start_ns <= stamp_ns
             and (segment.end_ns is None or stamp_ns <= segment.end_ns)
@@ -122,60 +132,57 @@ class Segmenter:
 
     def frames_of(self, segment: OpenSegment) -> list[Frame]:
         """List the frames an open segment holds so far."""
-        assert segment.agent is not None and segment.start_ns is not None
-        return self._streams[segment.agent].between(segment.start_ns, segment.end_ns or 2**62)
+        stream = None if segment.whose is None else self._streams.of(segment.whose)
+        if stream is None or segment.start_ns is None:
+            return []
+        return stream.between(segment.start_ns, segment.end_ns or 2**62)
 
-    def _advance(self, stamp_ns: int) -> None:
-        self._newest_ns = max(stamp_ns, self._newest_ns if self._newest_ns is not None else 0)
-        self._silent_since_ns = None
+    def _begin_or_go_on(self, stamp_ns: int) -> None:
+        """Give a start to what waits for the first posture; an end may still come where postures come."""
         for segment in self._open.values():
             if segment.start_ns is None:
                 segment.start_ns = stamp_ns
+            if segment.end_ns is None and segment.start_ns <= stamp_ns:
+                segment.waiting_since_ns = None
 
     def _settle(self) -> list[Closed]:
         """Name the agents that can be named, and close what has been reached or overrun."""
         closed = []
         for segment in list(self._open.values()):
-            if segment.agent is None:
-                segment.agent = self._nearest(segment, waited=False)
+            if segment.whose is None:
+                segment.nearest = self._nearest(segment)
             if segment.end_ns is not None:
-                if segment.agent is not None and self._reached(segment.agent, segment.end_ns):
+                if segment.whose is not None and self._streams.reached(segment.whose, segment.end_ns):
                     closed.append(self._close(segment))
             elif self._overrun(segment):
-                closed.append(self._reject(segment, "start without end: no end within 60 s"))
+                closed.append(self._reject(segment, NO_END))
         return closed
 
     def _overrun(self, segment: OpenSegment) -> bool:
-        if segment.start_ns is None or self._newest_ns is None:
+        newest_ns = self._streams.newest_ns
+        if segment.start_ns is None or newest_ns is None:
             return False
-        return self._newest_ns > segment.start_ns + LONGEST_NS + SKEW_NS
+        return newest_ns > segment.start_ns + LONGEST_NS + SKEW_NS
 
-    def _reached(self, agent: int, stamp_ns: int) -> bool:
-        return agent in self._streams and self._streams[agent].newest_ns >= stamp_ns
+    def _nearest(self, segment: OpenSegment) -> int | None:
+        """Name the agent nearest to the camera at the first valid frame from the start on, once that is certain."""
+        first = self._first(segment)
+        if first is None or segment.start_ns is None:
+            return None
+        stamp_ns, agent = first
+        return agent if self._streams.complete(segment.start_ns, stamp_ns) else None
 
-    def _nearest(self, segment: OpenSegment, waited: bool) -> int | None:
-        """Name the agent nearest to the camera at the first valid frame from the start on.
-
-        Every agent of the frames up to there must have been heard, unless there was time enough for it.
-        """
+    def _first(self, segment: OpenSegment) -> tuple[int, int] | None:
         if segment.start_ns is None:
             return None
-        end_ns = 2**62 if segment.end_ns is None else segment.end_ns
-        held = {agent: stream.between(segment.start_ns, end_ns) for agent, stream in self._streams.items() if agent}
-        first_ns = min((f.stamp_ns for frames in held.values() for f in frames if f.valid), default=None)
-        if first_ns is None:
-            return None
-        named = {a for frames in held.values() for f in frames if f.stamp_ns <= first_ns for a in f.agents}
-        if not waited and not all(self._reached(agent, first_ns) for agent in named):
-            return None
-        at_first = [(f.distance_m, a) for a, fs in held.items() for f in fs if f.stamp_ns == first_ns and f.valid]
-        return min(at_first)[1]
+        end_ns = segment.start_ns + LONGEST_NS if segment.end_ns is None else segment.end_ns
+        return self._streams.first(segment.start_ns, end_ns)
 
     def _start(self, mark: Segment) -> list[Closed]:
         if mark.segment_id in self._open:
             self._tally.reject("duplicate_mark", f"second start of {mark.segment_id!r}")
             return []
-        start_ns = self._newest_ns if mark.stamp_ns is None else mark.stamp_ns
+        start_ns = self._streams.newest_ns if mark.stamp_ns is None else mark.stamp_ns
         self._open[mark.segment_id] = OpenSegment(mark.segment_id, start_ns, mark.agent, mark.hand, mark.label)
         return self._settle()
 
@@ -186,17 +193,17 @@ class Segmenter:
         if segment.end_ns is not None:
             self._tally.reject("duplicate_mark", f"second end of {mark.segment_id!r}")
             return []
-        newest_ns = self._newest_ns if self._newest_ns is not None else segment.start_ns or 0
+        newest_ns = self._streams.newest_ns if self._streams.newest_ns is not None else segment.start_ns or 0
         segment.end_ns = newest_ns if mark.stamp_ns is None else mark.stamp_ns
-        start_ns = segment.start_ns if segment.start_ns is not None else 0
-        if segment.end_ns < start_ns:
+        segment.nearest = segment.waiting_since_ns = None
+        if segment.start_ns is not None and segment.end_ns < segment.start_ns:
             return [self._reject(segment, "end before start")]
-        if segment.start_ns is not None and segment.end_ns - start_ns > LONGEST_NS:
-            return [self._reject(segment, "start without end: no end within 60 s")]
+        if segment.start_ns is not None and segment.end_ns - segment.start_ns > LONGEST_NS:
+            return [self._reject(segment, NO_END)]
         return self._settle()
 
     def _end_without_start(self, mark: Segment) -> Closed:
-        end_ns = mark.stamp_ns if mark.stamp_ns is not None else self._newest_ns or 0
+        end_ns = mark.stamp_ns if mark.stamp_ns is not None else self._streams.newest_ns or 0
         segment = OpenSegment(mark.segment_id, end_ns, mark.agent, mark.hand, mark.label, end_ns)
         self._remember(mark.segment_id, _Answered(None, end_ns))
         return _rejected(segment, "end without start")
@@ -214,8 +221,8 @@ class Segmenter:
         elif is_start and answered.reused and mark.stamp_ns is None:
             self._tally.reject("duplicate_mark", f"{mark.segment_id!r} is used up")
         else:
-            answered.reused = True
-            stamp_ns = mark.stamp_ns if mark.stamp_ns is not None else self._newest_ns or 0
+            stamp_ns = mark.stamp_ns if mark.stamp_ns is not None else self._streams.newest_ns or 0
+            answered.reused, answered.start_ns = True, stamp_ns if is_start else answered.start_ns
             segment = OpenSegment(mark.segment_id, stamp_ns, mark.agent, mark.hand, mark.label, stamp_ns)
             return [_rejected(segment, "segment_id reused")]
         return []
@@ -224,12 +231,15 @@ class Segmenter:
         """Answer a segment that has its end, with the frames that are there."""
         assert segment.end_ns is not None
         start_ns = segment.start_ns if segment.start_ns is not None else 0
-        agent = segment.agent if segment.agent is not None else self._nearest(segment, waited=True)
-        stream = self._streams.get(agent) if agent is not None else None
+        first = self._first(segment)
+        agent = segment.whose if segment.whose is not None or first is None else first[1]
+        stream = None if agent is None else self._streams.of(agent)
         if stream is None or agent is None:
             return self._reject(segment, "no person")
+        if segment.end_ns - start_ns > LONGEST_NS:
+            return self._reject(segment, NO_END)
         if stream.newest_ns < segment.end_ns:
-            self._late_until[agent] = max(segment.end_ns, self._late_until.get(agent, -1))
+            self._late.append((agent, range(start_ns, segment.end_ns + 1)))
         frames = stream.between(start_ns, segment.end_ns)
         missed = sum(frame.missed for frame in frames) + stream.missed_after(segment.end_ns)
         self._forget(segment)
@@ -260,8 +270,7 @@ class Segmenter:
         closed = self._close_all("the source started anew")
         self._streams.clear()
         self._answered.clear()
-        self._late_until.clear()
-        self._newest_ns = None
+        self._late.clear()
         return closed
 
     def _close_all(self, reason: str) -> list[Closed]:
@@ -275,7 +284,7 @@ def _rejected(segment: OpenSegment, reason: str) -> Closed:
     start_ns = segment.start_ns if segment.start_ns is not None else 0
     end_ns = segment.end_ns if segment.end_ns is not None else start_ns
     return Closed(
-        segment.segment_id, start_ns, end_ns, segment.agent or 0, segment.hand, segment.label, reason=reason
+        segment.segment_id, start_ns, end_ns, segment.whose or 0, segment.hand, segment.label, reason=reason
     )  # fmt: skip
 
 

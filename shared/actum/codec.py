@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import msgpack
 from pydantic import ValidationError
@@ -10,8 +10,11 @@ from pydantic import ValidationError
 from actum import keys
 from actum.messages import Message
 
+C = TypeVar("C", list[Any], dict[str, Any])
 ENCODING = re.compile(r"application/msgpack;(?P<schema>[a-z0-9_.]+)/(?P<version>\d{1,6})")
 DEPTH_LIMIT_ERRORS = (ValueError, TypeError, RecursionError, msgpack.exceptions.UnpackException)
+MOST_VALUES = 100_000
+"""In the maps and lists of one message: a value takes one byte on the wire, and up to a hundred once unpacked."""
 
 
 class DecodeError(ValueError):
@@ -86,12 +89,36 @@ def _check_encoding(encoding: str, expected: type[Message]) -> None:
 
 def _unpack(key: str, payload: bytes) -> dict[str, Any]:
     try:
-        fields = msgpack.unpackb(payload, raw=False, strict_map_key=True)
+        fields = _Unpacking().unpack(payload)
     except DEPTH_LIMIT_ERRORS as error:
         raise DecodeError("not_msgpack", f"{key}: {type(error).__name__} {error}") from None
     if not isinstance(fields, dict):
         raise DecodeError("not_a_map", f"{key}: a {type(fields).__name__}, not a map with string keys")
     return fields
+
+
+class _Unpacking:
+    """Unpacks one payload, and stops where it grows out of all proportion."""
+
+    def __init__(self) -> None:
+        self._left = MOST_VALUES
+
+    def unpack(self, payload: bytes) -> Any:
+        return msgpack.unpackb(
+            payload,
+            raw=False,
+            strict_map_key=True,
+            max_array_len=MOST_VALUES,
+            max_map_len=MOST_VALUES,
+            list_hook=self._counted,
+            object_hook=self._counted,
+        )
+
+    def _counted(self, container: C) -> C:
+        self._left -= 1 + len(container)
+        if self._left < 0:
+            raise ValueError(f"more than {MOST_VALUES} values")
+        return container
 
 
 def _validated(key: str, address: keys.Address, fields: dict[str, Any]) -> Message:

@@ -9,7 +9,8 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 Stamp = Annotated[int, Field(ge=0, lt=2**62)]
-Seq = Annotated[int, Field(ge=0, lt=2**62)]
+Seq = Annotated[int, Field(ge=0, lt=2**40)]
+Count = Annotated[int, Field(ge=0, lt=2**62)]
 AgentId = Annotated[int, Field(ge=0, lt=2**31)]
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 Joint = Point | None
@@ -19,7 +20,12 @@ Quaternion = Annotated[list[FiniteFloat], Field(min_length=4, max_length=4)]
 Transform = Annotated[list[FiniteFloat], Field(min_length=16, max_length=16)]
 Intrinsics = Annotated[list[FiniteFloat], Field(min_length=9, max_length=9)]
 SegmentId = Annotated[str, Field(min_length=1, max_length=200)]
+Name = Annotated[str, Field(max_length=200)]
+Reason = Annotated[str, Field(max_length=1000)]
 Hand = Literal["left", "right"]
+
+MOST_AGENTS = 64
+MOST_OBJECTS = 1024
 
 
 class Message(BaseModel):
@@ -36,7 +42,7 @@ class Message(BaseModel):
     seq: Seq | None = None
     sensor: str
     valid: bool = True
-    reason: str | None = None
+    reason: Reason | None = None
 
 
 class Model(BaseModel):
@@ -65,8 +71,8 @@ class Skeleton(Message):
     """All agents of one captured frame, camera frame; `agents` is empty when nobody is there."""
 
     SCHEMA = "actum.skeleton"
-    agents: list[Agent]
-    session_id: str = ""
+    agents: Annotated[list[Agent], Field(max_length=MOST_AGENTS)]
+    session_id: Name = ""
 
 
 class Image(Message):
@@ -80,7 +86,7 @@ class Image(Message):
     K: Intrinsics
     distortion: list[FiniteFloat]
     skeleton_from_image: Transform
-    session_id: str = ""
+    session_id: Name = ""
 
 
 class Posture(Message):
@@ -88,7 +94,8 @@ class Posture(Message):
 
     `joints_m` are the measured joints in metres, `joints` the same posture with standard bone lengths.
     `motion` is the mean displacement (m) of each part of `skeletons.PARTS` since the last valid frame.
-    `agents` names every agent of the captured frame, `missed` the frames lost just before this one.
+    `agents` names every agent of the captured frame, `previous_ns` is the stamp of the captured frame before it
+    (its postures may be on other agents' keys), `missed` counts the frames lost just before this one.
     """
 
     SCHEMA = "actum.posture"
@@ -98,16 +105,17 @@ class Posture(Message):
     ego_from_camera: Transform | None
     motion: Annotated[list[FiniteFloat], Field(min_length=5, max_length=5)] | None
     frame: str = "egocentric"
-    agents: list[AgentId] = []
-    missed: Annotated[int, Field(ge=0)] = 0
-    session_id: str = ""
+    agents: Annotated[list[AgentId], Field(max_length=MOST_AGENTS)] = []
+    previous_ns: Stamp | None = None
+    missed: Seq = 0
+    session_id: Name = ""
 
 
 class TrackedObject(Model):
     """One object's pose in the skeleton's camera frame; `seen` is false while it is only remembered."""
 
     id: Annotated[int, Field(ge=0, lt=2**31)]
-    name: str
+    name: Name
     position_m: FinitePoint
     quaternion_xyzw: Quaternion
     confidence: FiniteFloat
@@ -118,8 +126,8 @@ class Objects(Message):
     """All objects of one image."""
 
     SCHEMA = "actum.objects"
-    objects: list[TrackedObject]
-    session_id: str = ""
+    objects: Annotated[list[TrackedObject], Field(max_length=MOST_OBJECTS)]
+    session_id: Name = ""
 
 
 class Segment(Message):
@@ -131,7 +139,7 @@ class Segment(Message):
     segment_id: SegmentId
     agent: Annotated[int, Field(ge=1, lt=2**31)] | None = None
     hand: Hand | None = None
-    label: str | None = None
+    label: Name | None = None
 
 
 class Action(Message):
@@ -143,12 +151,12 @@ class Action(Message):
     start_ns: Stamp
     end_ns: Stamp | None
     final: bool
-    action: str | None
+    action: Name | None
     confidence: FiniteFloat
     activations: dict[str, FiniteFloat]
-    part: str | None
-    frames: int
-    missed: int
+    part: Name | None
+    frames: Count
+    missed: Count
     hand: Hand | None = None
     maps: dict[str, Tensor] | None = None
     trace: Tensor | None = None
@@ -194,8 +202,8 @@ class Event(Message):
     motion: Motion | None
     result: str | None
     sentence: str
-    frames: int
-    missed: int
+    frames: Count
+    missed: Annotated[int, Field(ge=0, lt=2**63)]
 
 
 class Status(Message):

@@ -11,6 +11,7 @@ from actum.messages import Message
 SECOND_NS = 1_000_000_000
 TICK_NS = SECOND_NS // 10
 SETTLE_NS = 70 * SECOND_NS
+LONGEST_COMPLAINT = 500
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,8 @@ class Tally:
     def reject(self, kind: str, detail: str = "") -> None:
         """Count one piece of bad input."""
         self.rejects[kind] += 1
-        self.last_error = f"{kind}: {detail}" if detail else kind
+        complaint = f"{kind}: {detail}" if detail else kind
+        self.last_error = complaint[:LONGEST_COMPLAINT]
 
 
 class Node(Protocol):

@@ -9,7 +9,7 @@ from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
 from actum.messages import Action, Event, Message
 from actum.node import Tick
-from scenes import HEAD, NAMES, REST_RIGHT, Scene, Stance, acting_on, action, moving, still
+from scenes import ELBOW_RIGHT, HEAD, NAMES, REST_RIGHT, Scene, Stance, acting_on, action, moving, still
 
 CUP = (0.1, 0.0, 0.45)
 OTHERS = {2: (-0.25, 0.0, 0.5), 3: (0.45, 0.0, 0.5)}
@@ -118,18 +118,20 @@ def test_no_hand_is_named_where_either_may_have_acted_on_nothing() -> None:
 
 
 def pointing_at(target: tuple[float, float, float], share: float) -> Scene:
-    """Stretch the arm so that the hand is on the line from the head to the target."""
-    on_line = tuple((np.array(HEAD) + share * np.subtract(target, HEAD)).tolist())
+    """Stretch the arm: the fingertip, a decimetre beyond the hand, is on the line from the head to the target."""
+    tip = np.array(HEAD) + share * np.subtract(target, HEAD)
+    forearm = tip - ELBOW_RIGHT
+    hand = tuple((tip - 0.1 * forearm / np.linalg.norm(forearm)).tolist())
     places = {1: (-0.3, 0.0, 0.9), 2: (0.1, 0.0, 0.9), 3: (0.5, 0.0, 0.9)}
     return Scene(
-        right_hand=moving((0.0, REST_RIGHT), (1.0, on_line), (1.9, on_line), (2.0, REST_RIGHT)),
+        right_hand=moving((0.0, REST_RIGHT), (1.0, hand), (1.9, hand), (2.0, REST_RIGHT)),
         objects={number: still(place) for number, place in places.items()},
     )
 
 
 @pytest.mark.parametrize(("target", "pointed_at"), [((-0.3, 0.0, 0.9), 1), ((0.1, 0.0, 0.9), 2), ((0.5, 0.0, 0.9), 3)])
 @pytest.mark.parametrize("share", [0.4, 0.7])
-def test_pointing_is_resolved_by_the_line_from_the_head_through_the_hand(target, pointed_at, share) -> None:
+def test_pointing_is_resolved_by_the_line_from_the_head_through_the_fingertip(target, pointed_at, share) -> None:
     event = event_of(pointing_at(target, share), action("point"))
     assert event.object is not None and event.object.id == pointed_at
     assert event.object.distance_m == event.distances_m[str(pointed_at)]
@@ -143,6 +145,11 @@ def test_pointing_may_choose_an_object_that_is_not_the_nearest() -> None:
     event = event_of(Scene(right_hand=scene.right_hand, objects=nearer), action("point"))
     assert event.distances_m["1"] < event.distances_m["2"]
     assert event.object is not None and event.object.id == 2
+
+
+def test_the_pointing_hand_is_named_where_it_may_have_been_either() -> None:
+    event = event_of(pointing_at((0.1, 0.0, 0.9), 0.6), action("point", part="body"))
+    assert event.hand == "right"
 
 
 def test_pointing_at_the_ceiling_is_at_no_object() -> None:

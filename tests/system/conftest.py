@@ -3,12 +3,12 @@ from pathlib import Path
 
 import pytest
 from live import System, system
+from models import QUICK
 
 from actum.recording import Recording
 from actum_command.scene import write_examples
 from model_trainer.samples import samples_from
 from model_trainer.training import train
-from som_classifier.presets import PAPER
 
 
 @pytest.fixture
@@ -22,6 +22,6 @@ def scene_model(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A model of the simulated scene."""
     folder = tmp_path_factory.mktemp("scene-model")
     write_examples(folder / "examples.mcap", repetitions=4, actor=0, seed=1)
-    model = train(samples_from([Recording(folder / "examples.mcap")]).usable, PAPER)
+    model = train(samples_from([Recording(folder / "examples.mcap")]).usable, QUICK)
     model.save(folder / "model.npz")
     return folder / "model.npz"

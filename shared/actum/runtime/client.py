@@ -2,7 +2,7 @@
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from types import TracebackType
 from typing import Self
@@ -42,6 +42,11 @@ class Listening:
         for sample in self._subscriber:
             yield _received(sample)
 
+    def drain(self, take: Callable[[zenoh.Sample], None]) -> None:
+        """Call `take` with each sample until closed."""
+        for sample in self._subscriber:
+            take(sample)
+
     def take(self) -> Received | None:
         """Return the next sample if there is one."""
         sample = self._subscriber.try_recv()
@@ -78,9 +83,22 @@ class Client:
         """Put a message on its key."""
         self._outbox.put(message)
 
-    def put_raw(self, key: str, payload: bytes, encoding: str = "") -> None:
+    def put_raw(self, key: str, payload: bytes, encoding: str = "", attachment: bytes | None = None) -> None:
         """Put bytes as a plain client does."""
-        self._session.put(key, payload, encoding=encoding, congestion_control=zenoh.CongestionControl.BLOCK)
+        self._session.put(
+            key,
+            payload,
+            encoding=encoding,
+            attachment=attachment,
+            congestion_control=zenoh.CongestionControl.BLOCK,
+            priority=zenoh.Priority.DATA_HIGH,
+            express=True,
+        )
+
+    def tap(self, key_expr: str, take: Callable[[zenoh.Sample], None]) -> None:
+        """Call `take` with each sample as it arrives, from a thread of its own."""
+        listening = self.listen(key_expr)
+        threading.Thread(target=listening.drain, args=(take,), daemon=True).start()
 
     def listen(self, key_expr: str, ring: int = DEEP_RING) -> Listening:
         """Subscribe to a key expression, without history."""

@@ -1,0 +1,36 @@
+"""The ray of a pointing arm, computed by hand."""
+
+import numpy as np
+import pytest
+
+from action_fusion.proximity import Actor, pointing_angle
+from actum.skeletons import INDEX
+
+
+def still_actor(frames: int, **joints: tuple[float, float, float]) -> Actor:
+    postures = np.full((frames, 15, 3), np.nan)
+    for name, place in joints.items():
+        postures[:, INDEX[name]] = place
+    return Actor(np.arange(frames, dtype=float), np.tile(np.eye(3), (frames, 1, 1)), np.zeros((frames, 3)), postures)
+
+
+def test_the_fingertip_is_a_decimetre_beyond_the_hand_along_the_forearm() -> None:
+    actor = still_actor(2, left_elbow=(0.2, 0.0, 0.1), left_hand=(0.2, 0.3, 0.5))
+    assert np.allclose(actor.fingertip("left"), (0.2, 0.3 + 0.06, 0.5 + 0.08))
+    assert np.isnan(actor.fingertip("right")).all()
+
+
+def test_the_angle_is_between_the_lines_from_the_head() -> None:
+    head, tip, thing = np.zeros((3, 3)), np.tile([0.0, 0.0, 0.7], (3, 1)), np.tile([0.0, 2.0, 2.0], (3, 1))
+    assert pointing_angle(thing, tip, head) == pytest.approx(np.pi / 4)
+
+
+def test_only_the_last_third_of_the_known_frames_counts() -> None:
+    head, thing = np.zeros((10, 3)), np.tile([0.0, 0.0, 2.0], (10, 1))
+    tip = np.array([[0.0, 1.0, 0.0]] * 6 + [[0.0, 0.0, 1.0]] * 3 + [[np.nan] * 3])
+    assert pointing_angle(thing, tip, head) == pytest.approx(0.0)
+
+
+def test_an_arm_that_is_never_known_points_nowhere() -> None:
+    unknown = np.full((4, 3), np.nan)
+    assert pointing_angle(np.ones((4, 3)), unknown, np.zeros((4, 3))) == np.inf

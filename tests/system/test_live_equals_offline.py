@@ -1,0 +1,103 @@
+"""Real Kinect recordings through live processes give the very labels of the offline evaluation."""
+
+import json
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from live import System, collect
+from models import QUICK
+
+from actum import keys
+from actum.messages import Event
+from actum.recording import Recording
+from actum_command.importing import import_msr_action3d, import_utkinect
+from model_trainer.evaluation import Evaluation, evaluate
+from model_trainer.samples import samples_from, select
+from model_trainer.training import train
+from som_classifier.model import Model
+
+pytestmark = [pytest.mark.system, pytest.mark.data]
+
+TRAINING_PEOPLE = ("1", "3", "5", "7", "9")
+TEST_PEOPLE = ("2", "4", "6", "8", "10")
+SPEED = 5.0
+LIVE_SPEED = 8.0
+LIVE_MINUTES = 3.0
+
+
+@pytest.fixture(scope="module")
+def msr(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("msr")
+    import_msr_action3d(data / "msr_action3d", out, lambda _done, _total: None)
+    return out
+
+
+@pytest.fixture(scope="module")
+def quick_model(msr: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    training = select([msr], TRAINING_PEOPLE)[::4]
+    path = tmp_path_factory.mktemp("model") / "quick.npz"
+    train(samples_from(training).usable, QUICK).save(path)
+    return path
+
+
+def play_live(running: System, model: Path, files: Sequence[Path], speed: float, expected: int) -> list[Event]:
+    """Play recordings through a router, preprocessor, classifier and fusion of their own."""
+    running.start_router()
+    running.start("pose_preprocessor")
+    running.start("som_classifier", "--model", str(model))
+    running.start("action_fusion")
+    with running.client() as client:
+        running.wait_for_services(client, "pose_preprocessor", "som_classifier", "action_fusion")
+        events = client.listen(keys.pattern(keys.EVENT, client.sensor))
+        running.start("actum_command", "play", *map(str, files), "--speed", str(speed), "--all")
+        return collect(events, Event, lambda found: len(found) >= expected, patience_s=60 * LIVE_MINUTES)
+
+
+def assert_agree(events: Sequence[Event], offline: Evaluation) -> None:
+    predicted = {p.segment_id: p.predicted for p in offline.predictions}
+    assert {event.segment_id for event in events} == set(predicted)
+    differing = {e.segment_id: (e.action, predicted[e.segment_id]) for e in events if e.missed == 0}
+    assert {name: pair for name, pair in differing.items() if pair[0] != pair[1]} == {}
+
+
+def test_twenty_msr_sequences(running: System, msr: Path, quick_model: Path) -> None:
+    files = sorted(r.path for r in select([msr], TEST_PEOPLE))[::14][:20]
+    offline = evaluate(Model.load(quick_model), [Recording(file) for file in files])
+    events = play_live(running, quick_model, files, SPEED, expected=20)
+    assert [event.missed for event in events] == [0] * 20
+    assert_agree(events, offline)
+    assert all(event.valid for event in events)
+
+
+def test_a_continuous_utkinect_recording(running: System, data: Path, quick_model: Path, tmp_path: Path) -> None:
+    import_utkinect(data / "utkinect", tmp_path / "utkinect", lambda _done, _total: None)
+    recording = Recording(tmp_path / "utkinect" / "s01_e01.mcap")
+    offline = evaluate(Model.load(quick_model), [recording])
+    assert offline.n == 10
+    events = play_live(running, quick_model, [recording.path], SPEED, expected=10)
+    assert [event.missed for event in events] == [0] * 10
+    assert_agree(events, offline)
+
+
+@pytest.mark.live
+@pytest.mark.timeout(400)
+def test_all_msr_test_sequences_by_the_command_line(running: System, msr: Path, tmp_path: Path) -> None:
+    model, report = tmp_path / "model.npz", tmp_path / "report.json"
+    trained = running.actum("train", str(msr), "-o", str(model), "--person", ",".join(TRAINING_PEOPLE), timeout_s=200)
+    assert trained.returncode == 0, trained.stderr
+    people = ",".join(TEST_PEOPLE)
+    tested = running.actum("evaluate", str(model), str(msr), "--person", people, "--json", str(report), timeout_s=200)
+    assert tested.returncode == 0, tested.stderr
+    predictions = json.loads(report.read_text())["predictions"]
+    assert len(predictions) == 273
+    began_s = time.monotonic()
+    events = play_live(running, model, [Path(p["file"]) for p in predictions], LIVE_SPEED, expected=273)
+    minutes = (time.monotonic() - began_s) / 60
+    offline = {p["segment_id"]: p["predicted"] for p in predictions}
+    assert {e.segment_id for e in events} == set(offline)
+    assert {e.segment_id: e.action for e in events if e.missed == 0 and e.action != offline[e.segment_id]} == {}
+    complete = sum(e.missed == 0 for e in events)
+    print(f"{complete} of {len(events)} events from all their frames, every label as offline, {minutes:.1f} minutes")
+    assert minutes < LIVE_MINUTES
