@@ -2,13 +2,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from live import System, system
-from models import QUICK
 
 from actum.recording import Recording
 from actum_command.scene import write_examples
+from live import System, system
 from model_trainer.samples import samples_from
 from model_trainer.training import train
+from models import QUICK
 
 
 @pytest.fixture

@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from live import System, collect
-from models import QUICK
 
 from actum import keys
 from actum.messages import Event
 from actum.recording import Recording
 from actum_command.importing import import_msr_action3d, import_utkinect
+from live import System, collect
 from model_trainer.evaluation import Evaluation, evaluate
 from model_trainer.samples import samples_from, select
 from model_trainer.training import train
+from models import QUICK
 from som_classifier.model import Model
 
 pytestmark = [pytest.mark.system, pytest.mark.data]

@@ -2,11 +2,11 @@
 
 import msgpack
 import pytest
-from live import System, collect, wait_until
-from people import STANDING, reaches, skeleton
 
 from actum import codec, keys
 from actum.messages import Posture, Status
+from live import System, collect, wait_until
+from people import STANDING, reaches, skeleton
 
 SERVICES = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
 pytestmark = pytest.mark.system

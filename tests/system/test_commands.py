@@ -1,0 +1,144 @@
+"""The command line, as processes."""
+
+import re
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from actum import keys
+from actum.messages import Action, Event, Segment, Skeleton, Status
+from actum.recording import Recording
+from live import PATIENCE_S, System, collect, wait_until
+from people import FRAME_NS, reaches
+
+pytestmark = pytest.mark.system
+SERVICES = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
+
+
+def pids_of(system: System) -> set[int]:
+    """List every process that carries this system's endpoint in its environment, whoever started it."""
+    found = set()
+    for environ in Path("/proc").glob("[0-9]*/environ"):
+        try:
+            if f"ACTUM_CONNECT={system.settings.connect}".encode() in environ.read_bytes().split(b"\0"):
+                found.add(int(environ.parent.name))
+        except OSError:
+            continue
+    return found
+
+
+def test_a_mark_without_a_classifier_ends_with_code_1_and_says_why(running: System) -> None:
+    running.start_router()
+    with running.client():
+        marking = running.actum("segment", "start", "a")
+    assert marking.returncode == 1
+    assert "nobody listens on actum/kinect0/segment" in marking.stderr
+
+
+def test_without_a_router_a_command_says_what_to_do(running: System) -> None:
+    asked = running.actum("doctor")
+    assert asked.returncode == 1
+    assert "start one with 'actum router' or set ACTUM_CONNECT" in " ".join(asked.stderr.split())
+
+
+def test_marks_from_the_command_line_are_answered(running: System, scene_model: Path) -> None:
+    running.start_router()
+    running.start("pose_preprocessor")
+    running.start("som_classifier", "--model", str(scene_model))
+    with running.client() as client:
+        running.wait_for_services(client, "pose_preprocessor", "som_classifier")
+        assert client.wait_for_subscriber(keys.SKELETON, PATIENCE_S)
+        actions = client.listen(keys.pattern(keys.ACTION, client.sensor))
+        for frame in reaches(30):
+            client.put(frame)
+        assert running.actum("segment", "start", "a", "--stamp-ns", "0").returncode == 0
+        assert running.actum("segment", "end", "a", "--stamp-ns", str(29 * FRAME_NS)).returncode == 0
+        final = collect(actions, Action, lambda found: any(action.final for action in found))[-1]
+        assert (final.segment_id, final.valid, final.frames, final.missed) == ("a", True, 30, 0)
+
+
+def test_up_runs_everything_restarts_what_dies_and_leaves_nothing(running: System, scene_model: Path) -> None:
+    up = running.start("actum_command", "up", "--model", str(scene_model))
+    with running.client() as client:
+        running.wait_for_services(client, *SERVICES)
+        events = client.listen(keys.pattern(keys.EVENT, client.sensor))
+        assert collect(events, Event, bool)[0].valid
+        examined = running.actum("doctor")
+        assert examined.returncode == 0, examined.stdout
+        assert "all services are there" in examined.stdout
+        subprocess.run(["pkill", "-KILL", "-P", str(up.process.pid), "-f", "action_fusion"], check=True)
+        wait_until(lambda: "action_fusion ended with code -9: restart" in up.said(), "the supervisor notices")
+        assert collect(events, Event, bool)[0].valid
+    up.process.send_signal(signal.SIGINT)
+    assert up.process.wait(timeout=PATIENCE_S) == 0
+    wait_until(lambda: pids_of(running) == set(), "no process is left")
+
+
+def test_up_refuses_a_taken_endpoint(running: System) -> None:
+    running.start_router()
+    with running.client():
+        refused = running.actum("up")
+    assert refused.returncode == 1
+    assert "cannot be listened on" in refused.stderr
+
+
+def test_what_is_recorded_holds_the_streams_and_the_resolved_marks(
+    running: System, scene_model: Path, tmp_path: Path
+) -> None:
+    running.start_router()
+    running.start("pose_preprocessor")
+    running.start("som_classifier", "--model", str(scene_model))
+    with running.client() as client:
+        running.wait_for_services(client, "pose_preprocessor", "som_classifier")
+        file = tmp_path / "taken.mcap"
+        record = running.start("actum_command", "record", str(file), "--person", "anna", "--label", "push")
+        wait_until(lambda: "recording" in record.said(), "it records")
+        assert client.wait_for_subscriber(keys.SEGMENT, PATIENCE_S)
+        actions = client.listen(keys.pattern(keys.ACTION, client.sensor))
+        frames = reaches(40)
+        for frame in frames[:5]:
+            client.put(frame)
+        collect(client.listen(keys.pattern(keys.STATUS, client.sensor)), Status, bool)
+        client.put(Segment(sensor="kinect0", kind="start", segment_id="a"))
+        collect(client.listen(keys.pattern(keys.STATUS, client.sensor)), Status, bool)
+        for frame in frames[5:]:
+            client.put(frame)
+        collect(actions, Action, lambda found: bool(found) and found[-1].stamp_ns == frames[-1].stamp_ns)
+        client.put(Segment(sensor="kinect0", kind="end", segment_id="a"))
+        final = collect(actions, Action, lambda found: any(action.final for action in found))[-1]
+        record.process.send_signal(signal.SIGINT)
+        assert record.process.wait(timeout=PATIENCE_S) == 0
+    recording = Recording(file)
+    assert recording.person == "anna"
+    assert sum(isinstance(m, Skeleton) for m in recording.messages((keys.SKELETON,))) == 40
+    marks = [m for m in recording.messages((keys.SEGMENT,)) if isinstance(m, Segment)]
+    assert [(m.kind, m.stamp_ns, m.label) for m in marks] == [
+        ("start", final.start_ns, "push"),
+        ("end", final.end_ns, None),
+    ]
+
+
+def test_watch_prints_events_as_they_come(running: System, scene_model: Path) -> None:
+    running.start_router()
+    for name in ("pose_preprocessor", "marker_tracker", "action_fusion"):
+        running.start(name)
+    running.start("som_classifier", "--model", str(scene_model))
+    running.start("actum_command", "scene")
+    watching = running.start("actum_command", "watch")
+    with running.client() as client:
+        running.wait_for_services(client, "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
+        assert client.wait_for_subscriber(keys.TRUTH, PATIENCE_S)
+        assert client.wait_for_subscriber(keys.SEGMENT, PATIENCE_S)
+        running.start("sensor_gateway", "--source", "simulator")
+        wait_until(lambda: re.search(r"(push|pull|put|lift|point)", watching.said()) is not None, "an event's line")
+
+
+@pytest.mark.timeout(240)
+def test_the_demo_runs_to_its_table_and_leaves_nothing(running: System) -> None:
+    demo = running.actum("demo", "--repetitions", "1", timeout_s=200)
+    assert demo.returncode == 0, demo.stdout + demo.stderr
+    assert len(re.findall(r"^ *\d+/5 ", demo.stdout, re.M)) == 5, demo.stdout
+    assert re.search(r"total .*41 \(91.1%\)", demo.stdout)
+    wait_until(lambda: pids_of(running) == set(), "no process is left")
