@@ -1,6 +1,6 @@
 """Every node with a task it does well: what it is sent, and the part of its answers that is the task's."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache, partial
 from itertools import chain
@@ -16,7 +16,7 @@ from actum.messages import Action, Event, Image, Message, Posture, Segment
 from actum.node import SECOND_NS, Node
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings as TrackerSettings
-from people import FRAME_NS, reaches, skeleton
+from people import FRAME_NS, reaches
 from pose_preprocessor.node import PosePreprocessor
 from recognisers import tiny_model
 from scenes import START_NS, acting_on, action
@@ -31,7 +31,7 @@ SIDE, MARGIN = 64, 24
 MARKER = 3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Case:
     """A node, and messages that it answers.
 
@@ -45,7 +45,7 @@ class Case:
     task: Callable[[int, str], list[Message]]
     wanted: Callable[[Message, str], bool]
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         return self.name
 
     def messages(self, first_ns: int = NOON_NS, segment_id: str = "task") -> list[Message]:
@@ -53,7 +53,7 @@ class Case:
 
     def one_of_each(self) -> list[Message]:
         """One message of each kind that it takes."""
-        return list({type(message): message for message in self.messages()}.values())
+        return list({type(message): message for message in self.messages(NOON_NS, "one")}.values())
 
 
 def later(messages: Iterable[Message], shift_ns: int) -> list[Message]:
@@ -169,15 +169,7 @@ CASES = (
         partial(_scene, -1.0, -1.0 + WARM_UP / 30),
         _acted,
         _of_segment,
-    ),  # fmt: skip
+    ),
 )
 
-every_node = pytest.mark.parametrize("case", CASES, ids=str)
-
-
-def nobody(stamp_ns: int) -> Message:
-    return skeleton(stamp_ns)
-
-
-def of_type(messages: Sequence[Message], kind: type[Message]) -> list[Message]:
-    return [message for message in messages if isinstance(message, kind)]
+every_node = pytest.mark.parametrize("case", CASES, ids=repr)

@@ -1,5 +1,6 @@
 """What fusion keeps of a posture and of an objects message: the few numbers it needs, checked once."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ Array = NDArray[np.float64]
 
 FURTHEST_M = 100.0
 RIGID_TOLERANCE = 1e-3
+MISSING = [math.nan] * 3
 
 
 @dataclass(frozen=True)
@@ -48,8 +50,8 @@ class ObjectsSample(Sample):
 
 
 def posture_sample(posture: Posture, tally: Tally) -> PostureSample:
-    """Read a posture; one that says it is valid and cannot be is counted as `bad_posture`."""
-    body = _body(posture) if posture.valid else None
+    """Read a posture; one that says it is valid and cannot be is counted as `bad_posture`, a joint as `bad_joint`."""
+    body = _body(posture, tally) if posture.valid else None
     if posture.valid and body is None:
         tally.reject("bad_posture", f"agent {posture.agent} at {posture.stamp_ns}: no joints_m or no rigid frame")
     return PostureSample(posture.stamp_ns, posture.session_id, posture.seq, body)
@@ -69,19 +71,24 @@ def objects_sample(message: Objects, tally: Tally) -> ObjectsSample:
     )
 
 
-def _body(posture: Posture) -> Body | None:
+def _body(posture: Posture, tally: Tally) -> Body | None:
     if posture.joints_m is None or posture.ego_from_camera is None:
         return None
     ego_from_camera = geometry.from_flat(posture.ego_from_camera)
     if not _is_rigid(ego_from_camera):
         return None
-    return Body(ego_from_camera, np.stack([_point(joint) for joint in posture.joints_m]))
+    joints_m = _joints(posture.joints_m)
+    known = np.isfinite(joints_m).all(axis=1)
+    if np.count_nonzero(~known) > posture.joints_m.count(None):
+        tally.reject("bad_joint", f"agent {posture.agent} at {posture.stamp_ns}: a joint not finite or absurdly far")
+    return Body(ego_from_camera, joints_m)
 
 
-def _point(joint: Joint) -> Array:
-    """Read a joint; missing, non-finite and absurd ones become NaN."""
-    point = np.full(3, np.nan) if joint is None else np.array(joint, dtype=np.float64)
-    return point if bool((np.abs(point) < FURTHEST_M).all()) else np.full(3, np.nan)
+def _joints(joints: list[Joint]) -> Array:
+    """Read joints; missing, non-finite and absurd ones become NaN."""
+    read = np.array([MISSING if joint is None else joint for joint in joints], dtype=np.float64)
+    read[~(np.abs(read) < FURTHEST_M).all(axis=1)] = np.nan
+    return read
 
 
 def _is_rigid(transform: Array) -> bool:

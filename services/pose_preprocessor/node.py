@@ -7,23 +7,11 @@ from numpy.typing import NDArray
 
 from actum import geometry, keys
 from actum.messages import Agent, Joint, Message, Posture, Skeleton
-from actum.node import SECOND_NS, Tally, Tick
-from actum.skeletons import PARTS
+from actum.node import Tally, Tick
 from actum.stamps import Order, StampGuard
 from pose_preprocessor.checks import BadFrameError, measured
+from pose_preprocessor.motion import MotionFilter
 from pose_preprocessor.settings import Settings
-
-GAP_NS = SECOND_NS // 2
-_PART_JOINTS = np.array(list(PARTS.values()))
-
-
-class _Previous:
-    """An agent's last usable frame."""
-
-    def __init__(self, stamp_ns: int, camera_joints: NDArray[np.float64], ego_joints: NDArray[np.float64]) -> None:
-        self.stamp_ns = stamp_ns
-        self.camera_joints = camera_joints
-        self.ego_joints = ego_joints
 
 
 class PosePreprocessor:
@@ -36,7 +24,8 @@ class PosePreprocessor:
         self.tally = Tally()
         self._settings = settings or Settings()
         self._order = StampGuard()
-        self._previous: dict[int, _Previous] = {}
+        self._previous: dict[int, NDArray[np.float64]] = {}
+        self._motion: dict[int, MotionFilter] = {}
         self._previous_ns: int | None = None
         self._last_seq: int | None = None
 
@@ -50,6 +39,7 @@ class PosePreprocessor:
             return []
         if order is Order.RESTART:
             self._previous.clear()
+            self._motion.clear()
             self._previous_ns = None
         postures = self._postures(message, self._missed(message, order))
         self._previous_ns = message.stamp_ns
@@ -72,9 +62,9 @@ class PosePreprocessor:
     def _forget_the_gone(self, frame: Skeleton) -> None:
         """Let go of those who have left: a tracker that numbers people anew at each return would pile them up."""
         present = {agent.agent for agent in frame.agents}
-        for agent in self._previous.keys() - present:
-            if frame.stamp_ns - self._previous[agent].stamp_ns > GAP_NS:
-                del self._previous[agent]
+        for agent in self._motion.keys() - present:
+            if self._motion[agent].is_over(frame.stamp_ns):
+                del self._motion[agent], self._previous[agent]
 
     def _distinct_agents(self, message: Skeleton) -> list[Agent]:
         agents = {agent.agent: agent for agent in message.agents}
@@ -96,14 +86,14 @@ class PosePreprocessor:
     def _valid(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
         joints = measured(agent.joints, self._settings.reach_limit_m, self._settings.bone_limit_m)
         previous = self._previous.get(agent.agent)
-        if previous is not None and np.array_equal(previous.camera_joints, joints):
+        if previous is not None and np.array_equal(previous, joints):
             raise BadFrameError("repeated_joints", "the same joints as in the frame before")
         ego_from_camera = geometry.ego_from_camera(joints)
         ego_joints = geometry.apply(ego_from_camera, joints)
         standard = geometry.scaled(joints)
         standard_ego = geometry.apply(geometry.ego_from_camera(standard), standard)
-        motion = self._motion(previous, frame.stamp_ns, ego_joints)
-        self._previous[agent.agent] = _Previous(frame.stamp_ns, joints, ego_joints)
+        self._previous[agent.agent] = joints
+        motion = self._motion.setdefault(agent.agent, MotionFilter()).step(frame.stamp_ns, joints)
         return Posture(
             stamp_ns=frame.stamp_ns,
             sensor=frame.sensor,
@@ -117,15 +107,6 @@ class PosePreprocessor:
             missed=missed,
             session_id=frame.session_id,
         )
-
-    def _motion(self, previous: _Previous | None, stamp_ns: int, ego_joints: NDArray[np.float64]) -> list[float]:
-        """Mean displacement (m) of each part's joints since the last usable frame, 0 after a gap."""
-        if previous is None or stamp_ns - previous.stamp_ns > GAP_NS:
-            return [0.0] * len(PARTS)
-        steps = ego_joints - previous.ego_joints
-        lengths = np.sqrt(np.einsum("ij,ij->i", steps, steps))
-        motion: list[float] = lengths[_PART_JOINTS].mean(axis=1).tolist()
-        return motion
 
     def _invalid(self, frame: Skeleton, agent: int, reason: str, missed: int, present: list[int]) -> Posture:
         return Posture(

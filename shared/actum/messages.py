@@ -93,7 +93,8 @@ class Posture(Message):
     """One agent's posture, egocentric (x left, y up, z forward).
 
     `joints_m` are the measured joints in metres, `joints` the same posture with standard bone lengths.
-    `motion` is the mean displacement (m) of each part of `skeletons.PARTS` since the last valid frame.
+    `motion` is the mean displacement (m) of each part of `skeletons.PARTS` since the last valid frame, of joints
+    relative to the torso and low-passed.
     `agents` names every agent of the captured frame, `previous_ns` is the stamp of the captured frame before it
     (its postures may be on other agents' keys), `missed` counts the frames lost just before this one.
     """

@@ -1,10 +1,13 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from actum import geometry
 from actum.messages import Agent, Posture, Skeleton
 from actum.skeletons import INDEX, PARTS
 from people import FRAME_NS, STANDING, reaches, reaching, skeleton
+from pose_preprocessor.motion import TIME_CONSTANT_S
 from pose_preprocessor.node import PosePreprocessor
 
 
@@ -31,13 +34,38 @@ def test_a_posture_holds_the_measured_and_the_scaled_joints_and_how_to_get_back(
     assert np.linalg.norm(upper_arm) == pytest.approx(0.28)
 
 
-def test_motion_is_each_parts_mean_displacement_in_metres() -> None:
+def test_motion_is_each_parts_low_passed_displacement_in_metres() -> None:
     moved = reaching(0.1)
     first, second = postures(skeleton(0, STANDING), skeleton(FRAME_NS, moved))
     assert first.motion == [0.0] * 5
     arm = list(PARTS["right_arm"])
-    expected = np.linalg.norm(moved[arm] - STANDING[arm], axis=1).mean()
+    share = 1 - np.exp(-FRAME_NS / 1e9 / TIME_CONSTANT_S)
+    expected = share * np.linalg.norm(moved[arm] - STANDING[arm], axis=1).mean()
     assert second.motion == pytest.approx([expected, 0, 0, 0, 0], abs=1e-9)
+
+
+def test_motion_adds_up_to_the_way_a_part_has_gone() -> None:
+    phases = np.minimum(np.linspace(0, 2, 90), 1)
+    made = postures(*[skeleton(i * FRAME_NS, reaching(p) + 1e-9 * i) for i, p in enumerate(phases)])
+    way = np.linalg.norm(reaching(1.0) - STANDING, axis=1)[list(PARTS["right_arm"])].mean()
+    assert sum(posture.motion[0] for posture in made if posture.motion) == pytest.approx(way, rel=0.02)
+
+
+def test_walking_is_no_motion_of_a_part() -> None:
+    walked = STANDING + np.array([0.3, 0.0, -0.2])
+    _, second = postures(skeleton(0, STANDING), skeleton(FRAME_NS, walked))
+    assert second.motion == pytest.approx([0.0] * 5, abs=1e-12)
+
+
+@given(st.integers(0, 100))
+def test_noise_does_not_pass_for_movement(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    noise_m = np.where(np.isin(np.arange(15), [11, 14]), 0.03, 0.01)[:, None]
+    frames = [
+        skeleton(i * FRAME_NS, reaching(min(i / 25, 1.0)) + noise_m * rng.standard_normal((15, 3))) for i in range(60)
+    ]
+    motion = np.sum([posture.motion for posture in postures(*frames)], axis=0)
+    assert int(np.argmax(motion)) == list(PARTS).index("right_arm")
 
 
 def test_motion_starts_anew_after_a_gap_and_after_a_restart() -> None:

@@ -1,4 +1,4 @@
-"""Whether a client gets a router at `ACTUM_CONNECT`, for its container's health check: `python -m actum.runtime.probe`."""
+"""Whether a router answers at `ACTUM_CONNECT`, for its container's health check: `python -m actum.runtime.probe`."""
 
 import sys
 

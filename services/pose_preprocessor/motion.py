@@ -1,0 +1,50 @@
+"""How much each body part moves: what attention goes by (paper, section 2.1)."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.node import SECOND_NS
+from actum.skeletons import INDEX, PARTS
+
+Array = NDArray[np.float64]
+
+GAP_NS = SECOND_NS // 2
+TIME_CONSTANT_S = 0.3
+_PART_JOINTS = np.array(list(PARTS.values()))
+_TORSO = INDEX["torso"]
+
+
+class MotionFilter:
+    """One agent's motion, from joints relative to the torso, low-passed so that noise does not pass for movement.
+
+    Frame-to-frame steps add up a joint's noise, most at the feet; in the egocentric frame its own jitter comes on
+    top, the more the further a part is from the hips. Camera axes and a first-order filter leave the movement.
+    """
+
+    def __init__(self) -> None:
+        self._stamp_ns: int | None = None
+        self._smooth: Array = np.zeros((len(INDEX), 3))
+
+    def is_over(self, stamp_ns: int) -> bool:
+        """Tell whether a step at this stamp would begin anew."""
+        return self._stamp_ns is None or stamp_ns - self._stamp_ns > GAP_NS
+
+    def step(self, stamp_ns: int, joints: Array) -> list[float]:
+        """Return each part's mean displacement (m) since the frame before; 0 at first and after a gap.
+
+        Args:
+            stamp_ns: rising from call to call.
+            joints: (15, 3), camera frame, metres.
+        """
+        relative = joints - joints[_TORSO]
+        elapsed_ns = None if self._stamp_ns is None else stamp_ns - self._stamp_ns
+        self._stamp_ns = stamp_ns
+        if elapsed_ns is None or elapsed_ns > GAP_NS:
+            self._smooth = relative
+            return [0.0] * len(PARTS)
+        share = 1.0 - float(np.exp(-elapsed_ns / SECOND_NS / TIME_CONSTANT_S))
+        steps = share * (relative - self._smooth)
+        self._smooth = self._smooth + steps
+        lengths = np.sqrt(np.einsum("ij,ij->i", steps, steps))
+        motion: list[float] = lengths[_PART_JOINTS].mean(axis=1).tolist()
+        return motion

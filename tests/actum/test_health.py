@@ -1,0 +1,43 @@
+"""A service's health as a file."""
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+
+from actum.health import FRESH_S, is_healthy, write_health
+
+
+def test_healthy_from_the_moment_it_is_said_until_it_is_taken_back(tmp_path):
+    file = tmp_path / "health"
+    assert not is_healthy(file)
+    write_health(file, healthy=True)
+    assert is_healthy(file)
+    write_health(file, healthy=False)
+    assert not is_healthy(file)
+
+
+def test_what_was_said_long_ago_does_not_count(tmp_path):
+    file = tmp_path / "health"
+    write_health(file, healthy=True)
+    long_ago_s = time.time() - FRESH_S - 1
+    os.utime(file, (long_ago_s, long_ago_s))
+    assert not is_healthy(file)
+
+
+@pytest.mark.parametrize("healthy", [True, False])
+def test_the_check_exits_0_only_when_healthy(tmp_path, healthy):
+    write_health(tmp_path / "health", healthy)
+    check = subprocess.run(
+        [sys.executable, "-m", "actum.health"],
+        env={**os.environ, "ACTUM_HEALTH_FILE": str(tmp_path / "health")},
+        check=False,
+    )
+    assert check.returncode == (0 if healthy else 1)
+
+
+def test_the_check_imports_nothing_that_is_slow_to_import():
+    program = "import sys, actum.health; print({'zenoh', 'numpy', 'pydantic'} & set(sys.modules))"
+    assert subprocess.check_output([sys.executable, "-c", program], text=True) == "set()\n"

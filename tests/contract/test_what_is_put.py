@@ -1,0 +1,76 @@
+"""What every node puts: the same for the same input, nothing for what is not meant for it, on documented keys."""
+
+import random
+import re
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from actum import keys, messages
+from actum.messages import Info, Message, Status, Truth
+from actum.node import SECOND_NS, TICK_NS, Tick
+from node_cases import CASES, Case, every_node
+from wire import Wire, packed
+
+PUTS = {
+    "pose_preprocessor": r"actum/kinect0/posture/\d+",
+    "som_classifier": r"actum/kinect0/action/\d+",
+    "marker_tracker": r"actum/kinect0/objects",
+    "action_fusion": r"actum/kinect0/event/\d+",
+}
+HEALTH = {"stamp_ns": 1, "sensor": "kinect0", "service": "x", "instance": "y"}
+STRANGERS: tuple[Message, ...] = (
+    Truth(
+        stamp_ns=1, sensor="kinect0", kind="start", segment_id="s", agent=1, hand="left", action="lift", object_id=1,
+        object_name="cup", displacement_m=None,
+    ),
+    Info.model_validate(HEALTH | {"version": "1", "schemas": [], "joint_names": []}),
+    Status.model_validate(
+        HEALTH
+        | {"uptime_s": 1.0, "rates": {}, "handled": {}, "drops": {}, "rejects": {}, "last_error": None}
+        | {"latency_ms": {}, "state": "running"}
+    ),
+)  # fmt: skip
+
+
+@every_node
+def test_it_puts_on_its_own_keys(case: Case) -> None:
+    outputs = Wire(case.build()).send(*case.messages())
+    assert outputs
+    assert all(re.fullmatch(PUTS[case.name], keys.key_of(output)) for output in outputs)
+
+
+@every_node
+@settings(max_examples=10, deadline=None)
+@given(seed=st.integers(), share=st.floats(0.5, 1.0))
+def test_the_same_input_gives_the_same_output_to_the_last_bit(case: Case, seed: int, share: float) -> None:
+    """In any order, with ticks between, and with some of it missing."""
+    rng = random.Random(seed)
+    items: list[Message | Tick] = [m for m in case.messages() if rng.random() < share]
+    items += [Tick(i * TICK_NS) for i in range(10)]
+    rng.shuffle(items)
+
+    def outputs() -> list[bytes]:
+        wire = Wire(case.build())
+        return [packed(output) for item in items for output in wire.handle(item)]
+
+    assert outputs() == outputs()
+
+
+@every_node
+def test_what_is_not_meant_for_it_is_met_with_silence(case: Case) -> None:
+    taken = tuple(topic.message for topic in case.build().inputs)
+    foreign = [m for other in CASES for m in other.one_of_each() if not isinstance(m, taken)] + list(STRANGERS)
+    assert {type(m) for m in foreign} | set(taken) >= set(messages.MESSAGES) - {messages.Event}
+    disturbed, alone = Wire(case.build()), Wire(case.build())
+    outputs = [disturbed.handle(m) for m in foreign]
+    assert not any(outputs)
+    assert list(map(packed, disturbed.send(*case.messages()))) == list(map(packed, alone.send(*case.messages())))
+
+
+@every_node
+def test_idle_ticks_by_the_thousand_change_nothing(case: Case) -> None:
+    ticked, alone = Wire(case.build()), Wire(case.build())
+    assert not any(ticked.handle(Tick(i)) for i in range(0, 10**4 * TICK_NS, TICK_NS))
+    assert not any(ticked.handle(Tick(i)) for i in (0, 2**62, 0, 5 * SECOND_NS))
+    assert list(map(packed, ticked.send(*case.messages()))) == list(map(packed, alone.send(*case.messages())))

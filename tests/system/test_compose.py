@@ -1,0 +1,251 @@
+"""The container files: what they say, and what they do on a real engine."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+import tomllib
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import msgpack
+import pytest
+import yaml
+import zenoh
+
+from actum_command.processes import SERVICES, simulated_objects
+from live import System, wait_until
+
+ROOT = Path(__file__).parents[2]
+MAIN = ROOT / "docker-compose.yml"
+DEPLOY = ROOT / "deploy"
+ROUTER_CONFIG = DEPLOY / "zenoh" / "router.json5"
+FIVE = {"sensor_gateway", *SERVICES}
+UNCHECKED = {"trainer", "scene"}
+ACTIONS = {"push", "pull", "put", "lift", "point"}
+STOPPED_WITHIN_S = 10.0
+
+
+class ComposeLoader(yaml.SafeLoader):
+    """YAML with Compose's own tags, `!reset` and `!override`, which replace instead of merging."""
+
+
+def _untagged(loader: yaml.SafeLoader, _tag: str, node: yaml.Node) -> Any:
+    return loader.construct_sequence(node) if isinstance(node, yaml.SequenceNode) else None
+
+
+ComposeLoader.add_multi_constructor("!", _untagged)
+
+
+def services_of(file: Path) -> dict[str, dict[str, Any]]:
+    return yaml.load(file.read_text(), ComposeLoader)["services"]
+
+
+@pytest.fixture(scope="module")
+def services() -> dict[str, dict[str, Any]]:
+    return services_of(MAIN)
+
+
+def test_router_five_services_trainer_and_scene_stand_in_one_flat_list(services):
+    assert set(services) == {"router", *FIVE, *UNCHECKED}
+    assert not [name for name, service in services.items() if "depends_on" in service]
+
+
+@pytest.mark.parametrize("name", sorted(FIVE))
+def test_each_service_is_built_from_its_own_folder_and_extra(services, name):
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    assert services[name]["build"]["args"] == {"SERVICE": name}
+    assert services[name]["image"] == f"actum/{name}"
+    assert name.replace("_", "-") in extras
+
+
+def test_every_image_is_built_once(services):
+    images = [service["image"] for service in services.values()]
+    built = [service["image"] for service in services.values() if "build" in service]
+    assert sorted(built) == sorted(set(images))
+
+
+def test_only_the_router_is_reached_from_outside_and_only_from_this_host(services):
+    assert {name: service["ports"] for name, service in services.items() if "ports" in service} == {
+        "router": ["127.0.0.1:7447:7447"]
+    }
+
+
+def test_all_come_back_but_the_trainer_and_all_pass_signals_on(services):
+    assert {service["restart"] for name, service in services.items() if name != "trainer"} == {"unless-stopped"}
+    assert services["trainer"]["restart"] == "no"
+    assert all(service["init"] for service in services.values())
+
+
+def test_router_and_five_services_are_checked(services):
+    disabled = {name for name, service in services.items() if service.get("healthcheck", {}).get("disable")}
+    assert disabled == UNCHECKED
+
+
+@pytest.mark.parametrize("name", sorted(FIVE))
+def test_every_variable_is_a_setting_of_its_service(services, name):
+    known = import_module(f"{name}.settings").Settings.model_fields
+    variables = [variable.removeprefix("ACTUM_").lower() for variable in services[name]["environment"]]
+    assert set(variables) <= set(known)
+    assert "connect" in variables
+
+
+def test_the_tracker_knows_the_objects_of_the_simulated_scene(services, monkeypatch):
+    settings = import_module("marker_tracker.settings").Settings
+    monkeypatch.setenv("ACTUM_OBJECTS", services["marker_tracker"]["environment"]["ACTUM_OBJECTS"])
+    told = settings()
+    monkeypatch.setenv("ACTUM_OBJECTS", simulated_objects()["ACTUM_OBJECTS"])
+    for number, simulated in settings().objects.items():
+        assert told.objects[number].name == simulated.name
+        assert (told.objects[number].size_m or told.marker_size_m) == simulated.size_m
+    assert len(told.objects) == len(settings().objects)
+
+
+def test_the_trainer_writes_the_model_that_the_classifier_reads(services):
+    model = services["som_classifier"]["environment"]["ACTUM_MODEL"]
+    assert services["trainer"]["command"][0].endswith(f"-o {model}")
+    assert services["trainer"]["volumes"] == ["models:/models"]
+    assert services["som_classifier"]["volumes"] == ["models:/models:ro"]
+
+
+def test_two_hosts_together_run_the_router_and_the_five_services():
+    hosts = [services_of(DEPLOY / f"compose.{host}-host.yml") for host in ("kinect", "compute")]
+    extended = [(name, service["extends"]) for host in hosts for name, service in host.items()]
+    assert sorted(name for name, _ in extended) == sorted({"router", *FIVE})
+    assert all(extends == {"file": "../docker-compose.yml", "service": name} for name, extends in extended)
+
+
+def test_zenohd_reads_the_same_configuration_file(services):
+    mounted = services["router"]["volumes"][0].split(":")
+    assert (ROOT / mounted[0]).samefile(ROUTER_CONFIG)
+    router = services_of(DEPLOY / "compose.zenohd.yml")["router"]
+    assert "volumes" not in router
+    assert services["router"]["command"][-1] == router["command"][-1] == mounted[1]
+
+
+def test_the_router_listens_everywhere_inside_its_container():
+    config = zenoh.Config.from_file(ROUTER_CONFIG)
+    assert json.loads(config.get_json("listen/endpoints")) == ["tcp/0.0.0.0:7447"]
+    assert json.loads(config.get_json("mode")) == "router"
+
+
+def probe(endpoint: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "actum.runtime.probe"],
+        env={**os.environ, "ACTUM_CONNECT": endpoint},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_our_router_runs_on_the_file_and_its_health_check_tells_whether_it_does(running: System):
+    endpoint = running.settings.connect
+    before = probe(endpoint)
+    assert before.returncode == 1
+    assert before.stderr.startswith(f"no router answers at {endpoint}")
+    running.start("actum_command", "router", "--config", str(ROUTER_CONFIG), "--listen", endpoint)
+    with running.client():
+        assert probe(endpoint).returncode == 0
+
+
+def engine(*arguments: str) -> str:
+    return subprocess.run(["docker", *arguments], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
+def compose(*arguments: str) -> str:
+    return engine("compose", "--project-name", "actum-test", *arguments)
+
+
+def containers() -> list[str]:
+    return compose("ps", "--all", "--quiet").split()
+
+
+def plain_client() -> zenoh.Session:
+    """What any program outside the containers does, with nothing of ours."""
+    config = zenoh.Config()
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("connect/endpoints", '["tcp/127.0.0.1:7447"]')
+    return zenoh.open(config)
+
+
+def recognitions(n: int) -> list[dict[str, Any]]:
+    """The next n events that are no rejections."""
+    found: list[dict[str, Any]] = []
+    with plain_client() as session:
+        events = session.declare_subscriber("actum/*/event/**", zenoh.handlers.FifoChannel(64))
+
+        def enough() -> bool:
+            while (sample := events.try_recv()) is not None:
+                event = msgpack.unpackb(sample.payload.to_bytes())
+                found.extend([event] if event["valid"] else [])
+            return len(found) >= n
+
+        wait_until(enough, f"{n} recognised actions", patience_s=60)
+    return found
+
+
+def deaths(since_s: float) -> list[dict[str, Any]]:
+    """Containers of ours that have ended since then: when, and with which code."""
+    filters = ["type=container", "event=die", "label=com.docker.compose.project=actum-test"]
+    chosen = [word for condition in filters for word in ("--filter", condition)]
+    lines = engine("events", "--since", str(since_s), "--until", str(time.time()), "--format", "{{json .}}", *chosen)
+    return [json.loads(line) for line in lines.splitlines()]
+
+
+@pytest.mark.containers
+@pytest.mark.parametrize(
+    ("files", "environment"),
+    [
+        (["docker-compose.yml"], {}),
+        (["docker-compose.yml", "deploy/compose.zenohd.yml"], {}),
+        (["deploy/compose.kinect-host.yml"], {}),
+        (["deploy/compose.compute-host.yml"], {"ACTUM_CONNECT": "tcp/192.0.2.1:7447", "ACTUM_MODELS": "/srv/models"}),
+    ],
+)
+def test_compose_accepts(files, environment, monkeypatch):
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    resolved = engine("compose", *(word for file in files for word in ("-f", file)), "config", "--format", "json")
+    published = {name: s["ports"] for name, s in json.loads(resolved)["services"].items() if "ports" in s}
+    assert all(name == "router" and len(ports) == 1 for name, ports in published.items())
+    router = json.loads(resolved)["services"].get("router", {})
+    assert router.get("image", "").startswith("eclipse/zenoh:") is ("deploy/compose.zenohd.yml" in files)
+    assert ("build" in router) is (router.get("image") == "actum/actum_command")
+
+
+@pytest.fixture
+def project():
+    try:
+        compose("up", "--build", "--detach")
+        yield
+    finally:
+        compose("down", "--volumes")
+
+
+@pytest.mark.containers
+@pytest.mark.timeout(1200)
+def test_up_recognises_and_down_leaves_nothing(project):
+    compose("up", "--detach", "--wait", "--wait-timeout", "120", "router", *FIVE)
+    print(compose("ps", "--format", "table {{.Service}}\t{{.Status}}"))
+    assert engine("wait", *compose("ps", "--all", "--quiet", "trainer").split()) == "0\n"
+    users = {name: compose("exec", "-T", name, "id", "-u").strip() for name in ("router", *FIVE)}
+    assert "0" not in users.values()
+
+    events = recognitions(3)
+    for event in events:
+        print(event["sentence"])
+        assert event["action"] in ACTIONS
+        assert event["sentence"].startswith(event["action"])
+        assert event["objects_present"]
+
+    began_s = time.time()
+    compose("down")
+    print(f"docker compose down: {time.time() - began_s:.1f} s")
+    ended = deaths(began_s)
+    assert len(ended) == len({"router", "scene", *FIVE})
+    assert {end["Actor"]["Attributes"]["exitCode"] for end in ended} == {"0"}
+    assert max(end["timeNano"] for end in ended) / 1e9 - began_s < STOPPED_WITHIN_S
+    assert containers() == []
