@@ -1,0 +1,111 @@
+"""Every mark that cannot be answered with a recognition is answered once, with its reason, from end to end."""
+
+from itertools import chain as chained
+
+import pytest
+
+from actum.messages import Action, Event, Message, Objects, Segment, Skeleton
+from actum.node import SECOND_NS
+from chain import answers, by_key, delayed
+from people import FRAME_NS, reaches, skeleton
+from pose_preprocessor.node import PosePreprocessor
+
+FRAMES = 60
+NOBODY_FROM, NOBODY_TO = 20, 40
+NO_END = "start without end: no end within 60 s"
+
+
+def frames() -> list[Skeleton]:
+    """Two seconds of a person, who is away in the middle of them."""
+    empty = {i: skeleton(i * FRAME_NS, seq=i) for i in range(NOBODY_FROM, NOBODY_TO)}
+    return [empty.get(i, frame) for i, frame in enumerate(reaches(FRAMES))]
+
+
+def mark(kind: str, frame: float, segment_id: str = "s", agent: int | None = None) -> Segment:
+    stamp_ns = round(frame * FRAME_NS)
+    fields = {"stamp_ns": stamp_ns, "sensor": "kinect0", "kind": kind, "segment_id": segment_id, "agent": agent}
+    return Segment.model_validate(fields)
+
+
+def told(*marks: Segment, skeletons: list[Skeleton] | None = None) -> list[Message]:
+    """The actions and events that follow from some marks, in a scene without objects."""
+    preprocessor = PosePreprocessor()
+    captured = frames() if skeletons is None else skeletons
+    postures = chained.from_iterable(preprocessor.handle(frame) for frame in captured)
+    images = (Objects(stamp_ns=frame.stamp_ns, sensor="kinect0", objects=[]) for frame in captured)
+    streams = by_key([*postures, *images, *marks])
+    return answers({key: delayed(messages, [0]) for key, messages in streams.items()})
+
+
+def reasons(messages: list[Message]) -> list[tuple[str, str | None]]:
+    """One action and one event of each, with the same reason."""
+    actions = [(m.segment_id, m.reason) for m in messages if isinstance(m, Action)]
+    events = [(m.segment_id, m.reason) for m in messages if isinstance(m, Event)]
+    assert actions == events
+    assert all(m.valid == (m.reason is None) for m in messages)
+    return events
+
+
+REJECTED: dict[str, tuple[tuple[Segment, ...], str]] = {
+    "end without start": ((mark("end", 9),), "end without start"),
+    "start never ended": ((mark("start", 2),), NO_END),
+    "start never ended, of an agent": ((mark("start", 2, agent=1),), NO_END),
+    "start in a far future": ((mark("start", 2**40),), NO_END),
+    "longer than a minute": ((mark("start", 0), mark("end", 61 * 30)), NO_END),
+    "end before start": ((mark("start", 12), mark("end", 3)), "end before start"),
+    "nobody there": ((mark("start", NOBODY_FROM + 1), mark("end", NOBODY_TO - 2)), "no person"),
+    "somebody else there": ((mark("start", 2, agent=7), mark("end", 12, agent=7)), "no person"),
+    "before anything was seen": ((mark("start", 2**40), mark("end", 2**40 + 30)), "no person"),
+    "no frame": ((mark("start", 4.3), mark("end", 4.6)), "no person"),
+    "no frame, of an agent": ((mark("start", 4.3, agent=1), mark("end", 4.6)), "no person"),
+    "one frame": ((mark("start", 4), mark("end", 4)), "too few frames: 1, at least 3 are needed"),
+    "two frames": ((mark("start", 4), mark("end", 5)), "too few frames: 2, at least 3 are needed"),
+}
+
+
+@pytest.mark.parametrize(("marks", "reason"), REJECTED.values(), ids=REJECTED.keys())
+def test_it_is_answered_once_with_its_reason(marks: tuple[Segment, ...], reason: str) -> None:
+    assert reasons(told(*marks)) == [("s", reason)]
+
+
+@pytest.mark.parametrize(("marks", "reason"), REJECTED.values(), ids=REJECTED.keys())
+def test_a_segment_over_it_is_recognised_all_the_same(marks: tuple[Segment, ...], reason: str) -> None:
+    good = mark("start", 1, "good"), mark("end", 15, "good")
+    together = sorted([*good, *marks], key=lambda m: m.stamp_ns)
+    (recognised, *_) = [m for m in told(*together) if isinstance(m, Event) and m.segment_id == "good"]
+    alone = [m for m in told(*good) if isinstance(m, Event)]
+    assert [recognised.model_copy(update={"seq": 0})] == [m.model_copy(update={"seq": 0}) for m in alone]
+    assert recognised.valid
+
+
+def test_a_segment_is_recognised_where_there_are_three_frames() -> None:
+    assert reasons(told(mark("start", 4), mark("end", 6))) == [("s", None)]
+
+
+def test_a_person_whose_joints_are_never_usable() -> None:
+    lost = [skeleton(i * FRAME_NS, frame, seq=i) for i, frame in enumerate([reaches(1)[0].agents[0].joints] * 20)]
+    assert reasons(told(mark("start", 3), mark("end", 12), skeletons=lost)) == [("s", "no person")]
+
+
+@pytest.mark.parametrize(
+    "marks",
+    [
+        (mark("start", 1), mark("start", 2), mark("end", 15)),
+        (mark("start", 1), mark("start", 1), mark("end", 15), mark("end", 15)),
+        (mark("start", 1), mark("end", 15), mark("start", 1), mark("end", 15)),
+        (mark("start", 1), mark("end", 15), mark("end", 15)),
+    ],
+)
+def test_a_mark_put_twice_is_answered_once(marks: tuple[Segment, ...]) -> None:
+    assert reasons(told(*marks)) == [("s", None)]
+
+
+def test_a_name_used_again_is_answered_again_and_says_so() -> None:
+    marks = mark("start", 1), mark("end", 15), mark("start", 42), mark("start", 42), mark("end", 50)
+    assert sorted(reasons(told(*marks)), key=str) == [("s", "segment_id reused"), ("s", None)]
+
+
+def test_ends_that_come_when_nothing_can_be_waited_for_any_more_are_not_answered_again() -> None:
+    start, end = mark("start", 2), mark("end", 66 * 30)
+    later = [frame.model_copy(update={"stamp_ns": frame.stamp_ns + 64 * SECOND_NS}) for frame in frames()]
+    assert reasons(told(start, end, skeletons=[*frames(), *later])) == [("s", NO_END)]
