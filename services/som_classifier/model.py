@@ -69,7 +69,7 @@ class Recognition:
 
     Attributes:
         label: the action whose neuron answers most.
-        confidence: that neuron's cosine, within [0, 1].
+        confidence: that neuron's share of all positive cosines, within [0, 1]; not a calibrated probability.
         activations: every neuron's cosine by action.
         part: the body part attended to.
         trace: (n, 2), row and column of the first map's winners, repeats removed.
@@ -148,7 +148,7 @@ class Model:
         winner = int(np.argmax(cosines))
         return Recognition(
             label=self.labels[winner],
-            confidence=min(max(cosines[winner], 0.0), 1.0),
+            confidence=_share(cosines, winner),
             activations=dict(zip(self.labels, cosines, strict=True)),
             part=PART_NAMES[part],
             trace=trace,
@@ -210,6 +210,12 @@ class Model:
         if len(set(about.labels)) < len(about.labels) or self.layer3.weights.shape != (len(about.labels), neurons):
             return f"its third layer {self.layer3.weights.shape} does not fit {len(about.labels)} labels"
         return None
+
+
+def _share(cosines: list[float], winner: int) -> float:
+    """Return the winner's share of the positive cosines, 0 where none is positive."""
+    positive = sum(max(cosine, 0.0) for cosine in cosines)
+    return max(cosines[winner], 0.0) / positive if positive > 0 else 0.0
 
 
 def _map(weights: Array) -> Som:

@@ -1,5 +1,6 @@
 """Every mark that cannot be answered with a recognition is answered once, with its reason, from end to end."""
 
+from itertools import accumulate
 from itertools import chain as chained
 
 import pytest
@@ -7,11 +8,14 @@ import pytest
 from actum.messages import Action, Event, Message, Objects, Segment, Skeleton
 from actum.node import SECOND_NS
 from chain import answers, by_key, delayed
-from people import FRAME_NS, reaches, skeleton
+from people import FRAME_NS, STANDING, reaches, skeleton
 from pose_preprocessor.node import PosePreprocessor
 
 FRAMES = 60
 NOBODY_FROM, NOBODY_TO = 20, 40
+FAR = 10**7
+"""A frame of days ahead."""
+
 NO_END = "start without end: no end within 60 s"
 
 
@@ -27,14 +31,20 @@ def mark(kind: str, frame: float, segment_id: str = "s", agent: int | None = Non
     return Segment.model_validate(fields)
 
 
-def told(*marks: Segment, skeletons: list[Skeleton] | None = None) -> list[Message]:
-    """The actions and events that follow from some marks, in a scene without objects."""
+def told(
+    *marks: Segment, skeletons: list[Skeleton] | None = None, at_the_latest_ns: int = 3 * SECOND_NS
+) -> list[Message]:
+    """The actions and events that follow from some marks, in a scene without objects.
+
+    Marks come in their order, when they say or at the latest time given: they may be stamped ahead.
+    """
     preprocessor = PosePreprocessor()
     captured = frames() if skeletons is None else skeletons
     postures = chained.from_iterable(preprocessor.handle(frame) for frame in captured)
     images = (Objects(stamp_ns=frame.stamp_ns, sensor="kinect0", objects=[]) for frame in captured)
-    streams = by_key([*postures, *images, *marks])
-    return answers({key: delayed(messages, [0]) for key, messages in streams.items()})
+    streams = {key: delayed(messages, [0]) for key, messages in by_key([*postures, *images]).items()}
+    come_ns = accumulate((min(m.stamp_ns, at_the_latest_ns) for m in marks), max)
+    return answers(streams | {"marks": list(zip(come_ns, marks, strict=True))})
 
 
 def reasons(messages: list[Message]) -> list[tuple[str, str | None]]:
@@ -50,12 +60,12 @@ REJECTED: dict[str, tuple[tuple[Segment, ...], str]] = {
     "end without start": ((mark("end", 9),), "end without start"),
     "start never ended": ((mark("start", 2),), NO_END),
     "start never ended, of an agent": ((mark("start", 2, agent=1),), NO_END),
-    "start in a far future": ((mark("start", 2**40),), NO_END),
+    "start in a far future": ((mark("start", FAR),), NO_END),
     "longer than a minute": ((mark("start", 0), mark("end", 61 * 30)), NO_END),
     "end before start": ((mark("start", 12), mark("end", 3)), "end before start"),
     "nobody there": ((mark("start", NOBODY_FROM + 1), mark("end", NOBODY_TO - 2)), "no person"),
     "somebody else there": ((mark("start", 2, agent=7), mark("end", 12, agent=7)), "no person"),
-    "before anything was seen": ((mark("start", 2**40), mark("end", 2**40 + 30)), "no person"),
+    "before anything was seen": ((mark("start", FAR), mark("end", FAR + 30)), "no person"),
     "no frame": ((mark("start", 4.3), mark("end", 4.6)), "no person"),
     "no frame, of an agent": ((mark("start", 4.3, agent=1), mark("end", 4.6)), "no person"),
     "one frame": ((mark("start", 4), mark("end", 4)), "too few frames: 1, at least 3 are needed"),
@@ -83,8 +93,10 @@ def test_a_segment_is_recognised_where_there_are_three_frames() -> None:
 
 
 def test_a_person_whose_joints_are_never_usable() -> None:
-    lost = [skeleton(i * FRAME_NS, frame, seq=i) for i, frame in enumerate([reaches(1)[0].agents[0].joints] * 20)]
-    assert reasons(told(mark("start", 3), mark("end", 12), skeletons=lost)) == [("s", "no person")]
+    frozen = [skeleton(i * FRAME_NS, STANDING, seq=i) for i in range(20)]
+    assert reasons(told(mark("start", 3), mark("end", 12), skeletons=frozen)) == [("s", "no person")]
+    of_agent = mark("start", 3, agent=1), mark("end", 12)
+    assert reasons(told(*of_agent, skeletons=frozen)) == [("s", "no usable frame")]
 
 
 @pytest.mark.parametrize(
@@ -105,7 +117,17 @@ def test_a_name_used_again_is_answered_again_and_says_so() -> None:
     assert sorted(reasons(told(*marks)), key=str) == [("s", "segment_id reused"), ("s", None)]
 
 
-def test_ends_that_come_when_nothing_can_be_waited_for_any_more_are_not_answered_again() -> None:
-    start, end = mark("start", 2), mark("end", 66 * 30)
-    later = [frame.model_copy(update={"stamp_ns": frame.stamp_ns + 64 * SECOND_NS}) for frame in frames()]
-    assert reasons(told(start, end, skeletons=[*frames(), *later])) == [("s", NO_END)]
+def slow_minute() -> list[Skeleton]:
+    """More than a minute of a person, at three frames per second."""
+    return [frame.model_copy(update={"stamp_ns": i * SECOND_NS // 3}) for i, frame in enumerate(reaches(200))]
+
+
+def test_an_end_that_comes_when_the_segment_was_given_up_is_not_answered_again() -> None:
+    marks = mark("start", 2), mark("end", 65 * 30)
+    assert reasons(told(*marks, skeletons=slow_minute(), at_the_latest_ns=70 * SECOND_NS)) == [("s", NO_END)]
+
+
+@pytest.mark.parametrize("agent", [None, 1])
+def test_a_start_from_the_future_is_given_up_though_frames_go_on(agent: int | None) -> None:
+    messages = told(mark("start", FAR, agent=agent), skeletons=slow_minute(), at_the_latest_ns=0)
+    assert reasons(messages) == [("s", NO_END)]

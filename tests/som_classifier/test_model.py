@@ -63,12 +63,12 @@ def test_the_nearest_way_is_recognised() -> None:
     assert down.trace.tolist() == [[0, 0], [1, 0], [2, 0]]
 
 
-def test_confidence_is_the_winners_cosine_by_hand() -> None:
+def test_confidence_is_the_winners_share_of_the_cosines_by_hand() -> None:
     """The other way is 2² + 2² = 8 away, so y = (1, e⁻²) and the cosines are those of y with the axes."""
     answer = two_way_model().recognise(*walk(0, 3, 6))
     norm = np.hypot(1.0, np.exp(-2.0))
     assert answer.activations == pytest.approx({"pull": 1.0 / norm, "push": np.exp(-2.0) / norm})
-    assert answer.confidence == answer.activations["pull"]
+    assert answer.confidence == pytest.approx(1.0 / (1.0 + np.exp(-2.0)))
 
 
 def test_a_negative_cosine_is_no_confidence() -> None:
