@@ -3,7 +3,7 @@
 import msgpack
 
 from actum import codec, keys
-from actum.messages import Action, Message
+from actum.messages import Action, Message, Posture
 from actum.node import Node, Numbering, Tick
 
 
@@ -14,6 +14,11 @@ def packed(message: Message) -> bytes:
 
 def without_seq(messages: list[Message]) -> list[bytes]:
     return [packed(message.model_copy(update={"seq": None})) for message in messages]
+
+
+def lasting(messages: list[Message]) -> list[bytes]:
+    """What of messages does not hang on how long their stream has gone on: motion is low-passed."""
+    return without_seq([m.model_copy(update={"motion": None}) if isinstance(m, Posture) else m for m in messages])
 
 
 class Wire:

@@ -37,9 +37,8 @@ def write_examples(output: Path, repetitions: int, actor: int, seed: int) -> Non
 
 def scene() -> None:
     """Put the start and end marks of the simulated scene, as an ordinary client."""
-    stop = stop_on_signals()
     with connect(wait_s=float("inf")) as client:
-        mark_truth(client, stop)
+        mark_truth(client, stop_on_signals())
 
 
 def mark_truth(client: Client, stop: threading.Event) -> None:

@@ -89,7 +89,7 @@ def _check_encoding(encoding: str, expected: type[Message]) -> None:
 
 def _unpack(key: str, payload: bytes) -> dict[str, Any]:
     try:
-        fields = _Unpacking().unpack(payload)
+        fields = msgpack.unpackb(payload) if len(payload) <= keys.MEGABYTE else _Unpacking().unpack(payload)
     except DEPTH_LIMIT_ERRORS as error:
         raise DecodeError("not_msgpack", f"{key}: {type(error).__name__} {error}") from None
     if not isinstance(fields, dict):
@@ -98,7 +98,10 @@ def _unpack(key: str, payload: bytes) -> dict[str, Any]:
 
 
 class _Unpacking:
-    """Unpacks one payload, and stops where it grows out of all proportion."""
+    """Unpacks one large payload, and stops where it grows out of all proportion.
+
+    A byte can become a list of 56; only images are large, and their bulk is one value.
+    """
 
     def __init__(self) -> None:
         self._left = MOST_VALUES

@@ -3,9 +3,6 @@
 The egocentric frame is right-handed: x to the actor's left, y up along the trunk, z forward.
 """
 
-from collections.abc import Mapping
-from types import MappingProxyType
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -38,6 +35,18 @@ _PARENTS = np.array([parent for parent, _, _ in BONES])
 _CHILDREN = np.array([child for _, child, _ in BONES])
 _LENGTHS_M = np.array([length for _, _, length in BONES])
 _SMALLEST_M = 1e-3
+
+
+def _walk() -> Array:
+    """Tell by ones which bones lead from the torso to each joint: (15, 14)."""
+    walk = np.zeros((len(INDEX), len(BONES)))
+    for bone, (parent, child, _) in enumerate(BONES):
+        walk[child] = walk[parent]
+        walk[child, bone] = 1.0
+    return walk
+
+
+_WALK = _walk()
 
 
 class DegenerateError(ValueError):
@@ -102,17 +111,8 @@ def scaled(joints: Array) -> Array:
     lengths = np.sqrt(np.einsum("ij,ij->i", bones, bones))
     if lengths.min() < _SMALLEST_M:
         raise DegenerateError("two joined joints coincide")
-    bones *= (_LENGTHS_M / lengths)[:, None]
-    result = np.empty_like(joints)
-    result[INDEX["torso"]] = joints[INDEX["torso"]]
-    for parent, child, bone in zip(_PARENTS, _CHILDREN, bones, strict=True):
-        result[child] = result[parent] + bone
+    result: Array = joints[INDEX["torso"]] + _WALK @ (bones * (_LENGTHS_M / lengths)[:, None])
     return result
-
-
-def standard_lengths() -> Mapping[tuple[int, int], float]:
-    """List the standard bone lengths (m) by parent and child joint."""
-    return MappingProxyType({(parent, child): length for parent, child, length in BONES})
 
 
 def _unit(vector: Array, problem: str) -> Array:

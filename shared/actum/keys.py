@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 from actum import messages as m
@@ -10,6 +11,7 @@ BASE = "actum"
 CHUNK = re.compile(r"[a-z0-9_-]+")
 
 MEGABYTE = 1_000_000
+CACHED_KEYS = 1024
 
 
 class InvalidKeyError(ValueError):
@@ -82,6 +84,7 @@ def chunk(text: str) -> str:
     return text
 
 
+@lru_cache(CACHED_KEYS)
 def key(topic: Topic, sensor: str, name: str | int | None = None) -> str:
     """Build the concrete key of a topic, e.g. `actum/kinect0/posture/1`."""
     if ("{}" in topic.leaf) != (name is not None):
@@ -105,6 +108,7 @@ def alive(sensor: str, service: str, instance: str) -> str:
     return f"{BASE}/{chunk(sensor)}/alive/{chunk(service)}/{chunk(instance)}"
 
 
+@lru_cache(CACHED_KEYS)
 def parse(text: str) -> Address:
     """Take a concrete key apart.
 

@@ -8,7 +8,7 @@ from actum.messages import Action, Message, Segment
 from actum.node import SECOND_NS
 from node_cases import CASES, NOON_NS, SCENE, Case, every_node, later
 from people import FRAME_NS
-from wire import Wire, without_seq
+from wire import Wire, lasting, without_seq
 
 FAR_NS = 62 * SECOND_NS
 """Beyond this a stamp belongs to no segment that may still be open."""
@@ -59,7 +59,7 @@ def test_after_stamps_far_ahead_each_stream_goes_on_with_its_fourth_message(
 ) -> None:
     def answers(wire: Wire) -> list[bytes]:
         wire.send(*case.warm_up(NOON_NS, "task"))
-        return without_seq([m for m in wire.send(*case.task(NOON_NS, "task")) if case.wanted(m, "task")])
+        return lasting([m for m in wire.send(*case.task(NOON_NS, "task")) if case.wanted(m, "task")])
 
     wire = Wire(case.build())
     before = case.messages(NOON_NS - 10 * SECOND_NS, "before")

@@ -7,9 +7,11 @@ import pytest
 
 from actum.messages import Action, Event, Message, Objects, Segment, Skeleton
 from actum.node import SECOND_NS
-from chain import answers, by_key, delayed
+from chain import answers, by_key, delayed, replayed
 from people import FRAME_NS, STANDING, reaches, skeleton
 from pose_preprocessor.node import PosePreprocessor
+from recognisers import tiny_model
+from som_classifier.node import SomClassifier
 
 FRAMES = 60
 NOBODY_FROM, NOBODY_TO = 20, 40
@@ -108,8 +110,9 @@ def test_a_person_whose_joints_are_never_usable() -> None:
         (mark("start", 1), mark("end", 15), mark("end", 15)),
     ],
 )
-def test_a_mark_put_twice_is_answered_once(marks: tuple[Segment, ...]) -> None:
-    assert reasons(told(*marks)) == [("s", None)]
+@pytest.mark.parametrize("at_the_latest_ns", [0, 3 * SECOND_NS], ids=["ahead of the frames", "in time"])
+def test_a_mark_put_twice_is_answered_once(marks: tuple[Segment, ...], at_the_latest_ns: int) -> None:
+    assert reasons(told(*marks, at_the_latest_ns=at_the_latest_ns)) == [("s", None)]
 
 
 def test_a_name_used_again_is_answered_again_and_says_so() -> None:
@@ -128,6 +131,10 @@ def test_an_end_that_comes_when_the_segment_was_given_up_is_not_answered_again()
 
 
 @pytest.mark.parametrize("agent", [None, 1])
-def test_a_start_from_the_future_is_given_up_though_frames_go_on(agent: int | None) -> None:
-    messages = told(mark("start", FAR, agent=agent), skeletons=slow_minute(), at_the_latest_ns=0)
-    assert reasons(messages) == [("s", NO_END)]
+def test_a_start_from_the_future_is_given_up_while_frames_go_on(agent: int | None) -> None:
+    preprocessor = PosePreprocessor()
+    frames = [(posture.stamp_ns, posture) for frame in slow_minute() for posture in preprocessor.handle(frame)]
+    put = replayed(SomClassifier(tiny_model()), [(0, mark("start", FAR, agent=agent)), *frames])
+    ((given_up_ns, action),) = put
+    assert action.reason == NO_END
+    assert 62 * SECOND_NS < given_up_ns < frames[-1][0]

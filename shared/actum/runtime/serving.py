@@ -1,5 +1,6 @@
 """The life of a service: connect, subscribe, step, report, and leave cleanly."""
 
+import _thread
 import logging
 import os
 import signal
@@ -43,10 +44,13 @@ def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
 
 
 def stop_on_signals() -> threading.Event:
-    """Return an event that SIGTERM and SIGINT set."""
+    """Return an event that SIGTERM and SIGINT set.
+
+    A thread of its own sets it: a handler runs in the main thread, perhaps while that holds the event's lock.
+    """
     stop = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, lambda *_: stop.set())
+        signal.signal(number, lambda *_: _thread.start_new_thread(stop.set, ()))
     return stop
 
 
