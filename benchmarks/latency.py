@@ -15,6 +15,7 @@ import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from itertools import pairwise
 from pathlib import Path
 
 import msgpack
@@ -127,7 +128,7 @@ def main() -> None:
     console.print(latency_table(watch.took_ms))
     rate = frames_per_second(stream(), PosePreprocessor(), SomClassifier(model))
     console.print(
-        f"preprocessor + classifier on one core, codec included, a partial estimate in every frame of a segment:"
+        "preprocessor + classifier on one core, codec included, a partial estimate in every frame of a segment:"
     )
     console.print(f"{rate:,.0f} frames/s (aim: 1,500)")
 
@@ -184,7 +185,7 @@ def live(folder: Path, sizes: Mapping[str, int]) -> Stopwatch:
 def bare_chain(sizes: Mapping[str, int]) -> Iterator[None]:
     """Run a bare relay for each hop."""
     chain = list(BARE_SIZES)
-    hops = [(a, b) for a, b in zip(chain, chain[1:], strict=False) if a.rpartition("/")[0] == b.rpartition("/")[0]]
+    hops = [(a, b) for a, b in pairwise(chain) if a.rpartition("/")[0] == b.rpartition("/")[0]]
     relay = Path(__file__).with_name("bare_relay.py")
     running = [subprocess.Popen([sys.executable, str(relay), a, b, str(sizes[BARE_SIZES[b]])]) for a, b in hops]
     try:

@@ -105,7 +105,7 @@ class Posture(Message):
     joints: Joints | None
     ego_from_camera: Transform | None
     motion: Annotated[list[FiniteFloat], Field(min_length=5, max_length=5)] | None
-    frame: str = "egocentric"
+    frame: Name = "egocentric"
     agents: Annotated[list[AgentId], Field(max_length=MOST_AGENTS)] = []
     previous_ns: Stamp | None = None
     missed: Seq = 0

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from actum.messages import Action, Message, Segment
-from actum.node import SECOND_NS
+from actum.messages import Action, Message, Posture, Segment
+from actum.node import SECOND_NS, Tick
 from node_cases import CASES, NOON_NS, SCENE, Case, every_node, later
 from people import FRAME_NS
 from wire import Wire, lasting, without_seq
@@ -79,18 +79,29 @@ def test_stamps_at_the_ends_of_their_range_are_as_good_as_any(case: Case, first_
     assert answers(first_ns) == answers(NOON_NS)
 
 
-def test_an_absurd_stamp_on_one_agents_key_leaves_the_others_alone() -> None:
-    """The classifier and fusion hear all agents, and one of them may be a stranger's."""
-    for case in CASES[1], CASES[3]:
-        wire = Wire(case.build())
-        strange = SCENE.posture(0.0, agent=7, stamp_ns=2**62 - 1)
-        outputs = wire.send(strange, *case.messages())
-        assert without_seq(outputs) == without_seq(Wire(case.build()).send(*case.messages()))
+CLASSIFIER, FUSION = CASES[1], CASES[3]
 
 
-def test_an_action_far_ahead_does_not_make_everything_after_it_late() -> None:
-    case = CASES[3]
+@pytest.mark.parametrize("case", [CLASSIFIER, FUSION], ids=repr)
+def test_absurd_stamps_on_strangers_keys_leave_the_others_alone(case: Case) -> None:
+    """Two people are heard between each other, after a crowd whose clock is wrong."""
+    crowd = [SCENE.posture(0.0, agent=agent, stamp_ns=2**62 - 1) for agent in range(100, 120)]
+    messages: list[Message] = []
+    for message in case.messages():
+        second = [message.model_copy(update={"agent": 2})] if isinstance(message, Posture) else []
+        messages += [*second, message]
+    outputs = [m for m in Wire(case.build()).send(*crowd, *messages) if case.wanted(m, "task")]
+    assert without_seq(outputs) == without_seq(Wire(case.build()).send(*messages))
+    assert all(output.valid for output in outputs)
+
+
+@pytest.mark.parametrize("case", [CLASSIFIER, FUSION], ids=repr)
+def test_a_segment_far_ahead_does_not_make_everything_after_it_late(case: Case) -> None:
     wire = Wire(case.build())
-    ahead = [m for m in case.messages(2**61, "ahead") if isinstance(m, Action)]
-    wire.send(*ahead, *case.messages())
-    assert not wire.node.tally.rejects
+    wire.send(*case.warm_up(NOON_NS - SECOND_NS, "task"))
+    ahead = [m for m in case.messages(2**61, "ahead") if isinstance(m, Action | Segment)]
+    wire.send(*(m.model_copy(update={"agent": 1}) for m in ahead))
+    answered = [output for i in range(30) for output in wire.handle(Tick(i * SECOND_NS // 10))]
+    assert [output.segment_id for output in answered] == ["ahead"]
+    wire.send(*case.messages())
+    assert set(wire.node.tally.rejects) <= {"rejected_segment"}

@@ -8,6 +8,7 @@ from pathlib import Path
 import zenoh
 
 from actum.runtime.serving import wait_for
+from actum.runtime.session import TRANSPORT
 
 log = logging.getLogger("actum")
 
@@ -40,7 +41,7 @@ def _default_config() -> zenoh.Config:
         "mode": "router",
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
-        "transport/shared_memory/enabled": False,
+        **TRANSPORT,
         "adminspace/enabled": True,
     }.items():
         config.insert_json5(path, json.dumps(value))
