@@ -4,6 +4,11 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("ci", derandomize=True)
+if os.environ.get("CI"):
+    settings.load_profile("ci")
 
 NEEDS_DATA = "recordings not found: set ACTUM_DATA to the folder that holds msr_action3d/ and utkinect/"
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from actum import keys
-from actum.messages import Message
+from actum.messages import Message, Posture
 from actum.node import SECOND_NS
 
 PAUSE_NS = SECOND_NS
@@ -27,9 +27,16 @@ def joined(recordings: Iterable[Iterable[Message]], start_ns: int | None = None)
             if shift_ns is None:
                 shift_ns = 0 if begin_ns is None else begin_ns - message.stamp_ns
             newest_ns = max(newest_ns, message.stamp_ns + shift_ns)
-            yield message.model_copy(update={"stamp_ns": message.stamp_ns + shift_ns, "seq": numbers.shifted(message)})
+            yield message.model_copy(update=_stamps(message, shift_ns) | {"seq": numbers.shifted(message)})
         if shift_ns is not None:
             begin_ns = newest_ns + PAUSE_NS
+
+
+def _stamps(message: Message, shift_ns: int) -> dict[str, int | None]:
+    """Shift a message's stamp, and the one of the frame before it where it names that."""
+    if not isinstance(message, Posture) or message.previous_ns is None:
+        return {"stamp_ns": message.stamp_ns + shift_ns}
+    return {"stamp_ns": message.stamp_ns + shift_ns, "previous_ns": max(message.previous_ns + shift_ns, 0)}
 
 
 class _Numbers:

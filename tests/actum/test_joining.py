@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from actum.joining import PAUSE_NS, joined
-from actum.messages import Objects, Skeleton
+from actum.messages import Objects, Posture, Skeleton
 
 stamp_lists = st.lists(st.integers(0, 2**61), min_size=1, max_size=6, unique=True).map(sorted)
 
@@ -56,3 +56,15 @@ def test_a_source_that_started_anew_inside_a_recording_counts_from_the_same_base
 
 def test_a_message_without_a_number_stays_without() -> None:
     assert seqs([None, 1], [None]) == [None, 1, None]
+
+
+def test_a_postures_frame_before_moves_with_it() -> None:
+    nobody = {"sensor": "kinect0", "agent": 0, "valid": False, "reason": "no person", "joints_m": None, "joints": None}
+    postures = [
+        Posture.model_validate(
+            nobody | {"stamp_ns": stamp_ns, "previous_ns": previous_ns, "ego_from_camera": None, "motion": None}
+        )
+        for stamp_ns, previous_ns in ((100, None), (130, 100), (160, 130))
+    ]
+    assert [m.previous_ns for m in joined([postures], 1000)] == [None, 1000, 1030]
+    assert [m.previous_ns for m in joined([postures[1:]], 0)] == [0, 0]

@@ -129,3 +129,16 @@ def test_lost_frames_are_handed_on() -> None:
     missed = {posture.stamp_ns // FRAME_NS: posture.missed for posture in postures(*frames)}
     assert missed[5] == 2
     assert sum(missed.values()) == 2
+
+
+@given(st.floats(-np.pi, np.pi), st.floats(0.7, 1.3), st.floats(-1.5, 1.5), st.floats(0.5, 2.0))
+def test_position_heading_and_size_of_the_actor_leave_the_scaled_joints_alone(
+    heading: float, size: float, right_m: float, away_m: float
+) -> None:
+    c, s = np.cos(heading), np.sin(heading)
+    middle = STANDING.mean(axis=0)
+    turned = (reaching(0.6) - middle) @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]).T
+    elsewhere = middle + size * turned + [right_m, 0, away_m]
+    here, there = postures(skeleton(0, reaching(0.6)), skeleton(1, elsewhere))
+    np.testing.assert_allclose(np.array(there.joints), np.array(here.joints), atol=1e-9)
+    np.testing.assert_allclose(np.array(there.joints_m), size * np.array(here.joints_m), atol=1e-9)
