@@ -29,17 +29,22 @@ def measured(joints: list[Joint], reach_limit_m: float, bone_limit_m: float) -> 
     if missing:
         raise BadFrameError("missing_joint", f"no {', '.join(missing)}")
     array = np.array(joints, dtype=np.float64)
-    if not np.isfinite(array).all():
-        raise BadFrameError("not_finite", f"{_first(~np.isfinite(array).all(axis=1))} is not a finite position")
-    far = (np.abs(array) > reach_limit_m).any(axis=1)
-    if far.any():
-        raise BadFrameError("absurd_joint", f"{_first(far)} is more than {reach_limit_m:g} m away")
+    if not (np.abs(array) <= reach_limit_m).all():
+        raise _beyond(array, reach_limit_m)
     bones = array[_CHILDREN] - array[_PARENTS]
-    long = np.einsum("ij,ij->i", bones, bones) > bone_limit_m**2
-    if long.any():
-        child = int(_CHILDREN[int(np.argmax(long))])
-        raise BadFrameError("absurd_bone", f"the bone to {JOINTS[child]} is longer than {bone_limit_m:g} m")
+    lengths2 = np.einsum("ij,ij->i", bones, bones)
+    if lengths2.max() > bone_limit_m**2:
+        child = JOINTS[int(_CHILDREN[int(np.argmax(lengths2))])]
+        raise BadFrameError("absurd_bone", f"the bone to {child} is longer than {bone_limit_m:g} m")
     return array
+
+
+def _beyond(array: NDArray[np.float64], reach_limit_m: float) -> BadFrameError:
+    finite = np.isfinite(array).all(axis=1)
+    if not finite.all():
+        return BadFrameError("not_finite", f"{_first(~finite)} is not a finite position")
+    far = (np.abs(array) > reach_limit_m).any(axis=1)
+    return BadFrameError("absurd_joint", f"{_first(far)} is more than {reach_limit_m:g} m away")
 
 
 def _first(bad: NDArray[np.bool_] | np.bool_) -> str:

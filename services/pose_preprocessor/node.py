@@ -88,19 +88,18 @@ class PosePreprocessor:
         previous = self._previous.get(agent.agent)
         if previous is not None and np.array_equal(previous, joints):
             raise BadFrameError("repeated_joints", "the same joints as in the frame before")
-        ego_from_camera = geometry.ego_from_camera(joints)
-        ego_joints = geometry.apply(ego_from_camera, joints)
-        standard = geometry.scaled(joints)
-        standard_ego = geometry.apply(geometry.ego_from_camera(standard), standard)
+        both = np.stack([joints, geometry.scaled(joints)])
+        egos = geometry.ego_from_camera(both)
+        metric_ego, scaled_ego = geometry.apply(egos, both)
         self._previous[agent.agent] = joints
         motion = self._motion.setdefault(agent.agent, MotionFilter()).step(frame.stamp_ns, joints)
         return Posture(
             stamp_ns=frame.stamp_ns,
             sensor=frame.sensor,
             agent=agent.agent,
-            joints_m=_listed(ego_joints),
-            joints=_listed(standard_ego),
-            ego_from_camera=geometry.flat(ego_from_camera),
+            joints_m=_listed(metric_ego),
+            joints=_listed(scaled_ego),
+            ego_from_camera=geometry.flat(egos[0]),
             motion=motion,
             agents=present,
             previous_ns=self._previous_ns,

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, TypeVar
 
 import msgpack
@@ -15,6 +16,9 @@ ENCODING = re.compile(r"application/msgpack;(?P<schema>[a-z0-9_.]+)/(?P<version>
 DEPTH_LIMIT_ERRORS = (ValueError, TypeError, RecursionError, msgpack.exceptions.UnpackException)
 MOST_VALUES = 100_000
 """In the maps and lists of one message: a value takes one byte on the wire, and up to a hundred once unpacked."""
+
+
+KNOWN_ENCODINGS = 256
 
 
 class DecodeError(ValueError):
@@ -74,6 +78,7 @@ def sequence_of(attachment: bytes) -> int | None:
     return seq if isinstance(seq, int) else None
 
 
+@lru_cache(KNOWN_ENCODINGS)
 def _check_encoding(encoding: str, expected: type[Message]) -> None:
     """Accept the key's own schema up to our version; any other encoding is a plain client's: version 1."""
     match = ENCODING.fullmatch(encoding)

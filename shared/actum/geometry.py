@@ -35,6 +35,7 @@ _PARENTS = np.array([parent for parent, _, _ in BONES])
 _CHILDREN = np.array([child for _, child, _ in BONES])
 _LENGTHS_M = np.array([length for _, _, length in BONES])
 _SMALLEST_M = 1e-3
+_NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 
 
 def _walk() -> Array:
@@ -62,9 +63,10 @@ def invert(b_from_a: Array) -> Array:
 
 
 def apply(b_from_a: Array, points_a: Array) -> Array:
-    """Map points of shape (…, 3) from frame a to frame b."""
-    mapped: Array = points_a @ b_from_a[:3, :3].T + b_from_a[:3, 3]
-    return mapped
+    """Map points of shape (…, n, 3), or one of shape (3,), from frame a to frame b; transforms are (…, 4, 4)."""
+    mapped: Array = points_a @ np.swapaxes(b_from_a[..., :3, :3], -1, -2)
+    offset = b_from_a[..., :3, 3]
+    return mapped + (offset if mapped.ndim == 1 else offset[..., None, :])
 
 
 def flat(transform: Array) -> list[float]:
@@ -85,19 +87,19 @@ def ego_from_camera(joints: Array) -> Array:
     from the origin to the torso, and along the normal of their plane.
 
     Args:
-        joints: (15, 3) in any right-handed frame, here called camera.
+        joints: (…, 15, 3) in any right-handed frame, here called camera; the result is (…, 4, 4).
 
     Raises:
         DegenerateError: the hips coincide, or the torso lies on their line.
     """
-    right_hip, left_hip, torso = (joints[INDEX[name]] for name in ("right_hip", "left_hip", "torso"))
+    right_hip, left_hip, torso = (joints[..., INDEX[name], :] for name in ("right_hip", "left_hip", "torso"))
     left = _unit(left_hip - right_hip, "the hips coincide")
-    origin = right_hip + ((torso - right_hip) @ left) * left
+    origin = right_hip + ((torso - right_hip) * left).sum(axis=-1, keepdims=True) * left
     up = _unit(torso - origin, "the torso lies on the line through the hips")
-    rotation = np.stack([left, up, _cross(left, up)])
-    ego = np.eye(4)
-    ego[:3, :3] = rotation
-    ego[:3, 3] = -rotation @ origin
+    ego = np.zeros((*joints.shape[:-2], 4, 4))
+    ego[..., 0, :3], ego[..., 1, :3], ego[..., 2, :3] = left, up, _cross(left, up)
+    ego[..., :3, 3] = -(ego[..., :3, :3] @ origin[..., None])[..., 0]
+    ego[..., 3, 3] = 1.0
     return ego
 
 
@@ -115,12 +117,13 @@ def scaled(joints: Array) -> Array:
     return result
 
 
-def _unit(vector: Array, problem: str) -> Array:
-    length = float(np.sqrt(vector @ vector))
-    if length < _SMALLEST_M:
+def _unit(vectors: Array, problem: str) -> Array:
+    lengths: Array = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True))
+    if lengths.min() < _SMALLEST_M:
         raise DegenerateError(problem)
-    return vector / length
+    return vectors / lengths
 
 
 def _cross(a: Array, b: Array) -> Array:
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    product: Array = a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT]
+    return product
