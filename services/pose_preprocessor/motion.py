@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 
 GAP_NS = SECOND_NS // 2
 TIME_CONSTANT_S = 0.3
-_PART_JOINTS = np.array(list(PARTS.values()))
+_PART_MEANS = np.array([[(joint in part) / len(part) for joint in range(len(INDEX))] for part in PARTS.values()])
 _TORSO = INDEX["torso"]
 
 
@@ -46,5 +46,5 @@ class MotionFilter:
         steps = share * (relative - self._smooth)
         self._smooth = self._smooth + steps
         lengths = np.sqrt(np.einsum("ij,ij->i", steps, steps))
-        motion: list[float] = lengths[_PART_JOINTS].mean(axis=1).tolist()
+        motion: list[float] = (_PART_MEANS @ lengths).tolist()
         return motion

@@ -24,7 +24,7 @@ class PosePreprocessor:
         self.tally = Tally()
         self._settings = settings or Settings()
         self._order = StampGuard()
-        self._previous: dict[int, NDArray[np.float64]] = {}
+        self._previous: dict[int, list[Joint]] = {}
         self._motion: dict[int, MotionFilter] = {}
         self._previous_ns: int | None = None
         self._last_seq: int | None = None
@@ -86,12 +86,12 @@ class PosePreprocessor:
     def _valid(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
         joints = measured(agent.joints, self._settings.reach_limit_m, self._settings.bone_limit_m)
         previous = self._previous.get(agent.agent)
-        if previous is not None and np.array_equal(previous, joints):
+        if agent.joints == previous:
             raise BadFrameError("repeated_joints", "the same joints as in the frame before")
         both = np.stack([joints, geometry.scaled(joints)])
         egos = geometry.ego_from_camera(both)
         metric_ego, scaled_ego = geometry.apply(egos, both)
-        self._previous[agent.agent] = joints
+        self._previous[agent.agent] = agent.joints
         motion = self._motion.setdefault(agent.agent, MotionFilter()).step(frame.stamp_ns, joints)
         return Posture(
             stamp_ns=frame.stamp_ns,

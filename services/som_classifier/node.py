@@ -115,8 +115,8 @@ class SomClassifier:
         seen = [(frame, frame.motion) for frame in frames if frame.motion is not None]
         if model is None or len(seen) < model.min_frames:
             return None
-        cells = np.stack([_cells(model, frame) for frame, _ in seen])
-        return model.recognise(cells, np.stack([motion for _, motion in seen]))
+        cells = np.array([_cells(model, frame) for frame, _ in seen])
+        return model.recognise(cells, np.array([motion for _, motion in seen]))
 
     def _answer(self, closed: Closed) -> Action:
         recognition = None if closed.reason else self._recognise(closed.frames)

@@ -1,6 +1,7 @@
 """The life of a service: connect, subscribe, step, report, and leave cleanly."""
 
 import _thread
+import gc
 import logging
 import os
 import signal
@@ -73,6 +74,7 @@ def _live(service: "Service", settings: ServiceSettings, name: str) -> None:
     session = open_session(settings, stop)
     if session is None:
         return
+    gc.freeze()  # what is there now stays; collections need not walk through it again
     try:
         service.serve(session, stop)
     finally:
