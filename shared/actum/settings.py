@@ -33,10 +33,10 @@ class ServiceSettings(BaseSettings):
 
     connect: str = Field(DEFAULT_ENDPOINT, description="the router's endpoint")
     sensor: str = Field(
-        "kinect0", pattern=CHUNK.pattern, description="the viewpoint: the chunk after actum/ in every key"
+        "kinect0", pattern=f"^{CHUNK.pattern}$", description="the viewpoint: the chunk after actum/ in every key"
     )
     instance: str = Field(
-        default_factory=default_instance, pattern=CHUNK.pattern, description="this process's name among its like"
+        default_factory=default_instance, pattern=f"^{CHUNK.pattern}$", description="this process's name among its like"
     )
     zenoh_config: Path | None = Field(
         None, description="a JSON5 file laid under the session's configuration (TLS, users)"

@@ -108,3 +108,19 @@ def test_tokens_go_with_their_process(running: System) -> None:
         running.wait_for_services(client, "action_fusion")
         service.process.kill()
         wait_until(lambda: client.alive() == [], "the token is gone")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["sensor_gateway", "--source", "recording"], "needs --path"),
+        (["sensor_gateway", "--source", "recording", "--path", "/nowhere"], "/nowhere"),
+        (["marker_tracker", "--dictionary", "DICT_NONE"], "dictionary: "),
+        (["pose_preprocessor", "--sensor", "Kinect 0"], "sensor: "),
+    ],
+)
+def test_settings_that_cannot_be_used_end_with_one_line(running: System, arguments: list[str], complaint: str) -> None:
+    service = running.start(*arguments)
+    assert service.process.wait(timeout=30) == 2
+    assert complaint in service.said()
+    assert "Traceback" not in service.said()

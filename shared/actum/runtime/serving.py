@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 import zenoh
+from pydantic import ValidationError
 
 from actum.codec import DecodeError, decode, encode
 from actum.health import write_health
@@ -26,22 +27,35 @@ from actum.settings import ServiceSettings
 
 log = logging.getLogger("actum")
 S = TypeVar("S", bound=ServiceSettings)
+N = TypeVar("N")
+UNUSABLE = 2
 REPORT_S = 1.0
 SLICE_S = 0.1
 
 
 def run(settings_type: type[S], build: Callable[[S], Node]) -> None:
     """Serve a node until SIGTERM or SIGINT; the process's whole life."""
-    settings = settings_type(_cli_parse_args=True)
-    node = build(settings)
+    settings, node = _configured(settings_type, build)
     _live(NodeService(node, settings), settings, node.name)
 
 
 def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
     """Serve a source until SIGTERM or SIGINT; the process's whole life."""
-    settings = settings_type(_cli_parse_args=True)
-    source = build(settings)
+    settings, source = _configured(settings_type, build)
     _live(SourceService(source, settings), settings, source.name)
+
+
+def _configured(settings_type: type[S], build: Callable[[S], N]) -> tuple[S, N]:
+    """Read the settings and build what they describe; what cannot be used ends the process with a line, code 2."""
+    try:
+        settings = settings_type(_cli_parse_args=True)
+        return settings, build(settings)
+    except ValidationError as error:
+        problems = [f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors(include_url=False)]
+        print(f"settings: {'; '.join(problems)} (see --help)", file=sys.stderr)
+    except ValueError as error:
+        print(str(error), file=sys.stderr)
+    sys.exit(UNUSABLE)
 
 
 def stop_on_signals() -> threading.Event:
