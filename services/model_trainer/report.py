@@ -1,5 +1,6 @@
 """An evaluation as tables for the terminal."""
 
+from rich.box import SIMPLE
 from rich.console import Group
 from rich.table import Table
 from rich.text import Text
@@ -33,11 +34,13 @@ def per_class(evaluation: Evaluation) -> Table:
 
 
 def confusion(evaluation: Evaluation) -> Table:
-    """Tabulate actions done (rows) against answered (columns, by the row's number)."""
-    table = Table("", "done", title="confusion: rows done, columns answered")
+    """Tabulate actions done (rows) against answered (columns, by the row's number; none: rejected)."""
+    table = Table(title="confusion: rows done, columns answered", box=SIMPLE, padding=(0, 1, 0, 0))
+    table.add_column("", justify="right")
+    table.add_column("action", no_wrap=True)
     for number in range(1, len(evaluation.labels) + 1):
         table.add_column(str(number), justify="right")
-    table.add_column("rejected", justify="right")
+    table.add_column("none", justify="right", no_wrap=True)
     rows = zip(evaluation.labels, evaluation.confusion, evaluation.per_class.values(), strict=True)
     for number, (label, counts, score) in enumerate(rows, start=1):
         cells = [str(count) if count else "·" for count in counts]
