@@ -1,10 +1,14 @@
 """Each service alone: it waits for the router, serves, and leaves cleanly."""
 
+from collections.abc import Iterator
+
 import msgpack
 import pytest
 
 from actum import codec, keys
 from actum.messages import Posture, Status
+from actum.runtime import Client
+from actum.runtime.outbox import MOST_PUBLISHERS
 from live import System, collect, wait_until
 from people import STANDING, reaches, skeleton
 
@@ -54,40 +58,52 @@ def test_a_service_survives_its_routers_death(running: System) -> None:
     assert preprocessor.process.poll() is None
 
 
-def test_bad_payloads_are_counted_in_status_and_survived(running: System) -> None:
+@pytest.fixture
+def preprocessor_client(running: System) -> Iterator[Client]:
+    """A client of a system that runs a preprocessor."""
     running.start_router()
     running.start("pose_preprocessor")
     with running.client() as client:
         running.wait_for_services(client, "pose_preprocessor")
         assert client.wait_for_subscriber(keys.SKELETON, 10.0)
-        statuses = client.listen(keys.pattern(keys.STATUS, client.sensor))
-        postures = client.listen(keys.pattern(keys.POSTURE, client.sensor))
-        key = keys.key(keys.SKELETON, client.sensor)
-        good = codec.encode(skeleton(1, STANDING))
-        client.put_raw(key, b"\xc1 no msgpack")
-        client.put_raw(key, msgpack.packb([1, 2, 3]))
-        client.put_raw(key, msgpack.packb({"stamp_ns": "soon", "agents": []}))
-        client.put_raw(key, good.payload, "application/msgpack;actum.skeleton/9")
-        client.put_raw(key, bytes(2_000_000))
-        client.put_raw(key, good.payload, good.encoding)
-        assert collect(postures, Posture, bool)[0].stamp_ns == 1
-        expected = {"not_msgpack": 1, "not_a_map": 1, "wrong_fields": 1, "higher_version": 1, "too_large": 1}
-        last = collect(statuses, Status, lambda found: bool(found) and found[-1].rejects == expected)[-1]
-        assert last.last_error is not None
+        yield client
 
 
-def test_numbers_that_are_missing_are_reported_as_drops(running: System) -> None:
-    running.start_router()
-    running.start("pose_preprocessor")
-    with running.client() as client:
-        running.wait_for_services(client, "pose_preprocessor")
-        assert client.wait_for_subscriber(keys.SKELETON, 10.0)
-        statuses = client.listen(keys.pattern(keys.STATUS, client.sensor))
-        for frame in reaches(10):
-            if frame.seq not in (3, 4, 5):
-                client.put(frame)
-        key = keys.key(keys.SKELETON, client.sensor)
-        collect(statuses, Status, lambda found: bool(found) and found[-1].drops == {key: 3})
+def test_bad_payloads_are_counted_in_status_and_survived(preprocessor_client: Client) -> None:
+    client = preprocessor_client
+    statuses = client.listen(keys.pattern(keys.STATUS, client.sensor))
+    postures = client.listen(keys.pattern(keys.POSTURE, client.sensor))
+    key = keys.key(keys.SKELETON, client.sensor)
+    good = codec.encode(skeleton(1, STANDING))
+    client.put_raw(key, b"\xc1 no msgpack")
+    client.put_raw(key, msgpack.packb([1, 2, 3]))
+    client.put_raw(key, msgpack.packb({"stamp_ns": "soon", "agents": []}))
+    client.put_raw(key, good.payload, "application/msgpack;actum.skeleton/9")
+    client.put_raw(key, bytes(2_000_000))
+    client.put_raw(key, good.payload, good.encoding)
+    assert collect(postures, Posture, bool)[0].stamp_ns == 1
+    expected = {"not_msgpack": 1, "not_a_map": 1, "wrong_fields": 1, "higher_version": 1, "too_large": 1}
+    last = collect(statuses, Status, lambda found: bool(found) and found[-1].rejects == expected)[-1]
+    assert last.last_error is not None
+
+
+def test_agents_without_end_are_published_and_publishers_are_not_kept(preprocessor_client: Client) -> None:
+    postures = preprocessor_client.listen(keys.pattern(keys.POSTURE, preprocessor_client.sensor))
+    for agent in range(1, MOST_PUBLISHERS + 50):
+        [one] = skeleton(agent, STANDING).agents
+        frame = skeleton(agent).model_copy(update={"agents": [one.model_copy(update={"agent": agent})]})
+        preprocessor_client.put(frame)
+        assert [p.agent for p in collect(postures, Posture, bool)] == [agent]
+
+
+def test_numbers_that_are_missing_are_reported_as_drops(preprocessor_client: Client) -> None:
+    client = preprocessor_client
+    statuses = client.listen(keys.pattern(keys.STATUS, client.sensor))
+    for frame in reaches(10):
+        if frame.seq not in (3, 4, 5):
+            client.put(frame)
+    key = keys.key(keys.SKELETON, client.sensor)
+    collect(statuses, Status, lambda found: bool(found) and found[-1].drops == {key: 3})
 
 
 def test_two_of_a_kind_have_tokens_of_their_own(running: System) -> None:

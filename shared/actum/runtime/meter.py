@@ -13,6 +13,8 @@ from actum.settings import ServiceSettings
 from actum.skeletons import JOINTS
 
 LATENCIES = 1000
+MOST_KEYS = 256
+"""Keys of agents who left long ago make room for new ones."""
 
 
 class Meter:
@@ -32,7 +34,7 @@ class Meter:
 
     def received(self, key: str, message: Message) -> None:
         """Count a message, and the ones that its number says are missing before it."""
-        self._handled[key] += 1
+        self._count(key)
         if message.seq is not None:
             last = self._last_seq.get(key, message.seq)
             self._drops[key] += max(message.seq - last - 1, 0)
@@ -40,7 +42,14 @@ class Meter:
 
     def put(self, key: str) -> None:
         """Count a message of our own."""
-        self._handled[key] += 1
+        self._count(key)
+
+    def _count(self, key: str) -> None:
+        self._handled[key] = self._handled.pop(key, 0) + 1
+        if len(self._handled) > MOST_KEYS:
+            silent = next(iter(self._handled))
+            for counts in (self._handled, self._reported, self._drops, self._last_seq):
+                counts.pop(silent, None)
 
     def rejected(self, kind: str, detail: str) -> None:
         """Count a payload that is no message."""

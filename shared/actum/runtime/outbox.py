@@ -1,6 +1,7 @@
 """Puts messages on their keys, numbered, with the quality of service that the table of topics gives."""
 
 import threading
+from collections import OrderedDict
 
 import zenoh
 from zenoh import ext
@@ -12,6 +13,9 @@ from actum.node import Numbering
 
 CACHE_DEPTH = 64
 HEARTBEAT_S = 0.5
+MOST_PUBLISHERS = 256
+"""Agents come and go with new numbers; the publisher that has been silent for longest makes room."""
+
 _CONGESTION = {"drop": zenoh.CongestionControl.DROP, "block": zenoh.CongestionControl.BLOCK}
 _PRIORITY = {
     "interactive_high": zenoh.Priority.INTERACTIVE_HIGH,
@@ -23,12 +27,12 @@ Publisher = zenoh.Publisher | ext.AdvancedPublisher
 
 
 class Outbox:
-    """One publisher per key and kind, declared when first needed."""
+    """One publisher per key and kind, declared when first needed, `MOST_PUBLISHERS` at the most."""
 
     def __init__(self, session: zenoh.Session) -> None:
         self._session = session
         self._numbering = Numbering()
-        self._publishers: dict[tuple[str, bool], Publisher] = {}
+        self._publishers: OrderedDict[tuple[str, bool], Publisher] = OrderedDict()
         self._lock = threading.Lock()
 
     def put(self, message: Message) -> None:
@@ -56,6 +60,9 @@ class Outbox:
             topic = keys.parse(key).topic
             declare = self._declare_cached if cached else self._declare_plain
             self._publishers[key, cached] = declare(key, topic)
+            if len(self._publishers) > MOST_PUBLISHERS:
+                self._publishers.popitem(last=False)[1].undeclare()
+        self._publishers.move_to_end((key, cached))
         return self._publishers[key, cached]
 
     def _declare_plain(self, key: str, topic: keys.Topic) -> Publisher:

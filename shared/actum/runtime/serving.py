@@ -8,6 +8,7 @@ import signal
 import sys
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import TypeVar
 
@@ -96,7 +97,7 @@ def _live(service: "Service", settings: ServiceSettings, name: str) -> None:
     sys.exit(1 if service.failed else 0)
 
 
-class Service:
+class Service(ABC):
     """What nodes and sources share: the way out, the report, the token and the description."""
 
     def __init__(self, name: str, tally: Tally, settings: ServiceSettings) -> None:
@@ -120,8 +121,9 @@ class Service:
             queryable.undeclare()
             token.undeclare()
 
+    @abstractmethod
     def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event) -> None:
-        raise NotImplementedError
+        """Do what this kind of service does, until stopped."""
 
     def _healthy(self) -> bool:
         return True
@@ -175,7 +177,8 @@ class NodeService(Service):
             with self._lock:
                 self._meter.received(key, message)
             self._step(message, outbox)
-            self._meter.took((time.perf_counter_ns() - began_ns) / 1e6)
+            with self._lock:
+                self._meter.took((time.perf_counter_ns() - began_ns) / 1e6)
         except Exception:
             log.exception("a bug, met while handling a message on %s", key)
             self.failed = True

@@ -1,0 +1,34 @@
+from actum.node import Tally
+from actum.runtime.meter import MOST_KEYS, Meter
+from actum.settings import ServiceSettings
+from people import STANDING, skeleton
+
+
+def meter() -> Meter:
+    return Meter("pose_preprocessor", Tally(), ServiceSettings())
+
+
+def test_missing_numbers_are_drops_and_falling_ones_a_restart() -> None:
+    watched = meter()
+    for seq in (0, 1, 5, 6, 0, 1):
+        watched.received("actum/kinect0/skeleton", skeleton(seq, STANDING, seq=seq))
+    status = watched.status()
+    assert status.handled == {"actum/kinect0/skeleton": 6}
+    assert status.drops == {"actum/kinect0/skeleton": 3}
+
+
+def test_agents_without_end_do_not_fill_the_status() -> None:
+    watched = meter()
+    for agent in range(3 * MOST_KEYS):
+        watched.received("actum/kinect0/skeleton", skeleton(agent, STANDING, seq=agent))
+        watched.put(f"actum/kinect0/posture/{agent}")
+    status = watched.status()
+    assert len(status.handled) == MOST_KEYS
+    assert status.handled["actum/kinect0/skeleton"] == 3 * MOST_KEYS, "what goes on is kept"
+
+
+def test_latencies_are_reported_as_percentiles() -> None:
+    watched = meter()
+    for milliseconds in range(101):
+        watched.took(float(milliseconds))
+    assert watched.status().latency_ms == {"p50": 50.0, "p99": 99.0}
