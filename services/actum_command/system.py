@@ -16,6 +16,10 @@ from actum_command.context import console, fail, settings
 from actum_command.supervising import Program, Supervisor
 
 CHECK_S = 0.2
+NO_MODEL = (
+    "[yellow]no --model: every action is answered with 'no model'. For the simulated scene: "
+    "actum simulate examples.mcap; actum train examples.mcap -o model.npz; actum up --model model.npz[/yellow]"
+)
 
 
 def router(
@@ -47,6 +51,8 @@ def up(
     if source == "simulator":
         programs.append(processes.scene(here))
     console.print(f"actum is up on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
+    if model is None:
+        console.print(NO_MODEL, soft_wrap=True)
     supervise(programs, stop_on_signals())
 
 
