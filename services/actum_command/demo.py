@@ -1,5 +1,7 @@
 """`actum demo`: the paper's experiment with simulated people, through live processes."""
 
+import signal
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -31,6 +33,7 @@ ACTOR = 0
 TRAINING_SEED, TEST_SEED = 1, 2
 TRAINING_REPETITIONS, TEST_REPETITIONS = 12, 9
 READY_S = 30.0
+TERMINATED = 143
 LONGEST_SAMPLE_S = 4.5
 
 
@@ -40,6 +43,7 @@ def demo(
     """Train on 12 x 5 simulated samples, then recognise unseen ones live, beside the paper's own results."""
     here = settings()
     refuse_taken(here.connect)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))  # the processes it started end with it
     with tempfile.TemporaryDirectory(prefix="actum-demo-") as folder:
         training, test, model = (Path(folder) / name for name in ("training.mcap", "test.mcap", "model.npz"))
         write_examples(test, repetitions, ACTOR, TEST_SEED)

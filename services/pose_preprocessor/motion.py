@@ -37,11 +37,11 @@ class MotionFilter:
             joints: (15, 3), camera frame, metres.
         """
         relative = joints - joints[_TORSO]
-        elapsed_ns = None if self._stamp_ns is None else stamp_ns - self._stamp_ns
-        self._stamp_ns = stamp_ns
-        if elapsed_ns is None or elapsed_ns > GAP_NS:
+        before_ns, self._stamp_ns = self._stamp_ns, stamp_ns
+        if before_ns is None or stamp_ns - before_ns > GAP_NS:
             self._smooth = relative
             return [0.0] * len(PARTS)
+        elapsed_ns = stamp_ns - before_ns
         share = 1.0 - float(np.exp(-elapsed_ns / SECOND_NS / TIME_CONSTANT_S))
         steps = share * (relative - self._smooth)
         self._smooth = self._smooth + steps

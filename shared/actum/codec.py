@@ -105,7 +105,7 @@ def _unpack(key: str, payload: bytes) -> dict[str, Any]:
 class _Unpacking:
     """Unpacks one large payload, and stops where it grows out of all proportion.
 
-    A byte can become a list of 56; only images are large, and their bulk is one value.
+    A byte can become an empty list of 56 bytes; only images are large, and their bulk is one value.
     """
 
     def __init__(self) -> None:

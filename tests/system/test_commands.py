@@ -142,3 +142,11 @@ def test_the_demo_runs_to_its_table_and_leaves_nothing(running: System) -> None:
     assert len(re.findall(r"^ *\d+/5 ", demo.stdout, re.M)) == 5, demo.stdout
     assert re.search(r"total .*41 \(91.1%\)", demo.stdout)
     wait_until(lambda: pids_of(running) == set(), "no process is left")
+
+
+def test_a_demo_that_is_terminated_takes_its_processes_along(running: System) -> None:
+    demo = running.start("actum_command", "demo", "--repetitions", "1")
+    wait_until(lambda: "run as processes of their own" in demo.said(), "the processes run", patience_s=90)
+    demo.process.terminate()
+    assert demo.process.wait(timeout=PATIENCE_S) == 143
+    wait_until(lambda: pids_of(running) == set(), "no process is left")
