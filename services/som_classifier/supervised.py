@@ -47,7 +47,8 @@ class SupervisedLayer:
 
     def cosines(self, x: Array) -> Array:
         """Return each neuron's activity x·w / ‖x‖‖w‖, shape (actions,)."""
-        return self.weights @ (x / np.sqrt(x @ x))
+        cosines: Array = self.weights @ (x / np.sqrt(x @ x))
+        return cosines
 
     def train(
         self,

@@ -10,7 +10,8 @@ def without_repeats(cells: NDArray[np.intp]) -> NDArray[np.intp]:
     """Drop consecutive duplicates from a sequence of winners."""
     changed = np.ones(len(cells), dtype=bool)
     changed[1:] = cells[1:] != cells[:-1]
-    return cells[changed]
+    kept: NDArray[np.intp] = cells[changed]
+    return kept
 
 
 def resampled(path: Array, points: int) -> Array:

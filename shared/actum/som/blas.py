@@ -1,0 +1,68 @@
+"""Matrix products that are the same to the bit for any number of BLAS threads."""
+
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = TypeVar("Floats", NDArray[np.float32], NDArray[np.float64])
+
+ROWS = 128
+"""Rows worth multiplying at once: what is made of them still lies in the cache when it is looked at."""
+_INNER = 128
+_LARGEST = 2**18
+"""Multiplications in one product up to which OpenBLAS stays on one thread; a second one rounds differently."""
+_LANES = 16
+"""Widths are kept to multiples of this many numbers, which BLAS kernels treat alike."""
+_ALIASING_BYTES = 4096
+
+
+def rounded_up(count: int) -> int:
+    """Return the next multiple of the kernels' width."""
+    return -(-count // _LANES) * _LANES
+
+
+def stride(nodes: int, dtype: np.dtype[np.floating]) -> int:
+    """Return how far apart rows of `nodes` numbers are stored, so that they do not contend for the same cache lines."""
+    padded = rounded_up(nodes)
+    return padded + _LANES if padded * dtype.itemsize % _ALIASING_BYTES == 0 else padded
+
+
+def product(left: Floats, right: Floats, out: Floats) -> None:
+    """Write left @ right to out, in tiles of one thread's size."""
+    inner = left.shape[1]
+    _tiles(left[:, :_INNER], right[:_INNER], out)
+    for start in range(_INNER, inner, _INNER):
+        part = np.empty_like(out)
+        _tiles(left[:, start : start + _INNER], right[start : start + _INNER], part)
+        out += part
+
+
+def row_product(left: Floats, right: Floats) -> Floats:
+    """Return left @ right of a single row, shape (width,)."""
+    if right.size <= _LARGEST:
+        direct: Floats = left.dot(right)
+        return direct
+    out: Floats = np.zeros_like(right[0])
+    width = _LARGEST // _INNER
+    for start in range(0, len(left), _INNER):
+        inner = slice(start, start + _INNER)
+        for first in range(0, len(out), width):
+            out[first : first + width] += left[inner].dot(right[inner, first : first + width])
+    return out
+
+
+def producted(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return left @ right."""
+    out = np.empty((left.shape[0], right.shape[1]))
+    product(left, right, out)
+    return out
+
+
+def _tiles(left: Floats, right: Floats, out: Floats) -> None:
+    width = max(_LANES, _LARGEST // (ROWS * left.shape[1]) // _LANES * _LANES)
+    for top in range(0, len(left), ROWS):
+        rows = slice(top, top + ROWS)
+        for start in range(0, right.shape[1], width):
+            cols = slice(start, start + width)
+            np.matmul(left[rows], right[:, cols], out=out[rows, cols])

@@ -1,0 +1,109 @@
+"""The grid that the units of a map stand on: who is whose neighbour, and how the neighbourhood falls off."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+Topology = Literal["rectangular", "hexagonal"]
+
+_REACH2 = {"rectangular": {8: 2.0, 4: 1.0}, "hexagonal": {6: 1.0}}
+"""Squared grid distance to the farthest neighbour, by the number of neighbours; the first number is the usual one."""
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Grid:
+    """`rows` × `cols` units; unit k stands at row k // cols, column k % cols.
+
+    On a hexagonal grid every odd row is shifted right by half a unit and rows are √3/2 apart ("odd-r"), so that each
+    unit inside has six neighbours at distance 1.
+    """
+
+    rows: int
+    cols: int
+    topology: Topology = "rectangular"
+
+    def __post_init__(self) -> None:
+        if self.topology not in get_args(Topology):
+            raise ValueError(f"topology {self.topology!r} is none of {', '.join(get_args(Topology))}")
+        if self.rows < 1 or self.cols < 1:
+            raise ValueError(f"a grid of {self.rows}×{self.cols} has no units")
+
+    @property
+    def nodes(self) -> int:
+        """How many units there are."""
+        return self.rows * self.cols
+
+    @cached_property
+    def coordinates(self) -> NDArray[np.float64]:
+        """Row and column of each unit, shape (nodes, 2)."""
+        return np.stack(np.divmod(np.arange(self.nodes), self.cols), axis=1).astype(np.float64)
+
+    @cached_property
+    def positions(self) -> NDArray[np.float64]:
+        """Centre of each unit as (down, right) in grid units, shape (nodes, 2)."""
+        row, col = self.coordinates.T
+        return np.stack([row * self.row_spacing, col + np.tile(self.shifts[:, None], self.cols).ravel() / 2], axis=1)
+
+    @property
+    def row_spacing(self) -> float:
+        """Distance between two rows in grid units."""
+        return 1.0 if self.topology == "rectangular" else 0.75**0.5
+
+    @property
+    def substeps(self) -> int:
+        """Units' columns lie on multiples of 1 / substeps."""
+        return 1 if self.topology == "rectangular" else 2
+
+    @cached_property
+    def shifts(self) -> NDArray[np.intp]:
+        """How far each row is shifted right, in substeps, shape (rows,)."""
+        return np.arange(self.rows) % 2 * (self.substeps - 1)
+
+    def row_gaussians(self, radii: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return exp(−y² / 2 radius²) for units 0, 1, … rows apart, shape (n, rows)."""
+        distance2 = np.arange(self.rows, dtype=np.float64) ** 2 * (1.0 if self.topology == "rectangular" else 0.75)
+        return np.exp(distance2 * (-0.5 / radii[:, None] ** 2))
+
+    def col_gaussians(self, radii: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return exp(−x² / 2 radius²) for units 0, 1, … substeps of a column apart, shape (n, substeps * cols).
+
+        The Gaussian of the distance on the grid is the product of one along the rows and one along the columns.
+        """
+        distance2 = (np.arange(self.substeps * self.cols) / self.substeps) ** 2
+        return np.exp(distance2 * (-0.5 / radii[:, None] ** 2))
+
+    def are_neighbours(
+        self, first: NDArray[np.intp], second: NDArray[np.intp], neighbours: int | None = None
+    ) -> NDArray[np.bool_]:
+        """Tell of each pair of units whether they touch, among 4 or 8 (default) neighbours, 6 on a hexagonal grid."""
+        apart = self.positions[first] - self.positions[second]
+        near: NDArray[np.bool_] = np.square(apart).sum(axis=-1) <= self._reach2(neighbours) + _ROUNDING
+        return near
+
+    def edges(self, neighbours: int | None = None) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Return the units of every ordered pair of neighbours, two arrays of the same length."""
+        row, col = np.divmod(np.arange(self.nodes), self.cols)
+        firsts, seconds = [], []
+        for down, right in product((-1, 0, 1), repeat=2):
+            if down == right == 0:
+                continue
+            to_row, to_col = row + down, col + right
+            first = np.flatnonzero((to_row >= 0) & (to_row < self.rows) & (to_col >= 0) & (to_col < self.cols))
+            second = first + down * self.cols + right
+            near = self.are_neighbours(first, second, neighbours)
+            firsts.append(first[near])
+            seconds.append(second[near])
+        return np.concatenate(firsts), np.concatenate(seconds)
+
+    def _reach2(self, neighbours: int | None) -> float:
+        known = _REACH2[self.topology]
+        count = next(iter(known)) if neighbours is None else neighbours
+        if count not in known:
+            possible = " or ".join(map(str, known))
+            raise ValueError(f"units of a {self.topology} grid have {possible} neighbours, not {count}")
+        return known[count]

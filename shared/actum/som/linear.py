@@ -1,0 +1,59 @@
+"""A deterministic start: a map laid out flat along the two directions in which the inputs spread most."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.som.blas import producted
+from actum.som.grid import Grid
+
+Doubles = NDArray[np.float64]
+
+_ROUNDS = 100
+_DIRECTIONS = 6
+
+
+def linear_weights(vectors: NDArray[Any], grid: Grid) -> Doubles:
+    """Return weights on the plane of the first two principal components, shape (nodes, dim).
+
+    The plane spans ± two standard deviations, with the first component along the longer side of the grid. Missing
+    values (NaN) are taken as the mean of the others.
+
+    Raises:
+        ValueError: a component is missing in every vector.
+    """
+    known = ~np.isnan(vectors)
+    if not known.any(axis=0).all():
+        raise ValueError(f"component {np.flatnonzero(~known.any(axis=0))[0]} is missing in every vector")
+    mean = np.nanmean(vectors, axis=0, dtype=np.float64)
+    axes = principal_axes(np.where(known, vectors - mean, 0.0))
+    down, right = np.ptp(grid.positions, axis=0)
+    return mean + 2 * producted(_spanning(grid.positions), axes if down >= right else axes[::-1])
+
+
+def principal_axes(centred: Doubles) -> Doubles:
+    """Return the two main directions of the rows of (n, dim), each as long as its standard deviation. Shape (2, dim).
+
+    The largest component of each is positive. LAPACK's eigenvectors of large matrices change with the number of
+    threads, so the matrix is first brought down to a few directions by orthogonal iteration.
+    """
+    covariance = producted(centred.T, centred) / len(centred)
+    dim = len(covariance)
+    basis = np.random.default_rng(0).standard_normal((dim, min(dim, _DIRECTIONS)))
+    for _ in range(_ROUNDS):
+        basis = np.linalg.qr(producted(covariance, basis))[0]
+    variances, turns = np.linalg.eigh(producted(basis.T, producted(covariance, basis)))
+    axes = np.zeros((2, dim))
+    axes[: len(variances)] = (producted(basis, turns) * np.sqrt(np.maximum(variances, 0))).T[:-3:-1]
+    largest = np.take_along_axis(axes, np.abs(axes).argmax(axis=1)[:, None], axis=1)
+    signed: Doubles = axes * np.where(largest < 0, -1.0, 1.0)
+    return signed
+
+
+def _spanning(positions: Doubles) -> Doubles:
+    """Stretch each coordinate to [−1, 1]; 0 where all are the same."""
+    middle = (positions.max(axis=0) + positions.min(axis=0)) / 2
+    half = np.ptp(positions, axis=0) / 2
+    stretched: Doubles = np.divide(positions - middle, half, out=np.zeros_like(positions), where=half > 0)
+    return stretched

@@ -1,0 +1,140 @@
+"""Which unit is nearest, for one vector or many: the squared distances of BLAS, up to what all units share."""
+
+from collections.abc import Iterator
+from math import isfinite
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.som import blas
+
+Array = NDArray[Any]
+Scores = tuple[slice, Array]
+
+
+class Lookup:
+    """A map's weights, laid out for comparing vectors with all of them.
+
+    A score is half the squared distance less ½|x|², ½|w|² − w·x: the same order and the same differences as the
+    squared distances. Both x and w are taken relative to a point amid the weights; far from zero the two terms would
+    cancel, in float32 down to nothing. Where components of x are missing (NaN), a score counts the others only and is
+    scaled up by dim / known.
+    """
+
+    def __init__(self, weights: Array) -> None:
+        self.nodes, self.dim = weights.shape
+        self.dtype = weights.dtype
+        self.centre = _round_centre(weights).astype(self.dtype)
+        self._shape = (self.dim,)
+        self._stride = blas.stride(self.nodes, self.dtype)
+        centred = (weights - self.centre).T
+        self._towards = np.zeros((self.dim + 1, self._stride), self.dtype)
+        self._towards[:-1, : self.nodes] = -centred
+        self._towards[-1] = np.finfo(self.dtype).max / 2
+        self._towards[-1, : self.nodes] = 0.5 * np.square(centred).sum(axis=0)
+        self._slopes, self._half_norms2 = self._towards[:-1], self._towards[-1]
+
+    def score(self, x: Array) -> Array:
+        """Score one vector against all units, shape (stride,) with large values after the last unit.
+
+        Raises:
+            ValueError: the vector has another length, an infinite component, or no known one.
+        """
+        if x.shape != self._shape:
+            raise ValueError(f"a vector of shape {x.shape} does not fit a map of {self.dim} components")
+        centred = x - self.centre
+        if centred.dtype != self.dtype:
+            centred = centred.astype(self.dtype)
+        if not isfinite(centred.dot(centred)):
+            _, rows = next(self.scores(x[None]))
+            return np.ravel(rows)
+        scores: Array = blas.row_product(centred, self._slopes)
+        np.add(scores, self._half_norms2, scores)
+        return scores
+
+    def scores(self, vectors: Array) -> Iterator[Scores]:
+        """Score the rows of (n, dim) in chunks: a slice of them and (rows of it, stride), valid until the next one.
+
+        Raises:
+            ValueError: the rows have another length, an infinite component, or no known one.
+        """
+        check_rows(vectors, self.dim)
+        return self._known_scores(vectors) if is_complete(vectors) else self._partial_scores(vectors)
+
+    def winners(self, vectors: Array) -> NDArray[np.intp]:
+        """Find the unit of the lowest score for each row of (n, dim), the first of equals. Shape (n,)."""
+        found = np.empty(len(vectors), np.intp)
+        for chunk, scores in self.scores(vectors):
+            np.argmin(scores, axis=1, out=found[chunk])
+        return found
+
+    def _known_scores(self, vectors: Array) -> Iterator[Scores]:
+        for chunk, inputs, out in self._buffers(vectors, self.dim + 1):
+            inputs[:, -1] = 1
+            rows = chunk.stop - chunk.start
+            np.subtract(vectors[chunk], self.centre, out=inputs[:rows, :-1], casting="same_kind")
+            blas.product(inputs, self._towards, out)
+            yield chunk, out[:rows]
+
+    def _partial_scores(self, vectors: Array) -> Iterator[Scores]:
+        towards = np.concatenate([self._slopes, 0.5 * np.square(self._slopes)])
+        for chunk, inputs, out in self._buffers(vectors, 2 * self.dim):
+            rows = chunk.stop - chunk.start
+            known = ~np.isnan(vectors[chunk])
+            inputs[:rows, : self.dim] = np.where(known, vectors[chunk] - self.centre, 0)
+            inputs[:rows, self.dim :] = known
+            blas.product(inputs, towards, out)
+            out[:rows] *= (self.dim / known.sum(axis=1, keepdims=True)).astype(self.dtype)
+            out[:, self.nodes :] = self._half_norms2[self.nodes :]
+            yield chunk, out[:rows]
+
+    def _buffers(self, vectors: Array, width: int) -> Iterator[tuple[slice, Array, Array]]:
+        """Give each chunk of rows zeroed space for its inputs and space for its scores, rows padded for BLAS."""
+        inputs = np.zeros((blas.ROWS, width), self.dtype)
+        out = np.empty((blas.ROWS, self._stride), self.dtype)
+        for start in range(0, len(vectors), blas.ROWS):
+            chunk = slice(start, min(start + blas.ROWS, len(vectors)))
+            padded = blas.rounded_up(chunk.stop - start)
+            inputs[chunk.stop - start : padded] = 0
+            yield chunk, inputs[:padded], out[:padded]
+
+
+def is_complete(vectors: Array) -> bool:
+    """Tell whether no component is missing.
+
+    Raises:
+        ValueError: a component is infinite, or every component of a row is missing.
+    """
+    if np.isfinite(vectors).all():
+        return True
+    if np.isinf(vectors).any():
+        raise ValueError(f"row {np.flatnonzero(np.isinf(vectors).any(axis=1))[0]} has an infinite component")
+    empty = np.isnan(vectors).all(axis=1)
+    if empty.any():
+        raise ValueError(f"row {np.flatnonzero(empty)[0]} has no known component, all are NaN")
+    return False
+
+
+def check_rows(vectors: Array, dim: int) -> None:
+    """Refuse what is no matrix of `dim` columns.
+
+    Raises:
+        ValueError: with the shape that was given.
+    """
+    if vectors.ndim != 2 or vectors.shape[1] != dim:
+        raise ValueError(f"vectors of shape {vectors.shape} are no rows of {dim} components")
+
+
+def _round_centre(weights: Array) -> NDArray[np.float64]:
+    """Return the mean weight, rounded to multiples of a power of two about as large as the spread.
+
+    Subtracting a round number is exact for round weights, so that equal distances stay equal.
+    """
+    mean = weights.mean(axis=0, dtype=np.float64)
+    spread = np.abs(weights - mean).max()
+    if spread == 0:
+        return np.asarray(mean)
+    step = 2.0 ** np.floor(np.log2(spread))
+    rounded: NDArray[np.float64] = np.round(mean / step) * step
+    return rounded

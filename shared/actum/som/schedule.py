@@ -1,0 +1,78 @@
+"""How adaptation strength and neighbourhood radius fall while a map is trained."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+Report = Callable[[int, int], None]
+"""Called with the steps (or epochs) done and those in all."""
+
+_SMALLEST_RADIUS, _LARGEST_RADIUS = 1e-150, 1e150
+"""Between these a radius can be squared."""
+
+
+def silent(done: int, total: int) -> None:
+    """Report nothing."""
+
+
+class Decay(Protocol):
+    """What gives α and the radius of each step."""
+
+    def values(self, steps: int) -> tuple[Array, Array]:
+        """Return α and radius of each step, each of shape (steps,)."""
+        ...
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """How adaptation strength and neighbourhood radius (grid units) fall over the steps of a training.
+
+    Both fall exponentially from the first value, reached at the first step, to the second, reached at the last.
+    """
+
+    alpha: tuple[float, float]
+    radius: tuple[float, float]
+
+    def values(self, steps: int) -> tuple[Array, Array]:
+        """Return α and radius of each step, each of shape (steps,)."""
+        return falling(*self.alpha, steps), falling(*self.radius, steps)
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """Adaptation strength and neighbourhood radius (grid units) of every single step, for any other decay."""
+
+    alphas: ArrayLike
+    radii: ArrayLike
+
+    def values(self, steps: int) -> tuple[Array, Array]:
+        """Return α and radius of each step, each of shape (steps,).
+
+        Raises:
+            ValueError: there are not as many values as steps.
+        """
+        alphas, radii = np.array(self.alphas, np.float64), np.array(self.radii, np.float64)
+        if alphas.shape != (steps,) or radii.shape != (steps,):
+            raise ValueError(f"{alphas.shape} alphas and {radii.shape} radii are given for {steps} steps")
+        return alphas, radii
+
+
+def falling(first: float, last: float, steps: int) -> Array:
+    """Return `steps` values that fall exponentially from first to last."""
+    return np.geomspace(first, last, steps)
+
+
+def checked_radii(radii: ArrayLike) -> Array:
+    """Return the radii as an array.
+
+    Raises:
+        ValueError: one is not finite and above 0.
+    """
+    values = np.array(radii, np.float64, ndmin=1)
+    if not ((values > _SMALLEST_RADIUS) & (values < _LARGEST_RADIUS)).all():
+        raise ValueError(f"neighbourhood radii must be finite and above 0; got {values.min()} to {values.max()}")
+    return values

@@ -1,0 +1,151 @@
+"""Sequential training: one input after the other moves its winner and the winner's neighbours (Kohonen, 1982)."""
+
+import hashlib
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Generic
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from actum.som import blas, storage
+from actum.som.codebook import Map, map_arrays, stored_map, training_vectors
+from actum.som.kernel import Kernel, fastest
+from actum.som.schedule import Decay, Steps, checked_radii
+from actum.som.storage import SomError
+
+Array = NDArray[Any]
+
+CHUNK_STEPS = 250
+"""Steps whose neighbourhoods are tabulated at once."""
+
+
+class SequentialTraining(Generic[Map]):
+    """A map while it learns: w += α G (x − w) for one input after the other.
+
+    G = exp(−r² / 2 radius²), r the distance on the grid to the winner. Missing components (NaN) of an input adapt
+    nothing. The state can be saved after any step; a resumed training gives the same map to the bit.
+    """
+
+    def __init__(
+        self,
+        som: Map,
+        vectors: ArrayLike,
+        order: ArrayLike,
+        decay: Decay,
+        kernel: Kernel | None = None,
+    ) -> None:
+        """Prepare one step per entry of `order`.
+
+        Args:
+            som: the map to start from, left as it is.
+            vectors: the inputs, (n, dim).
+            order: the rows of `vectors` to learn from, in turn.
+            decay: gives each step its α and its radius.
+            kernel: how steps are computed, by default compiled where Numba is installed; the map is the same.
+
+        Raises:
+            ValueError: the vectors do not fit the map, an entry names no row, or α or radius make no sense.
+        """
+        self.steps_done = 0
+        self._start = som
+        self._vectors = training_vectors(vectors, som.dim, som.dtype)
+        self._order = _checked_order(order, len(self._vectors))
+        alphas, radii = decay.values(len(self._order))
+        self._radii = checked_radii(radii)
+        self._alphas = _checked_alphas(alphas)
+        self._weights = np.zeros((som.dim, blas.stride(som.grid.nodes, som.dtype)), som.dtype)
+        self._weights[:, : som.grid.nodes] = som.weights.T
+        self._adapt = kernel or fastest()
+
+    @classmethod
+    def drawn(
+        cls, som: Map, vectors: ArrayLike, steps: int, decay: Decay, rng: np.random.Generator
+    ) -> "SequentialTraining[Map]":
+        """Prepare `steps` steps on rows drawn at random, with replacement."""
+        inputs = training_vectors(vectors, som.dim, som.dtype)
+        return cls(som, inputs, rng.integers(len(inputs), size=steps), decay)
+
+    @property
+    def steps(self) -> int:
+        """How many steps there are in all."""
+        return len(self._order)
+
+    @property
+    def som(self) -> Map:
+        """The map as it is now."""
+        return replace(self._start, weights=self._weights[:, : self._start.grid.nodes].T)
+
+    def run(self, steps: int) -> None:
+        """Take the next steps, as many as are asked for and left."""
+        end = min(self.steps_done + steps, self.steps)
+        while self.steps_done < end:
+            chunk = slice(self.steps_done, min(self.steps_done + CHUNK_STEPS, end))
+            self._adapt(self._weights, self._vectors[self._order[chunk]], *self._tables(chunk))
+            self.steps_done = chunk.stop
+
+    def _tables(self, chunk: slice) -> tuple[Array, Array, NDArray[np.intp], int]:
+        """Tabulate α times the Gaussian over rows and that over columns: both kernels take exp from here."""
+        grid, dtype = self._start.grid, self._start.dtype
+        alphas = self._alphas[chunk, None].astype(dtype)
+        over_rows = alphas * grid.row_gaussians(self._radii[chunk]).astype(dtype)
+        over_cols = grid.col_gaussians(self._radii[chunk]).astype(dtype)
+        return over_rows, over_cols, grid.shifts, grid.substeps
+
+    def save(self, path: Path | str) -> None:
+        """Write the map, the steps done, and order, α and radius of every step; not the vectors, only their digest.
+
+        Raises:
+            OSError: the file cannot be written.
+        """
+        storage.write(
+            Path(path),
+            storage.TRAINING_FORMAT,
+            {
+                **map_arrays(self.som),
+                "vectors_digest": np.array(_digest(self._vectors)),
+                "steps_done": np.array(self.steps_done),
+                "order": self._order,
+                "alphas": self._alphas,
+                "radii": self._radii,
+            },
+        )
+
+    @classmethod
+    def load(
+        cls, path: Path | str, vectors: ArrayLike, kind: type[Map], kernel: Kernel | None = None
+    ) -> "SequentialTraining[Map]":
+        """Take up a training where `save` left it, with the same vectors, on a map of the given kind.
+
+        Raises:
+            SomError: the file is missing, foreign or damaged, or was made with other vectors.
+        """
+        with storage.reading(Path(path), storage.TRAINING_FORMAT) as file:
+            som, decay = stored_map(file, kind), Steps(file["alphas"], file["radii"])
+            if str(file["vectors_digest"]) != _digest(np.array(vectors, som.dtype, order="C")):
+                raise SomError(Path(path), "this training was begun with other vectors")
+            training = cls(som, vectors, file["order"], decay, kernel)
+            training.steps_done = int(file["steps_done"])
+            if not 0 <= training.steps_done <= training.steps:
+                raise ValueError(f"{training.steps_done} of {training.steps} steps are done")
+        return training
+
+
+def _checked_order(order: ArrayLike, rows: int) -> NDArray[np.intp]:
+    indices = np.array(order)
+    if indices.ndim != 1 or (indices.size and not np.issubdtype(indices.dtype, np.integer)):
+        raise ValueError(f"an order is a list of row numbers, not {indices.dtype} of shape {indices.shape}")
+    if indices.size and (indices.min() < 0 or indices.max() >= rows):
+        raise ValueError(f"the order names rows {indices.min()} to {indices.max()}; there are {rows}")
+    return indices.astype(np.intp)
+
+
+def _checked_alphas(alphas: ArrayLike) -> NDArray[np.float64]:
+    values = np.array(alphas, np.float64)
+    if not np.isfinite(values).all():
+        raise ValueError("adaptation strengths (alpha) must be finite")
+    return values
+
+
+def _digest(vectors: Array) -> str:
+    return hashlib.sha256(f"{vectors.shape} {vectors.dtype.str}".encode() + vectors.tobytes()).hexdigest()

@@ -1,0 +1,63 @@
+"""Files of maps and of trainings under way: npz without pickle, so that reading one runs no code."""
+
+import os
+import zipfile
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+MAP_FORMAT = "actum.som/1"
+TRAINING_FORMAT = "actum.som.training/1"
+
+_UNREADABLE = (
+    OSError, ValueError, TypeError, EOFError, KeyError, RuntimeError, MemoryError, OverflowError, zipfile.BadZipFile,
+    zlib.error,
+)  # fmt: skip
+"""What NumPy and zipfile are known to raise on files that are not theirs or were cut or altered."""
+
+
+class SomError(ValueError):
+    """A file that does not hold what was to be read from it."""
+
+    def __init__(self, path: Path, problem: str) -> None:
+        super().__init__(f"{path}: {problem}")
+
+
+def write(path: Path, file_format: str, arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Write the arrays beside the path and move them there in one step, so that no half file is ever seen.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    unfinished = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        with unfinished.open("wb") as file:
+            np.savez(file, allow_pickle=False, format=np.array(file_format), **arrays)
+        unfinished.replace(path)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+@contextmanager
+def reading(path: Path, file_format: str) -> Iterator[Mapping[str, NDArray[Any]]]:
+    """Give the arrays of a file; whatever does not fit while they are read and used is the file's fault.
+
+    Raises:
+        SomError: the file is missing, foreign or damaged.
+    """
+    try:
+        with path.open("rb") as stored, np.load(stored, allow_pickle=False) as file:
+            if str(file["format"]) != file_format:
+                raise SomError(path, f"its format is {str(file['format'])!r}, not {file_format!r}")
+            yield file
+    except SomError:
+        raise
+    except FileNotFoundError:
+        raise SomError(path, "there is no such file") from None
+    except _UNREADABLE as error:
+        raise SomError(path, f"not of format {file_format!r}, or damaged ({error})") from None

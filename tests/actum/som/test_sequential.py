@@ -1,0 +1,191 @@
+"""Sequential training: steps by hand, seeds, schedules, and resuming without a trace."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from actum.som import Schedule, SequentialTraining, Som, SomError, Steps
+
+CONSTANT = Schedule(alpha=(0.5, 0.5), radius=(1.0, 1.0))
+FALLING = Schedule(alpha=(0.5, 0.02), radius=(5.0, 0.7))
+
+
+def rng(seed: int = 0) -> np.random.Generator:
+    return np.random.default_rng(seed)
+
+
+def line_map() -> Som:
+    """Three neurons in a row at 0, 1 and 10 on the number line."""
+    return Som(1, 3, np.array([[0.0], [1.0], [10.0]]))
+
+
+def test_schedules_run_from_first_to_last_value_over_the_steps() -> None:
+    for steps in (3, 50, 1001):
+        alpha, radius = Schedule(alpha=(0.4, 0.1), radius=(16.0, 1.0)).values(steps)
+        assert len(alpha) == len(radius) == steps
+        assert (alpha[0], alpha[-1], radius[0], radius[-1]) == pytest.approx((0.4, 0.1, 16.0, 1.0))
+        assert alpha[steps // 2] == pytest.approx(0.2, rel=2 / steps)
+        assert radius[steps // 2] == pytest.approx(4.0, rel=3 / steps)
+        np.testing.assert_allclose(alpha[1:] / alpha[:-1], alpha[1] / alpha[0])
+
+
+def test_explicit_steps_are_taken_as_they_are_or_refused_by_number() -> None:
+    alphas, radii = Steps([0.5, 0.25], [2.0, 1.0]).values(2)
+    assert alphas.tolist() == [0.5, 0.25] and radii.tolist() == [2.0, 1.0]
+    with pytest.raises(ValueError, match="3 steps"):
+        Steps([0.5, 0.25], [2.0, 1.0]).values(3)
+
+
+def test_one_step_by_hand() -> None:
+    """w += α exp(−r²/2σ²) (x − w), with r squared: 1, e^(−1/2), e^(−2) for neurons 0, 1 and 2 away."""
+    x = 2.0
+    trained = line_map().train([[x]], 1, CONSTANT, rng())
+    pull = 0.5 * np.exp([-0.5, 0.0, -0.5])
+    expected = np.array([0.0, 1.0, 10.0]) + pull * (x - np.array([0.0, 1.0, 10.0]))
+    np.testing.assert_allclose(trained.weights[:, 0], expected)
+
+    far = line_map().train([[-1.0]], 1, CONSTANT, rng()).weights[2, 0]
+    assert far == pytest.approx(10 + 0.5 * np.exp(-2.0) * -11)
+
+
+@pytest.mark.parametrize("topology", ["rectangular", "hexagonal"])
+@pytest.mark.parametrize("winner", [0, 10, 17, 34])
+def test_the_neighbourhood_is_round_on_the_grid(topology: str, winner: int) -> None:
+    weights = np.zeros((35, 1))
+    weights[winner] = 1e-9
+    som = Som(5, 7, weights, topology)
+    trained = som.train([[1.0]], 1, CONSTANT, rng()).weights[:, 0]
+    distances2 = ((som.grid.positions - som.grid.positions[winner]) ** 2).sum(axis=1)
+    np.testing.assert_allclose(trained, 0.5 * np.exp(-distances2 / 2), atol=1e-9)
+
+
+def test_training_leaves_the_untrained_map_alone_and_is_repeatable() -> None:
+    som = Som.random(6, 6, 3, rng())
+    before = som.weights.copy()
+    vectors = rng(1).random((40, 3))
+    first, second = (som.train(vectors, 300, FALLING, rng(2)) for _ in range(2))
+    assert (som.weights == before).all()
+    assert (first.weights == second.weights).all()
+    assert (first.weights != som.train(vectors, 300, FALLING, rng(3)).weights).any()
+
+
+def test_training_is_what_its_equation_says() -> None:
+    """The same map from the equation written out, in as many lines."""
+    som = Som.random(5, 6, 3, rng())
+    vectors = rng(1).random((40, 3))
+    weights = som.weights.copy()
+    order = rng(2).integers(40, size=400)
+    for index, alpha, radius in zip(order, *FALLING.values(400), strict=True):
+        winner = np.argmin(((weights - vectors[index]) ** 2).sum(axis=1))
+        distances2 = ((som.coordinates - som.coordinates[winner]) ** 2).sum(axis=1)
+        weights += alpha * np.exp(-distances2 / (2 * radius**2))[:, None] * (vectors[index] - weights)
+    np.testing.assert_allclose(som.train(vectors, 400, FALLING, rng(2)).weights, weights, atol=1e-12)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("topology", ["rectangular", "hexagonal"])
+def test_training_orders_the_map(topology: str, dtype: type) -> None:
+    vectors = rng(1).random((500, 2)).astype(dtype)
+    untrained = Som.random(8, 8, 2, rng(), dtype, topology)
+    trained = untrained.train(vectors, 4000, FALLING, rng(2))
+    assert trained.weights.dtype == dtype and trained.topology == topology
+    assert trained.quantization_error(vectors) < 0.07
+    assert untrained.topographic_error(vectors) > 0.5
+    assert trained.topographic_error(vectors) < 0.15
+
+
+def test_training_with_a_wide_radius_goes_to_the_mean() -> None:
+    everywhere = Schedule(alpha=(0.2, 0.001), radius=(1e6, 1e6))
+    trained = Som.random(3, 3, 1, rng()).train([[2.0], [4.0]], 4000, everywhere, rng())
+    np.testing.assert_allclose(trained.weights, 3.0, atol=0.1)
+
+
+def test_progress_is_reported_to_its_end() -> None:
+    reported: list[tuple[int, int]] = []
+    line_map().train([[1.0]], 2500, CONSTANT, rng(), lambda done, total: reported.append((done, total)))
+    assert reported == [(0, 2500), (1000, 2500), (2000, 2500), (2500, 2500)]
+
+
+@pytest.mark.parametrize("vectors", [np.zeros((0, 1)), np.zeros((2, 2)), np.zeros(1), [[np.nan]], [[np.inf]]])
+def test_inputs_that_do_not_fit_are_refused(vectors: np.ndarray) -> None:
+    with pytest.raises(ValueError, match="cannot train"):
+        line_map().train(vectors, 1, CONSTANT, rng())
+
+
+@pytest.mark.parametrize(
+    ("order", "decay", "problem"),
+    [
+        ([0, 2], Steps([0.1] * 2, [1.0] * 2), "rows 0 to 2; there are 2"),
+        ([-1, 0], Steps([0.1] * 2, [1.0] * 2), "rows -1 to 0"),
+        ([0.5], Steps([0.1], [1.0]), "row numbers"),
+        ([0], Steps([np.nan], [1.0]), "alpha"),
+        ([0], Steps([0.1], [0.0]), "radii"),
+        ([0], Steps([0.1], [np.inf]), "radii"),
+    ],
+)
+def test_steps_that_make_no_sense_are_refused(order: list[float], decay: Steps, problem: str) -> None:
+    with pytest.raises(ValueError, match=problem):
+        SequentialTraining(line_map(), [[1.0], [2.0]], order, decay)
+
+
+def test_partial_fit_adapts_to_each_row_once_in_the_given_order() -> None:
+    by_hand = line_map().weights[:, 0].copy()
+    for x in (2.0, 9.0):
+        winner = np.argmin(np.abs(by_hand - x))
+        by_hand += 0.25 * np.exp(-((np.arange(3) - winner) ** 2) / 2) * (x - by_hand)
+    fitted = line_map().partial_fit([[2.0], [9.0]], alpha=0.25, radius=1.0)
+    np.testing.assert_allclose(fitted.weights[:, 0], by_hand)
+    one_by_one = line_map().partial_fit([[2.0]], 0.25, 1.0).partial_fit([[9.0]], 0.25, 1.0)
+    assert (one_by_one.weights == fitted.weights).all()
+    assert (line_map().partial_fit([[9.0], [2.0]], 0.25, 1.0).weights != fitted.weights).any()
+
+
+@given(st.lists(st.integers(1, 400), max_size=5), st.sampled_from([np.float32, np.float64]))
+def test_a_training_may_be_interrupted_anywhere(stops: list[int], dtype: type) -> None:
+    som = Som.random(4, 4, 2, rng(), dtype)
+    vectors = rng(1).random((30, 2))
+    training = SequentialTraining.drawn(som, vectors, 600, FALLING, rng(2))
+    for steps in stops:
+        training.run(steps)
+    training.run(600)
+    assert training.steps_done == training.steps == 600
+    assert (training.som.weights == som.train(vectors, 600, FALLING, rng(2)).weights).all()
+
+
+@pytest.mark.parametrize("done", [0, 1, 250, 333, 600])
+@pytest.mark.parametrize("topology", ["rectangular", "hexagonal"])
+def test_a_resumed_training_gives_the_map_of_an_uninterrupted_one(tmp_path: Path, topology: str, done: int) -> None:
+    som = Som.random(5, 4, 3, rng(), np.float32, topology)
+    vectors = rng(1).random((30, 3))
+    training = SequentialTraining.drawn(som, vectors, 600, FALLING, rng(2))
+    training.run(done)
+    training.save(tmp_path / "training.npz")
+    resumed = Som.resume(tmp_path / "training.npz", vectors)
+    assert (resumed.steps_done, resumed.steps) == (done, 600)
+    resumed.run(600)
+    assert isinstance(resumed.som, Som) and resumed.som.topology == topology
+    assert (resumed.som.weights == som.train(vectors, 600, FALLING, rng(2)).weights).all()
+
+
+def test_a_training_is_resumed_with_its_own_vectors_only(tmp_path: Path) -> None:
+    vectors = rng(1).random((30, 3))
+    path = tmp_path / "training.npz"
+    SequentialTraining.drawn(Som.random(2, 2, 3, rng()), vectors, 10, FALLING, rng(2)).save(path)
+    for others in (vectors + 1, vectors[:-1], vectors[:, :2], vectors.T.reshape(30, 3)):
+        with pytest.raises(SomError, match="training.npz: .*other vectors"):
+            Som.resume(path, others)
+
+
+def test_a_training_whose_steps_are_out_of_range_is_refused(tmp_path: Path) -> None:
+    vectors = rng(1).random((30, 3))
+    path = tmp_path / "training.npz"
+    SequentialTraining.drawn(Som.random(2, 2, 3, rng()), vectors, 10, FALLING, rng(2)).save(path)
+    with np.load(path) as file:
+        contents = dict(file)
+    for name, value in (("steps_done", 11), ("order", np.full(10, 30)), ("radii", np.zeros(10)), ("alphas", [1.0])):
+        np.savez(path, **{**contents, name: np.asarray(value)})
+        with pytest.raises(SomError, match="training.npz"):
+            Som.resume(path, vectors)
