@@ -4,7 +4,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-data test-live test-containers check bench picture schemas clean
+.PHONY: install demo up test test-data test-live test-containers check bench bench-maps bench-recognition picture schemas clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -43,6 +43,15 @@ check: $(STAMP)  ## format, lint, types, layers
 
 bench: $(STAMP)  ## latency beside a bare Zenoh chain, and throughput
 	$(BIN)/python benchmarks/latency.py
+
+bench-maps: $(STAMP)  ## the map library beside MiniSom
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
+	$(BIN)/python benchmarks/som.py
+
+bench-recognition: $(STAMP)  ## the recogniser beside its peers on public recordings, about ten minutes
+	@test -d "$$ACTUM_DATA" || { echo "bench-recognition needs ACTUM_DATA: the folder that holds msr_action3d/ and utkinect/" >&2; exit 1; }
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
+	$(BIN)/python -m benchmarks.recognition
 
 picture: $(STAMP)  ## the README's picture
 	$(BIN)/python docs/picture.py docs/scene.png

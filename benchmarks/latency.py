@@ -39,7 +39,7 @@ from pose_preprocessor.node import PosePreprocessor
 from sensor_gateway.simulator import Simulator, balanced_programme, labelled_stream
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
-from som_classifier.presets import PAPER
+from som_classifier.presets import DEFAULT
 
 SETTINGS = ServiceSettings(connect="tcp/127.0.0.1:7457")
 REPETITIONS = 6
@@ -136,7 +136,7 @@ def main() -> None:
 def trained(folder: Path) -> Model:
     """Train the demo's model and leave it as `model.npz`."""
     write_examples(folder / "examples.mcap", repetitions=12, actor=0, seed=1)
-    model = train(samples_from([Recording(folder / "examples.mcap")]).usable, PAPER)
+    model = train(samples_from([Recording(folder / "examples.mcap")]).usable, DEFAULT)
     model.save(folder / "model.npz")
     return model
 

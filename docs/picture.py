@@ -28,7 +28,7 @@ from pose_preprocessor.node import PosePreprocessor
 from sensor_gateway.simulator import Simulator, balanced_programme
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
-from som_classifier.presets import PAPER
+from som_classifier.presets import DEFAULT
 
 SHOWN = ("push", "lift", "point")
 TRAINING_SEED, TEST_SEED, REPETITIONS = 1, 2, 3
@@ -41,7 +41,7 @@ def model() -> Model:
     with TemporaryDirectory() as folder:
         examples = Path(folder) / "examples.mcap"
         write_examples(examples, repetitions=12, actor=0, seed=TRAINING_SEED)
-        return train(samples_from([Recording(examples)]).usable, PAPER)
+        return train(samples_from([Recording(examples)]).usable, DEFAULT)
 
 
 class Chain:

@@ -2,12 +2,17 @@
 
 from dataclasses import replace
 
-from som_classifier.presets import PAPER
+from som_classifier.presets import PYRAMID
 
 QUICK = replace(
-    PAPER,
+    PYRAMID,
     name="quick",
-    layer1=replace(PAPER.layer1, rows=12, cols=12, steps=8_000),
-    layer2=replace(PAPER.layer2, rows=12, cols=12, steps=2_000),
-    epochs=5,
+    units=(8, 8),
+    unit_epochs=5,
+    unit_radius=(3.0, 0.6),
+    builds=1,
+    stages=((0.3, 0.5), (0.7,), (1.0,)),
+    concepts=(10, 10),
+    concept_epochs=8,
+    concept_radius=(4.0, 1.0),
 )

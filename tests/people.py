@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Agent, Skeleton
+from actum.messages import Agent, Joint, Skeleton
+from actum.skeletons import INDEX
 
 STANDING = np.array(
     [
@@ -39,12 +40,31 @@ def reaching(phase: float, height: float = 1.0) -> NDArray[np.float64]:
     return result
 
 
+def turned(joints: NDArray[np.float64], heading_rad: float) -> NDArray[np.float64]:
+    """Turn about the vertical through the torso, at a positive heading to the person's own left."""
+    c, s = np.cos(heading_rad), np.sin(heading_rad)
+    torso = joints[INDEX["torso"]]
+    result: NDArray[np.float64] = torso + (joints - torso) @ np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]]).T
+    return result
+
+
+def lacking(joints: NDArray[np.float64], *names: str) -> NDArray[np.float64]:
+    """Return the joints with some unknown: NaN, and null in a skeleton message."""
+    partial = joints.copy()
+    partial[[INDEX[name] for name in names]] = np.nan
+    return partial
+
+
 def skeleton(stamp_ns: int, *joints: NDArray[np.float64], seq: int | None = None, session_id: str = "test") -> Skeleton:
-    """Make a skeleton message of agents 1, 2, … with the given joints."""
+    """Make a skeleton message of agents 1, 2, … with the given joints; NaN is a joint that the source lacks."""
     agents = [
-        Agent(agent=number, joints=person.tolist(), confidence=[1.0] * 15) for number, person in enumerate(joints, 1)
+        Agent(agent=number, joints=listed(person), confidence=[1.0] * 15) for number, person in enumerate(joints, 1)
     ]
     return Skeleton(stamp_ns=stamp_ns, seq=seq, sensor="kinect0", agents=agents, session_id=session_id)
+
+
+def listed(joints: NDArray[np.float64]) -> list[Joint]:
+    return [None if np.isnan(joint).any() else joint.tolist() for joint in joints]
 
 
 def reaches(frames: int, first_ns: int = 0, seed: int = 0, noise_m: float = 0.003) -> list[Skeleton]:

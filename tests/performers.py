@@ -6,14 +6,37 @@ from numpy.typing import NDArray
 from actum.messages import Segment, Skeleton
 from actum.som import Schedule
 from people import FRAME_NS, STANDING, skeleton
-from som_classifier.presets import MapPlan, Preset
+from som_classifier.presets import MapPlan, PaperPreset, PyramidPreset
 
 FRAMES = 20
 PAUSE_FRAMES = 5
 
-FALLING = Schedule(alpha=(0.5, 0.05), radius=(5.0, 0.6))
-TINY = Preset(
+TINY = PyramidPreset(
     name="tiny",
+    units=(6, 6),
+    unit_epochs=4,
+    unit_radius=(2.0, 0.6),
+    relative_contrast=0.5,
+    levels=(1, 2, 4),
+    overlap=0.25,
+    turns_deg=(-15.0, 15.0),
+    builds=1,
+    build_sd=0.1,
+    stages=((0.3, 0.5), (0.7,), (1.0,)),
+    shrinkage=0.15,
+    held_out_share=0.5,
+    concepts=(8, 8),
+    concept_epochs=6,
+    concept_radius=(3.0, 0.8),
+    relative_concept_contrast=40.0,
+    beta=0.05,
+    epochs=5,
+    known_share=0.95,
+)
+
+FALLING = Schedule(alpha=(0.5, 0.05), radius=(5.0, 0.6))
+TINY_PAPER = PaperPreset(
+    name="tiny paper",
     part=None,
     layer1=MapPlan(10, 10, 4000, FALLING),
     layer2=MapPlan(8, 8, 2000, FALLING),
@@ -21,6 +44,8 @@ TINY = Preset(
     beta=0.35,
     epochs=20,
 )
+TINY_OF_EACH_KIND = (TINY, TINY_PAPER)
+
 HAND_PATHS = {
     "lift": (8, np.array([0.05, -0.50, -0.10])),
     "push": (8, np.array([0.00, -0.10, -0.50])),

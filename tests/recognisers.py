@@ -1,23 +1,29 @@
-"""A small trained model for tests that need a classifier and not a good one."""
+"""Small trained models for tests that need a classifier and not a good one."""
 
 import tempfile
 from functools import cache
 from pathlib import Path
 
 from actum.recording import Recorder, Recording
-from model_trainer.samples import samples_from
+from model_trainer.samples import SegmentSample, samples_from
 from model_trainer.training import train
 from performers import HAND_PATHS, TINY, performance
 from som_classifier.model import Model
+from som_classifier.presets import Preset
 
 
 @cache
-def tiny_model() -> Model:
+def tiny_model(preset: Preset = TINY) -> Model:
     """Train on one synthetic person who does every action twice."""
+    return train(tiny_samples(), preset)
+
+
+@cache
+def tiny_samples() -> tuple[SegmentSample, ...]:
     skeletons, marks = performance([*HAND_PATHS] * 2)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "performance.mcap"
         with Recorder(path, person="1", source="test") as recorder:
             for message in [*skeletons, *marks]:
                 recorder.write(message)
-        return train(samples_from([Recording(path)]).usable, TINY)
+        return tuple(samples_from([Recording(path)]).usable)

@@ -16,9 +16,16 @@ def without_seq(messages: list[Message]) -> list[bytes]:
     return [packed(message.model_copy(update={"seq": None})) for message in messages]
 
 
+SMOOTHED: dict[type[Message], dict[str, object]] = {
+    Posture: {"motion": None, "upright": None},
+    Action: {"confidence": 0.0, "activations": {}, "familiarity": None, "trace": None},
+}
+"""What hangs on how long a stream has gone on, since motion, heading and posture are low-passed, left blank."""
+
+
 def lasting(messages: list[Message]) -> list[bytes]:
-    """What of messages does not hang on how long their stream has gone on: motion is low-passed."""
-    return without_seq([m.model_copy(update={"motion": None}) if isinstance(m, Posture) else m for m in messages])
+    """What of messages does not hang on how long their stream has gone on."""
+    return without_seq([message.model_copy(update=SMOOTHED.get(type(message), {})) for message in messages])
 
 
 class Wire:

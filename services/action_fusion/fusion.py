@@ -91,6 +91,8 @@ def _common(action: Action) -> dict[str, Any]:
         "end_ns": action.start_ns if action.end_ns is None else action.end_ns,
         "action": action.action,
         "confidence": action.confidence,
+        "unknown": action.unknown,
+        "missing_joints": action.missing_joints,
         "activations": action.activations,
         "held": None,
         "frames": action.frames,
@@ -162,8 +164,8 @@ def _absence(distances: dict[str, float], pointing: bool) -> str | None:
 
 
 def _sentence(action: Action, chosen: Evidence | None, result: str | None, absence: str | None) -> str:
-    """Write e.g. `push object 3 "cup", 0.21 m away, 0.94`."""
-    what = str(action.action)
+    """Write e.g. `push object 3 "cup", 0.21 m away, 0.94`; what may be no such action is said to be unknown."""
+    what = f"unknown, most like {action.action}" if action.unknown else str(action.action)
     if chosen is not None:
         what = f'{what} object {chosen.track.id} "{chosen.track.name}"'
     clauses = [what, result if chosen is not None else absence, f"{action.confidence:.2f}"]

@@ -5,7 +5,18 @@ from typing import Annotated
 import typer
 
 from actum import keys
-from actum_command import demo, doctor, importing_commands, learning, marks, scene, streaming, system, watching
+from actum_command import (
+    demo,
+    doctor,
+    importing_commands,
+    inspecting,
+    learning,
+    marks,
+    scene,
+    streaming,
+    system,
+    watching,
+)
 from actum_command.context import connect, console, fail
 
 app = typer.Typer(
@@ -24,6 +35,7 @@ app.command("play")(streaming.play)
 app.add_typer(importing_commands.app, name="import")
 app.command("train")(learning.train_command)
 app.command("evaluate")(learning.evaluate_command)
+app.command("inspect")(inspecting.inspect_command)
 app.command("simulate")(scene.simulate)
 app.command("scene")(scene.scene)
 

@@ -4,6 +4,7 @@ import signal
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -26,34 +27,45 @@ from model_trainer.evaluation import Evaluation, evaluate
 from model_trainer.samples import samples_from
 from model_trainer.training import train
 from sensor_gateway.simulator import ACTIONS
-from som_classifier.model import Model
-from som_classifier.presets import PAPER
+from som_classifier.presets import DEFAULT
+from som_classifier.storage import load_model
 
 ACTOR = 0
 TRAINING_SEED, TEST_SEED = 1, 2
-TRAINING_REPETITIONS, TEST_REPETITIONS = 12, 9
+TRAINING_REPETITIONS, PEOPLE = 12, 9
 READY_S = 30.0
 TERMINATED = 143
 LONGEST_SAMPLE_S = 4.5
 
 
 def demo(
-    repetitions: Annotated[int, typer.Option(min=1, help="test samples of each action")] = TEST_REPETITIONS,
+    people: Annotated[
+        int, typer.Option(min=0, help="how many other people do the test; 0: the one of the training")
+    ] = PEOPLE,
+    repetitions: Annotated[int, typer.Option(min=1, help="test samples of each action and person")] = 1,
 ) -> None:
-    """Train on 12 x 5 simulated samples, then recognise unseen ones live, beside the paper's own results."""
+    """Train on one simulated person, then recognise people it has never seen, live, beside the paper's own results."""
     here = settings()
     refuse_taken(here.connect)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))  # the processes it started end with it
+    actors = list(range(ACTOR + 1, ACTOR + 1 + people)) or [ACTOR]
     with tempfile.TemporaryDirectory(prefix="actum-demo-") as folder:
-        training, test, model = (Path(folder) / name for name in ("training.mcap", "test.mcap", "model.npz"))
-        write_examples(test, repetitions, ACTOR, TEST_SEED)
+        training, model = Path(folder) / "training.mcap", Path(folder) / "model.npz"
         learned = _train(training, model)
-        baseline = nearest_neighbour([Recording(training)], [Recording(test)])
-        score = _run_live(here, model, repetitions)
+        baseline = _baseline(training, Path(folder), actors, repetitions)
+        score = _run_live(here, model, actors, repetitions)
     console.print(table(score))
-    console.print(summary(score, learned, baseline), soft_wrap=True)
-    if len(score.events) < repetitions * len(ACTIONS):
-        fail(f"only {len(score.events)} of {repetitions * len(ACTIONS)} events came; see {log_file('demo', here)}")
+    console.print(summary(score, learned, baseline, people), soft_wrap=True)
+    expected = len(actors) * repetitions * len(ACTIONS)
+    if len(score.events) < expected:
+        fail(f"only {len(score.events)} of {expected} events came; see {log_file('demo', here)}")
+
+
+def _baseline(training: Path, folder: Path, actors: Sequence[int], repetitions: int) -> Evaluation:
+    tests = [folder / f"test-{actor}.mcap" for actor in actors]
+    for actor, test in zip(actors, tests, strict=True):
+        write_examples(test, repetitions, actor, TEST_SEED)
+    return nearest_neighbour([Recording(training)], [Recording(test) for test in tests])
 
 
 def _train(training: Path, model_file: Path) -> Evaluation:
@@ -61,19 +73,19 @@ def _train(training: Path, model_file: Path) -> Evaluation:
     write_examples(training, TRAINING_REPETITIONS, ACTOR, TRAINING_SEED)
     recordings = [Recording(training)]
     with bars() as progress:
-        model = train(samples_from(recordings, progress).usable, PAPER, 0, progress)
+        model = train(samples_from(recordings, progress).usable, DEFAULT, 0, progress)
         model.save(model_file)
-        learned = evaluate(Model.load(model_file), recordings, progress)
+        learned = evaluate(load_model(model_file), recordings, progress)
     console.print(
         f"trained on {learned.n} simulated samples of {len(ACTIONS)} actions in {time.monotonic() - began_s:.1f} s"
     )
     return learned
 
 
-def _run_live(here: ServiceSettings, model: Path, repetitions: int) -> Score:
-    """Start every process, and collect one event per sample."""
-    arguments = ["--source", "simulator", "--actor", str(ACTOR), "--seed", str(TEST_SEED)]
-    arguments += ["--repetitions", str(repetitions)]
+def _run_live(here: ServiceSettings, model: Path, actors: Sequence[int], repetitions: int) -> Score:
+    """Start every process, let one actor after the other act, and collect one event per sample."""
+    each = repetitions * len(ACTIONS)
+    score = Score(expected=len(actors) * each)
     with Supervisor(log_file("demo", here)) as supervisor:
         services = processes.services(here, model, processes.simulated_objects())
         for program in (processes.router(here), *services, processes.scene(here)):
@@ -84,11 +96,18 @@ def _run_live(here: ServiceSettings, model: Path, repetitions: int) -> Score:
                 f"router, {', '.join(processes.SERVICES)} and sensor_gateway run as processes of their own",
                 soft_wrap=True,
             )
-            score = Score()
             listening = client.listen(keys.everything(here.sensor))
-            supervisor.start(processes.gateway(here, arguments))
-            _collect(listening, score, repetitions * len(ACTIONS), supervisor)
+            for done, actor in enumerate(actors, start=1):
+                gateway = processes.gateway(here, _acting(actor, repetitions))
+                supervisor.start(gateway)
+                _collect(listening, score, done * each, supervisor)
+                supervisor.end(gateway)
     return score
+
+
+def _acting(actor: int, repetitions: int) -> list[str]:
+    chosen = {"source": "simulator", "actor": actor, "seed": TEST_SEED, "repetitions": repetitions}
+    return [word for name, value in chosen.items() for word in (f"--{name}", str(value))]
 
 
 def _wait_until_ready(client: Client) -> None:
@@ -100,9 +119,9 @@ def _wait_until_ready(client: Client) -> None:
     fail(f"the services are not all up after {READY_S:g} s; see {log_file('demo', settings())}")
 
 
-def _collect(listening: Listening, score: Score, expected: int, supervisor: Supervisor) -> None:
-    deadline_s = time.monotonic() + expected * LONGEST_SAMPLE_S + READY_S
-    while len(score.events) < expected and time.monotonic() < deadline_s:
+def _collect(listening: Listening, score: Score, until: int, supervisor: Supervisor) -> None:
+    deadline_s = time.monotonic() + (until - len(score.events)) * LONGEST_SAMPLE_S + READY_S
+    while len(score.events) < until and time.monotonic() < deadline_s:
         received = listening.take()
         if received is None:
             time.sleep(0.01)
@@ -112,4 +131,4 @@ def _collect(listening: Listening, score: Score, expected: int, supervisor: Supe
             score.truths[received.message.segment_id] = received.message
         elif isinstance(received.message, Event):
             score.events[received.message.segment_id] = received.message
-            console.print(line(score, received.message, expected), soft_wrap=True)
+            console.print(line(score, received.message), soft_wrap=True)

@@ -13,8 +13,13 @@ from model_trainer.evaluation import Evaluation, wilson_interval
 
 @dataclass
 class Score:
-    """What was done beside what was recognised."""
+    """What was done beside what was recognised.
 
+    Attributes:
+        expected: how many events there will be.
+    """
+
+    expected: int
     truths: dict[str, Truth] = field(default_factory=dict)
     events: dict[str, Event] = field(default_factory=dict)
 
@@ -32,7 +37,7 @@ class Score:
         return [name for name, truth in self.truths.items() if truth.action == action and name in self.events]
 
 
-def line(score: Score, event: Event, expected: int) -> str:
+def line(score: Score, event: Event) -> str:
     """Say one event, and whether it is right."""
     truth = score.truths.get(event.segment_id)
     if truth is None:
@@ -42,7 +47,7 @@ def line(score: Score, event: Event, expected: int) -> str:
         _verdict("action", score.action_right(event.segment_id)),
         _verdict("object", score.object_right(event.segment_id)),
     ]
-    return f"{len(score.events):3}/{expected}  {escape(done):16}  {'  '.join(verdict)}  {describe_event(event)}"
+    return f"{len(score.events):3}/{score.expected}  {escape(done):16}  {'  '.join(verdict)}  {describe_event(event)}"
 
 
 def table(score: Score) -> Table:
@@ -58,7 +63,7 @@ def table(score: Score) -> Table:
     return result
 
 
-def summary(score: Score, learned: Evaluation, baseline: Evaluation) -> str:
+def summary(score: Score, learned: Evaluation, baseline: Evaluation, people: int) -> str:
     """Say what the numbers mean, and what a much simpler method reaches."""
     right = sum(score.action_right(name) for action in TABLE_2 for name in score.of(action))
     tests = len(score.events)
@@ -67,8 +72,13 @@ def summary(score: Score, learned: Evaluation, baseline: Evaluation) -> str:
         f"training samples learned: {learned.correct} of {learned.n}; "
         f"unseen samples recognised: {right} of {tests} (95 % interval {low:.0%} to {high:.0%})\n"
         f"1-NN on the raw path of the hand, same samples: {baseline.correct} of {baseline.n}\n"
-        "Here: one simulated actor, preset paper, live processes. The paper: one person, a Kinect."
+        f"Here: learned from one simulated person, tested on {_tested(people)}, live processes. "
+        "The paper: one person, a Kinect."
     )
+
+
+def _tested(people: int) -> str:
+    return f"{people} others of other heights, tempos and handedness" if people else "the same person"
 
 
 def _verdict(what: str, right: bool) -> str:

@@ -14,8 +14,8 @@ from model_trainer.evaluation import Evaluation, evaluate, leave_one_person_out
 from model_trainer.report import report
 from model_trainer.samples import samples_from, select
 from model_trainer.training import TrainingError, train
-from som_classifier.model import Model, ModelError
-from som_classifier.presets import PRESETS, Preset
+from som_classifier.presets import DEFAULT, PRESETS, Preset
+from som_classifier.storage import ModelError, load_model
 
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of them")]
 PersonOption = Annotated[str | None, typer.Option(help="only these persons, e.g. 1,3,5")]
@@ -27,7 +27,7 @@ SeedOption = Annotated[int, typer.Option(min=0, help="the same seed makes the sa
 def train_command(
     files: Files,
     output: Annotated[Path, typer.Option("-o", "--output", help="the model file to write")],
-    preset: PresetOption = "paper",
+    preset: PresetOption = DEFAULT.name,
     person: PersonOption = None,
     seed: SeedOption = 0,
     with_excluded: AllOption = False,
@@ -57,7 +57,7 @@ def evaluate_command(
     by_person: Annotated[
         bool, typer.Option("--leave-one-person-out", help="train anew without each person, test on them")
     ] = False,
-    preset: PresetOption = "paper",
+    preset: PresetOption = DEFAULT.name,
     seed: SeedOption = 0,
     with_excluded: AllOption = False,
 ) -> None:
@@ -69,7 +69,7 @@ def evaluate_command(
                 recordings = chosen(files, person, with_excluded)
                 result = leave_one_person_out(recordings, preset_named(preset), seed, progress)
             else:
-                model = Model.load(files[0])
+                model = load_model(files[0])
                 result = evaluate(model, chosen(files[1:], person, with_excluded), progress)
     except (RecordingError, TrainingError, ModelError) as error:
         fail(str(error))

@@ -73,18 +73,15 @@ class Supervisor:
                 child.restarts += 1
         return lines
 
+    def end(self, program: Program) -> None:
+        """Stop one program for good."""
+        ending = [child for child in self._children if child.program is program]
+        self._children = [child for child in self._children if child.program is not program]
+        _stop(ending)
+
     def stop(self) -> None:
         """Ask every process to end, and make those that do not."""
-        for child in self._children:
-            if child.process.poll() is None:
-                child.process.send_signal(signal.SIGTERM)
-        deadline_s = time.monotonic() + TERM_S
-        for child in self._children:
-            try:
-                child.process.wait(timeout=max(deadline_s - time.monotonic(), 0.01))
-            except subprocess.TimeoutExpired:
-                child.process.kill()
-                child.process.wait()
+        _stop(self._children)
         self._children.clear()
         if self._log:
             self._log.close()
@@ -98,3 +95,16 @@ class Supervisor:
             stdout=self._log,
             stderr=subprocess.STDOUT if self._log else None,
         )
+
+
+def _stop(children: Sequence[_Child]) -> None:
+    for child in children:
+        if child.process.poll() is None:
+            child.process.send_signal(signal.SIGTERM)
+    deadline_s = time.monotonic() + TERM_S
+    for child in children:
+        try:
+            child.process.wait(timeout=max(deadline_s - time.monotonic(), 0.01))
+        except subprocess.TimeoutExpired:
+            child.process.kill()
+            child.process.wait()

@@ -15,6 +15,7 @@ from model_trainer.progress import Progress, silent
 from pose_preprocessor.node import PosePreprocessor
 from som_classifier.model import Model
 from som_classifier.segments import Closed, Segmenter
+from som_classifier.streams import Frame
 
 Array = NDArray[np.float64]
 STREAMS = (keys.SKELETON, keys.SEGMENT)
@@ -25,13 +26,19 @@ class SegmentSample:
     """One labelled action: its usable frames as the classifier gets them.
 
     Attributes:
-        joints: (n, 15, 3), scaled, egocentric.
+        stamps_ns: (n,), rising.
+        joints: (n, 15, 3), scaled, egocentric, NaN where missing.
         motion: (n, 5), metres since the frame before.
+        postures: (n, 15, 3), scaled, upright, low-passed.
+        velocities: (n, 15, 3), of the same.
     """
 
     label: str
+    stamps_ns: NDArray[np.int64]
     joints: Array
     motion: Array
+    postures: Array
+    velocities: Array
     person: str
     file: str
     segment_id: str
@@ -142,11 +149,24 @@ def _collect(samples: Samples, recording: Recording, closed: Closed) -> None:
     if closed.label is None:
         return
     file = str(recording.path)
-    joints = [frame.joints for frame in closed.frames if frame.joints is not None]
-    motion = [frame.motion for frame in closed.frames if frame.motion is not None]
-    if closed.reason or len(joints) < Model.min_frames:
-        reason = closed.reason or f"{len(joints)} usable frames, at least {Model.min_frames} are needed"
+    frames = [frame for frame in closed.frames if frame.valid]
+    if closed.reason or len(frames) < Model.min_frames:
+        reason = closed.reason or f"{len(frames)} usable frames, at least {Model.min_frames} are needed"
         samples.unusable.append(Unusable(file, closed.segment_id, reason))
         return
-    sample = SegmentSample(closed.label, np.stack(joints), np.stack(motion), recording.person, file, closed.segment_id)
-    samples.usable.append(sample)
+    samples.usable.append(_sample(closed.label, frames, recording.person, file, closed.segment_id))
+
+
+def _sample(label: str, frames: Sequence[Frame], person: str, file: str, segment_id: str) -> SegmentSample:
+    movements = [frame.movement for frame in frames if frame.movement is not None]
+    return SegmentSample(
+        label,
+        np.array([frame.stamp_ns for frame in frames]),
+        np.array([frame.joints for frame in frames]),
+        np.array([frame.motion for frame in frames]),
+        np.array([movement.posture for movement in movements]),
+        np.array([movement.velocity for movement in movements]),
+        person,
+        file,
+        segment_id,
+    )

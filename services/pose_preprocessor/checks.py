@@ -1,4 +1,7 @@
-"""Which frames can be used: no missing, repeated, non-finite, coincident or absurd joints."""
+"""Which frames can be used: none with repeated, non-finite, coincident or absurd joints, or without a trunk."""
+
+import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +12,9 @@ from actum.skeletons import JOINTS
 
 _PARENTS = np.array([parent for parent, _, _ in BONES])
 _CHILDREN = np.array([child for _, child, _ in BONES])
+_NEEDED = frozenset({"torso", "neck"})
+_PAIRS = (frozenset({"left_hip", "right_hip"}), frozenset({"left_shoulder", "right_shoulder"}))
+_UNKNOWN = [math.nan] * 3
 
 
 class BadFrameError(ValueError):
@@ -19,33 +25,44 @@ class BadFrameError(ValueError):
         self.kind = kind
 
 
-def measured(joints: list[Joint], reach_limit_m: float, bone_limit_m: float) -> NDArray[np.float64]:
-    """Return usable joints as an array of shape (15, 3), camera frame, metres.
+def missing_joints(joints: list[Joint]) -> list[str]:
+    """Name the joints that the source lacks."""
+    return [name for name, joint in zip(JOINTS, joints, strict=True) if joint is None]
+
+
+def measured(
+    joints: list[Joint], missing: Sequence[str], reach_limit_m: float, bone_limit_m: float
+) -> NDArray[np.float64]:
+    """Return usable joints as an array of shape (15, 3), camera frame, metres; NaN where one is missing.
 
     Raises:
-        BadFrameError: of kind `missing_joint`, `not_finite`, `absurd_joint` or `absurd_bone`.
+        BadFrameError: of kind `missing_joint` (no torso, no neck, or neither both hips nor both shoulders),
+            `not_finite`, `absurd_joint` or `absurd_bone`.
     """
-    missing = [name for name, joint in zip(JOINTS, joints, strict=True) if joint is None]
     if missing:
-        raise BadFrameError("missing_joint", f"no {', '.join(missing)}")
+        _require_trunk(missing)
+        joints = [_UNKNOWN if joint is None else joint for joint in joints]
     array = np.array(joints, dtype=np.float64)
     if not (np.abs(array) <= reach_limit_m).all():
-        raise _beyond(array, reach_limit_m)
+        _require_near(array, missing, reach_limit_m)
     bones = array[_CHILDREN] - array[_PARENTS]
     lengths2 = np.einsum("ij,ij->i", bones, bones)
-    if lengths2.max() > bone_limit_m**2:
-        child = JOINTS[int(_CHILDREN[int(np.argmax(lengths2))])]
+    if np.fmax.reduce(lengths2) > bone_limit_m**2:
+        child = JOINTS[int(_CHILDREN[int(np.nanargmax(lengths2))])]
         raise BadFrameError("absurd_bone", f"the bone to {child} is longer than {bone_limit_m:g} m")
     return array
 
 
-def _beyond(array: NDArray[np.float64], reach_limit_m: float) -> BadFrameError:
-    finite = np.isfinite(array).all(axis=1)
-    if not finite.all():
-        return BadFrameError("not_finite", f"{_first(~finite)} is not a finite position")
-    far = (np.abs(array) > reach_limit_m).any(axis=1)
-    return BadFrameError("absurd_joint", f"{_first(far)} is more than {reach_limit_m:g} m away")
+def _require_trunk(missing: Sequence[str]) -> None:
+    if not _NEEDED.isdisjoint(missing) or not any(pair.isdisjoint(missing) for pair in _PAIRS):
+        raise BadFrameError("missing_joint", f"no {', '.join(missing)}")
 
 
-def _first(bad: NDArray[np.bool_] | np.bool_) -> str:
-    return JOINTS[int(np.argmax(bad))]
+def _require_near(array: NDArray[np.float64], missing: Sequence[str], reach_limit_m: float) -> None:
+    given = [i for i, name in enumerate(JOINTS) if name not in missing]
+    for i in given:
+        if not np.isfinite(array[i]).all():
+            raise BadFrameError("not_finite", f"{JOINTS[i]} is not a finite position")
+    for i in given:
+        if np.abs(array[i]).max() > reach_limit_m:
+            raise BadFrameError("absurd_joint", f"{JOINTS[i]} is more than {reach_limit_m:g} m away")

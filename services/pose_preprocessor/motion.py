@@ -1,5 +1,7 @@
 """How much each body part moves: what attention goes by (paper, section 2.1)."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,7 +12,8 @@ Array = NDArray[np.float64]
 
 GAP_NS = SECOND_NS // 2
 TIME_CONSTANT_S = 0.3
-_PART_MEANS = np.array([[(joint in part) / len(part) for joint in range(len(INDEX))] for part in PARTS.values()])
+_IN_PART = np.array([[joint in part for joint in range(len(INDEX))] for part in PARTS.values()], dtype=np.float64)
+_PART_SIZES = _IN_PART.sum(axis=1)
 _TORSO = INDEX["torso"]
 
 
@@ -32,9 +35,11 @@ class MotionFilter:
     def step(self, stamp_ns: int, joints: Array) -> list[float]:
         """Return each part's mean displacement (m) since the frame before; 0 at first and after a gap.
 
+        The mean is over the joints known in this frame and the one before; 0 where there is none.
+
         Args:
             stamp_ns: rising from call to call.
-            joints: (15, 3), camera frame, metres.
+            joints: (15, 3), camera frame, metres; NaN where unknown.
         """
         relative = joints - joints[_TORSO]
         before_ns, self._stamp_ns = self._stamp_ns, stamp_ns
@@ -44,7 +49,16 @@ class MotionFilter:
         elapsed_ns = stamp_ns - before_ns
         share = 1.0 - float(np.exp(-elapsed_ns / SECOND_NS / TIME_CONSTANT_S))
         steps = share * (relative - self._smooth)
-        self._smooth = self._smooth + steps
         lengths = np.sqrt(np.einsum("ij,ij->i", steps, steps))
-        motion: list[float] = (_PART_MEANS @ lengths).tolist()
+        if math.isnan(lengths.sum()):
+            self._smooth = np.where(np.isnan(steps), relative, self._smooth + steps)
+            return _means_where_known(lengths)
+        self._smooth = self._smooth + steps
+        motion: list[float] = (_IN_PART @ lengths / _PART_SIZES).tolist()
         return motion
+
+
+def _means_where_known(lengths: Array) -> list[float]:
+    known = ~np.isnan(lengths)
+    means: list[float] = (_IN_PART @ np.where(known, lengths, 0.0) / np.maximum(_IN_PART @ known, 1.0)).tolist()
+    return means

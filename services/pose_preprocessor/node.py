@@ -1,5 +1,6 @@
 """The preprocessor's pure step: each agent of a skeleton frame becomes one posture."""
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -9,13 +10,14 @@ from actum import geometry, keys
 from actum.messages import Agent, Joint, Message, Posture, Skeleton
 from actum.node import Tally, Tick
 from actum.stamps import Order, StampGuard
-from pose_preprocessor.checks import BadFrameError, measured
-from pose_preprocessor.motion import MotionFilter
+from pose_preprocessor.checks import BadFrameError, measured, missing_joints
+from pose_preprocessor.missing import MissingLately
+from pose_preprocessor.person import Person
 from pose_preprocessor.settings import Settings
 
 
 class PosePreprocessor:
-    """Rejects bad frames, expresses the others in the actor's own frame, scaled and metric (paper, section 2.1)."""
+    """Rejects bad frames, expresses the others in the actor's own frames, scaled and metric (paper, section 2.1)."""
 
     name = "pose_preprocessor"
     inputs = (keys.SKELETON,)
@@ -24,8 +26,8 @@ class PosePreprocessor:
         self.tally = Tally()
         self._settings = settings or Settings()
         self._order = StampGuard()
-        self._previous: dict[int, list[Joint]] = {}
-        self._motion: dict[int, MotionFilter] = {}
+        self._missing = MissingLately(self.tally)
+        self._persons: dict[int, Person] = {}
         self._previous_ns: int | None = None
         self._last_seq: int | None = None
 
@@ -38,12 +40,12 @@ class PosePreprocessor:
             self.tally.reject("stale_stamp", f"skeleton at {message.stamp_ns} after {self._order.newest_ns}")
             return []
         if order is Order.RESTART:
-            self._previous.clear()
-            self._motion.clear()
+            self._persons.clear()
             self._previous_ns = None
         postures = self._postures(message, self._missed(message, order))
         self._previous_ns = message.stamp_ns
         self._forget_the_gone(message)
+        self._missing.report(message.stamp_ns)
         return postures
 
     def _postures(self, message: Skeleton, missed: int) -> list[Posture]:
@@ -62,9 +64,9 @@ class PosePreprocessor:
     def _forget_the_gone(self, frame: Skeleton) -> None:
         """Let go of those who have left: a tracker that numbers people anew at each return would pile them up."""
         present = {agent.agent for agent in frame.agents}
-        for agent in self._motion.keys() - present:
-            if self._motion[agent].is_over(frame.stamp_ns):
-                del self._motion[agent], self._previous[agent]
+        for agent in self._persons.keys() - present:
+            if self._persons[agent].motion.is_over(frame.stamp_ns):
+                del self._persons[agent]
 
     def _distinct_agents(self, message: Skeleton) -> list[Agent]:
         agents = {agent.agent: agent for agent in message.agents}
@@ -84,28 +86,34 @@ class PosePreprocessor:
             return self._invalid(frame, agent.agent, f"{kind}: {error}", missed, present)
 
     def _valid(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
-        joints = measured(agent.joints, self._settings.reach_limit_m, self._settings.bone_limit_m)
-        previous = self._previous.get(agent.agent)
-        if agent.joints == previous:
-            raise BadFrameError("repeated_joints", "the same joints as in the frame before")
+        missing = missing_joints(agent.joints)
+        person = self._persons.setdefault(agent.agent, Person())
+        joints = self._usable(agent, person, missing)
         both = np.stack([joints, geometry.scaled(joints)])
         egos = geometry.ego_from_camera(both)
         metric_ego, scaled_ego = geometry.apply(egos, both)
-        self._previous[agent.agent] = agent.joints
-        motion = self._motion.setdefault(agent.agent, MotionFilter()).step(frame.stamp_ns, joints)
+        person.joints = agent.joints
+        self._missing.note(frame.stamp_ns, missing)
         return Posture(
             stamp_ns=frame.stamp_ns,
             sensor=frame.sensor,
             agent=agent.agent,
             joints_m=_listed(metric_ego),
             joints=_listed(scaled_ego),
+            upright=_listed(geometry.upright(both[1], *person.heading.step(frame.stamp_ns, joints))),
             ego_from_camera=geometry.flat(egos[0]),
-            motion=motion,
+            motion=person.motion.step(frame.stamp_ns, joints),
             agents=present,
             previous_ns=self._previous_ns,
             missed=missed,
             session_id=frame.session_id,
         )
+
+    def _usable(self, agent: Agent, person: Person, missing: list[str]) -> NDArray[np.float64]:
+        joints = measured(agent.joints, missing, self._settings.reach_limit_m, self._settings.bone_limit_m)
+        if agent.joints == person.joints:
+            raise BadFrameError("repeated_joints", "the same joints as in the frame before")
+        return joints
 
     def _invalid(self, frame: Skeleton, agent: int, reason: str, missed: int, present: list[int]) -> Posture:
         return Posture(
@@ -116,6 +124,7 @@ class PosePreprocessor:
             agent=agent,
             joints_m=None,
             joints=None,
+            upright=None,
             ego_from_camera=None,
             motion=None,
             agents=present,
@@ -127,4 +136,6 @@ class PosePreprocessor:
 
 def _listed(joints: NDArray[np.float64]) -> list[Joint]:
     listed: list[Joint] = joints.tolist()
+    if math.isnan(joints.sum()):
+        return [None if unknown else joint for joint, unknown in zip(listed, np.isnan(joints[:, 0]), strict=True)]
     return listed

@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from actum.node import Tally
-from som_classifier.model import Model, ModelError
+from som_classifier.model import Model
+from som_classifier.storage import ModelError, load_model
 
 
 class ModelFile:
@@ -24,7 +25,7 @@ class ModelFile:
             return None
         self._seen = version
         try:
-            return Model.load(self._path)
+            return load_model(self._path)
         except ModelError as error:
             tally.reject("bad_model", str(error))
             return None

@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 from actum import keys
 from actum.messages import Action, Message, Posture, Segment, Tensor
 from actum.node import Tally, Tick
-from som_classifier.model import Model, Recognition
+from actum.skeletons import JOINTS
+from som_classifier.model import Model
 from som_classifier.model_file import ModelFile
+from som_classifier.recognition import Recognition
 from som_classifier.segments import Closed, OpenSegment, Segmenter
 from som_classifier.settings import Settings
 from som_classifier.streams import Frame
@@ -37,9 +39,9 @@ class SomClassifier:
     ) -> None:
         self.tally = Tally(state="running" if model else "no model")
         self._segmenter = Segmenter(self.tally)
-        self._model = model
+        self._model: Model | None = None
         if model is not None:
-            self.tally.details["model"] = model.id
+            self._use(model)
         self._source = source
         self._publish_trace = publish_trace
         self._ticks = 0
@@ -74,12 +76,13 @@ class SomClassifier:
 
     def _reload(self) -> None:
         model = self._source.poll(self.tally) if self._source else None
-        if model is None:
-            return
+        if model is not None:
+            self._use(model)
+
+    def _use(self, model: Model) -> None:
         self._model, self.tally.state = model, "running"
         self.tally.details["model"] = model.id
-        for frame in self._segmenter.frames:
-            frame.cells = None
+        self._segmenter.use(lambda: model.encoder().encode)
 
     def _posture(self, posture: Posture) -> Iterator[Action]:
         frame, closed = self._segmenter.posture(posture)
@@ -91,7 +94,7 @@ class SomClassifier:
 
     def _partial(self, segment: OpenSegment, posture: Posture) -> Iterator[Action]:
         frames = self._segmenter.frames_of(segment)
-        recognition = self._recognise(frames)
+        recognition = self._recognise(frames, complete=False)
         if recognition is not None and segment.start_ns is not None:
             yield Action(
                 stamp_ns=posture.stamp_ns,
@@ -108,18 +111,17 @@ class SomClassifier:
                 frames=sum(frame.valid for frame in frames),
                 missed=sum(frame.missed for frame in frames),
                 hand=segment.hand,
+                missing_joints=_missing(frames),
             )
 
-    def _recognise(self, frames: list[Frame]) -> Recognition | None:
-        model = self._model
-        seen = [(frame, frame.motion) for frame in frames if frame.motion is not None]
-        if model is None or len(seen) < model.min_frames:
+    def _recognise(self, frames: list[Frame], complete: bool) -> Recognition | None:
+        usable = [frame for frame in frames if frame.valid]
+        if self._model is None or len(usable) < self._model.min_frames:
             return None
-        cells = np.array([_cells(model, frame) for frame, _ in seen])
-        return model.recognise(cells, np.array([motion for _, motion in seen]))
+        return self._model.recognise(usable, complete)
 
     def _answer(self, closed: Closed) -> Action:
-        recognition = None if closed.reason else self._recognise(closed.frames)
+        recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
         reason = closed.reason or (None if recognition else self._why_not(closed))
         if reason:
             self.tally.reject("rejected_segment", f"{closed.segment_id}: {reason}")
@@ -140,6 +142,9 @@ class SomClassifier:
             frames=sum(frame.valid for frame in closed.frames),
             missed=closed.missed,
             hand=closed.hand,
+            unknown=recognition.unknown if recognition else False,
+            familiarity=recognition.familiarity if recognition else None,
+            missing_joints=_missing(closed.frames),
             trace=_tensor(recognition.trace) if recognition and self._publish_trace else None,
         )
 
@@ -150,12 +155,9 @@ class SomClassifier:
         return f"too few frames: {frames}, at least {self._model.min_frames} are needed"
 
 
-def _cells(model: Model, frame: Frame) -> NDArray[np.intp]:
-    """Look up a frame's best-matching units, once."""
-    if frame.cells is None:
-        assert frame.joints is not None
-        frame.cells = model.cells(frame.joints)
-    return frame.cells
+def _missing(frames: list[Frame]) -> list[str]:
+    """Name the joints that some frame lacked, in the usual order."""
+    return [JOINTS[joint] for joint in sorted({joint for frame in frames for joint in frame.missing})]
 
 
 def _tensor(array: NDArray[np.float64]) -> Tensor:

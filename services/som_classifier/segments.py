@@ -5,12 +5,13 @@ after two seconds of waiting for it. Which frames belong to it is decided by sta
 """
 
 from collections import OrderedDict, deque
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from actum.messages import Hand, Posture, Segment
 from actum.node import Tally, Tick
 from actum.stamps import Order
-from som_classifier.streams import LONGEST_NS, SKEW_NS, Frame, Streams
+from som_classifier.streams import LONGEST_NS, SKEW_NS, Encode, Frame, Streams
 
 REMEMBERED = 10_000
 LATE_FOR = 16
@@ -76,10 +77,9 @@ class Segmenter:
         self._late: deque[tuple[int, range]] = deque(maxlen=LATE_FOR)
         self._session: str | None = None
 
-    @property
-    def frames(self) -> list[Frame]:
-        """List every remembered frame."""
-        return list(self._streams)
+    def use(self, encoders: Callable[[], Encode]) -> None:
+        """Encode every agent's frames by an encoder of its own, those remembered and those to come."""
+        self._streams.use(encoders)
 
     def posture(self, posture: Posture) -> tuple[Frame | None, list[Closed]]:
         """Take the next posture; return its frame, None if it is stale, and the segments it closes."""

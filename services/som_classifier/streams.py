@@ -2,30 +2,39 @@
 
 import math
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Posture
+from actum.messages import Joint, Posture
 from actum.node import SECOND_NS
+from actum.skeletons import INDEX
 from actum.stamps import Order, StampGuard
+from som_classifier.movement import Movement, MovementFilter
+
+Array = NDArray[np.float64]
+Encode = Callable[["Frame"], Any]
+"""Makes of a valid frame what a model needs; called with one agent's frames in order."""
 
 LONGEST_NS = 60 * SECOND_NS
 SKEW_NS = 2 * SECOND_NS
 MEMORY_NS = LONGEST_NS + SKEW_NS
 FURTHEST_M = 100.0
+TORSO = INDEX["torso"]
+NOWHERE = (np.nan, np.nan, np.nan)
 
 
 @dataclass
 class Frame:
     """One posture as the recogniser needs it.
 
-    `joints` (15, 3) scaled egocentric and `motion` (5,) are None where the frame is not valid; `previous_ns` is
-    the captured frame before it, of whatever agents; `missed` counts the frames lost just before it; `cells` (5,)
-    are its best-matching units once a model has seen it.
+    `joints` (15, 3) scaled egocentric, `motion` (5,) and `movement` are None where the frame is not valid, joints NaN
+    where the source lacks them, which `missing` counts out; `previous_ns` is the captured frame before it, of whatever
+    agents; `missed` counts the frames lost just before it; `code` is what the model in use makes of it.
     """
 
     stamp_ns: int
@@ -35,7 +44,9 @@ class Frame:
     distance_m: float
     joints: NDArray[np.float64] | None
     motion: NDArray[np.float64] | None
-    cells: NDArray[np.intp] | None = None
+    movement: Movement | None = None
+    missing: tuple[int, ...] = ()
+    code: Any = None
 
     @property
     def valid(self) -> bool:
@@ -43,29 +54,46 @@ class Frame:
         return self.joints is not None
 
 
-def frame_of(posture: Posture, lost: int) -> Frame:
+def frame_of(posture: Posture, lost: int, movement: MovementFilter) -> Frame:
     """Take what is needed from a message; `lost` frames are missing before it on its own key."""
-    joints, motion = _measured(posture)
-    return Frame(
+    measured = _measured(posture)
+    frame = Frame(
         posture.stamp_ns,
         posture.previous_ns,
         tuple(posture.agents),
         posture.missed + lost,
         _distance_m(posture),
-        joints,
-        motion,
+        None,
+        None,
     )
+    if measured is not None:
+        frame.joints, frame.motion, upright = measured
+        frame.movement = movement.step(posture.stamp_ns, upright)
+        frame.missing = tuple(np.flatnonzero(np.isnan(upright[:, 0])).tolist())
+    return frame
 
 
-def _measured(posture: Posture) -> tuple[NDArray[np.float64], NDArray[np.float64]] | tuple[None, None]:
-    """Read joints and motion, both or neither: none where one is missing, not finite or absurd."""
-    if not posture.valid or posture.joints is None or posture.motion is None or None in posture.joints:
-        return None, None
-    joints = np.array(posture.joints, dtype=np.float64)
-    motion = np.array(posture.motion, dtype=np.float64)
-    if not (np.abs(joints) < FURTHEST_M).all() or not (np.abs(motion) < FURTHEST_M).all():
-        return None, None
-    return joints, motion
+def _measured(posture: Posture) -> tuple[Array, Array, Array] | None:
+    """Read joints, motion and upright joints: none where one is not finite or absurd, or all are missing."""
+    if not posture.valid or posture.joints is None or posture.motion is None:
+        return None
+    joints, motion = points(posture.joints), np.array(posture.motion, dtype=np.float64)
+    upright = joints - joints[TORSO] if posture.upright is None else points(posture.upright)
+    sound = _is_sound(posture.joints, joints) and _is_sound(posture.upright or posture.joints, upright)
+    return (joints, motion, upright) if sound and (np.abs(motion) < FURTHEST_M).all() else None
+
+
+def _is_sound(listed: Sequence[Joint], read: Array) -> bool:
+    """Tell whether there are joints, each finite and near."""
+    missing = listed.count(None)
+    return missing < len(listed) and np.count_nonzero(np.abs(read) < FURTHEST_M) == read.size - 3 * missing
+
+
+def points(joints: Sequence[Joint]) -> Array:
+    """Return joints as (15, 3), NaN where one is missing."""
+    if None not in joints:
+        return np.array(joints, dtype=np.float64)
+    return np.array([NOWHERE if joint is None else joint for joint in joints], dtype=np.float64)
 
 
 def _distance_m(posture: Posture) -> float:
@@ -78,10 +106,18 @@ def _distance_m(posture: Posture) -> float:
 class Stream:
     """One agent's postures, stamps rising."""
 
-    def __init__(self) -> None:
+    def __init__(self, encode: Encode | None = None) -> None:
         self._frames: deque[Frame] = deque()
         self._order = StampGuard()
         self._last_seq: int | None = None
+        self._movement = MovementFilter()
+        self._encode = encode
+
+    def use(self, encode: Encode) -> None:
+        """Encode all frames anew, and those to come."""
+        self._encode = encode
+        for frame in self._frames:
+            self._add_code(frame)
 
     @property
     def newest_ns(self) -> int:
@@ -95,11 +131,16 @@ class Stream:
             return order, None
         if order is Order.RESTART:
             self._frames.clear()
-        frame = frame_of(posture, self._lost(posture.seq, order))
+        frame = frame_of(posture, self._lost(posture.seq, order), self._movement)
+        self._add_code(frame)
         self._frames.append(frame)
         while self._frames[0].stamp_ns < frame.stamp_ns - MEMORY_NS:
             self._frames.popleft()
         return order, frame
+
+    def _add_code(self, frame: Frame) -> None:
+        if self._encode is not None and frame.valid:
+            frame.code = self._encode(frame)
 
     def _lost(self, seq: int | None, order: Order) -> int:
         last, self._last_seq = self._last_seq, seq
@@ -137,7 +178,14 @@ class Streams:
 
     def __init__(self) -> None:
         self._streams: dict[int, Stream] = {}
+        self._encoders: Callable[[], Encode] | None = None
         self.newest_ns: int | None = None
+
+    def use(self, encoders: Callable[[], Encode]) -> None:
+        """Encode every agent's frames by an encoder of its own, those remembered and those to come."""
+        self._encoders = encoders
+        for stream in self._streams.values():
+            stream.use(encoders())
 
     def __iter__(self) -> Iterator[Frame]:
         return chain.from_iterable(self._streams.values())
@@ -153,7 +201,9 @@ class Streams:
 
     def add(self, posture: Posture) -> tuple[Order, Frame | None]:
         """Take the next posture of its agent, as `Stream.add` does."""
-        order, frame = self._streams.setdefault(posture.agent, Stream()).add(posture)
+        if posture.agent not in self._streams:
+            self._streams[posture.agent] = Stream(self._encoders() if self._encoders else None)
+        order, frame = self._streams[posture.agent].add(posture)
         if frame is not None:
             self._advance(posture.stamp_ns)
         return order, frame

@@ -45,6 +45,13 @@ class SupervisedLayer:
         weights = rng.random((actions, inputs))
         return cls(weights / np.linalg.norm(weights, axis=1, keepdims=True))
 
+    @classmethod
+    def of_means(cls, inputs: Array, targets: NDArray[np.intp], actions: int) -> "SupervisedLayer":
+        """Make a layer whose neurons point at the mean of their own inputs (n, dim), evenly where they have none."""
+        sums: Array = np.eye(actions)[targets].T @ inputs
+        sums[~sums.any(axis=1)] = 1.0
+        return cls(sums / np.linalg.norm(sums, axis=1, keepdims=True))
+
     def cosines(self, x: Array) -> Array:
         """Return each neuron's activity x·w / ‖x‖‖w‖, shape (actions,)."""
         cosines: Array = self.weights @ (x / np.sqrt(x @ x))

@@ -1,7 +1,10 @@
 """Rigid transforms (4x4, `b_from_a` maps coordinates in a to coordinates in b) and the egocentric frame.
 
-The egocentric frame is right-handed: x to the actor's left, y up along the trunk, z forward.
+The egocentric frame is right-handed: x to the actor's left, y up along the trunk, z forward. The upright frame is
+too, with y up along gravity and z horizontal. An unknown joint is NaN, and stays NaN.
 """
+
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +37,9 @@ BONES: tuple[tuple[int, int, float], ...] = tuple(
 _PARENTS = np.array([parent for parent, _, _ in BONES])
 _CHILDREN = np.array([child for _, child, _ in BONES])
 _LENGTHS_M = np.array([length for _, _, length in BONES])
-_SMALLEST_M = 1e-3
+SMALLEST_M = 1e-3
+"""What is shorter has no direction."""
+
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 
 
@@ -84,16 +89,22 @@ def ego_from_camera(joints: Array) -> Array:
     """Build the paper's egocentric frame from hips and torso (section 2.1, figure 3).
 
     The origin is the projection of the torso on the line through the hips; the axes lie along the hip line,
-    from the origin to the torso, and along the normal of their plane.
+    from the origin to the torso, and along the normal of their plane. Where a hip is unknown, the shoulders' line
+    moved down along the trunk stands in for the hips'.
 
     Args:
-        joints: (…, 15, 3) in any right-handed frame, here called camera; the result is (…, 4, 4).
+        joints: (…, 15, 3) in any right-handed frame, here called camera; the result is (…, 4, 4). Torso, and either
+            both hips or both shoulders and neck are known.
 
     Raises:
-        DegenerateError: the hips coincide, or the torso lies on their line.
+        DegenerateError: the hips, or the shoulders in their place, coincide, or the torso lies on their line.
     """
     right_hip, left_hip, torso = (joints[..., INDEX[name], :] for name in ("right_hip", "left_hip", "torso"))
-    left = _unit(left_hip - right_hip, "the hips coincide")
+    unknown = np.isnan(right_hip + left_hip)
+    if unknown.any():
+        right, left = _below(joints)
+        right_hip, left_hip = np.where(unknown, right, right_hip), np.where(unknown, left, left_hip)
+    left = _unit(left_hip - right_hip, "the hips, or the shoulders in their place, coincide")
     origin = right_hip + ((torso - right_hip) * left).sum(axis=-1, keepdims=True) * left
     up = _unit(torso - origin, "the torso lies on the line through the hips")
     ego = np.zeros((*joints.shape[:-2], 4, 4))
@@ -106,20 +117,58 @@ def ego_from_camera(joints: Array) -> Array:
 def scaled(joints: Array) -> Array:
     """Give each bone its standard length, keeping its direction, walking out from the torso.
 
+    A joint is known in the result where every joint on its way from the torso is.
+
+    Args:
+        joints: (15, 3); the torso is known.
+
     Raises:
         DegenerateError: a bone has no length, so that its direction is undefined.
     """
     bones = joints[_CHILDREN] - joints[_PARENTS]
     lengths = np.sqrt(np.einsum("ij,ij->i", bones, bones))
-    if lengths.min() < _SMALLEST_M:
+    if np.fmin.reduce(lengths) < SMALLEST_M:
         raise DegenerateError("two joined joints coincide")
-    result: Array = joints[INDEX["torso"]] + _WALK @ (bones * (_LENGTHS_M / lengths)[:, None])
+    standard = bones * (_LENGTHS_M / lengths)[:, None]
+    walked = _walked_where_known(standard) if math.isnan(lengths.sum()) else _WALK @ standard
+    result: Array = joints[INDEX["torso"]] + walked
     return result
+
+
+def upright(joints: Array, left_x: float, left_z: float) -> Array:
+    """Express joints (15, 3) relative to the torso, along the actor's left, up (camera -y) and forward = left x up.
+
+    Args:
+        joints: in the camera frame.
+        left_x: of the horizontal unit vector to the actor's left, along camera x.
+        left_z: of the same, along camera z.
+    """
+    upright_from_camera = np.array([[left_x, 0.0, left_z], [0.0, -1.0, 0.0], [left_z, 0.0, -left_x]])
+    result: Array = (joints - joints[INDEX["torso"]]) @ upright_from_camera.T
+    return result
+
+
+def _walked_where_known(bones: Array) -> Array:
+    unknown = np.isnan(bones[:, 0])
+    walked: Array = _WALK @ np.where(unknown[:, None], 0.0, bones)
+    walked[_WALK @ unknown > 0] = np.nan
+    return walked
+
+
+def _below(joints: Array) -> tuple[Array, Array]:
+    """Move the right and the left shoulder down the trunk, as far below the torso as the neck is above it.
+
+    That is 0.24 m for the standard bones, where hips are; of their distance only the direction matters.
+    """
+    names = ("right_shoulder", "left_shoulder", "neck", "torso")
+    right, left, neck, torso = (joints[..., INDEX[name], :] for name in names)
+    middle, half = 2 * torso - neck, (left - right) / 2
+    return middle - half, middle + half
 
 
 def _unit(vectors: Array, problem: str) -> Array:
     lengths: Array = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True))
-    if lengths.min() < _SMALLEST_M:
+    if lengths.min() < SMALLEST_M:
         raise DegenerateError(problem)
     return vectors / lengths
 

@@ -90,11 +90,13 @@ class Image(Message):
 
 
 class Posture(Message):
-    """One agent's posture, egocentric (x left, y up, z forward).
+    """One agent's posture, egocentric (x left, y up, z forward); a joint that the source lacks is null.
 
-    `joints_m` are the measured joints in metres, `joints` the same posture with standard bone lengths.
+    `joints_m` are the measured joints in metres, `joints` the same posture with standard bone lengths: a joint is null
+    there where one on its way from the torso is. `upright` is `joints` again, relative to the torso, with y up along
+    gravity, z horizontal, and the actor's heading smoothed over a second.
     `motion` is the mean displacement (m) of each part of `skeletons.PARTS` since the last valid frame, of joints
-    relative to the torso and low-passed.
+    relative to the torso and low-passed; 0 for a part of which no joint is known.
     `agents` names every agent of the captured frame, `previous_ns` is the stamp of the captured frame before it
     (its postures may be on other agents' keys), `missed` counts the frames lost just before this one.
     """
@@ -103,6 +105,7 @@ class Posture(Message):
     agent: AgentId
     joints_m: Joints | None
     joints: Joints | None
+    upright: Joints | None = None
     ego_from_camera: Transform | None
     motion: Annotated[list[FiniteFloat], Field(min_length=5, max_length=5)] | None
     frame: Name = "egocentric"
@@ -113,7 +116,11 @@ class Posture(Message):
 
 
 class TrackedObject(Model):
-    """One object's pose in the skeleton's camera frame; `seen` is false while it is only remembered."""
+    """One object's pose in the skeleton's camera frame; `seen` is false while it is only remembered.
+
+    `velocity_mps` is null where it is not known. `predicted` tells that the object, not seen, has been carried on with
+    its velocity; neither seen nor predicted, it is listed where it was expected last.
+    """
 
     id: Annotated[int, Field(ge=0, lt=2**31)]
     name: Name
@@ -121,6 +128,8 @@ class TrackedObject(Model):
     quaternion_xyzw: Quaternion
     confidence: FiniteFloat
     seen: bool
+    velocity_mps: FinitePoint | None = None
+    predicted: bool = False
 
 
 class Objects(Message):
@@ -144,7 +153,11 @@ class Segment(Message):
 
 
 class Action(Message):
-    """What the classifier sees in a segment: partial per frame while it is open, `final` once at its end."""
+    """What the classifier sees in a segment: partial per frame while it is open, `final` once at its end.
+
+    `confidence` is the probability that the action is right, `unknown` tells that it may be none of those trained
+    (`familiarity`, of the model's own scale, is too low), `missing_joints` which joints some frame lacked.
+    """
 
     SCHEMA = "actum.action"
     agent: AgentId
@@ -159,6 +172,9 @@ class Action(Message):
     frames: Count
     missed: Count
     hand: Hand | None = None
+    unknown: bool = False
+    familiarity: FiniteFloat | None = None
+    missing_joints: list[Name] = []
     maps: dict[str, Tensor] | None = None
     trace: Tensor | None = None
 
@@ -205,6 +221,8 @@ class Event(Message):
     sentence: str
     frames: Count
     missed: Annotated[int, Field(ge=0, lt=2**63)]
+    unknown: bool = False
+    missing_joints: list[Name] = []
 
 
 class Status(Message):

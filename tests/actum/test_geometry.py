@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from actum import geometry
 from actum.skeletons import INDEX
-from people import STANDING, reaching
+from people import STANDING, lacking, reaching
 
 ANGLES = st.floats(-np.pi, np.pi)
 SHIFTS = st.floats(-3, 3)
@@ -109,9 +109,65 @@ def test_the_transform_is_rigid_and_its_inverse_undoes_it(heading: float, shift:
     np.testing.assert_allclose(geometry.invert(ego) @ ego, np.eye(4), atol=1e-12)
 
 
+def test_a_joint_is_scaled_where_its_way_from_the_torso_is_known() -> None:
+    standard = geometry.scaled(lacking(STANDING, "left_shoulder", "right_elbow", "right_foot"))
+    unknown = ["left_shoulder", "left_elbow", "left_hand", "right_elbow", "right_hand", "right_foot"]
+    np.testing.assert_array_equal(standard, lacking(geometry.scaled(STANDING), *unknown))
+
+
+@given(
+    PEOPLE, ANGLES, st.tuples(SHIFTS, SHIFTS, SHIFTS), SIZES, st.sampled_from([["left_hip"], ["left_hip", "right_hip"]])
+)
+def test_without_a_hip_the_shoulders_make_the_frame(
+    person: np.ndarray, heading: float, shift: tuple[float, float, float], size: float, lost: list[str]
+) -> None:
+    """The hips' line is the shoulders', as far below the torso as the neck is above it."""
+    moved = lacking(turned(person, heading, shift, size), *lost)
+    ego = geometry.ego_from_camera(moved)
+    here = geometry.apply(ego, moved)
+    shoulders = here[INDEX["left_shoulder"]] - here[INDEX["right_shoulder"]]
+    np.testing.assert_allclose(shoulders / np.linalg.norm(shoulders), [1, 0, 0], atol=1e-9)
+    np.testing.assert_allclose(here[INDEX["torso"], [0, 2]], 0, atol=1e-9)
+    np.testing.assert_allclose(here[INDEX["neck"], 1:], [2 * here[INDEX["torso"], 1], 0], atol=1e-9)
+    unmoved = lacking(person, *lost)
+    np.testing.assert_allclose(here, size * geometry.apply(geometry.ego_from_camera(unmoved), unmoved), atol=1e-9)
+
+
+def test_the_stand_in_for_unknown_hips_is_near_them() -> None:
+    whole, legless = (geometry.ego_from_camera(j) for j in (STANDING, lacking(STANDING, "left_hip", "right_hip")))
+    cosines = np.einsum("ij,ij->i", whole[:3, :3], legless[:3, :3])
+    assert np.degrees(np.arccos(cosines.min())) < 5
+    assert np.linalg.norm(geometry.apply(whole, geometry.invert(legless)[:3, 3])) < 0.05
+
+
+def test_a_stack_of_frames_may_know_the_hips_in_some() -> None:
+    frames = np.stack([STANDING, lacking(STANDING, "left_hip"), reaching(1.0)])
+    np.testing.assert_array_equal(
+        geometry.ego_from_camera(frames), [geometry.ego_from_camera(joints) for joints in frames]
+    )
+
+
+def test_upright_is_left_up_and_forward_from_the_torso() -> None:
+    """The torso 2 m away; someone facing the camera has their left on camera +x and their front towards it."""
+    joints = np.tile([0.5, 0.3, 2.0], (15, 1))
+    joints[INDEX["left_hand"]] += [0.1, 0.0, 0.0]
+    joints[INDEX["head"]] += [0.0, -0.6, 0.0]
+    joints[INDEX["right_hand"]] += [0.0, 0.0, -0.3]
+    facing = geometry.upright(joints, 1.0, 0.0)
+    np.testing.assert_allclose(facing[INDEX["left_hand"]], [0.1, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(facing[INDEX["head"]], [0, 0.6, 0], atol=1e-12)
+    np.testing.assert_allclose(facing[INDEX["right_hand"]], [0, 0, 0.3], atol=1e-12)
+    sideways = geometry.upright(joints, 0.0, -1.0)
+    np.testing.assert_allclose(sideways[INDEX["right_hand"]], [0.3, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(sideways[INDEX["left_hand"]], [0, 0, -0.1], atol=1e-12)
+
+
 def test_joints_without_a_frame_are_refused() -> None:
     with pytest.raises(geometry.DegenerateError, match="hips"):
         geometry.ego_from_camera(np.zeros((15, 3)))
+    without_hips = lacking(np.zeros((15, 3)), "left_hip", "right_hip")
+    with pytest.raises(geometry.DegenerateError, match="shoulders in their place"):
+        geometry.ego_from_camera(without_hips)
     with pytest.raises(geometry.DegenerateError, match="coincide"):
         geometry.scaled(np.ones((15, 3)))
 

@@ -9,7 +9,7 @@ import pytest
 
 from actum import geometry
 from actum.messages import Action, Image, Message, Objects, Posture, Segment, Skeleton
-from actum.skeletons import INDEX
+from actum.skeletons import INDEX, JOINTS
 from node_cases import CASES, NOON_NS, Case, every_node, photograph
 from people import FRAME_NS, STANDING
 from wire import Wire
@@ -36,6 +36,10 @@ def moved(joints: Iterable[list[float] | None], name: str, joint: list[float] | 
     return listed
 
 
+def without(joints: Iterable[list[float] | None], *names: str) -> list[list[float] | None]:
+    return [None if name in names else joint for name, joint in zip(JOINTS, joints, strict=True)]
+
+
 def skeleton_with(joints: list[Any], times: int = 1) -> Message:
     agent = {"agent": 1, "joints": joints, "confidence": [1.0] * 15}
     return changed(first(PREPROCESSOR, Skeleton), agents=[agent] * times)
@@ -45,8 +49,7 @@ def posture_with(case: Case, **fields: Any) -> Message:
     return changed(first(case, Posture), **fields)
 
 
-BAD_JOINTS: dict[str, list[float] | None] = {
-    "missing": None,
+BAD_JOINTS: dict[str, list[float]] = {
     "NaN": [math.nan, 0.0, 2.0],
     "infinite": [0.0, -math.inf, 2.0],
     "2**31": [2.0**31, 0.0, 2.0],
@@ -56,13 +59,18 @@ BAD_JOINTS: dict[str, list[float] | None] = {
 
 def bad_skeletons() -> dict[str, tuple[str, Message]]:
     standing = STANDING.tolist()
-    kinds = ("missing_joint", "not_finite", "not_finite", "absurd_joint", "absurd_joint")
+    odd_elbow = moved(standing, "left_elbow", BAD_JOINTS["NaN"])
+    kinds = ("not_finite", "not_finite", "absurd_joint", "absurd_joint")
     bad = {
         f"{name} hand": (kind, skeleton_with(moved(standing, "left_hand", joint)))
         for kind, (name, joint) in zip(kinds, BAD_JOINTS.items(), strict=True)
     }
     return bad | {
         "no joint at all": ("missing_joint", skeleton_with([None] * 15)),
+        "no torso": ("missing_joint", skeleton_with(moved(standing, "torso", None))),
+        "no neck": ("missing_joint", skeleton_with(moved(standing, "neck", None))),
+        "one hip, one shoulder": ("missing_joint", skeleton_with(without(standing, "left_hip", "right_shoulder"))),
+        "NaN elbow, no hand": ("not_finite", skeleton_with(without(odd_elbow, "left_hand"))),
         "all joints in one place": ("coincident_joints", skeleton_with([[0.0, 0.0, 2.0]] * 15)),
         "an arm of four metres": ("absurd_bone", skeleton_with(moved(standing, "left_hand", [0.3, 0.1, 6.0]))),
         "one agent twice": ("repeated_agent", skeleton_with(standing, times=2)),
@@ -71,9 +79,13 @@ def bad_skeletons() -> dict[str, tuple[str, Message]]:
 
 
 def bad_postures_to_classify() -> dict[str, tuple[str, Message]]:
-    joints = first(CLASSIFIER, Posture).joints
+    posture = first(CLASSIFIER, Posture)
     bad = {
-        f"{name} hand": ("bad_posture", posture_with(CLASSIFIER, joints=moved(joints, "left_hand", joint)))
+        f"{name} hand in {field}": (
+            "bad_posture",
+            posture_with(CLASSIFIER, **{field: moved(getattr(posture, field), "left_hand", joint)}),
+        )
+        for field in ("joints", "upright")
         for name, joint in BAD_JOINTS.items()
     }
     return bad | {
@@ -124,7 +136,6 @@ def bad_input_to_fusion() -> dict[str, tuple[str, Message]]:
     bad = {
         f"{name} hand": ("bad_joint", posture_with(FUSION, joints_m=moved(joints, "right_hand", joint)))
         for name, joint in BAD_JOINTS.items()
-        if joint is not None
     }
     action = first(FUSION, Action)
     far = [found.model_dump() | {"position_m": [2.0**31, 0.0, 0.0]} for found in first(FUSION, Objects).objects]

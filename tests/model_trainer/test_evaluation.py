@@ -21,9 +21,12 @@ from model_trainer.report import report
 from model_trainer.samples import samples_from
 from model_trainer.training import TrainingError, train
 from people import FRAME_NS, skeleton
-from performers import HAND_PATHS, TINY, mark, performance
+from performers import HAND_PATHS, TINY, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
+from som_classifier.model import Model
+from som_classifier.presets import Preset
 
 Record = Callable[..., Recording]
+each_preset = pytest.mark.parametrize("preset", TINY_OF_EACH_KIND, ids=lambda preset: preset.name)
 
 FIVE = Evaluation(
     (
@@ -76,8 +79,9 @@ def test_wilson_of_nothing_is_everything() -> None:
     assert wilson_interval(0, 0) == (0.0, 1.0)
 
 
-def test_final_answers_are_compared_with_labels(three_people: list[Recording]) -> None:
-    model = train(samples_from(three_people).usable, TINY)
+@each_preset
+def test_final_answers_are_compared_with_labels(three_people: list[Recording], preset: Preset) -> None:
+    model = train(samples_from(three_people).usable, preset)
     evaluation = evaluate(model, three_people[:1])
     assert [p.label for p in evaluation.predictions] == [*HAND_PATHS] * 2
     assert [p.segment_id for p in evaluation.predictions] == ["0", "1", "2", "3", "4", "5"]
@@ -100,13 +104,34 @@ def test_segments_that_cannot_be_answered_are_predicted_as_none(three_people: li
     assert [(p.segment_id, p.predicted) for p in evaluation.predictions] == [("x", None), ("y", None)]
 
 
-def test_each_person_is_tested_once_on_a_model_of_the_others(three_people: list[Recording]) -> None:
+@pytest.mark.parametrize(("preset", "first"), [(TINY, "map of postures"), (TINY_PAPER, "layer 1")])
+def test_each_person_is_tested_once_on_a_model_of_the_others(
+    three_people: list[Recording], preset: Preset, first: str
+) -> None:
     stages: list[str] = []
-    evaluation = leave_one_person_out(three_people, TINY, progress=lambda stage, *_: stages.append(stage))
+    evaluation = leave_one_person_out(three_people, preset, progress=lambda stage, *_: stages.append(stage))
     assert evaluation.n == 3 * 2 * len(HAND_PATHS)
     assert evaluation.accuracy > 0.8
     assert [p.file for p in evaluation.predictions[::6]] == [str(recording.path) for recording in three_people]
-    assert {stage for stage in stages if "layer 1" in stage} == {f"without {n}: layer 1" for n in "123"}
+    assert {stage for stage in stages if stage.endswith(first)} == {f"without {n}: {first}" for n in "123"}
+
+
+@each_preset
+def test_the_model_a_person_is_tested_on_is_made_of_the_others_samples_alone(
+    three_people: list[Recording], preset: Preset, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tested: list[tuple[str, str]] = []
+
+    def noted(model: Model, own: list[Recording], *_: object) -> Evaluation:
+        tested.append((own[0].person, model.id))
+        return Evaluation(())
+
+    monkeypatch.setattr("model_trainer.evaluation.evaluate", noted)
+    leave_one_person_out(three_people, preset, seed=3)
+    of_others = {person: [r for r in three_people if r.person != person] for person in "123"}
+    assert tested == [
+        (person, train(samples_from(others).usable, preset, 3).id) for person, others in of_others.items()
+    ]
 
 
 def test_an_action_of_one_person_alone_is_never_recognised(three_people: list[Recording], record: Record) -> None:

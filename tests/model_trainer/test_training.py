@@ -1,114 +1,147 @@
-"""A training depends on its samples, preset and seed alone, and learns."""
+"""A training of either kind depends on its samples, preset and seed alone, and learns."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from actum.recording import Recording
-from actum.skeletons import PARTS
-from model_trainer.samples import SegmentSample, samples_from
-from model_trainer.training import TrainingError, digest_of, train, typical_distance2
-from performers import HAND_PATHS, TINY
+from model_trainer.answering import answer, encoded
+from model_trainer.description import digest_of
+from model_trainer.samples import SegmentSample
+from model_trainer.training import TrainingError, train
+from performers import HAND_PATHS, TINY, TINY_OF_EACH_KIND, TINY_PAPER
 from som_classifier.model import Model
-from som_classifier.trace import without_repeats
+from som_classifier.presets import Preset
+
+each_preset = pytest.mark.parametrize("preset", TINY_OF_EACH_KIND, ids=lambda preset: preset.name)
 
 
-@pytest.fixture
-def samples(three_people: list[Recording]) -> list[SegmentSample]:
-    return samples_from(three_people).usable
+def labels(model: Model, samples: list[SegmentSample]) -> list[str]:
+    return [answer(model, encoded(model, sample)).label for sample in samples]
 
 
-def cells_of(model: Model, sample: SegmentSample) -> np.ndarray:
-    return np.stack([model.cells(joints) for joints in sample.joints])
+@each_preset
+def test_every_training_sample_is_learned(samples: list[SegmentSample], preset: Preset) -> None:
+    assert labels(train(samples, preset), samples) == [sample.label for sample in samples]
 
 
-def answer(model: Model, sample: SegmentSample) -> str:
-    return model.recognise(cells_of(model, sample), sample.motion).label
-
-
-def test_every_training_sample_is_learned(samples: list[SegmentSample]) -> None:
-    model = train(samples, TINY)
-    assert [answer(model, sample) for sample in samples] == [sample.label for sample in samples]
-
-
-def test_a_person_not_trained_on_is_recognised(samples: list[SegmentSample]) -> None:
-    model = train([sample for sample in samples if sample.person != "2"], TINY)
+@each_preset
+def test_a_person_not_trained_on_is_recognised(samples: list[SegmentSample], preset: Preset) -> None:
+    model = train([sample for sample in samples if sample.person != "2"], preset)
     unseen = [sample for sample in samples if sample.person == "2"]
-    assert [answer(model, sample) for sample in unseen] == [sample.label for sample in unseen]
+    assert labels(model, unseen) == [sample.label for sample in unseen]
 
 
-def test_the_same_seed_makes_the_same_model(samples: list[SegmentSample]) -> None:
-    first, second, other = (train(samples, TINY, seed).id for seed in (0, 0, 1))
-    assert first == second != other
+@each_preset
+def test_the_same_seed_makes_the_same_model(samples: list[SegmentSample], preset: Preset) -> None:
+    first, second, other = (train(samples, preset, seed) for seed in (0, 0, 1))
+    assert first.id == second.id
+    for name, array in first.arrays.items():
+        np.testing.assert_array_equal(array, second.arrays[name])
+        assert not np.array_equal(array, other.arrays[name])
 
 
-def test_the_description_says_what_it_was_made_of(samples: list[SegmentSample]) -> None:
-    about = train(samples, TINY, seed=5).metadata
+@each_preset
+def test_samples_are_left_as_they_were(samples: list[SegmentSample], preset: Preset) -> None:
+    before = digest_of(samples)
+    train(samples, preset)
+    assert digest_of(samples) == before
+
+
+@each_preset
+def test_the_description_says_what_it_was_made_of(samples: list[SegmentSample], preset: Preset) -> None:
+    about = train(samples, preset, seed=5).metadata
     assert about["labels"] == sorted(HAND_PATHS)
     assert about["persons"] == ["1", "2", "3"]
-    assert (about["preset"], about["seed"], about["samples"], about["part"]) == ("tiny", 5, len(samples), None)
-    assert about["parameters"]["layer1"]["steps"] == TINY.layer1.steps
+    assert (about["preset"], about["seed"], about["samples"]) == (preset.name, 5, len(samples))
+    assert about["parameters"]["beta"] == preset.beta
     assert about["data_digest"] == digest_of(samples)
 
 
 def test_the_digest_tells_samples_apart(samples: list[SegmentSample]) -> None:
-    changed = [replace(samples[0], label="other"), *samples[1:]]
-    moved = [replace(samples[0], joints=samples[0].joints + 1e-9), *samples[1:]]
-    assert len({digest_of(s) for s in (samples, changed, moved, samples[::-1], samples[1:])}) == 5
+    one, *rest = samples
+    fields = ("stamps_ns", "joints", "motion", "postures", "velocities")
+    altered = [replace(one, **{name: np.nextafter(getattr(one, name), 99)}) for name in fields[1:]]
+    altered += [replace(one, stamps_ns=one.stamps_ns + 1), replace(one, label="other"), replace(one, person="other")]
+    digests = [digest_of([each, *rest]) for each in altered]
+    assert len({*digests, digest_of(samples), digest_of(samples[::-1]), digest_of(rest)}) == len(altered) + 3
 
 
-def test_vectors_are_as_long_as_the_longest_training_trace(samples: list[SegmentSample]) -> None:
-    model = train(samples, TINY)
-    walked = [len(model.recognise(cells_of(model, sample), sample.motion).trace) for sample in samples]
-    assert model.description.points == max(walked)
-
-
-def test_a_person_who_never_moves_can_be_learned(samples: list[SegmentSample]) -> None:
-    """Every trace is a single point."""
-    still = [replace(s, joints=np.repeat(s.joints[-1:], 5, axis=0), motion=np.zeros((5, 5))) for s in samples]
-    model = train(still, TINY)
-    assert model.description.points == 2
-    assert all(len(without_repeats(cells_of(model, sample)[:, 0])) == 1 for sample in still)
-
-
-def test_only_the_attended_part_is_learned(samples: list[SegmentSample]) -> None:
-    right_arm = replace(TINY, part="right_arm")
-    elsewhere = [joint for part, joints in PARTS.items() if part != "right_arm" for joint in joints]
-    altered = []
-    for sample in samples:
-        joints = sample.joints.copy()
-        joints[:, elsewhere] += 0.3
-        altered.append(replace(sample, joints=joints))
-    models = [train(each, right_arm) for each in (samples, altered)]
-    assert (models[0].layer1.weights == models[1].layer1.weights).all()
-    assert (models[0].layer3.weights == models[1].layer3.weights).all()
-    assert models[0].description.part == "right_arm"
-
-
-@pytest.mark.parametrize("labels", [[], ["lift"]])
-def test_fewer_than_two_actions_are_refused(samples: list[SegmentSample], labels: list[str]) -> None:
+@each_preset
+@pytest.mark.parametrize("known", [[], ["lift"]])
+def test_fewer_than_two_actions_are_refused(samples: list[SegmentSample], preset: Preset, known: list[str]) -> None:
     with pytest.raises(TrainingError, match="at least two actions"):
-        train([sample for sample in samples if sample.label in labels], TINY)
+        train([sample for sample in samples if sample.label in known], preset)
 
 
-def test_progress_names_every_stage_to_its_end(samples: list[SegmentSample]) -> None:
+STAGES_OF_TRAINING = [
+    (
+        TINY,
+        [
+            ("map of postures", TINY.unit_epochs),
+            ("map of velocities", TINY.unit_epochs),
+            ("discriminant axes", len(TINY.stages)),
+            ("map of actions", TINY.concept_epochs),
+            ("neurons", TINY.epochs),
+            ("calibration", 3),
+        ],
+    ),
+    (
+        TINY_PAPER,
+        [
+            ("layer 1", TINY_PAPER.layer1.steps),
+            ("layer 2", TINY_PAPER.layer2.steps),
+            ("layer 3", TINY_PAPER.epochs),
+        ],
+    ),
+]
+
+
+@pytest.mark.parametrize(("preset", "stages"), STAGES_OF_TRAINING, ids=["tiny", "tiny paper"])
+def test_progress_names_every_stage_to_its_end(
+    samples: list[SegmentSample], preset: Preset, stages: list[tuple[str, int]]
+) -> None:
     told: list[tuple[str, int, int]] = []
-    train(samples, TINY, progress=lambda *done: told.append(done))
-    ends = [(stage, total) for stage, done, total in told if done == total]
-    assert ends == [("layer 1", TINY.layer1.steps), ("layer 2", TINY.layer2.steps), ("layer 3", TINY.epochs)]
+    train(samples, preset, progress=lambda *done: told.append(done))
+    assert [(stage, total) for stage, done, total in told if done == total] == stages
 
 
-def test_typical_distance_by_hand() -> None:
-    """Nearest neighbours are 1, 1, 2 and 6 away."""
-    assert typical_distance2(np.array([[0.0], [1.0], [3.0], [9.0]])) == (1 + 4) / 2
+@each_preset
+def test_two_samples_of_one_person_are_enough(samples: list[SegmentSample], preset: Preset) -> None:
+    """Nobody is there to be held out, and the same model comes of it each time."""
+    two = [next(sample for sample in samples if sample.label == label) for label in ("lift", "push")]
+    model = train(two, preset)
+    assert labels(model, two) == ["lift", "push"]
+    assert train(two, preset).id == model.id
 
 
-def test_typical_distance_of_many_is_that_of_all_pairs() -> None:
-    vectors = np.random.default_rng(0).random((200, 4))
-    distances2 = ((vectors[:, None] - vectors) ** 2).sum(axis=2) + np.diag(np.full(200, np.inf))
-    assert typical_distance2(vectors) == pytest.approx(np.median(distances2.min(axis=1)))
+@each_preset
+def test_each_action_may_be_another_persons(samples: list[SegmentSample], preset: Preset) -> None:
+    """Whoever is held out takes all that is known of an action along."""
+    pairs = (("lift", "1"), ("push", "2"), ("swing", "3"))
+    for count in (2, 3):
+        own = [sample for sample in samples if (sample.label, sample.person) in pairs[:count]]
+        assert labels(train(own, preset), own) == [sample.label for sample in own]
 
 
-def test_typical_distance_of_equals_is_one_grid_step() -> None:
-    assert typical_distance2(np.ones((4, 6))) == 1.0
+@each_preset
+def test_the_shortest_samples_are_enough(samples: list[SegmentSample], preset: Preset) -> None:
+    names = ("stamps_ns", "joints", "motion", "postures", "velocities")
+    short = [replace(sample, **{name: getattr(sample, name)[-3:] for name in names}) for sample in samples]
+    assert labels(train(short, preset), short) == [sample.label for sample in samples]
+
+
+@each_preset
+def test_samples_that_are_all_the_same_make_a_model_that_answers(samples: list[SegmentSample], preset: Preset) -> None:
+    one = samples[0]
+    still = replace(
+        one,
+        joints=np.tile(one.joints[:1], (20, 1, 1)),
+        motion=np.zeros((20, 5)),
+        postures=np.tile(one.postures[:1], (20, 1, 1)),
+        velocities=np.zeros((20, 15, 3)),
+    )
+    alike = [replace(still, label=sample.label, person=sample.person) for sample in samples]
+    model = train(alike, preset)
+    found = answer(model, encoded(model, still))
+    assert np.isfinite([found.confidence, *found.activations.values()]).all()

@@ -79,7 +79,8 @@ def test_motion_starts_anew_after_a_gap_and_after_a_restart() -> None:
 @pytest.mark.parametrize(
     ("kind", "frame"),
     [
-        ("missing_joint", with_joint("left_hand", None)),
+        ("missing_joint", with_joint("torso", None)),
+        ("missing_joint", with_joint("neck", None)),
         ("not_finite", with_joint("left_hand", [0.0, float("nan"), 2.0])),
         ("absurd_joint", with_joint("left_hand", [2.0**31, 0.0, 2.0])),
         ("absurd_bone", with_joint("left_hand", [0.3, 0.1, 5.0])),

@@ -1,8 +1,12 @@
 """The paper's architecture as printed, and schedules that fit their maps."""
 
-import pytest
+from som_classifier.presets import DEFAULT, PAPER, PRESETS, PYRAMID
 
-from som_classifier.presets import PAPER, PRESETS, Preset
+
+def test_presets_are_found_by_their_names() -> None:
+    assert {name: preset.name for name, preset in PRESETS.items()} == {"paper": "paper", "pyramid": "pyramid"}
+    assert PRESETS["paper"] is PAPER
+    assert PRESETS["pyramid"] is PYRAMID is DEFAULT
 
 
 def test_the_papers_sizes() -> None:
@@ -12,11 +16,22 @@ def test_the_papers_sizes() -> None:
     assert PAPER.part is None
 
 
-@pytest.mark.parametrize("preset", PRESETS.values(), ids=list(PRESETS))
-def test_every_radius_falls_from_half_the_grid_to_the_nearest_neighbours(preset: Preset) -> None:
-    assert PRESETS[preset.name] is preset
-    for plan in (preset.layer1, preset.layer2):
+def test_every_radius_of_the_papers_falls_from_half_the_grid_to_the_nearest_neighbours() -> None:
+    for plan in (PAPER.layer1, PAPER.layer2):
         _, radius = plan.schedule.values(plan.steps)
         assert radius[0] == max(plan.rows, plan.cols) / 2
         assert 0.5 <= radius[-1] <= 2.0
         assert (radius[1:] < radius[:-1]).all()
+
+
+def test_every_radius_of_the_defaults_falls_from_a_third_of_the_grid_to_the_nearest_neighbours() -> None:
+    for grid, (first, last) in ((PYRAMID.units, PYRAMID.unit_radius), (PYRAMID.concepts, PYRAMID.concept_radius)):
+        assert max(grid) / 3 <= first <= max(grid) / 2
+        assert 0.5 <= last <= 2.0
+
+
+def test_the_defaults_stages_go_on_to_the_complete_action() -> None:
+    fractions = [fraction for stage in PYRAMID.stages for fraction in stage]
+    assert fractions == sorted(set(fractions))
+    assert PYRAMID.stages[-1] == (1.0,)
+    assert fractions[0] > 0

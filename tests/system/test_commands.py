@@ -137,7 +137,7 @@ def test_watch_prints_events_as_they_come(running: System, scene_model: Path) ->
 
 @pytest.mark.timeout(240)
 def test_the_demo_runs_to_its_table_and_leaves_nothing(running: System) -> None:
-    demo = running.actum("demo", "--repetitions", "1", timeout_s=200)
+    demo = running.actum("demo", "--people", "1", timeout_s=200)
     assert demo.returncode == 0, demo.stdout + demo.stderr
     assert len(re.findall(r"^ *\d+/5 ", demo.stdout, re.M)) == 5, demo.stdout
     assert re.search(r"total .*41 \(91.1%\)", demo.stdout)
@@ -145,7 +145,7 @@ def test_the_demo_runs_to_its_table_and_leaves_nothing(running: System) -> None:
 
 
 def test_a_demo_that_is_terminated_takes_its_processes_along(running: System) -> None:
-    demo = running.start("actum_command", "demo", "--repetitions", "1")
+    demo = running.start("actum_command", "demo", "--people", "1")
     wait_until(lambda: "run as processes of their own" in demo.said(), "the processes run", patience_s=90)
     demo.process.terminate()
     assert demo.process.wait(timeout=PATIENCE_S) == 143

@@ -16,7 +16,7 @@ from model_trainer.evaluation import Evaluation, evaluate
 from model_trainer.samples import samples_from, select
 from model_trainer.training import train
 from models import QUICK
-from som_classifier.model import Model
+from som_classifier.storage import load_model
 
 pytestmark = [pytest.mark.system, pytest.mark.data]
 
@@ -64,7 +64,7 @@ def assert_agree(events: Sequence[Event], offline: Evaluation) -> None:
 
 def test_twenty_msr_sequences(running: System, msr: Path, quick_model: Path) -> None:
     files = sorted(r.path for r in select([msr], TEST_PEOPLE))[::14][:20]
-    offline = evaluate(Model.load(quick_model), [Recording(file) for file in files])
+    offline = evaluate(load_model(quick_model), [Recording(file) for file in files])
     events = play_live(running, quick_model, files, SPEED, expected=20)
     assert [event.missed for event in events] == [0] * 20
     assert_agree(events, offline)
@@ -74,7 +74,7 @@ def test_twenty_msr_sequences(running: System, msr: Path, quick_model: Path) -> 
 def test_a_continuous_utkinect_recording(running: System, data: Path, quick_model: Path, tmp_path: Path) -> None:
     import_utkinect(data / "utkinect", tmp_path / "utkinect", lambda _done, _total: None)
     recording = Recording(tmp_path / "utkinect" / "s01_e01.mcap")
-    offline = evaluate(Model.load(quick_model), [recording])
+    offline = evaluate(load_model(quick_model), [recording])
     assert offline.n == 10
     events = play_live(running, quick_model, [recording.path], SPEED, expected=10)
     assert [event.missed for event in events] == [0] * 10

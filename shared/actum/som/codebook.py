@@ -42,6 +42,18 @@ class Codebook:
         weights.setflags(write=False)
         object.__setattr__(self, "weights", weights)
 
+    @classmethod
+    def of_planes(cls, planes: Array, topology: Topology = "rectangular") -> Self:
+        """Make a map of its component planes (rows, cols, dim).
+
+        Raises:
+            ValueError: they have another shape or are not finite.
+        """
+        if planes.ndim != 3:
+            raise ValueError(f"component planes of shape {planes.shape} are not rows × cols × dim")
+        rows, cols, dim = planes.shape
+        return cls(rows, cols, planes.reshape(rows * cols, dim), topology)
+
     @property
     def dim(self) -> int:
         """The length of an input vector."""
@@ -187,9 +199,7 @@ def stored_map(file: Mapping[str, Array], kind: type[Map]) -> Map:
     Raises:
         ValueError, KeyError: the file holds something else.
     """
-    planes = file["weights"]
-    rows, cols, dim = planes.shape
-    return kind(rows, cols, planes.reshape(rows * cols, dim), cast(Topology, str(file["topology"])))
+    return kind.of_planes(file["weights"], cast(Topology, str(file["topology"])))
 
 
 def some_rows(vectors: ArrayLike) -> Array:

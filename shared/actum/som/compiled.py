@@ -11,7 +11,7 @@ from math import isnan
 from typing import TypeVar, cast
 
 import numpy as np
-from numba import njit  # type: ignore[import-untyped]
+from numba import njit
 from numpy.typing import NDArray
 
 from actum.som.kernel import Array, Kernel

@@ -1,0 +1,67 @@
+"""`actum inspect`: pictures of what a model has learnt and why it answers as it does."""
+
+import time
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.markup import escape
+
+from actum.recording import Recording, RecordingError
+from actum_command.context import console, fail
+from actum_command.learning import AllOption, PersonOption, chosen
+from actum_command.progress import bars
+from som_classifier.model import Model
+from som_classifier.storage import ModelError, load_model
+
+FORMATS = ("png", "svg")
+
+
+def inspect_command(
+    model_file: Annotated[Path, typer.Argument(metavar="MODEL", help="the model file to look into")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="the folder to write pictures and index.html to")],
+    files: Annotated[
+        list[Path] | None, typer.Argument(metavar="[REC]...", help="recordings to try it on, or folders of them")
+    ] = None,
+    person: PersonOption = None,
+    picture_format: Annotated[str, typer.Option("--format", help=f"one of {', '.join(FORMATS)}")] = "png",
+    with_excluded: AllOption = False,
+) -> None:
+    """Draw what a model has learnt, and with recordings how and why it recognises what they hold."""
+    began_s = time.monotonic()
+    if picture_format not in FORMATS:
+        fail(f"--format is {picture_format!r}: use one of {', '.join(FORMATS)}")
+    if find_spec("matplotlib") is None:
+        fail(escape("matplotlib draws the pictures and is not installed: pip install 'actum[model-inspector]'"))
+    try:
+        model = load_model(model_file)
+        output.mkdir(parents=True, exist_ok=True)
+        recordings = chosen(files, person, with_excluded) if files else []
+        count = _inspect(model, recordings, output, picture_format)
+    except (ModelError, RecordingError, OSError) as error:
+        fail(str(error))
+    console.print(
+        f"{count} pictures in {time.monotonic() - began_s:.1f} s: open {output / 'index.html'}", soft_wrap=True
+    )
+
+
+def _inspect(model: Model, recordings: list[Recording], folder: Path, ending: str) -> int:
+    """Write pictures and page, and return how many pictures there are."""
+    from model_inspector.anatomy import anatomy_of  # Matplotlib takes its time and need not be installed
+    from model_inspector.answered import answered_segments
+    from model_inspector.inspection import pictures, write
+    from model_inspector.page import page
+    from model_trainer.evaluation import evaluate
+
+    anatomy = anatomy_of(model)
+    with bars() as progress:
+        segments = answered_segments(anatomy, recordings, progress)
+        if recordings and not segments:
+            fail("no segment in these recordings: start and end marks make one, see actum segment --help")
+        labelled = any(segment.label is not None for segment in segments)
+        evaluation = evaluate(model, recordings, progress) if labelled else None
+        planned = list(pictures(anatomy, segments, evaluation))
+        written = write(planned, folder, ending, progress)
+    (folder / "index.html").write_text(page(model, segments, evaluation, planned, written), encoding="utf-8")
+    return len(planned)

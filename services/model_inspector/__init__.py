@@ -1,0 +1,1 @@
+"""Pictures of what a trained model has learnt, and of why it recognised what it did."""

@@ -1,0 +1,77 @@
+"""What pushed one action's score over another's: each temporal cell's and each first map's share of the difference."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from model_inspector.anatomy import Floats, complete_weights
+from som_classifier.handedness import Spreads
+from som_classifier.pyramid_model import PyramidModel, trail_of
+from som_classifier.streams import Frame
+
+
+@dataclass(frozen=True, eq=False)
+class Contributions:
+    """Why one action's score is as much above another's as it is.
+
+    score[winner] − score[second] = Σ units + level.
+
+    Attributes:
+        winner: index of the action decided for.
+        second: index of the other one.
+        scores: of these two.
+        units: (cells, units of both first maps), root activity × (axis of the winner − axis of the second).
+        level: the difference of their offsets, what the score is before anything is seen.
+        activities: (cells, units of both first maps), their mean activity in each cell.
+        postures: how many of the units are the posture map's; the rest are the velocity map's.
+        in_mirror: whether the segment was read in a mirror, because the left arm acts.
+    """
+
+    winner: int
+    second: int
+    scores: tuple[float, float]
+    units: Floats
+    level: float
+    activities: Floats
+    postures: int
+    in_mirror: bool
+
+    @property
+    def cells(self) -> Floats:
+        """What each cell adds through the posture map and through the velocity map, shape (cells, 2)."""
+        both = self.units[:, : self.postures].sum(axis=1), self.units[:, self.postures :].sum(axis=1)
+        return np.stack(both, axis=1)
+
+    @property
+    def difference(self) -> float:
+        """By how much the winner's score is above the second's."""
+        return self.scores[0] - self.scores[1]
+
+
+def contributions(model: PyramidModel, frames: Sequence[Frame], instead: str | None = None) -> Contributions:
+    """Take apart by how much the answer to a complete segment scores above another action.
+
+    Args:
+        model: that answers.
+        frames: of the segment, encoded.
+        instead: the other action; the one that answers next where None.
+    """
+    recognition = model.recognise(frames, complete=True)
+    winner = model.labels.index(recognition.label)
+    others = [label for label in model.labels if label != recognition.label]
+    second = model.labels.index(instead or max(others, key=lambda label: recognition.activations[label]))
+    codes = [frame.code for frame in frames]
+    weights = complete_weights(model, frames)
+    scores = model.scores(codes, weights)
+    units = np.zeros((model.pyramid.cells, model.first.units))
+    for axes, weight in zip(model.stages.axes, weights, strict=True):
+        if weight:
+            units += weight * (axes[:, winner] - axes[:, second]).reshape(units.shape)
+    vector = model.pyramid.vector(trail_of(codes)).reshape(units.shape)
+    offsets = np.array(weights) @ model.stages.offsets
+    return Contributions(
+        winner, second, (float(scores[winner]), float(scores[second])), units * vector,
+        float(offsets[winner] - offsets[second]), np.square(vector), len(model.first.postures.weights),
+        Spreads.of(codes[-1].spread - codes[0].spread_before).left_handed,
+    )  # fmt: skip

@@ -1,0 +1,143 @@
+"""Why this and not that: which part of a segment, and which of the first maps, decided between the two best answers."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
+
+from model_inspector.answered import Answered, encoded
+from model_inspector.bodies import Pen, draw_arrows, draw_bodies
+from model_inspector.contributions import Contributions, contributions
+from model_inspector.movement_map import arrows_of
+from model_inspector.style import FAINT, PAPER, axes_at, bare, board, in_house_style
+from model_inspector.wording import shortened
+from som_classifier.handedness import mirrored
+from som_classifier.pyramid_model import PyramidModel
+
+Floats = NDArray[Any]
+
+FOR, AGAINST = "#4d9221", "#9a4fa8"
+SHADES = LinearSegmentedColormap.from_list("for and against", [AGAINST, PAPER, FOR])
+_STRONGEST = 0.65
+FIGURE_UNITS = 5
+"""How many units a figure is the mean of."""
+WIDTH_IN, ROW_IN, SCALE_IN = 6.0, 1.35, 0.28
+NARROWEST_IN = 0.5
+"""A cell that is narrower gets no figure."""
+
+
+@in_house_style
+def reasons_picture(model: PyramidModel, answered: Answered) -> Figure:
+    """Draw what each cell of the pyramid adds to the difference between two actions' scores, map by map.
+
+    They are the answer and, where that is wrong, what was really done, else the action that answered next.
+    """
+    done = answered.label if answered.label in model.labels and not answered.correct else None
+    found = contributions(model, encoded(model, answered.frames), done)
+    winner, second = (shortened(model.labels[index], 30) for index in (found.winner, found.second))
+    lines = _sum(found, winner, second)
+    height_in = ROW_IN * len(model.pyramid.levels) + SCALE_IN
+    title = f"Why {winner} and not {second}" + (", which was done" if done else "")
+    figure = board(2 * WIDTH_IN + 0.8, height_in + 0.8 + 0.2 * len(lines), title)
+    figure.text(0.005, (height_in + 0.42) / figure.get_figheight(), "\n".join(lines), linespacing=1.35, va="bottom")
+    left, right = (axes_at(figure, at_in, 0.1, WIDTH_IN, height_in) for at_in in (0.1, WIDTH_IN + 0.6))
+    _draw_cells(left, model, found, 0)
+    _draw_postures(left, model, found)
+    _draw_cells(right, model, found, 1)
+    _draw_movements(right, model, found)
+    left.set_title("POSTURES, in the whole action and in its parts")
+    right.set_title("MOVEMENTS: where the joints are going")
+    return figure
+
+
+def leading(units: Floats) -> tuple[NDArray[np.intp], Floats]:
+    """Return the units that contribute most to a cell's sum, in the direction of its sign, and their shares (sum 1)."""
+    signed = units * np.sign(units.sum() or 1.0)
+    chosen = np.argsort(-signed, kind="stable")[:FIGURE_UNITS]
+    weights = np.maximum(signed[chosen], 0.0)
+    return chosen, weights / weights.sum() if weights.sum() > 0 else np.full(len(chosen), 1 / len(chosen))
+
+
+def _sum(found: Contributions, winner: str, second: str) -> list[str]:
+    postures, movements = found.cells.sum(axis=0)
+    lines = [
+        f"green speaks for {winner}, purple for {second}; the figures: what the units hold that say so most",
+        f"scores {found.scores[0]:.2f} and {found.scores[1]:.2f}: {found.difference:+.2f} = {postures:+.2f} by postures"
+        f" {movements:+.2f} by movements {found.level:+.2f} before anything is seen",
+    ]
+    if found.difference < 0:
+        lines.append(f"the scores lean to {second}: the place on the map of actions decided otherwise")
+    if found.in_mirror:
+        lines.append("the left arm acts: the model reads this in a mirror; it is drawn as it was")
+    return lines
+
+
+def _cells(model: PyramidModel) -> Floats:
+    """Return left, top and width of each cell in inches, (cells, 3)."""
+    return np.array(
+        [
+            (WIDTH_IN * cell / level, ROW_IN * row, WIDTH_IN / level)
+            for row, level in enumerate(model.pyramid.levels)
+            for cell in range(level)
+        ]
+    )
+
+
+def _draw_cells(axes: Axes, model: PyramidModel, found: Contributions, which: int) -> None:
+    """Draw the cells as boxes, level beneath level, shaded by what they add; one unit is an inch."""
+    largest = float(np.abs(found.cells).max()) or 1.0
+    for (left, top, width), value in zip(_cells(model), found.cells[:, which], strict=True):
+        shade = SHADES(0.5 + 0.5 * _STRONGEST * value / largest)
+        axes.add_patch(Rectangle((left, top), width, ROW_IN, facecolor=shade, edgecolor=PAPER, linewidth=3))
+        axes.text(left + 0.08, top + 0.08, f"{value:+.2f}", va="top", weight="bold", fontsize=9)
+    bottom = ROW_IN * len(model.pyramid.levels)
+    axes.set_xlim(0, WIDTH_IN)
+    axes.set_ylim(bottom + SCALE_IN, 0)
+    axes.set_aspect("equal")
+    bare(axes)
+    axes.annotate(
+        "", (WIDTH_IN - 0.45, bottom + 0.14), (0.5, bottom + 0.14), arrowprops={"arrowstyle": "->", "color": FAINT}
+    )
+    axes.text(0.0, bottom + 0.14, "start", va="center", color=FAINT)
+    axes.text(WIDTH_IN, bottom + 0.14, "end", va="center", ha="right", color=FAINT)
+
+
+def _middles(model: PyramidModel) -> tuple[NDArray[np.intp], Floats]:
+    """Return the cells that are broad enough for a figure, and where its middle goes."""
+    cells = _cells(model)
+    broad = np.flatnonzero(cells[:, 2] >= NARROWEST_IN)
+    return broad, np.stack([cells[broad, 0] + cells[broad, 2] / 2, cells[broad, 1] + ROW_IN / 2], axis=1)
+
+
+def _draw_postures(axes: Axes, model: PyramidModel, found: Contributions) -> None:
+    """Draw into each cell the mean posture of the units that add most to it."""
+    broad, middles = _middles(model)
+    units = model.first.postures.weights.reshape(found.postures, -1, 3)
+    means = [np.tensordot(share, units[chosen], 1) for chosen, share in _leading(found, broad, 0)]
+    draw_bodies(axes, _as_it_was(np.array(means), found), middles, 0.95 * ROW_IN, pen=Pen(1.8))
+
+
+def _draw_movements(axes: Axes, model: PyramidModel, found: Contributions) -> None:
+    """Draw into each cell its mean posture, and as arrows the mean velocity of the units that add most to it."""
+    broad, middles = _middles(model)
+    seen = found.activities[broad, : found.postures]
+    units = model.first.postures.weights.reshape(found.postures, -1, 3)
+    bodies = np.tensordot(seen / seen.sum(axis=1, keepdims=True), units, 1)
+    _, arrows_m = arrows_of(model.first.velocities)
+    means = np.array([np.tensordot(share, arrows_m[chosen], 1) for chosen, share in _leading(found, broad, 1)])
+    bodies, means = _as_it_was(bodies, found), _as_it_was(means, found)
+    draw_bodies(axes, bodies, middles, 0.95 * ROW_IN, pen=Pen(1.2, FAINT))
+    draw_arrows(axes, bodies, means, middles, 0.95 * ROW_IN)
+
+
+def _leading(found: Contributions, cells: NDArray[np.intp], which: int) -> list[tuple[NDArray[np.intp], Floats]]:
+    of_map = found.units[cells, found.postures :] if which else found.units[cells, : found.postures]
+    return [leading(units) for units in of_map]
+
+
+def _as_it_was(vectors: Floats, found: Contributions) -> Floats:
+    return mirrored(vectors) if found.in_mirror else vectors

@@ -1,0 +1,26 @@
+"""What pictures say in words."""
+
+from model_inspector.answered import Answered
+
+LONGEST = 24
+
+
+def headline(answered: Answered) -> str:
+    """Say what was done and what it was taken for: `push: 41 frames, recognised push 0.93`."""
+    done = shortened(answered.label) if answered.label is not None else "an action without a label"
+    return f"{done}: {len(answered.frames)} frames, {verdict(answered)}"
+
+
+def verdict(answered: Answered) -> str:
+    """Say what a segment was taken for."""
+    if answered.recognition is None:
+        return "rejected"
+    found, confidence = answered.recognition.label, answered.recognition.confidence
+    taken = "recognised" if answered.label is None or answered.correct else "taken for"
+    unsure = " (unfamiliar)" if answered.recognition.unknown else ""
+    return f"{taken} {shortened(found)} {confidence:.2f}{unsure}"
+
+
+def shortened(text: str, longest: int = LONGEST) -> str:
+    """Cut the end of a long name off."""
+    return text if len(text) <= longest else text[: longest - 1] + "…"

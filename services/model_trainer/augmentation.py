@@ -1,0 +1,69 @@
+"""Each sample seen from other sides, and as people of other proportions would have done it."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.geometry import BONES
+from actum.skeletons import JOINTS
+from model_trainer.samples import SegmentSample
+from som_classifier.handedness import Spreads, mirrored, moments
+from som_classifier.presets import PyramidPreset
+
+Array = NDArray[np.float64]
+
+_BONE_NAMES = sorted({JOINTS[child].removeprefix("left_").removeprefix("right_") for _, child, _ in BONES})
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A sample as it is shown: (n, 15, 3) postures and velocities, left-handed ones in a mirror."""
+
+    postures: Array
+    velocities: Array
+
+
+def views(sample: SegmentSample, preset: PyramidPreset, rng: np.random.Generator) -> Iterator[View]:
+    """Yield the sample itself, then turned, then as other people."""
+    postures, velocities = _right_handed(sample)
+    yield View(postures, velocities)
+    for turn_deg in preset.turns_deg:
+        turn = turned(np.radians(turn_deg))
+        yield View(postures @ turn, velocities @ turn)
+    for _ in range(preset.builds):
+        build = rebuilt(dict(zip(_BONE_NAMES, np.exp(rng.normal(0.0, preset.build_sd, len(_BONE_NAMES))), strict=True)))
+        yield View(_applied(build, postures), _applied(build, velocities))
+
+
+def turned(radians: float) -> Array:
+    """Return what turns row vectors (left, up, forward) about the vertical, shape (3, 3)."""
+    cos, sin = np.cos(radians), np.sin(radians)
+    return np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
+
+
+def rebuilt(factors: dict[str, float]) -> Array:
+    """Return what lengthens each bone by its factor, shape (15, 15), for joints relative to the torso.
+
+    A bone is named after the joint at its end, without its side: both sides change alike.
+    """
+    build = np.zeros((len(JOINTS), len(JOINTS)))
+    for parent, child, _ in BONES:
+        factor = factors[JOINTS[child].removeprefix("left_").removeprefix("right_")]
+        build[child] = build[parent]
+        build[child, child] += factor
+        build[child, parent] -= factor
+    return build
+
+
+def _right_handed(sample: SegmentSample) -> tuple[Array, Array]:
+    summed = np.sum([moments(posture) for posture in sample.postures], axis=0)
+    if Spreads.of(summed).left_handed:
+        return mirrored(sample.postures), mirrored(sample.velocities)
+    return sample.postures, sample.velocities
+
+
+def _applied(build: Array, vectors: Array) -> Array:
+    """Apply a build to (n, 15, 3); a missing joint stays missing and is nobody else's concern."""
+    return np.where(np.isnan(vectors), np.nan, build @ np.nan_to_num(vectors))

@@ -1,0 +1,86 @@
+"""Linear discriminant axes by ridge regression, and the scores they give to people they were not trained on."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model_trainer.samples import SegmentSample
+
+Floats = NDArray[Any]
+Doubles = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+FOLDS_WITHOUT_PEOPLE = 5
+MOST_FOLDS = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Axes:
+    """What a training of the axes gives.
+
+    Attributes:
+        axes: (inputs, actions).
+        offsets: (actions,).
+        own: (n, actions), the scores of the training vectors.
+        held_out: (n, actions), their scores on axes trained without their fold; `own` where no other has their action.
+    """
+
+    axes: NDArray[np.float32]
+    offsets: NDArray[np.float32]
+    own: Doubles
+    held_out: Doubles
+
+
+def folds_of(samples: Sequence[SegmentSample]) -> Indices:
+    """Divide samples into folds: by person, or where there is only one, evenly within each action. Shape (n,)."""
+    people = sorted({sample.person for sample in samples})
+    if len(people) > 1:
+        return np.array([people.index(sample.person) % MOST_FOLDS for sample in samples])
+    counts: dict[str, int] = {}
+    folds = []
+    for sample in samples:
+        counts[sample.label] = counts.get(sample.label, -1) + 1
+        folds.append(counts[sample.label] % FOLDS_WITHOUT_PEOPLE)
+    return np.array(folds)
+
+
+def discriminant_axes(vectors: NDArray[np.float32], wanted: Doubles, folds: Indices, shrinkage: float) -> Axes:
+    """Fit scores x · axes + offsets to what is wanted, minimising squared error + penalty × ‖axes‖².
+
+    The penalty is `shrinkage` times the mean squared length of the centred vectors. Solved in the span of the
+    vectors, whose inner products are all that is needed, for all folds.
+
+    Args:
+        vectors: (n, inputs).
+        wanted: (n, actions), 1 for the action done, else 0.
+        folds: (n,), from `folds_of`.
+        shrinkage: of the penalty.
+    """
+    mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
+    centred = vectors - mean
+    products = (centred @ centred.T).astype(np.float64)
+    penalty = shrinkage * float(np.trace(products)) / len(products)
+    solved, level = _solved(products, wanted, np.arange(len(wanted)), penalty)
+    axes = centred.T @ solved.astype(np.float32)
+    own = products @ solved + level
+    held_out = own.copy()
+    for fold in np.unique(folds):
+        inside = np.flatnonzero(folds != fold)
+        learned = wanted[inside].any(axis=0)
+        outside = np.flatnonzero((folds == fold) & wanted[:, learned].any(axis=1))
+        if len(outside):
+            partial, partial_level = _solved(products, wanted, inside, penalty)
+            held_out[outside] = products[np.ix_(outside, inside)] @ partial + partial_level
+    return Axes(axes, (level - mean @ axes).astype(np.float32), own, held_out)
+
+
+def _solved(products: Doubles, wanted: Doubles, rows: Indices, penalty: float) -> tuple[Doubles, Doubles]:
+    """Solve (K + penalty) a = wanted − level for some rows; return a (rows, actions) and the level (actions,)."""
+    level: Doubles = wanted[rows].mean(axis=0)
+    system = products[np.ix_(rows, rows)]
+    system[np.diag_indices_from(system)] += penalty
+    weights = np.asarray(np.linalg.solve(system, wanted[rows] - level), dtype=np.float64)
+    return weights, level

@@ -1,0 +1,166 @@
+"""The default recogniser, trained layer after layer: first maps, discriminant axes, map of actions, neurons."""
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.node import SECOND_NS
+from actum.som import Som
+from model_trainer.augmentation import View, views
+from model_trainer.description import labels_of, provenance
+from model_trainer.discriminants import discriminant_axes, folds_of
+from model_trainer.progress import Progress
+from model_trainer.samples import SegmentSample
+from model_trainer.upper_layers import Scored, UpperLayers, held_out_gains, train_upper
+from som_classifier.layers import FirstMaps
+from som_classifier.presets import PyramidPreset
+from som_classifier.pyramid import Pyramid, Trail, quantised
+from som_classifier.pyramid_model import PyramidDescription, PyramidModel
+from som_classifier.stages import Stages
+
+Floats = NDArray[Any]
+Indices = NDArray[np.intp]
+
+MOST_INPUTS = 20_000
+MOST_VECTORS = 3_000
+SHORTEST_FRAMES = 3
+SHORTEST_S = 1 / 30
+SMALLEST_LOG_SD = 0.1
+_UM_PER_M = 1e6
+
+
+def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, progress: Progress) -> PyramidModel:
+    """Train all layers; the same samples, preset and seed make the same model.
+
+    Raises:
+        TrainingError: fewer than two actions among the samples.
+    """
+    labels = labels_of(samples)
+    rng = np.random.default_rng(seed)
+    shown = [list(views(sample, preset, rng)) for sample in samples]
+    first = _first_maps([view for own in shown for view in own], preset, rng, progress)
+    targets = np.array([labels.index(sample.label) for sample in samples])
+    folds = folds_of(samples)
+    vectors = _Pooling(first, Pyramid(preset.levels, preset.overlap), samples, shown, progress)
+    fitted = []
+    for done, fractions in enumerate(preset.stages):
+        progress("discriminant axes", done, len(preset.stages))
+        fitted.append(_fitted(vectors, fractions, targets, folds, preset.shrinkage))
+    progress("discriminant axes", len(preset.stages), len(preset.stages))
+    upper = train_upper(fitted[-1], len(labels), preset, rng, progress)
+    gains = held_out_gains(fitted, len(labels), preset, rng, progress)
+    return _assembled(samples, first, fitted, upper, gains, preset, seed)
+
+
+def _first_maps(
+    shown: Sequence[View], preset: PyramidPreset, rng: np.random.Generator, progress: Progress
+) -> FirstMaps:
+    postures = _some(np.concatenate([view.postures for view in shown]), rng)
+    velocities = _some(np.concatenate([view.velocities for view in shown]), rng)
+    maps = [
+        Som.linear(*preset.units, inputs).train_batch(
+            inputs, preset.unit_epochs, preset.unit_radius, partial(progress, stage)
+        )
+        for inputs, stage in ((postures, "map of postures"), (velocities, "map of velocities"))
+    ]
+    contrasts = [
+        preset.relative_contrast * typical_distance2(som, inputs)
+        for som, inputs in zip(maps, (postures, velocities), strict=True)
+    ]
+    return FirstMaps(maps[0], maps[1], (contrasts[0], contrasts[1]))
+
+
+def _some(vectors: Floats, rng: np.random.Generator) -> NDArray[np.float32]:
+    """Return no more rows than a map needs, each flat and in single precision."""
+    flat = vectors.reshape(len(vectors), -1).astype(np.float32)
+    return flat if len(flat) <= MOST_INPUTS else flat[rng.choice(len(flat), MOST_INPUTS, replace=False)]
+
+
+def typical_distance2(som: Som, vectors: Floats) -> float:
+    """Return the median squared distance of the rows to their winners."""
+    differences = vectors - som.weights[som.bmus(vectors)]
+    known = ~np.isnan(differences)
+    distances2 = np.square(np.where(known, differences, 0)).sum(axis=1) * som.dim / known.sum(axis=1)
+    return float(np.median(distances2)) or 1e-6
+
+
+class _Pooling:
+    """Every view's pooled vector at any share of its action."""
+
+    def __init__(
+        self,
+        first: FirstMaps,
+        pyramid: Pyramid,
+        samples: Sequence[SegmentSample],
+        shown: Sequence[Sequence[View]],
+        progress: Progress,
+    ) -> None:
+        self._first, self._pyramid, self._samples, self._shown = first, pyramid, samples, shown
+        self._progress = progress
+
+    def vectors(self, fractions: Sequence[float]) -> tuple[NDArray[np.float32], Indices]:
+        """Return one row per view and fraction, and whose sample each row is."""
+        copies = max(1, MOST_VECTORS // (len(self._samples) * len(fractions)))
+        rows, owners = [], []
+        for owner, (sample, shown) in enumerate(zip(self._samples, self._shown, strict=True)):
+            for view in shown[:copies]:
+                trail = self._trail(view, sample)
+                for fraction in fractions:
+                    rows.append(self._pyramid.vector(trail.until(_frames(len(trail), fraction))))
+                    owners.append(owner)
+        return np.stack(rows), np.array(owners)
+
+    def _trail(self, view: View, sample: SegmentSample) -> Trail:
+        activities = self._first.activities(view.postures, view.velocities)
+        steps_um = np.rint(sample.motion.sum(axis=1) * _UM_PER_M).astype(np.int64)
+        sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
+        np.cumsum(quantised(activities), axis=0, out=sums[1:])
+        return Trail(list(sums), np.concatenate([[0], np.cumsum(steps_um)]))
+
+
+def _frames(frames: int, fraction: float) -> int:
+    return min(frames, max(SHORTEST_FRAMES, round(fraction * frames)))
+
+
+def _fitted(
+    pooling: _Pooling, fractions: Sequence[float], targets: Indices, folds: Indices, shrinkage: float
+) -> Scored:
+    vectors, owners = pooling.vectors(fractions)
+    wanted = np.eye(targets.max() + 1)[targets[owners]]
+    axes = discriminant_axes(vectors, wanted, folds[owners], shrinkage)
+    return Scored(axes, owners, targets[owners], folds[owners])
+
+
+def _assembled(
+    samples: Sequence[SegmentSample],
+    first: FirstMaps,
+    fitted: Sequence[Scored],
+    upper: UpperLayers,
+    gains: list[float],
+    preset: PyramidPreset,
+    seed: int,
+) -> PyramidModel:
+    durations = np.log([max(np.ptp(sample.stamps_ns) / SECOND_NS, SHORTEST_S) for sample in samples])
+    stages = Stages(
+        np.stack([stage.axes.axes for stage in fitted]),
+        np.stack([stage.axes.offsets for stage in fitted]),
+        tuple(float(np.mean(fractions)) for fractions in preset.stages),
+        float(durations.mean()),
+        float(max(durations.std(), SMALLEST_LOG_SD)),
+    )
+    about = provenance(samples, preset, seed) | {
+        "posture_contrast": first.contrasts[0],
+        "velocity_contrast": first.contrasts[1],
+        "levels": list(preset.levels),
+        "overlap": preset.overlap,
+        "fractions": list(stages.fractions),
+        "log_duration_mean": stages.log_duration_mean,
+        "log_duration_sd": stages.log_duration_sd,
+        "concept_contrast": upper.concepts.contrast,
+        "gains": gains,
+        "familiar": float(np.quantile(fitted[-1].axes.held_out.max(axis=1), 1 - preset.known_share)),
+    }
+    return PyramidModel(first, stages, upper.concepts, upper.layer3, PyramidDescription.model_validate(about))

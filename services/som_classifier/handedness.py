@@ -1,0 +1,73 @@
+"""Which limb acts, and whether it is the left arm: left-handed actions are read in a mirror."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.skeletons import INDEX, JOINTS
+
+Integers = NDArray[np.int64]
+
+_LIMBS = np.array(
+    [
+        [INDEX[f"{side}_{middle}"], INDEX[f"{side}_{end}"]]
+        for side, middle, end in (
+            ("right", "elbow", "hand"),
+            ("left", "elbow", "hand"),
+            ("right", "knee", "foot"),
+            ("left", "knee", "foot"),
+        )
+    ]
+)
+_RIGHT_ARM, _LEFT_ARM = 0, 1
+_UNITS_PER_M = 1000
+_JITTER = 20.0
+_FACTOR = 1.65
+
+OPPOSITE = np.array([INDEX[name.replace("left_", "R_").replace("right_", "left_").replace("R_", "right_")]
+                     for name in JOINTS])  # fmt: skip
+"""For each joint the one on the other side of the body."""
+ACROSS = np.array([-1.0, 1.0, 1.0])
+"""What mirroring does to the axes left, up, forward."""
+
+
+def mirrored(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return (…, 15, 3) positions or velocities as the actor's mirror image has them."""
+    other: NDArray[np.float64] = vectors[..., OPPOSITE, :] * ACROSS
+    return other
+
+
+def moments(posture: NDArray[np.float64]) -> Integers:
+    """Return for each limb what its spread is made of, in whole millimetres, shape (4, 8).
+
+    Six coordinates of its two joints, the sum of their squares, and 1; all 0 where a joint is missing. Being integers
+    they add up to the same sums in any order.
+    """
+    limbs = (posture[_LIMBS] * _UNITS_PER_M).reshape(4, 6)
+    known = np.isfinite(limbs).all(axis=1)
+    result = np.zeros((4, 8), np.int64)
+    result[:, :6] = np.rint(np.where(known[:, None], limbs, 0.0))
+    result[:, 6] = (result[:, :6] ** 2).sum(axis=1)
+    result[:, 7] = known
+    return result
+
+
+@dataclass(frozen=True)
+class Spreads:
+    """How much each limb moves about its mean over a segment, in mm."""
+
+    limbs: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, summed: Integers) -> "Spreads":
+        """Work it out from the summed moments of the frames, shape (4, 8)."""
+        count = np.maximum(summed[:, 7], 1)
+        means = summed[:, :6] / count[:, None]
+        return cls(np.sqrt(np.maximum(summed[:, 6] / count - (means * means).sum(axis=1), 0.0)))
+
+    @property
+    def left_handed(self) -> bool:
+        """Whether the left arm is the limb that moves most, and clearly more than the right."""
+        left, right = self.limbs[_LEFT_ARM] + _JITTER, self.limbs[_RIGHT_ARM] + _JITTER
+        return bool(self.limbs.argmax() == _LEFT_ARM and left > _FACTOR * right)

@@ -1,0 +1,122 @@
+"""The temporal pyramid: mean activity of the first maps in overlapping cells of a segment, from prefix sums.
+
+Activities are kept as whole numbers and added up modulo 2³², so that the sum over any window is the difference of two
+running sums to the bit, whenever the summing began.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[Any]
+Sums = NDArray[np.uint32]
+
+SCALE = float(2**20)
+"""The whole number that stands for an activity of 1: 4096 frames of it stay below 2³²."""
+
+
+def quantised(activities: Floats) -> Sums:
+    """Return activities within [0, 1] as whole numbers."""
+    whole: Sums = np.rint(activities * SCALE).astype(np.uint32)
+    return whole
+
+
+@dataclass(frozen=True, eq=False)
+class Trail:
+    """Running sums at the n + 1 instants before, between and after the n frames of a segment.
+
+    Attributes:
+        sums: n + 1 arrays (units,), modulo 2³².
+        travelled_um: n + 1 running sums of how far the parts have moved, micrometres.
+    """
+
+    sums: Sequence[Sums]
+    travelled_um: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.sums) - 1
+
+    def until(self, frames: int) -> "Trail":
+        """Return the first frames alone."""
+        return Trail(self.sums[: frames + 1], self.travelled_um[: frames + 1])
+
+
+@dataclass(frozen=True)
+class Pyramid:
+    """Cells that divide a segment evenly on each level, each reaching over its borders.
+
+    Where a cell begins and ends is measured half by time and half by movement, so that rests before and after an
+    action shift the cells less.
+
+    Attributes:
+        levels: the number of cells on each level.
+        overlap: how far a cell reaches over each border, in parts of its length.
+    """
+
+    levels: tuple[int, ...]
+    overlap: float
+
+    @property
+    def cells(self) -> int:
+        """How many cells there are in all."""
+        return sum(self.levels)
+
+    def vector(self, trail: Trail) -> NDArray[np.float32]:
+        """Return the root of each cell's mean activity, shape (cells * units,).
+
+        Raises:
+            ValueError: there is no frame.
+        """
+        if not len(trail):
+            raise ValueError("no frame to pool over")
+        at = np.interp(self._borders, _progress(trail.travelled_um), np.arange(len(trail) + 1))
+        below = np.minimum(at.astype(np.intp), len(trail) - 1)
+        sums = [trail.sums[k] for k in below.tolist()] + [trail.sums[k + 1] for k in below.tolist()]
+        rows = np.concatenate(sums).reshape(len(sums), -1)
+        rows -= trail.sums[0]
+        means: Floats = self._mixing(at, at - below) @ rows.astype(np.float64)
+        vector: NDArray[np.float32] = np.maximum(means.astype(np.float32).ravel(), 0.0)
+        np.sqrt(vector, out=vector)
+        return vector
+
+    @cached_property
+    def _spans(self) -> list[tuple[float, float]]:
+        return [
+            (max((cell - self.overlap) / level, 0.0), min((cell + 1 + self.overlap) / level, 1.0))
+            for level in self.levels
+            for cell in range(level)
+        ]
+
+    @cached_property
+    def _borders(self) -> Floats:
+        """Where cells begin or end, each once."""
+        return np.unique(np.array(self._spans))
+
+    @cached_property
+    def _differences(self) -> Floats:
+        """What takes each cell's end less its beginning, shape (cells, borders)."""
+        begins, ends = (np.equal.outer(np.array(side), self._borders) for side in zip(*self._spans, strict=True))
+        differences: Floats = ends.astype(np.float64) - begins
+        return differences
+
+    def _mixing(self, at: Floats, share: Floats) -> Floats:
+        """What makes cell means of the sums below and above each border, shape (cells, 2 * borders)."""
+        lengths = self._differences @ at
+        differences = self._differences / np.maximum(lengths * SCALE, 1.0)[:, None]
+        mixing: Floats = np.concatenate([differences * (1 - share), differences * share], axis=1)
+        return mixing
+
+
+def _progress(travelled_um: NDArray[np.int64]) -> Floats:
+    """Return how far a segment is at each instant, 0 to 1: half time, half movement; time alone where all is still."""
+    frames = len(travelled_um) - 1
+    time = np.arange(frames + 1) / frames
+    moved = travelled_um - travelled_um[0]
+    if moved[-1] <= 0:
+        return time
+    progress: Floats = 0.5 * time + 0.5 * (moved / moved[-1])
+    return progress

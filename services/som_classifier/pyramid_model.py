@@ -1,0 +1,257 @@
+"""The default recogniser: maps of posture and velocity, pooled over a segment, told apart, and laid out on a map."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, Any, Literal, overload
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from actum.node import SECOND_NS
+from actum.skeletons import JOINTS
+from actum.som import Som
+from som_classifier.attention import PART_NAMES, attended
+from som_classifier.handedness import Spreads, mirrored, moments
+from som_classifier.layers import Concepts, FirstMaps
+from som_classifier.model import Arrays, Description, Model
+from som_classifier.pyramid import Pyramid, Sums, Trail, quantised
+from som_classifier.recognition import Recognition
+from som_classifier.stages import Stages
+from som_classifier.streams import Frame
+from som_classifier.supervised import SupervisedLayer
+from som_classifier.trace import without_repeats
+
+Floats = NDArray[Any]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+_UM_PER_M = 1e6
+
+
+class PyramidDescription(Description):
+    """What a model of this kind is.
+
+    Attributes:
+        posture_contrast: of the posture map's activity, in squared metres.
+        velocity_contrast: of the velocity map's activity.
+        levels: the pyramid's cells on each level.
+        overlap: how far each reaches over its borders, in parts of its length.
+        fractions: the share of an action that each stage of the discriminant axes has seen.
+        log_duration_mean: mean of the logarithm of the training segments' durations (s).
+        log_duration_sd: their standard deviation.
+        concept_contrast: of the second map's activity, in squared scores.
+        gains: what makes cosines logits, by stage.
+        familiar: the familiarity below which an action may be none of those trained.
+    """
+
+    kind: Literal["pyramid"] = "pyramid"
+    posture_contrast: Positive
+    velocity_contrast: Positive
+    levels: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=1)]
+    overlap: Annotated[float, Field(ge=0, le=1)]
+    fractions: Annotated[list[Annotated[float, Field(gt=0, le=1)]], Field(min_length=1)]
+    log_duration_mean: Annotated[float, Field(allow_inf_nan=False)]
+    log_duration_sd: Positive
+    concept_contrast: Positive
+    gains: list[Positive]
+    familiar: Annotated[float, Field(allow_inf_nan=False)]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Code:
+    """One frame as this recogniser remembers it: running sums before and after it, and the posture map's winner.
+
+    `sums` are (2, units), the actor as seen and in a mirror; `travelled_um` how far the parts have moved; `spread`
+    the summed moments of the limbs. All are whole numbers.
+    """
+
+    sums_before: Sums
+    sums: Sums
+    travelled_before_um: int
+    travelled_um: int
+    spread_before: NDArray[np.int64]
+    spread: NDArray[np.int64]
+    winner: int
+
+
+@dataclass(frozen=True, eq=False)
+class PyramidModel(Model):
+    """The trained layers. `confidence` is a probability, calibrated on people left out of training.
+
+    Attributes:
+        first: the maps of posture and velocity.
+        stages: the discriminant axes on their pooled activities.
+        concepts: the map of actions.
+        layer3: one neuron per label on its activity.
+    """
+
+    first: FirstMaps
+    stages: Stages
+    concepts: Concepts
+    layer3: SupervisedLayer
+    description: PyramidDescription
+
+    def __post_init__(self) -> None:
+        if problem := self._mismatch():
+            raise ValueError(problem)
+
+    @property
+    def about(self) -> Description:
+        """What it is."""
+        return self.description
+
+    @property
+    def arrays(self) -> Arrays:
+        """All its weights, maps as component planes."""
+        return {
+            "postures": self.first.postures.planes,
+            "velocities": self.first.velocities.planes,
+            "axes": self.stages.axes,
+            "offsets": self.stages.offsets,
+            "concepts": self.concepts.layout.planes,
+            "concept_mean": self.concepts.mean,
+            "layer3": self.layer3.weights,
+        }
+
+    @classmethod
+    def restored(cls, metadata: str, arrays: Arrays) -> "PyramidModel":
+        """Put together what `metadata` and `arrays` gave.
+
+        Raises:
+            ValueError, KeyError: the parts are not there or do not fit together.
+        """
+        about = PyramidDescription.model_validate_json(metadata)
+        postures, velocities, layout = (Som.of_planes(arrays[name]) for name in ("postures", "velocities", "concepts"))
+        durations = about.log_duration_mean, about.log_duration_sd
+        return cls(
+            FirstMaps(postures, velocities, (about.posture_contrast, about.velocity_contrast)),
+            Stages(arrays["axes"], arrays["offsets"], tuple(about.fractions), *durations),
+            Concepts(layout, about.concept_contrast, arrays["concept_mean"]),
+            SupervisedLayer(arrays["layer3"]),
+            about,
+        )
+
+    @cached_property
+    def pyramid(self) -> Pyramid:
+        """How activities are pooled over a segment."""
+        return Pyramid(tuple(self.description.levels), self.description.overlap)
+
+    def encoder(self) -> "FrameEncoder":
+        """Begin to read an agent."""
+        return FrameEncoder(self.first)
+
+    def recognise(self, frames: Sequence[Frame], complete: bool) -> Recognition:
+        """Say which action a segment is.
+
+        Raises:
+            ValueError: there is no frame.
+        """
+        if not frames:
+            raise ValueError("no frame to recognise an action from")
+        codes: list[Code] = [frame.code for frame in frames]
+        weights = self.stages.weights((frames[-1].stamp_ns - frames[0].stamp_ns) / SECOND_NS, complete)
+        scores = self.scores(codes, weights)
+        cosines = self.layer3.cosines(self.concepts.activity(scores))
+        winner = int(cosines.argmax())
+        gain = sum(weight * gain for weight, gain in zip(weights, self.description.gains, strict=True))
+        familiarity = float(scores.max())
+        return Recognition(
+            label=self.labels[winner],
+            confidence=_probability(cosines, winner, gain * seen_share(frames)),
+            activations=dict(zip(self.labels, cosines.tolist(), strict=True)),
+            part=PART_NAMES[attended(np.array([frame.motion for frame in frames]))],
+            trace=self.first.postures.coordinates[without_repeats(np.array([code.winner for code in codes]))],
+            familiarity=familiarity,
+            unknown=complete and familiarity < self.description.familiar,
+        )
+
+    def scores(self, codes: Sequence[Code], weights: Sequence[float]) -> NDArray[np.float32]:
+        """Return the actions' scores on the discriminant axes of the stages that the weights name."""
+        return self.stages.scores(self.pyramid.vector(trail_of(codes)), weights)
+
+    def _mismatch(self) -> str | None:
+        """Name the first thing about the layers that does not fit together."""
+        about, first, layout = self.description, self.first, self.concepts.layout
+        actions, stages, inputs = len(about.labels), len(about.fractions), self.pyramid.cells * first.units
+        if about.joint_order != list(JOINTS):
+            return "its joint order is not this version's"
+        if len(set(about.labels)) < actions or len(about.gains) != stages:
+            return "its labels or its stages do not fit together"
+        loose = (self.stages.axes, self.stages.offsets, self.concepts.mean)
+        if not all(array.dtype == np.float32 and np.isfinite(array).all() for array in loose):
+            return "its axes, their offsets or its mean are not finite single-precision numbers"
+        shapes = {
+            "map of postures": (first.postures.weights.shape[1:], (3 * len(JOINTS),)),
+            "map of velocities": (first.velocities.weights.shape[1:], (3 * len(JOINTS),)),
+            "discriminant axes": (self.stages.axes.shape, (stages, inputs, actions)),
+            "offsets of them": (self.stages.offsets.shape, (stages, actions)),
+            "map of actions": (layout.weights.shape[1:], (actions,)),
+            "its mean": (self.concepts.mean.shape, (len(layout.weights),)),
+            "third layer": (self.layer3.weights.shape, (actions, len(layout.weights))),
+        }
+        wrong = (
+            f"its {name} is of shape {has}, not {should}" for name, (has, should) in shapes.items() if has != should
+        )
+        return next(wrong, None)
+
+
+class FrameEncoder:
+    """Adds up one agent's activities, frame by frame, as seen and in a mirror."""
+
+    def __init__(self, first: FirstMaps) -> None:
+        self._first = first
+        self._sums: Sums = np.zeros((2, first.units), np.uint32)
+        self._travelled_um = 0
+        self._spread = np.zeros((4, 8), np.int64)
+
+    def encode(self, frame: Frame) -> Code:
+        """Add a valid frame."""
+        assert frame.movement is not None and frame.motion is not None
+        posture, velocity = frame.movement.posture, frame.movement.velocity
+        straight = self._first.activity(posture, velocity)
+        both = quantised(np.stack([straight, self._first.activity(mirrored(posture), mirrored(velocity))]))
+        before = self._sums, self._travelled_um, self._spread
+        self._sums = self._sums + both
+        self._travelled_um += round(sum(frame.motion.tolist()) * _UM_PER_M)
+        self._spread = self._spread + moments(posture)
+        winner = int(straight[: len(self._first.postures.weights)].argmax())
+        return Code(
+            before[0], self._sums, before[1], self._travelled_um, before[2], self._spread, winner
+        )  # fmt: skip
+
+
+def trail_of(codes: Sequence[Code]) -> Trail:
+    """Return a segment's running sums, in a mirror where the left arm acts."""
+    side = int(Spreads.of(codes[-1].spread - codes[0].spread_before).left_handed)
+    travelled_um = [codes[0].travelled_before_um, *[code.travelled_um for code in codes]]
+    return Trail(_Side(codes, side), np.array(travelled_um))
+
+
+class _Side(Sequence[Sums]):
+    """The running sums of the actor as seen or in a mirror, before, between and after the frames."""
+
+    def __init__(self, codes: Sequence[Code], side: int) -> None:
+        self._codes, self._side = codes, side
+
+    def __len__(self) -> int:
+        return len(self._codes) + 1
+
+    @overload
+    def __getitem__(self, index: int) -> Sums: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Sums]: ...
+    def __getitem__(self, index: int | slice) -> Sums | Sequence[Sums]:
+        if isinstance(index, slice):
+            return [self[k] for k in range(*index.indices(len(self)))]
+        sums: Sums = (self._codes[index - 1].sums if index else self._codes[0].sums_before)[self._side]
+        return sums
+
+
+def seen_share(frames: Sequence[Frame]) -> float:
+    """Return which share of the joints was there over all frames."""
+    return 1.0 - sum(len(frame.missing) for frame in frames) / (len(JOINTS) * len(frames))
+
+
+def _probability(cosines: Floats, winner: int, gain: float) -> float:
+    """Return the winner's share of the softmax of gain × cosines."""
+    return float(1.0 / np.exp(gain * (cosines - cosines[winner])).sum())

@@ -1,0 +1,55 @@
+"""Discriminant axes, one set for each stage of an action: early on other things tell actions apart than at the end."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.som.blas import row_product
+
+Floats = NDArray[Any]
+
+NEGLIGIBLE = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Stages:
+    """Linear scores of the actions from a pyramid vector; the last stage is the complete action.
+
+    Attributes:
+        axes: (stages, inputs, actions), float32.
+        offsets: (stages, actions), float32.
+        fractions: (stages,), the share of an action that each stage has seen; the last is 1.
+        log_duration_mean: mean of the logarithm of the training segments' durations (s).
+        log_duration_sd: their standard deviation.
+    """
+
+    axes: NDArray[np.float32]
+    offsets: NDArray[np.float32]
+    fractions: tuple[float, ...]
+    log_duration_mean: float
+    log_duration_sd: float
+
+    def weights(self, elapsed_s: float, complete: bool) -> Sequence[float]:
+        """Say how likely each stage is: the last where the segment is complete, else by the time since its start.
+
+        The fraction seen is elapsed / duration, and durations are log-normal as in training.
+        """
+        if complete:
+            return [0.0] * (len(self.fractions) - 1) + [1.0]
+        log_fractions = np.log(max(elapsed_s, 1e-3)) - self.log_duration_mean
+        z = (log_fractions - np.log(self.fractions)) / self.log_duration_sd
+        likely = np.exp(-0.5 * (z * z - (z * z).min()))
+        likely[likely < NEGLIGIBLE * likely.sum()] = 0.0
+        normalised: list[float] = (likely / likely.sum()).tolist()
+        return normalised
+
+    def scores(self, vector: NDArray[np.float32], weights: Sequence[float]) -> NDArray[np.float32]:
+        """Return the actions' scores, about 1 for the one done and 0 for the others, shape (actions,)."""
+        total = np.zeros(self.offsets.shape[1], np.float32)
+        for axes, offsets, weight in zip(self.axes, self.offsets, weights, strict=True):
+            if weight:
+                total += np.float32(weight) * (row_product(vector, axes) + offsets)
+        return total

@@ -1,0 +1,52 @@
+"""Model files: read whatever recogniser one holds, or say what is wrong with it."""
+
+import json
+import zipfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+from pydantic import ValidationError
+
+from som_classifier.model import Model
+from som_classifier.paper_model import PaperModel
+from som_classifier.pyramid_model import PyramidModel
+
+KINDS: dict[str, type[Model]] = {"paper": PaperModel, "pyramid": PyramidModel}
+UNREADABLE = (
+    OSError, ValueError, TypeError, EOFError, KeyError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error,
+)  # fmt: skip
+"""What NumPy and zipfile are known to raise on files that are not theirs or were cut or altered."""
+
+
+class ModelError(ValueError):
+    """A file that is no sound model of ours."""
+
+    def __init__(self, path: Path, problem: str) -> None:
+        super().__init__(f"{path}: {problem}; train a model with: actum train REC… -o MODEL")
+
+
+def load_model(path: Path) -> Model:
+    """Read a file that `Model.save` wrote.
+
+    Raises:
+        ModelError: the file is missing, foreign, damaged, or made for another joint order.
+    """
+    try:
+        with path.open("rb") as stored, np.load(stored, allow_pickle=False) as file:
+            metadata = str(file["metadata"])
+            arrays = {name: file[name] for name in file.files if name != "metadata"}
+        kind = json.loads(metadata).get("kind")
+        if kind not in KINDS:
+            raise ModelError(path, f"a model of kind {kind!r}, which this version does not know")
+        return KINDS[kind].restored(metadata, arrays)
+    except ModelError:
+        raise
+    except FileNotFoundError:
+        raise ModelError(path, "there is no such file") from None
+    except ValidationError as error:
+        first = error.errors(include_input=False, include_url=False)[0]
+        field = ".".join(str(part) for part in first["loc"])
+        raise ModelError(path, f"no actum model: metadata {field}: {first['msg']}") from None
+    except (*UNREADABLE, AttributeError) as error:
+        raise ModelError(path, f"no actum model, or a damaged one ({error})") from None

@@ -1,0 +1,66 @@
+"""A small model of each kind, made by hand rather than trained."""
+
+import numpy as np
+
+from actum.som import Som
+from som_classifier.layers import Concepts, FirstMaps
+from som_classifier.model import Model
+from som_classifier.paper_model import PaperDescription, PaperModel
+from som_classifier.pyramid_model import PyramidDescription, PyramidModel
+from som_classifier.stages import Stages
+from som_classifier.supervised import SupervisedLayer
+
+POINTS = 3
+LEVELS = [1, 2]
+FRACTIONS = [0.5, 1.0]
+UNITS = 9 + 6
+PROVENANCE: dict[str, object] = {
+    "labels": ["pull", "push"],
+    "preset": "handmade",
+    "parameters": {"layer1": {"rows": 3, "radius": (1.5, 0.7)}},
+    "seed": 7,
+    "persons": ["1", "3"],
+    "samples": 60,
+    "data_digest": "abc",
+    "actum_version": "0.1.0",
+}
+
+
+def paper_model(**changes: object) -> PaperModel:
+    """A 3×3 map; the second map knows the way down its first column and the way up, each with its own neuron."""
+    layer1 = Som.random(3, 3, 9, np.random.default_rng(0))
+    down, up = [0.0, 0.0, 1.0, 0.0, 2.0, 0.0], [2.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+    about = PROVENANCE | {"points": POINTS, "contrast": 4.0, "part": None} | changes
+    description = PaperDescription.model_validate(about)
+    return PaperModel(layer1, Som(1, 2, np.array([down, up])), SupervisedLayer(np.eye(2)), description)
+
+
+def pyramid_model(**changes: object) -> PyramidModel:
+    """Two maps of 3×3 and 2×3 units, two stages, a 3×3 map of actions, all drawn at random."""
+    about = {
+        "posture_contrast": 0.5, "velocity_contrast": 0.1, "levels": LEVELS, "overlap": 0.25, "fractions": FRACTIONS,
+        "log_duration_mean": 0.5, "log_duration_sd": 0.4, "concept_contrast": 2.0, "gains": [4.0, 8.0], "familiar": 0.3,
+    }  # fmt: skip
+    description = PyramidDescription.model_validate(PROVENANCE | about | changes)
+    rng = np.random.default_rng(0)
+    maps = [
+        Som(rows, 3, rng.normal(size=(rows * 3, dim)).astype(np.float32)) for rows, dim in ((3, 45), (2, 45), (3, 2))
+    ]
+    axes = rng.normal(size=(2, sum(LEVELS) * UNITS, 2)).astype(np.float32)
+    first = FirstMaps(maps[0], maps[1], (description.posture_contrast, description.velocity_contrast))
+    stages = Stages(
+        axes,
+        rng.normal(size=(2, 2)).astype(np.float32),
+        tuple(description.fractions),
+        description.log_duration_mean,
+        description.log_duration_sd,
+    )
+    concepts = Concepts(maps[2], description.concept_contrast, (0.1 * rng.random(9)).astype(np.float32))
+    return PyramidModel(first, stages, concepts, SupervisedLayer.random(2, 9, rng), description)
+
+
+KINDS: dict[str, type[Model]] = {"paper": PaperModel, "pyramid": PyramidModel}
+
+
+def model_of(kind: str, **changes: object) -> Model:
+    return paper_model(**changes) if kind == "paper" else pyramid_model(**changes)

@@ -1,0 +1,142 @@
+"""The default recogniser's layers learn from the very vectors that it will see."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from actum.node import SECOND_NS
+from actum.skeletons import PARTS
+from actum.som import Som
+from model_trainer.answering import answer, encoded
+from model_trainer.discriminants import discriminant_axes, folds_of
+from model_trainer.pyramid_training import typical_distance2
+from model_trainer.samples import SegmentSample
+from model_trainer.training import train
+from model_trainer.upper_layers import variance_within
+from performers import TINY
+from som_classifier.handedness import mirrored
+from som_classifier.presets import PyramidPreset
+from som_classifier.pyramid_model import PyramidModel, trail_of
+
+PLAIN = replace(TINY, turns_deg=(), builds=0, stages=((1.0,),))
+OTHER_SIDE = [list(PARTS).index(name) for name in ("left_arm", "right_arm", "left_leg", "right_leg", "body")]
+
+
+def trained(samples: list[SegmentSample], preset: PyramidPreset = TINY, seed: int = 0) -> PyramidModel:
+    model = train(samples, preset, seed)
+    assert isinstance(model, PyramidModel)
+    return model
+
+
+def pooled(model: PyramidModel, sample: SegmentSample, fraction: float = 1.0) -> np.ndarray:
+    codes = [frame.code for frame in encoded(model, sample)]
+    return model.pyramid.vector(trail_of(codes[: round(fraction * len(codes))]))
+
+
+def wanted(model: PyramidModel, samples: list[SegmentSample]) -> np.ndarray:
+    return np.eye(len(model.labels))[[model.labels.index(sample.label) for sample in samples]]
+
+
+def test_axes_are_fitted_to_what_the_recogniser_pools(samples: list[SegmentSample]) -> None:
+    model = trained(samples, PLAIN)
+    vectors = np.stack([pooled(model, sample) for sample in samples])
+    axes = discriminant_axes(vectors, wanted(model, samples), folds_of(samples), PLAIN.shrinkage)
+    np.testing.assert_allclose(vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.own, atol=0.02)
+    familiar = np.quantile(axes.held_out.max(axis=1), 1 - PLAIN.known_share)
+    assert model.description.familiar == pytest.approx(familiar, abs=0.02)
+
+
+def test_each_stage_is_fitted_to_that_share_of_the_action(samples: list[SegmentSample]) -> None:
+    model = trained(samples, replace(PLAIN, stages=((0.3, 0.5), (1.0,))))
+    assert model.description.fractions == pytest.approx([0.4, 1.0])
+    vectors = np.stack([pooled(model, sample, fraction) for sample in samples for fraction in (0.3, 0.5)])
+    twice = [sample for sample in samples for _ in range(2)]
+    axes = discriminant_axes(vectors, wanted(model, twice), folds_of(twice), PLAIN.shrinkage)
+    np.testing.assert_allclose(vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.own, atol=0.05)
+
+
+def test_durations_are_those_of_the_samples(samples: list[SegmentSample]) -> None:
+    slower = [replace(s, stamps_ns=s.stamps_ns * (1 + i % 4)) for i, s in enumerate(samples)]
+    durations_s = np.array([np.ptp(sample.stamps_ns) / SECOND_NS for sample in slower])
+    about = trained(slower).description
+    assert about.log_duration_mean == pytest.approx(np.log(durations_s).mean())
+    assert about.log_duration_sd == pytest.approx(np.log(durations_s).std())
+    assert trained(samples).description.log_duration_sd == pytest.approx(0.1), "however alike they are"
+
+
+def test_contrasts_are_relative_to_the_distances_on_the_maps(samples: list[SegmentSample]) -> None:
+    half, whole = (trained(samples, replace(TINY, relative_contrast=contrast)) for contrast in (0.5, 1.0))
+    for name in ("posture_contrast", "velocity_contrast"):
+        assert getattr(whole.description, name) == pytest.approx(2 * getattr(half.description, name))
+    postures = np.concatenate([sample.postures for sample in samples]).reshape(-1, 45)
+    plain = trained(samples, PLAIN)
+    right_handed = [mirrored(s.postures) if s.label == "swing" else s.postures for s in samples]
+    distances2 = [plain.first.postures.distances2(x.ravel()).min() for x in np.concatenate(right_handed)]
+    assert len(distances2) == len(postures)
+    assert plain.description.posture_contrast == pytest.approx(0.5 * np.median(distances2), rel=1e-3)
+
+
+def test_mirror_images_teach_the_same(samples: list[SegmentSample]) -> None:
+    images = [
+        replace(
+            sample,
+            postures=mirrored(sample.postures),
+            velocities=mirrored(sample.velocities),
+            motion=sample.motion[:, OTHER_SIDE],
+        )
+        for sample in samples
+    ]
+    one, other = trained(samples), trained(images)
+    for name, array in one.arrays.items():
+        np.testing.assert_array_equal(array, other.arrays[name])
+
+
+def test_only_what_the_layers_see_matters(samples: list[SegmentSample]) -> None:
+    """Neither the paper's egocentric joints nor files and names."""
+    other = [
+        replace(s, joints=s.joints + 0.3, file="elsewhere", segment_id="x", stamps_ns=s.stamps_ns + 9) for s in samples
+    ]
+    one, two = trained(samples), trained(other)
+    for name, array in one.arrays.items():
+        np.testing.assert_array_equal(array, two.arrays[name])
+
+
+def test_missing_joints_can_be_learned_from(samples: list[SegmentSample]) -> None:
+    gappy = []
+    for i, sample in enumerate(samples):
+        gone = np.zeros((len(sample.stamps_ns), 15, 1), dtype=bool)
+        gone[i % 5 :: 3, [0, 11, 14]] = True
+        postures, velocities = (np.where(gone, np.nan, values) for values in (sample.postures, sample.velocities))
+        gappy.append(replace(sample, postures=postures, velocities=velocities))
+    model = trained(gappy)
+    assert all(np.isfinite(array).all() for array in model.arrays.values())
+    assert [answer(model, encoded(model, each)).label for each in gappy] == [sample.label for sample in samples]
+    assert [answer(model, encoded(model, each)).label for each in samples] == [sample.label for sample in samples]
+
+
+def test_at_most_the_share_meant_to_be_unknown_is(samples: list[SegmentSample]) -> None:
+    model = trained(samples)
+    unknown = [answer(model, encoded(model, sample)).unknown for sample in samples]
+    assert np.mean(unknown) <= 1 - TINY.known_share
+
+
+def test_typical_distance_by_hand() -> None:
+    """One unit at 0: squared distances 1, 4 and 9."""
+    assert typical_distance2(Som(1, 1, np.zeros((1, 1))), np.array([[1.0], [2.0], [3.0]])) == 4.0
+
+
+def test_typical_distance_scales_up_what_is_missing() -> None:
+    """Two of three components known: 1 + 1 stands for 3."""
+    assert typical_distance2(Som(1, 1, np.zeros((1, 3))), np.array([[1.0, np.nan, 1.0]])) == 3.0
+
+
+def test_a_typical_distance_is_never_zero() -> None:
+    assert typical_distance2(Som(1, 1, np.ones((1, 3))), np.ones((4, 3))) > 0
+
+
+def test_variance_within_by_hand() -> None:
+    """Of the first action 1 and 4, of the second 0 and 0: what lies between actions does not count."""
+    scores = np.array([[0.0, 10.0], [2.0, 14.0], [50.0, 50.0], [50.0, 50.0]])
+    assert variance_within(scores, np.array([0, 0, 1, 1])) == pytest.approx((2.5 + 0) / 2)
+    assert variance_within(scores[2:], np.array([0, 1])) > 0

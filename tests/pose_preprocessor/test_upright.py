@@ -1,0 +1,166 @@
+"""The upright posture: scaled joints from the torso, up along gravity, turned by the smoothed heading."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from actum import geometry
+from actum.messages import Posture
+from actum.skeletons import INDEX
+from people import FRAME_NS, STANDING, lacking, reaching, skeleton, turned
+from pose_preprocessor.heading import FIRST_S, TIME_CONSTANT_S, HeadingFilter
+from pose_preprocessor.node import PosePreprocessor
+
+Array = NDArray[np.float64]
+
+HEADINGS = st.floats(-np.pi, np.pi)
+SECOND_NS = 10**9
+HIPS, SHOULDERS = ("left_hip", "right_hip"), ("left_shoulder", "right_shoulder")
+
+
+def upright(frames: list[Array], first_ns: int = 0, step_ns: int = FRAME_NS) -> Array:
+    """Each frame's upright joints (n, 15, 3)."""
+    node = PosePreprocessor()
+    made = [p for i, joints in enumerate(frames) for p in node.handle(skeleton(first_ns + i * step_ns, joints))]
+    assert all(isinstance(posture, Posture) and posture.valid and posture.upright for posture in made)
+    return np.array([posture.upright for posture in made if isinstance(posture, Posture)])
+
+
+def moving(frames: int = 15, seed: int = 0) -> list[Array]:
+    """A reaching person who sways about the vertical."""
+    noise = np.random.default_rng(seed).normal(0, 0.01, (frames, 15, 3))
+    return [turned(reaching(i / frames), 0.4 * np.sin(i / 3)) + noise[i] for i in range(frames)]
+
+
+def angle(filtered: tuple[float, float]) -> float:
+    """The heading that a direction to the left stands for; 0 faces the camera, a positive one is turned left."""
+    return float(np.arctan2(filtered[1], filtered[0]))
+
+
+def level(joints: Array) -> Array:
+    """The person with hips and shoulders straight across."""
+    straight = joints.copy()
+    for left, right in (HIPS, SHOULDERS):
+        straight[INDEX[left], 1:] = straight[INDEX[right], 1:]
+    return straight
+
+
+@given(HEADINGS)
+def test_at_a_steady_heading_it_is_the_scaled_posture_seen_from_the_front(heading: float) -> None:
+    (seen,) = upright([turned(level(STANDING), heading)])
+    standard = geometry.scaled(level(STANDING)) - STANDING[INDEX["torso"]]
+    np.testing.assert_allclose(seen, standard * [1, -1, -1], atol=1e-12)
+
+
+def test_left_is_left_up_is_up_and_forward_is_forward() -> None:
+    seen = upright([turned(reaching(1.0), heading) for heading in np.linspace(0, 0.1, 5)])
+    assert (seen[:, INDEX["left_hand"], 0] > 0.1).all()
+    assert (seen[:, INDEX["right_shoulder"], 0] < -0.1).all()
+    assert (seen[:, INDEX["head"], 1] > 0.4).all()
+    assert (seen[:, INDEX["left_foot"], 1] < -0.8).all()
+    assert (seen[:, INDEX["right_hand"], 2] > 0.4).all()
+    np.testing.assert_array_equal(seen[:, INDEX["torso"]], 0)
+
+
+def test_a_bow_stays_a_bow() -> None:
+    """Up is along gravity, not along the trunk: the head of one who bows by 60 degrees comes forward and down."""
+    bowed = level(STANDING)
+    above = [INDEX[name] for name in ("head", "neck")]
+    bowed[above] = bowed[INDEX["torso"]] + np.array([[0, -0.5, -np.sqrt(0.75)]]) * np.array([[0.44], [0.24]])
+    shift = bowed[INDEX["neck"]] - STANDING[INDEX["neck"]]
+    bowed[[INDEX[name] for name in SHOULDERS]] += shift
+    (seen,) = upright([bowed])
+    np.testing.assert_allclose(seen[INDEX["head"]], [0, 0.22, 0.44 * np.sqrt(0.75)], atol=1e-12)
+
+
+@given(HEADINGS, st.tuples(*[st.floats(-2, 2)] * 3), st.floats(0.7, 1.3))
+def test_place_heading_and_size_leave_it_alone(heading: float, shift: tuple[float, ...], size: float) -> None:
+    """The camera's place and its yaw do, therefore; a heading smoothed from the first frame on turns with it."""
+    frames = moving()
+    about = frames[0][INDEX["torso"]]
+    c, s = np.cos(heading), np.sin(heading)
+    yaw = np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]])
+    elsewhere = [about + size * (joints - about) @ yaw.T + np.array(shift) for joints in frames]
+    np.testing.assert_allclose(upright(elsewhere), upright(frames), atol=1e-9)
+
+
+def test_the_heading_is_the_mean_of_hips_and_shoulders() -> None:
+    twisted = STANDING.copy()
+    for names, degrees in ((HIPS, 10), (SHOULDERS, 50)):
+        c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+        twisted[INDEX[names[0]], [0, 2]] = 0.15 * np.array([c, s])
+        twisted[INDEX[names[1]], [0, 2]] = -0.15 * np.array([c, s])
+        twisted[[INDEX[name] for name in names], 1] = 0.0
+    assert np.degrees(angle(HeadingFilter().step(0, twisted))) == pytest.approx(30)
+    assert np.degrees(angle(HeadingFilter().step(0, lacking(twisted, *HIPS)))) == pytest.approx(50)
+    assert np.degrees(angle(HeadingFilter().step(0, lacking(twisted, "left_shoulder")))) == pytest.approx(10)
+
+
+def test_after_a_turn_the_heading_follows_as_a_first_order_filter() -> None:
+    """After 1 s of facing the camera a quarter turn to the left: m goes exponentially from (1, 0) to (0, 1)."""
+    heading, person = HeadingFilter(), level(STANDING)
+    for i in range(300):
+        heading.step(i * SECOND_NS // 30, person)
+    for i in range(300, 360):
+        left = heading.step(i * SECOND_NS // 30, turned(person, np.pi / 2))
+        rest = np.exp(-(i - 299) / 30 / TIME_CONSTANT_S)
+        assert np.tan(angle(left)) == pytest.approx((1 - rest) / rest, rel=1e-6)
+
+
+def test_at_first_the_heading_is_the_mean_of_what_was_seen() -> None:
+    """Frames at 30 Hz count the same as long as the mean is quicker than the filter."""
+    heading, person = HeadingFilter(), level(STANDING)
+    headings_rad = np.random.default_rng(3).uniform(-1, 1, 20)
+    for i, heading_rad in enumerate(headings_rad):
+        left = heading.step(round(i * FIRST_S * SECOND_NS), turned(person, heading_rad))
+        seen = headings_rad[: i + 1]
+        assert angle(left) == pytest.approx(np.arctan2(np.sin(seen).sum(), np.cos(seen).sum()), abs=1e-6)
+
+
+def test_the_filter_does_not_know_the_frame_rate() -> None:
+    """Once the mean has given way to the filter, a hundred steps go as far as one."""
+    fine, coarse, person = HeadingFilter(), HeadingFilter(), level(STANDING)
+    for i in range(11):
+        fine.step(i * SECOND_NS // 2, person)
+        coarse.step(i * SECOND_NS // 2, person)
+    late_ns = 5 * SECOND_NS
+    for i in range(1, 101):
+        left = fine.step(late_ns + i * SECOND_NS // 200, turned(person, 1.0))
+    assert left == pytest.approx(coarse.step(late_ns + SECOND_NS // 2, turned(person, 1.0)))
+
+
+@pytest.mark.parametrize(("gap_ns", "expected"), [(SECOND_NS // 2, False), (SECOND_NS // 2 + 1, True)])
+def test_the_heading_begins_anew_after_a_gap(gap_ns: int, expected: bool) -> None:
+    heading, person = HeadingFilter(), level(STANDING)
+    for i in range(60):
+        heading.step(i * FRAME_NS, person)
+    left = heading.step(59 * FRAME_NS + gap_ns, turned(person, 1.0))
+    assert (angle(left) == pytest.approx(1.0)) is expected
+
+
+def test_another_session_begins_anew() -> None:
+    node, person = PosePreprocessor(), level(STANDING)
+    frames = [skeleton(0, person), skeleton(FRAME_NS, turned(person, 2.0), session_id="other")]
+    first, other = [p for frame in frames for p in node.handle(frame) if isinstance(p, Posture)]
+    np.testing.assert_allclose(np.array(other.upright), np.array(first.upright), atol=1e-12)
+
+
+def test_one_who_lies_on_the_side_keeps_the_last_heading() -> None:
+    """Without one they face the camera."""
+    lying = STANDING[INDEX["torso"]] + (level(STANDING) - STANDING[INDEX["torso"]])[:, [1, 0, 2]]
+    heading = HeadingFilter()
+    assert heading.step(0, lying) == (1.0, 0.0)
+    turned_left = heading.step(SECOND_NS, turned(level(STANDING), 0.7))
+    assert angle(turned_left) == pytest.approx(0.7)
+    assert heading.step(2 * SECOND_NS, lying) == turned_left
+
+
+def test_each_person_has_a_heading_of_their_own() -> None:
+    node, person = PosePreprocessor(), level(STANDING)
+    for i in range(20):
+        drift = np.array([1.0, 0.0, 1e-6 * i])
+        frame = skeleton(i * FRAME_NS, turned(person, 0.5) + drift, turned(person, -1.5) - drift)
+        first, second = (posture for posture in node.handle(frame) if isinstance(posture, Posture))
+    np.testing.assert_allclose(np.array(first.upright), np.array(second.upright), atol=1e-9)

@@ -1,0 +1,230 @@
+"""The default recogniser answers from a segment's own frames, of either hand, also where joints are missing."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from actum.node import SECOND_NS
+from actum.skeletons import INDEX, PARTS
+from model_trainer.answering import answer, encoded
+from model_trainer.samples import SegmentSample
+from recognisers import tiny_model, tiny_samples
+from som_classifier.handedness import mirrored
+from som_classifier.pyramid_model import Code, PyramidModel, seen_share, trail_of
+from som_classifier.recognition import Recognition
+from som_classifier.streams import Frame
+
+SAMPLES = tiny_samples()
+OTHER_SIDE = [list(PARTS).index(name) for name in ("left_arm", "right_arm", "left_leg", "right_leg", "body")]
+each_sample = pytest.mark.parametrize("sample", SAMPLES[:3], ids=lambda sample: sample.label)
+
+
+def model() -> PyramidModel:
+    found = tiny_model()
+    assert isinstance(found, PyramidModel)
+    return found
+
+
+def part_of(sample: SegmentSample, frames: slice) -> SegmentSample:
+    names = ("stamps_ns", "joints", "motion", "postures", "velocities")
+    return replace(sample, **{name: getattr(sample, name)[frames] for name in names})
+
+
+def one_after_the_other(*samples: SegmentSample) -> SegmentSample:
+    names = ("joints", "motion", "postures", "velocities")
+    joined = {name: np.concatenate([getattr(sample, name) for sample in samples]) for name in names}
+    lasts = np.cumsum([0, *(np.ptp(sample.stamps_ns) + 10**9 for sample in samples)])
+    stamps = [s.stamps_ns - s.stamps_ns[0] + last for s, last in zip(samples, lasts[:-1], strict=True)]
+    return replace(samples[0], stamps_ns=np.concatenate(stamps), **joined)
+
+
+def lacking(sample: SegmentSample, *names: str) -> SegmentSample:
+    gone = np.isin(np.arange(15), [INDEX[name] for name in names])[:, None]
+    hidden = {name: np.where(gone, np.nan, getattr(sample, name)) for name in ("joints", "postures", "velocities")}
+    return replace(sample, **hidden)
+
+
+def in_a_mirror(sample: SegmentSample) -> SegmentSample:
+    return replace(
+        sample,
+        postures=mirrored(sample.postures),
+        velocities=mirrored(sample.velocities),
+        motion=sample.motion[:, OTHER_SIDE],
+    )
+
+
+def assert_same(one: Recognition, other: Recognition) -> None:
+    """To the bit."""
+    np.testing.assert_array_equal(one.trace, other.trace)
+    assert replace(one, trace=other.trace) == other
+
+
+def test_every_training_sample_is_learned() -> None:
+    answers = [answer(model(), encoded(model(), sample)) for sample in SAMPLES]
+    assert [found.label for found in answers] == [sample.label for sample in SAMPLES]
+    assert [found.part for found in answers] == ["right_arm", "right_arm", "left_arm"] * 2
+
+
+@each_sample
+def test_an_answer_is_cosines_and_the_share_of_their_softmax(sample: SegmentSample) -> None:
+    frames = encoded(model(), sample)
+    found = model().recognise(frames, complete=True)
+    scores = model().scores([frame.code for frame in frames], [0.0, 0.0, 1.0])
+    cosines = model().layer3.cosines(model().concepts.activity(scores))
+    shares = np.exp(model().description.gains[-1] * cosines)
+    assert found.activations == dict(zip(model().labels, cosines.tolist(), strict=True))
+    assert found.confidence == pytest.approx(shares.max() / shares.sum())
+    assert found.familiarity == scores.max()
+    assert found.label == model().labels[int(np.argmax(cosines))]
+
+
+@given(st.integers(0, 5), st.integers(1, 25), st.integers(0, 2))
+def test_frames_before_the_segment_do_not_matter(other: int, before: int, which: int) -> None:
+    """Not to the last bit: neither how many were summed before nor of whom."""
+    prefix = part_of(one_after_the_other(SAMPLES[other], SAMPLES[other]), slice(before))
+    joined = encoded(model(), one_after_the_other(prefix, SAMPLES[which]))[before:]
+    alone = encoded(model(), SAMPLES[which])
+    for complete in (False, True):
+        assert_same(model().recognise(joined, complete), model().recognise(alone, complete))
+
+
+@given(st.integers(0, 2), st.integers(0, 19))
+def test_a_window_is_answered_as_if_the_reading_began_there(which: int, first: int) -> None:
+    whole = encoded(model(), SAMPLES[which])[first:]
+    alone = encoded(model(), part_of(SAMPLES[which], slice(first, None)))
+    assert_same(model().recognise(whole, True), model().recognise(alone, True))
+
+
+def test_the_running_sums_may_wrap_around() -> None:
+    frames = encoded(model(), SAMPLES[0])
+    wrapped = [replace(frame, code=begun_at(frame.code, 2**32 - 7 * 2**20)) for frame in frames]
+    assert any((frame.code.sums < frame.code.sums_before).any() for frame in wrapped)
+    assert_same(model().recognise(wrapped, True), model().recognise(frames, True))
+
+
+def begun_at(code: Code, begun: int) -> Code:
+    return replace(code, sums_before=code.sums_before + np.uint32(begun), sums=code.sums + np.uint32(begun))
+
+
+@each_sample
+@pytest.mark.parametrize("complete", [False, True])
+def test_the_mirror_image_of_who_acts_with_one_arm_is_answered_alike(sample: SegmentSample, complete: bool) -> None:
+    one, other = (model().recognise(encoded(model(), each), complete) for each in (sample, in_a_mirror(sample)))
+    assert (other.label, other.activations, other.confidence) == (one.label, one.activations, one.confidence)
+    assert {one.part, other.part} == {"right_arm", "left_arm"}
+
+
+def test_left_handed_segments_are_read_in_the_mirror() -> None:
+    for sample in SAMPLES[:3]:
+        codes = [frame.code for frame in encoded(model(), sample)]
+        side = 1 if sample.label == "swing" else 0
+        np.testing.assert_array_equal(np.stack(trail_of(codes).sums[1:]), np.stack([code.sums[side] for code in codes]))
+
+
+def each_estimate(frames: Sequence[Frame]) -> list[Recognition]:
+    return [model().recognise(frames[:count], False) for count in range(1, len(frames) + 1)]
+
+
+@each_sample
+def test_there_is_an_estimate_from_the_first_frame_on(sample: SegmentSample) -> None:
+    estimates = each_estimate(encoded(model(), sample))
+    for found in estimates:
+        assert set(found.activations) == set(model().labels)
+        assert found.label == max(found.activations, key=found.activations.__getitem__)
+        assert 1 / len(model().labels) <= found.confidence <= 1
+        assert max(map(abs, found.activations.values())) <= 1 + 1e-9
+    assert [found.label for found in estimates[-6:]] == [sample.label] * 6
+
+
+def test_estimates_go_by_the_time_since_the_start_and_final_answers_do_not() -> None:
+    frames = encoded(model(), SAMPLES[0])
+    slow = [replace(frame, stamp_ns=4 * frame.stamp_ns) for frame in frames]
+    later = [replace(frame, stamp_ns=frame.stamp_ns + 100 * SECOND_NS) for frame in frames]
+    assert_same(model().recognise(slow, True), model().recognise(frames, True))
+    assert_same(model().recognise(later, False), model().recognise(frames, False))
+    assert model().recognise(slow[:5], False).activations != model().recognise(frames[:5], False).activations
+
+
+def test_an_estimate_after_the_usual_time_and_more_is_the_final_answer() -> None:
+    frames = encoded(model(), SAMPLES[1])
+    late = [*frames[:-1], replace(frames[-1], stamp_ns=frames[0].stamp_ns + 60 * SECOND_NS)]
+    assert_same(model().recognise(late, False), model().recognise(late, True))
+
+
+def test_no_frame_is_an_error() -> None:
+    with pytest.raises(ValueError, match="no frame"):
+        model().recognise([], True)
+
+
+@pytest.mark.parametrize(("familiar", "unknown"), [(-1e9, False), (1e9, True)])
+def test_only_a_whole_segment_is_unknown(familiar: float, unknown: bool) -> None:
+    about = model().description.model_copy(update={"familiar": familiar})
+    strict = replace(model(), description=about)
+    frames = encoded(strict, SAMPLES[0])
+    assert strict.recognise(frames, True).unknown is unknown
+    assert not strict.recognise(frames, False).unknown
+
+
+def test_a_stranger_movement_is_less_familiar() -> None:
+    rng = np.random.default_rng(0)
+    odd = replace(SAMPLES[0], postures=rng.normal(0, 0.5, SAMPLES[0].postures.shape))
+    usual = min(answer(model(), encoded(model(), sample)).familiarity or 0 for sample in SAMPLES)
+    assert (answer(model(), encoded(model(), odd)).familiarity or 0) < usual
+
+
+SOME = ("head", "left_foot", "right_foot", "left_knee")
+
+
+@pytest.mark.parametrize("names", [("right_hand",), SOME, tuple(name for name in INDEX if name != "torso")])
+@each_sample
+def test_any_joint_may_be_missing(sample: SegmentSample, names: tuple[str, ...]) -> None:
+    for found in each_estimate(encoded(model(), lacking(sample, *names))):
+        assert np.isfinite([*found.activations.values(), found.confidence, found.familiarity or 0]).all()
+
+
+def test_the_share_of_the_joints_that_was_there() -> None:
+    frames = encoded(model(), SAMPLES[0])
+    assert seen_share(frames) == 1.0
+    assert seen_share(encoded(model(), lacking(SAMPLES[0], *SOME))) == pytest.approx(11 / 15)
+    half = [*frames[:10], *encoded(model(), lacking(SAMPLES[0], *SOME))[10:]]
+    assert seen_share(half) == pytest.approx(13 / 15)
+
+
+def test_the_more_joints_are_missing_the_lower_the_confidence() -> None:
+    doubtful = replace(model(), description=model().description.model_copy(update={"gains": [5.0] * 3}))
+
+    def mean_confidence(*names: str) -> float:
+        found = [answer(doubtful, encoded(doubtful, lacking(sample, *names))) for sample in SAMPLES]
+        return float(np.mean([recognition.confidence for recognition in found]))
+
+    acting = ("right_elbow", "right_hand", "left_elbow", "left_hand")
+    whole, partly, hardly = mean_confidence(), mean_confidence(*SOME), mean_confidence(*SOME, *acting)
+    assert whole > partly + 0.01
+    assert partly > hardly + 0.01
+
+
+def test_a_missing_share_takes_as_much_off_the_logits() -> None:
+    """Of a segment that says the same all the same."""
+    frames = encoded(model(), SAMPLES[0])
+    partly = [replace(frame, missing=(0, 11, 14)) for frame in frames]
+    found = model().recognise(partly, True)
+    logits = model().description.gains[-1] * 0.8 * np.array([*found.activations.values()])
+    assert found.activations == model().recognise(frames, True).activations
+    assert found.confidence == pytest.approx(1 / np.exp(logits - logits.max()).sum())
+
+
+def test_joints_that_say_nothing_leave_the_answer() -> None:
+    answers = [answer(model(), encoded(model(), lacking(sample, *SOME))) for sample in SAMPLES]
+    assert [found.label for found in answers] == [sample.label for sample in SAMPLES]
+
+
+def test_the_trace_is_where_the_postures_won() -> None:
+    sample = part_of(SAMPLES[0], slice(0, 8))
+    winners = model().first.postures.bmus(sample.postures.reshape(8, -1))
+    kept = [winner for i, winner in enumerate(winners) if i == 0 or winner != winners[i - 1]]
+    trace = answer(model(), encoded(model(), sample)).trace
+    np.testing.assert_array_equal(trace, model().first.postures.coordinates[kept])
