@@ -1,8 +1,8 @@
 """`actum demo`: the paper's experiment with simulated people, through live processes."""
 
-import signal
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +13,7 @@ import typer
 from actum import keys
 from actum.messages import Event, Truth
 from actum.recording import Recording
-from actum.runtime import Client, Listening
+from actum.runtime import Client, Listening, stop_on_signals
 from actum.settings import ServiceSettings
 from actum_command import processes
 from actum_command.context import connect, console, fail, settings
@@ -47,13 +47,13 @@ def demo(
     """Train on one simulated person, then recognise people it has never seen, live, beside the paper's own results."""
     here = settings()
     refuse_taken(here.connect)
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))  # the processes it started end with it
+    stop = stop_on_signals()  # looked at only where no process is being started: those that run end with this one
     actors = list(range(ACTOR + 1, ACTOR + 1 + people)) or [ACTOR]
     with tempfile.TemporaryDirectory(prefix="actum-demo-") as folder:
         training, model = Path(folder) / "training.mcap", Path(folder) / "model.npz"
         learned = _train(training, model)
         baseline = _baseline(training, Path(folder), actors, repetitions)
-        score = _run_live(here, model, actors, repetitions)
+        score = _run_live(here, model, actors, repetitions, stop)
     console.print(table(score))
     console.print(summary(score, learned, baseline, people), soft_wrap=True)
     expected = len(actors) * repetitions * len(ACTIONS)
@@ -82,7 +82,9 @@ def _train(training: Path, model_file: Path) -> Evaluation:
     return learned
 
 
-def _run_live(here: ServiceSettings, model: Path, actors: Sequence[int], repetitions: int) -> Score:
+def _run_live(
+    here: ServiceSettings, model: Path, actors: Sequence[int], repetitions: int, stop: threading.Event
+) -> Score:
     """Start every process, let one actor after the other act, and collect one event per sample."""
     each = repetitions * len(ACTIONS)
     score = Score(expected=len(actors) * each)
@@ -91,7 +93,7 @@ def _run_live(here: ServiceSettings, model: Path, actors: Sequence[int], repetit
         for program in (processes.router(here), *services, processes.scene(here)):
             supervisor.start(program)
         with connect(READY_S) as client:
-            _wait_until_ready(client)
+            _wait_until_ready(client, stop)
             console.print(
                 f"router, {', '.join(processes.SERVICES)} and sensor_gateway run as processes of their own",
                 soft_wrap=True,
@@ -100,7 +102,7 @@ def _run_live(here: ServiceSettings, model: Path, actors: Sequence[int], repetit
             for done, actor in enumerate(actors, start=1):
                 gateway = processes.gateway(here, _acting(actor, repetitions))
                 supervisor.start(gateway)
-                _collect(listening, score, done * each, supervisor)
+                _collect(listening, score, done * each, supervisor, stop)
                 supervisor.end(gateway)
     return score
 
@@ -110,18 +112,20 @@ def _acting(actor: int, repetitions: int) -> list[str]:
     return [word for name, value in chosen.items() for word in (f"--{name}", str(value))]
 
 
-def _wait_until_ready(client: Client) -> None:
+def _wait_until_ready(client: Client, stop: threading.Event) -> None:
     deadline_s = time.monotonic() + READY_S
     while time.monotonic() < deadline_s:
+        _end_if(stop)
         running = {key.split("/")[-2] for key in client.alive()}
         if running >= set(processes.SERVICES) and client.wait_for_subscriber(keys.TRUTH, timeout_s=0.5):
             return
     fail(f"the services are not all up after {READY_S:g} s; see {log_file('demo', settings())}")
 
 
-def _collect(listening: Listening, score: Score, until: int, supervisor: Supervisor) -> None:
+def _collect(listening: Listening, score: Score, until: int, supervisor: Supervisor, stop: threading.Event) -> None:
     deadline_s = time.monotonic() + (until - len(score.events)) * LONGEST_SAMPLE_S + READY_S
     while len(score.events) < until and time.monotonic() < deadline_s:
+        _end_if(stop)
         received = listening.take()
         if received is None:
             time.sleep(0.01)
@@ -132,3 +136,8 @@ def _collect(listening: Listening, score: Score, until: int, supervisor: Supervi
         elif isinstance(received.message, Event):
             score.events[received.message.segment_id] = received.message
             console.print(line(score, received.message), soft_wrap=True)
+
+
+def _end_if(stop: threading.Event) -> None:
+    if stop.is_set():
+        sys.exit(TERMINATED)

@@ -32,7 +32,13 @@ def fitted_gain(cosines: Floats, targets: NDArray[np.intp]) -> float:
 
 
 def surprise(cosines: Floats, targets: NDArray[np.intp], gain: float) -> float:
-    """Return the mean negative log-likelihood of the targets under softmax(gain × cosines)."""
+    """Return the mean negative log-likelihood of the targets under softmax(gain × cosines).
+
+    As after Platt (1999) a target counts as certain only to (n + 1) / (n + 2), the rest being spread over all actions:
+    that all n answers were right does not make the next one sure.
+    """
     logits = gain * (cosines - cosines.max(axis=1, keepdims=True))
     done = np.take_along_axis(logits, targets[:, None], axis=1)[:, 0]
-    return float((np.log(np.exp(logits).sum(axis=1)) - done).mean())
+    doubt = 1 / (len(targets) + 2)
+    expected = (1 - doubt) * done + doubt * logits.mean(axis=1)
+    return float((np.log(np.exp(logits).sum(axis=1)) - expected).mean())

@@ -15,6 +15,7 @@ Indices = NDArray[np.intp]
 
 FOLDS_WITHOUT_PEOPLE = 5
 MOST_FOLDS = 10
+SMALLEST_LENGTH2 = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +63,7 @@ def discriminant_axes(vectors: NDArray[np.float32], wanted: Doubles, folds: Indi
     mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
     centred = vectors - mean
     products = (centred @ centred.T).astype(np.float64)
-    penalty = shrinkage * float(np.trace(products)) / len(products)
+    penalty = shrinkage * max(float(np.trace(products)) / len(products), SMALLEST_LENGTH2)
     solved, level = _solved(products, wanted, np.arange(len(wanted)), penalty)
     axes = centred.T @ solved.astype(np.float32)
     own = products @ solved + level

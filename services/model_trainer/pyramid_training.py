@@ -44,7 +44,7 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
     first = _first_maps([view for own in shown for view in own], preset, rng, progress)
     targets = np.array([labels.index(sample.label) for sample in samples])
     folds = folds_of(samples)
-    vectors = _Pooling(first, Pyramid(preset.levels, preset.overlap), samples, shown, progress)
+    vectors = _Pooling(first, Pyramid(preset.levels, preset.overlap), samples, shown)
     fitted = []
     for done, fractions in enumerate(preset.stages):
         progress("discriminant axes", done, len(preset.stages))
@@ -96,10 +96,8 @@ class _Pooling:
         pyramid: Pyramid,
         samples: Sequence[SegmentSample],
         shown: Sequence[Sequence[View]],
-        progress: Progress,
     ) -> None:
         self._first, self._pyramid, self._samples, self._shown = first, pyramid, samples, shown
-        self._progress = progress
 
     def vectors(self, fractions: Sequence[float]) -> tuple[NDArray[np.float32], Indices]:
         """Return one row per view and fraction, and whose sample each row is."""

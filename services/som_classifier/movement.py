@@ -64,9 +64,9 @@ class MovementFilter:
         speeds = np.sqrt(np.einsum("ij,ij->i", self._speed, self._speed))
         shares = 1 - np.exp(elapsed_s / -STILL_TIME_CONSTANT_S * (1 + speeds / STILL_SPEED_MPS))
         self._before = joints
-        self._smooth = self._smooth + shares[:, None] * (joints - self._smooth)
-        share = 1 - np.exp(-elapsed_s / LAG_TIME_CONSTANT_S)
-        self._lagging = self._lagging + share * (self._smooth - self._lagging)
+        step = shares[:, None] * (joints - self._smooth)
+        self._lagging = _lagged(self._lagging, self._smooth, step, elapsed_s)
+        self._smooth = self._smooth + step
 
     def _advance_known(self, joints: Array, known: NDArray[np.bool_], elapsed_s: float) -> Movement:
         """Advance while joints are missing: their state waits, and those that come back begin where they are."""
@@ -80,3 +80,10 @@ class MovementFilter:
         self._advance(present, elapsed_s)
         missing = np.where(known, 0.0, np.nan)[:, None]
         return Movement(self._smooth + missing, self._smooth - self._lagging + missing)
+
+
+def _lagged(lagging: Array, start: Array, step: Array, elapsed_s: float) -> Array:
+    """Advance a low-pass whose input goes straight from `start` by `step`: exact, whatever the frame rate."""
+    behind = LAG_TIME_CONSTANT_S / elapsed_s * step
+    lagged: Array = start + step - behind + (lagging - start + behind) * np.exp(-elapsed_s / LAG_TIME_CONSTANT_S)
+    return lagged

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 Floats = NDArray[Any]
 Sums = NDArray[np.uint32]
 
-SCALE = float(2**20)
-"""The whole number that stands for an activity of 1: 4096 frames of it stay below 2³²."""
+SCALE = float(2**19)
+"""The whole number that stands for an activity of 1: 8192 frames of it stay below 2³²."""
 
 
 def quantised(activities: Floats) -> Sums:

@@ -243,6 +243,7 @@ class _Side(Sequence[Sums]):
     def __getitem__(self, index: int | slice) -> Sums | Sequence[Sums]:
         if isinstance(index, slice):
             return [self[k] for k in range(*index.indices(len(self)))]
+        index = range(len(self))[index]
         sums: Sums = (self._codes[index - 1].sums if index else self._codes[0].sums_before)[self._side]
         return sums
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actum.geometry import BONES
@@ -57,6 +57,7 @@ def test_left_handed_samples_are_shown_in_a_mirror() -> None:
         np.testing.assert_array_equal(view.postures, same.postures)
 
 
+@settings(deadline=None)
 @given(st.floats(-180, 180))
 def test_a_turn_keeps_every_length_and_the_vertical(degrees: float) -> None:
     _, view = shown(RIGHT_HANDED, turns_deg=(degrees,), builds=0)
@@ -66,6 +67,7 @@ def test_a_turn_keeps_every_length_and_the_vertical(degrees: float) -> None:
     np.testing.assert_allclose(lengths(view.postures), lengths(RIGHT_HANDED.postures), atol=1e-12)
 
 
+@settings(deadline=None)
 @given(st.floats(-3, 3), st.floats(-3, 3))
 def test_turns_add_up(one: float, other: float) -> None:
     np.testing.assert_allclose(turned(one) @ turned(other), turned(one + other), atol=1e-12)
@@ -79,6 +81,7 @@ def test_a_quarter_turn_brings_left_to_a_side_of_forward() -> None:
     np.testing.assert_allclose(forward @ turned(np.pi / 2), left, atol=1e-12)
 
 
+@settings(deadline=None)
 @given(st.lists(st.floats(0.5, 2.0), min_size=len(BONE_NAMES), max_size=len(BONE_NAMES)))
 def test_a_build_keeps_every_bones_direction_and_makes_it_longer_by_its_factor(factors: list[float]) -> None:
     by_name = dict(zip(BONE_NAMES, factors, strict=True))

@@ -13,7 +13,6 @@ from model_trainer.discriminants import discriminant_axes, folds_of
 from model_trainer.pyramid_training import typical_distance2
 from model_trainer.samples import SegmentSample
 from model_trainer.training import train
-from model_trainer.upper_layers import variance_within
 from performers import TINY
 from som_classifier.handedness import mirrored
 from som_classifier.presets import PyramidPreset
@@ -121,6 +120,17 @@ def test_at_most_the_share_meant_to_be_unknown_is(samples: list[SegmentSample]) 
     assert np.mean(unknown) <= 1 - TINY.known_share
 
 
+def test_labels_at_random_make_a_model_that_is_not_sure(samples: list[SegmentSample]) -> None:
+    names = np.random.default_rng(0).permutation([sample.label for sample in samples])
+    at_random = [replace(sample, label=str(name)) for sample, name in zip(samples, names, strict=True)]
+    sure, unsure = (
+        np.mean([answer(model, encoded(model, sample)).confidence for sample in samples])
+        for model in (trained(samples), trained(at_random))
+    )
+    assert unsure < 0.6
+    assert sure > 0.9
+
+
 def test_typical_distance_by_hand() -> None:
     """One unit at 0: squared distances 1, 4 and 9."""
     assert typical_distance2(Som(1, 1, np.zeros((1, 1))), np.array([[1.0], [2.0], [3.0]])) == 4.0
@@ -133,10 +143,3 @@ def test_typical_distance_scales_up_what_is_missing() -> None:
 
 def test_a_typical_distance_is_never_zero() -> None:
     assert typical_distance2(Som(1, 1, np.ones((1, 3))), np.ones((4, 3))) > 0
-
-
-def test_variance_within_by_hand() -> None:
-    """Of the first action 1 and 4, of the second 0 and 0: what lies between actions does not count."""
-    scores = np.array([[0.0, 10.0], [2.0, 14.0], [50.0, 50.0], [50.0, 50.0]])
-    assert variance_within(scores, np.array([0, 0, 1, 1])) == pytest.approx((2.5 + 0) / 2)
-    assert variance_within(scores[2:], np.array([0, 1])) > 0

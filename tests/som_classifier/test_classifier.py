@@ -12,12 +12,14 @@ from actum.skeletons import INDEX
 from model_trainer.answering import answer, encoded
 from model_trainer.samples import SegmentSample
 from people import FRAME_NS, lacking, skeleton
-from performers import FRAMES, HAND_PATHS, PAUSE_FRAMES, TINY, TINY_OF_EACH_KIND, TINY_PAPER, performance
+from performers import FRAMES, HAND_PATHS, PAUSE_FRAMES, TINY, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
 from pose_preprocessor.node import PosePreprocessor
 from recognisers import tiny_model, tiny_samples
 from som_classifier.model import Model
 from som_classifier.node import POLL_TICKS, SomClassifier
 from som_classifier.presets import Preset
+from som_classifier.pyramid_model import PyramidModel
+from som_classifier.streams import Frame, Stream
 from wire import Wire, without_seq
 
 each_preset = pytest.mark.parametrize("preset", TINY_OF_EACH_KIND, ids=lambda preset: preset.name)
@@ -33,7 +35,7 @@ def postures_of(skeletons: Iterable[Message]) -> list[Posture]:
 def scene() -> list[Message]:
     """What the samples were cut out of: each mark where it belongs."""
     skeletons, marks = performance([*HAND_PATHS] * 2)
-    unlabelled = [mark.model_copy(update={"label": None}) for mark in marks]
+    unlabelled = [each.model_copy(update={"label": None}) for each in marks]
     return sorted([*postures_of(skeletons), *unlabelled], key=lambda m: (m.stamp_ns, not starts(m), ends(m)))
 
 
@@ -106,6 +108,32 @@ def test_a_segment_is_answered_once_after_its_last_estimate() -> None:
         assert [a.final for a in actions if a.segment_id == str(number)] == [False] * (FRAMES - 2) + [True]
 
 
+def frames_of(model: Model, postures: Iterable[Posture]) -> list[Frame]:
+    stream = Stream(model.encoder().encode)
+    return [frame for posture in postures if (frame := stream.add(posture)[1]) is not None]
+
+
+def test_an_end_before_the_usual_time_ends_the_action_all_the_same() -> None:
+    """The final answer is to a whole segment, the estimate of the same frames to a part of one."""
+    start, _, *postures = gappy([], slice(0))
+    end = mark("end", 9 * FRAME_NS, start.segment_id)
+    *_, estimate, final = live(SomClassifier(tiny_model()), [start, *postures[:10], end])
+    frames = frames_of(tiny_model(), postures[:10])
+    expected = [tiny_model().recognise(frames, complete) for complete in (False, True)]
+    assert estimate.frames == final.frames == 10
+    assert [action.activations for action in (estimate, final)] == [found.activations for found in expected]
+    assert estimate.activations != final.activations
+
+
+def test_what_is_unfamiliar_is_told_at_the_end() -> None:
+    model = tiny_model()
+    assert isinstance(model, PyramidModel)
+    strict = replace(model, description=model.description.model_copy(update={"familiar": 1e9}))
+    actions = live(SomClassifier(strict), scene())
+    assert [action.unknown for action in actions] == [action.final for action in actions]
+    assert all((action.familiarity is None) != action.final for action in actions)
+
+
 class Reload:
     """A scene in the midst of which a node gets another model."""
 
@@ -146,7 +174,7 @@ def gappy(names: Sequence[str], frames: slice) -> list[Message]:
         skeleton(i * FRAME_NS, lacking(joints, *names) if i in within else joints)
         for i, joints in enumerate(joints_of(skeletons))
     ]
-    start, end = (mark.model_copy(update={"label": None}) for mark in marks)
+    start, end = (each.model_copy(update={"label": None}) for each in marks)
     return [start, end, *postures_of(shown)]
 
 
@@ -181,7 +209,7 @@ def test_whatever_is_missing_gets_an_answer(preset: Preset, names: list[str]) ->
 def test_a_posture_without_any_joint_is_none(preset: Preset, fields: tuple[str, ...]) -> None:
     node = SomClassifier(tiny_model(preset))
     start, end, *postures = gappy([], slice(0))
-    marks = [mark.model_copy(update={"agent": 1}) for mark in (start, end)]
+    marks = [each.model_copy(update={"agent": 1}) for each in (start, end)]
     blank = [p.model_copy(update=dict.fromkeys(fields, [None] * 15)) for p in postures]
     (final,) = finals(live(node, [*marks, *blank]))
     assert (final.reason, final.frames) == ("no usable frame", 0)
@@ -209,7 +237,7 @@ def test_two_people_are_answered_as_if_each_were_alone(preset: Preset) -> None:
     pairs = zip(joints_of(swinging), joints_of(pushing), strict=True)
     both = postures_of(skeleton(i * FRAME_NS, one, other + BESIDE_M) for i, (one, other) in enumerate(pairs))
     of_each = {
-        agent: [mark.model_copy(update={"agent": agent, "segment_id": f"{agent}", "label": None}) for mark in marks]
+        agent: [each.model_copy(update={"agent": agent, "segment_id": f"{agent}", "label": None}) for each in marks]
         for agent in (1, 2)
     }
     together = finals(live(SomClassifier(tiny_model(preset)), [*of_each[1], *of_each[2], *both]))

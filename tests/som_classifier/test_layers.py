@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actum.som import Som
@@ -64,6 +64,7 @@ def test_the_smaller_the_contrast_the_more_the_winner_takes() -> None:
     assert winners_share[2] == pytest.approx(1 / 20, rel=0.5)
 
 
+@settings(deadline=None)
 @given(st.integers(0, 14))
 def test_what_a_missing_joint_would_have_said_does_not_matter(joint: int) -> None:
     """Units that differ there alone are equals."""

@@ -49,6 +49,7 @@ def assert_same(movements: Sequence[Movement], others: Sequence[Movement], joint
         np.testing.assert_array_equal(one.velocity[joints], other.velocity[joints])
 
 
+@settings(deadline=None)
 @given(st.lists(st.integers(1, 2 * GAP_NS), min_size=1, max_size=20))
 def test_joints_that_rest_are_where_they_are_and_go_nowhere(steps_ns: list[int]) -> None:
     movement = MovementFilter()
@@ -176,6 +177,7 @@ def test_inputs_are_left_as_they_were() -> None:
     np.testing.assert_array_equal(joints, before)
 
 
+@settings(deadline=None)
 @given(st.floats(-np.pi, np.pi), st.tuples(*[st.floats(-3, 3)] * 3))
 def test_where_and_which_way_a_person_stands_does_not_matter(heading: float, shift: tuple[float, float, float]) -> None:
     joints = wandering(20)

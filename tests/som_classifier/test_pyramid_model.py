@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actum.node import SECOND_NS
@@ -14,6 +14,7 @@ from model_trainer.answering import answer, encoded
 from model_trainer.samples import SegmentSample
 from recognisers import tiny_model, tiny_samples
 from som_classifier.handedness import mirrored
+from som_classifier.pyramid import SCALE
 from som_classifier.pyramid_model import Code, PyramidModel, seen_share, trail_of
 from som_classifier.recognition import Recognition
 from som_classifier.streams import Frame
@@ -82,6 +83,7 @@ def test_an_answer_is_cosines_and_the_share_of_their_softmax(sample: SegmentSamp
     assert found.label == model().labels[int(np.argmax(cosines))]
 
 
+@settings(deadline=None)
 @given(st.integers(0, 5), st.integers(1, 25), st.integers(0, 2))
 def test_frames_before_the_segment_do_not_matter(other: int, before: int, which: int) -> None:
     """Not to the last bit: neither how many were summed before nor of whom."""
@@ -92,6 +94,7 @@ def test_frames_before_the_segment_do_not_matter(other: int, before: int, which:
         assert_same(model().recognise(joined, complete), model().recognise(alone, complete))
 
 
+@settings(deadline=None)
 @given(st.integers(0, 2), st.integers(0, 19))
 def test_a_window_is_answered_as_if_the_reading_began_there(which: int, first: int) -> None:
     whole = encoded(model(), SAMPLES[which])[first:]
@@ -101,7 +104,7 @@ def test_a_window_is_answered_as_if_the_reading_began_there(which: int, first: i
 
 def test_the_running_sums_may_wrap_around() -> None:
     frames = encoded(model(), SAMPLES[0])
-    wrapped = [replace(frame, code=begun_at(frame.code, 2**32 - 7 * 2**20)) for frame in frames]
+    wrapped = [replace(frame, code=begun_at(frame.code, 2**32 - int(SCALE))) for frame in frames]
     assert any((frame.code.sums < frame.code.sums_before).any() for frame in wrapped)
     assert_same(model().recognise(wrapped, True), model().recognise(frames, True))
 

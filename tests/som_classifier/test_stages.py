@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from som_classifier.stages import NEGLIGIBLE, Stages
@@ -28,6 +28,7 @@ def vector() -> np.ndarray:
     return np.random.default_rng(1).random(INPUTS).astype(np.float32)
 
 
+@settings(deadline=None)
 @given(st.floats(0, 1e5), st.booleans())
 def test_weights_are_shares(elapsed_s: float, complete: bool) -> None:
     weights = np.array(stages().weights(elapsed_s, complete))
@@ -36,6 +37,7 @@ def test_weights_are_shares(elapsed_s: float, complete: bool) -> None:
     assert ((weights == 0) | (weights >= NEGLIGIBLE)).all()
 
 
+@settings(deadline=None)
 @given(st.floats(0, 1e5))
 def test_a_complete_action_is_in_its_last_stage_however_long_it_took(elapsed_s: float) -> None:
     assert stages().weights(elapsed_s, True) == [0.0, 0.0, 0.0, 1.0]
@@ -55,6 +57,7 @@ def test_weights_by_hand() -> None:
     np.testing.assert_allclose(stages().weights(MEAN_S, False), likely / likely.sum())
 
 
+@settings(deadline=None)
 @given(st.lists(st.floats(0, 60), min_size=2, max_size=2), st.floats(0.1, 2.0))
 def test_the_longer_it_lasts_the_more_has_been_seen(elapsed_s: list[float], log_sd: float) -> None:
     earlier, later = (seen(np.array(stages(log_sd).weights(s, False))) for s in sorted(elapsed_s))
@@ -73,6 +76,7 @@ def test_scores_are_a_stages_products_and_offsets() -> None:
     np.testing.assert_allclose(found, expected, rtol=1e-5, atol=1e-5)
 
 
+@settings(deadline=None)
 @given(st.lists(st.floats(0, 1), min_size=4, max_size=4))
 def test_scores_are_linear_in_the_weights(weights: list[float]) -> None:
     each = [stages().scores(vector(), row) for row in np.eye(4).tolist()]

@@ -117,8 +117,13 @@ def test_metadata_that_are_no_map_of_ours_are_refused(tmp_path: Path, metadata: 
     refused(altered(saved(tmp_path, "pyramid"), metadata=np.array(metadata)))
 
 
-@pytest.mark.parametrize("kind", ["tree", None, 3, ["pyramid"], {}])
-def test_an_unknown_kind_is_refused(tmp_path: Path, kind: object) -> None:
+@pytest.mark.parametrize("kind", ["tree", None, 3])
+def test_an_unknown_kind_is_named(tmp_path: Path, kind: object) -> None:
+    assert f"of kind {kind!r}" in refused(with_metadata(saved(tmp_path, "pyramid"), kind=kind))
+
+
+@pytest.mark.parametrize("kind", [["pyramid"], {}])
+def test_what_is_no_kind_at_all_is_refused(tmp_path: Path, kind: object) -> None:
     refused(with_metadata(saved(tmp_path, "pyramid"), kind=kind))
 
 
