@@ -6,11 +6,13 @@ import typer
 
 from actum import keys
 from actum_command import (
+    calibrating,
     demo,
     doctor,
     importing_commands,
     inspecting,
     learning,
+    marker_sheets,
     marks,
     scene,
     streaming,
@@ -33,6 +35,8 @@ app.add_typer(marks.app, name="segment")
 app.command("record")(streaming.record)
 app.command("play")(streaming.play)
 app.add_typer(importing_commands.app, name="import")
+app.command("markers")(marker_sheets.markers)
+app.add_typer(calibrating.app, name="calibrate")
 app.command("train")(learning.train_command)
 app.command("evaluate")(learning.evaluate_command)
 app.command("inspect")(inspecting.inspect_command)

@@ -19,3 +19,6 @@ class Settings(ServiceSettings):
     seed: int = Field(1, ge=0, description="simulator: which repetitions")
     repetitions: int = Field(0, ge=0, description="simulator: how often each action is done; 0 goes on for ever")
     image_hz: Literal[0, 5, 10, 15, 30] = Field(15, description="simulator: colour images a second; 0 for none")
+    calibration: Path | None = Field(
+        None, description="a file of `actum calibrate`: where given, its camera is put with each colour image"
+    )

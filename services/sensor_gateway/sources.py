@@ -3,8 +3,10 @@
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
+from actum.calibration import Calibration
 from actum.messages import Message
 from actum.node import SECOND_NS, Source, Tally
+from sensor_gateway.calibrated import CalibratedSource
 from sensor_gateway.msr_action3d import MsrAction3dSource
 from sensor_gateway.recording_source import RecordingSource
 from sensor_gateway.settings import Settings
@@ -30,7 +32,13 @@ def source_of(settings: Settings, start_ns: int) -> Source:
 
     Raises:
         SourceError: a source from files has no path.
+        CalibrationError: the calibration file is missing or no calibration.
     """
+    source = _named(settings, start_ns)
+    return source if settings.calibration is None else CalibratedSource(source, Calibration.load(settings.calibration))
+
+
+def _named(settings: Settings, start_ns: int) -> Source:
     if settings.source == "simulator":
         return EndlessSimulator(settings, start_ns) if settings.repetitions == 0 else _scene(settings, start_ns)
     if settings.path is None:

@@ -1,0 +1,185 @@
+"""`actum calibrate`: a camera's intrinsics, and where one camera is seen from another."""
+
+import datetime
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+from rich.markup import escape
+
+from actum.calibration import Calibration, CalibrationError
+from actum.keys import CHUNK
+from actum_command.context import console, fail
+from actum_command.live_views import live_pairs, live_views
+from calibrator.board import Board, PatternError
+from calibrator.coverage_picture import coverage_picture
+from calibrator.extrinsics import Extrinsics, find_extrinsics, with_extrinsics
+from calibrator.intrinsics import GOOD_COVERAGE, Intrinsics, PoorSetError, calibration_of, find_intrinsics
+from calibrator.pairs import Pair, PairingError, pair_files, pictures_in
+from calibrator.pictures import UnusablePictureError, complaints, read_picture
+from calibrator.views import BoardFinder, View
+
+app = typer.Typer(no_args_is_help=True, help="Calibrate cameras with the board that actum markers --board prints.")
+
+Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration to write (YAML)")]
+Squares = Annotated[str, typer.Option("--board", help="the board's squares, across x down")]
+SquareMm = Annotated[float, typer.Option(help="side of a square, as measured on the print")]
+MarkerMm = Annotated[float, typer.Option(help="side of a marker on the board")]
+Family = Annotated[str, typer.Option(help="the board's marker dictionary, by OpenCV's name")]
+Existing = typer.Option(exists=True, dir_okay=False)
+
+
+@app.command("intrinsics")
+def intrinsics(
+    output: Output,
+    images: Annotated[list[Path] | None, typer.Argument(help="pictures of the board, or folders of them")] = None,
+    live: Annotated[bool, typer.Option("--live", help="from the sensor's colour stream instead")] = False,
+    board: Squares = "7x5",
+    square_mm: SquareMm = 35.0,
+    marker_mm: MarkerMm = 26.0,
+    family: Family = "DICT_5X5_100",
+) -> None:
+    """Find a camera's focal lengths, centre and distortion from 15 to 20 pictures of the board."""
+    if live == bool(images):
+        fail("name pictures of the board, or use --live")
+    finder = BoardFinder(_board(board, square_mm, marker_mm, family))
+    views, unusable = (live_views(finder), []) if live else _views(finder, images or [])
+    try:
+        found = find_intrinsics(views)
+    except PoorSetError as error:
+        _refuse([*error.reasons, *complaints(unusable)], output)
+    calibration = calibration_of(found, _today())
+    picture = output.with_suffix(".png")
+    try:
+        calibration.save(output)
+        picture.write_bytes(coverage_picture(found, views))
+    except OSError as error:
+        fail(str(error))
+    _report_intrinsics(found)
+    console.print(f"written to {output} (calibration {calibration.id}); look at {picture}", soft_wrap=True)
+
+
+@app.command("extrinsics")
+def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
+    markers_camera: Annotated[Path, Existing],
+    people_camera: Annotated[Path, Existing],
+    output: Output,
+    pairs: Annotated[
+        list[Path] | None,
+        typer.Argument(help="NAME_a.png (sees markers) and NAME_b.png (sees people) …, or two folders"),
+    ] = None,
+    live: Annotated[str | None, typer.Option(help="two sensors instead: MARKERS,PEOPLE")] = None,
+    board: Squares = "7x5",
+    square_mm: SquareMm = 35.0,
+    marker_mm: MarkerMm = 26.0,
+    family: Family = "DICT_5X5_100",
+) -> None:
+    """Find where the camera that sees people sees the one that sees markers, from 6 to 10 pairs of pictures.
+
+    Writes the marker camera's calibration with skeleton_from_image in it.
+    """
+    if (live is not None) == bool(pairs):
+        fail("name pairs of pictures, or use --live MARKERS,PEOPLE")
+    finder = BoardFinder(_board(board, square_mm, marker_mm, family))
+    try:
+        cameras = Calibration.load(markers_camera), Calibration.load(people_camera)
+        seen, unusable = (live_pairs(_sensors(live), finder), []) if live else _pairs(finder, pairs or [])
+        found = _extrinsics(seen, unusable, cameras, output)
+        calibration = with_extrinsics(cameras[0], found, _today())
+        calibration.save(output)
+    except (CalibrationError, PairingError, OSError) as error:
+        fail(str(error))
+    _report_extrinsics(found, seen)
+    console.print(f"written to {output} (calibration {calibration.id})", soft_wrap=True)
+
+
+def _extrinsics(
+    pairs: Sequence[Pair],
+    unusable: Sequence[UnusablePictureError],
+    cameras: tuple[Calibration, Calibration],
+    output: Path,
+) -> Extrinsics:
+    try:
+        return find_extrinsics(pairs, *cameras)
+    except PoorSetError as error:
+        _refuse([*error.reasons, *complaints(unusable)], output)
+
+
+def _board(squares: str, square_mm: float, marker_mm: float, family: str) -> Board:
+    columns, _, rows = squares.partition("x")
+    if not (columns.isdecimal() and rows.isdecimal()):
+        fail(f"--board is {squares!r}: say the squares across x down, as 7x5")
+    try:
+        return Board(int(columns), int(rows), square_mm / 1000, marker_mm / 1000, family)
+    except PatternError as error:
+        fail(str(error))
+
+
+def _sensors(text: str) -> tuple[str, str]:
+    markers, _, people = text.partition(",")
+    if not CHUNK.fullmatch(markers) or not CHUNK.fullmatch(people) or markers == people:
+        fail(f"--live is {text!r}: name two sensors, the one that sees markers first, as kinect0,kinect1")
+    return markers, people
+
+
+def _views(finder: BoardFinder, paths: Sequence[Path]) -> tuple[list[View], list[UnusablePictureError]]:
+    """Look for the board in every picture; name those that cannot be used."""
+    views: list[View] = []
+    unusable: list[UnusablePictureError] = []
+    files = [file for path in paths for file in (pictures_in(path) if path.is_dir() else [path])]
+    for file in files:
+        try:
+            views.append(finder.find(read_picture(file), file.name))
+        except UnusablePictureError as error:
+            unusable.append(error)
+            console.print(f"[yellow]{escape(str(error))}[/yellow]", soft_wrap=True)
+    return views, unusable
+
+
+def _pairs(finder: BoardFinder, paths: Sequence[Path]) -> tuple[list[Pair], list[UnusablePictureError]]:
+    """Look for the board in both pictures of every pair."""
+    found: list[Pair] = []
+    unusable: list[UnusablePictureError] = []
+    for name, markers, people in pair_files(paths):
+        views, problems = _views(finder, [markers, people])
+        unusable += problems
+        if not problems:
+            found.append(Pair(name, *views))
+    return found, unusable
+
+
+def _report_intrinsics(found: Intrinsics) -> None:
+    fx, fy = found.matrix[0, 0], found.matrix[1, 1]
+    console.print(f"RMS {found.rms_px:.3f} px over {len(found.residuals_px)} views of {found.size[0]}x{found.size[1]}")
+    console.print(
+        f"focal length {fx:.1f} ± {found.deviations_px[0]:.1f} px across, "
+        f"{fy:.1f} ± {found.deviations_px[1]:.1f} px down"
+    )
+    console.print(f"coverage {found.coverage:.0%} of the image")
+    if found.coverage < GOOD_COVERAGE:
+        console.print(
+            "[yellow]towards the edges of the image the distortion is extrapolated: "
+            "add views with the board there, if objects will be[/yellow]",
+            soft_wrap=True,
+        )
+
+
+def _report_extrinsics(found: Extrinsics, pairs: Sequence[Pair]) -> None:
+    x, y, z = found.skeleton_from_image[:3, 3]
+    console.print(f"RMS {found.rms_px:.3f} px over {len(pairs)} pairs")
+    for pair, error in zip(pairs, found.rms_of_pairs_px, strict=True):
+        console.print(f"  {pair.name}: {error:.3f} px", markup=False)
+    console.print(
+        f"the camera that sees markers is at x {x:+.3f}, y {y:+.3f}, z {z:+.3f} m of the one that sees people "
+        f"(right, down, forward), ± {found.position_deviation_mm:.1f} mm and ± {found.rotation_deviation_deg:.2f} deg",
+        soft_wrap=True,
+    )
+
+
+def _refuse(reasons: Sequence[str], output: Path) -> NoReturn:
+    fail("\n  ".join([f"not calibrated, {output} is not written:", *map(escape, reasons)]))
+
+
+def _today() -> datetime.date:
+    return datetime.datetime.now().astimezone().date()

@@ -1,0 +1,184 @@
+"""A camera's calibration as a YAML file: written by `actum calibrate`, read by the services.
+
+Only `image_size` (width, height; px), `K` (3x3, row-major; px) and `distortion` (OpenCV's order) must be there, so
+that a maker's figures can be written down by hand. Without `skeleton_from_image` (4x4, row-major; m) the camera that
+sees the markers is the one that sees the people.
+"""
+
+import datetime
+import hashlib
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, field_validator
+
+from actum import geometry
+from actum.messages import Intrinsics, Transform
+
+FORMAT: Literal["actum.calibration/1"] = "actum.calibration/1"
+DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
+RIGID_TOLERANCE = 1e-3
+LARGEST_BYTES = 100_000
+HEADER = "# A camera's calibration: the sensor gateway sends it with each image (ACTUM_CALIBRATION names this file).\n"
+MATRICES = {"K": 3, "skeleton_from_image": 4}
+WIDTH = 120
+REMEDY = "make one with 'actum calibrate intrinsics'"
+
+Pixels = Annotated[int, Field(gt=0, le=100_000)]
+Measure = Annotated[FiniteFloat, Field(ge=0)]
+
+
+class CalibrationError(ValueError):
+    """A file that is no calibration, or not this camera's: which, what is wrong, what to do."""
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class IntrinsicsQuality(_Part):
+    """How K and distortion were found: deviations are of fx, fy, cx and cy, `coverage` a share of the image."""
+
+    date: datetime.date
+    views: int
+    rms_px: Measure
+    standard_deviations_px: Annotated[list[Measure], Field(min_length=4, max_length=4)]
+    coverage: Measure
+
+
+class ExtrinsicsQuality(_Part):
+    """How skeleton_from_image was found: the reprojection error in both cameras, and standard deviations."""
+
+    date: datetime.date
+    pairs: int
+    rms_px: Measure
+    position_standard_deviation_mm: Measure
+    rotation_standard_deviation_deg: Measure
+
+
+class Calibration(_Part):
+    """One camera: intrinsics, and where the skeletons' camera sees it."""
+
+    format: Literal["actum.calibration/1"] = FORMAT
+    image_size: tuple[Pixels, Pixels]
+    K: Intrinsics
+    distortion: list[FiniteFloat]
+    skeleton_from_image: Transform | None = None
+    intrinsics: IntrinsicsQuality | None = None
+    extrinsics: ExtrinsicsQuality | None = None
+
+    @field_validator("K")
+    @classmethod
+    def _pinhole(cls, numbers: list[float]) -> list[float]:
+        if numbers[0] <= 0 or numbers[4] <= 0 or numbers[6:] != [0, 0, 1]:
+            raise ValueError("not [fx, 0, cx, 0, fy, cy, 0, 0, 1] with fx and fy above 0")
+        return numbers
+
+    @field_validator("distortion")
+    @classmethod
+    def _complete(cls, coefficients: list[float]) -> list[float]:
+        if len(coefficients) not in DISTORTION_LENGTHS:
+            raise ValueError(f"{len(coefficients)} coefficients, not one of {DISTORTION_LENGTHS}")
+        return coefficients
+
+    @field_validator("skeleton_from_image")
+    @classmethod
+    def _rigid(cls, numbers: list[float] | None) -> list[float] | None:
+        if numbers is not None and not _is_rigid(geometry.from_flat(numbers)):
+            raise ValueError("no rigid transform: rotation and position as 4x4 numbers, row-major")
+        return numbers
+
+    @property
+    def id(self) -> str:
+        """Name the content: the first 12 hexadecimal digits of the SHA-256 of its canonical JSON."""
+        return hashlib.sha256(self.model_dump_json().encode()).hexdigest()[:12]
+
+    @property
+    def matrix(self) -> geometry.Array:
+        """K of shape (3, 3)."""
+        return np.array(self.K, dtype=np.float64).reshape(3, 3)
+
+    def image_fields(self) -> dict[str, list[float]]:
+        """Return what an `Image` message says of its camera."""
+        transform = self.skeleton_from_image or geometry.flat(np.eye(4))
+        return {"K": self.K, "distortion": self.distortion, "skeleton_from_image": transform}
+
+    def check_size(self, width: int, height: int, name: str) -> None:
+        """Pass an image of the size that was calibrated.
+
+        Raises:
+            CalibrationError: it has another size.
+        """
+        if (width, height) != self.image_size:
+            expected = "x".join(map(str, self.image_size))
+            raise CalibrationError(
+                f"{name} is {width}x{height}, the calibration is for {expected}: "
+                "set the camera to that size, or calibrate it at this one"
+            )
+
+    @classmethod
+    def load(cls, path: Path) -> Self:
+        """Read a file.
+
+        Raises:
+            CalibrationError: it cannot be read, or is no calibration.
+        """
+        try:
+            with path.open("rb") as file:
+                content = yaml.safe_load(file.read(LARGEST_BYTES))
+            return cls.model_validate(content)
+        except OSError as error:
+            raise CalibrationError(f"{path}: {error.strerror}; {REMEDY}") from None
+        except (yaml.YAMLError, UnicodeDecodeError, RecursionError):
+            raise CalibrationError(f"{path}: no YAML; {REMEDY}") from None
+        except ValidationError as error:
+            raise CalibrationError(f"{path}: no calibration: {_first(error)}; {REMEDY}") from None
+
+    def save(self, path: Path) -> None:
+        """Write the file, replacing what is there."""
+        path.write_text(HEADER + _yaml(self.model_dump(exclude_none=True)), encoding="utf-8")
+
+
+class _Dumper(yaml.SafeDumper):
+    """Writes lists in one line and all else in blocks."""
+
+
+def _in_one_line(dumper: yaml.SafeDumper, value: list[Any] | tuple[Any, ...]) -> yaml.Node:
+    return dumper.represent_sequence("tag:yaml.org,2002:seq", value, flow_style=True)
+
+
+_Dumper.add_representer(list, _in_one_line)
+_Dumper.add_representer(tuple, _in_one_line)
+
+
+def _yaml(fields: dict[str, Any]) -> str:
+    """Write fields one below the other, matrices row by row."""
+    return "".join(
+        f"{name}: {_rows(value, MATRICES[name])}\n" if name in MATRICES else _dumped({name: value})
+        for name, value in fields.items()
+    )
+
+
+def _rows(numbers: list[float], columns: int) -> str:
+    rows = [_dumped(numbers[start : start + columns]) for start in range(0, len(numbers), columns)]
+    return "[\n" + ",\n".join(f"  {row.strip()[1:-1]}" for row in rows) + "]"
+
+
+def _dumped(value: object) -> str:
+    return str(yaml.dump(value, Dumper=_Dumper, default_flow_style=False, sort_keys=False, width=WIDTH))
+
+
+def _first(error: ValidationError) -> str:
+    problem = error.errors()[0]
+    place = ".".join(map(str, problem["loc"])) or "the file"
+    return f"{place}: {problem['msg']}"
+
+
+def _is_rigid(transform: geometry.Array) -> bool:
+    rotation = transform[:3, :3]
+    if np.abs(rotation).max() > 2 or not np.array_equal(transform[3], (0, 0, 0, 1)):
+        return False
+    orthogonal = np.allclose(rotation @ rotation.T, np.eye(3), atol=RIGID_TOLERANCE)
+    return bool(orthogonal and np.linalg.det(rotation) > 0)

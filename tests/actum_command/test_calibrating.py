@@ -1,0 +1,115 @@
+"""`actum markers` and `actum calibrate` as a person uses them."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pypdfium2
+import pytest
+from typer.testing import CliRunner
+
+from actum.calibration import Calibration
+from actum_command.__main__ import app
+from boards import Lens, facing, good_poses, photograph
+from calibrator.board import Board
+
+BOARD, LENS = Board(), Lens()
+TRUE = np.eye(4)
+TRUE[:3, :3] = cv2.Rodrigues(np.radians([0.0, -10.0, 0.0]))[0]
+TRUE[:3, 3] = (0.15, 0.01, 0.02)
+PLACES = (((-0.05, 0, 0.6), (30, 0, 0)), ((0.05, 0.05, 0.7), (0, 32, 0)), ((0.0, -0.05, 0.65), (20, -26, 15)))
+
+
+def run(*arguments: str | Path, code: int = 0) -> str:
+    done = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    assert done.exit_code == code, done.output
+    return " ".join((done.output if code == 0 else done.output + done.stderr).split())
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    made = tmp_path_factory.mktemp("pictures")
+    for n, pose in enumerate(good_poses(BOARD, 10)):
+        cv2.imwrite(str(made / f"{n}.png"), photograph(LENS, BOARD, pose, seed=n))
+    return made
+
+
+def test_from_pictures_to_a_calibration_of_two_cameras(folder: Path, tmp_path: Path) -> None:
+    one, whole = tmp_path / "camera.yaml", tmp_path / "both.yaml"
+    said = run("calibrate", "intrinsics", folder, "-o", one)
+    found = Calibration.load(one)
+    assert found.K[0] == pytest.approx(LENS.intrinsics[0, 0], rel=0.005)
+    assert f"focal length {found.K[0]:.1f} ±" in said
+    assert "RMS 0." in said
+    assert "coverage" in said
+    assert found.id in said
+    assert (tmp_path / "camera.png").read_bytes().startswith(b"\x89PNG")
+
+    for n, (place, turn) in enumerate(PLACES):
+        pose = facing(BOARD, place, turn)
+        for end, camera in (("a", np.eye(4)), ("b", TRUE)):
+            cv2.imwrite(str(tmp_path / f"{n}_{end}.png"), photograph(LENS, BOARD, camera @ pose, seed=n))
+    pairs = sorted(tmp_path.glob("*_[ab].png"))
+    said = run("calibrate", "extrinsics", "--markers-camera", one, "--people-camera", one, *pairs, "-o", whole)
+    made = Calibration.load(whole)
+    assert made.skeleton_from_image is not None
+    assert np.reshape(made.skeleton_from_image, (4, 4))[:3, 3] == pytest.approx(TRUE[:3, 3], abs=0.003)
+    assert made.K == found.K
+    assert made.id in said
+
+
+def test_blurred_pictures_are_refused_and_nothing_is_written(folder: Path, tmp_path: Path) -> None:
+    for file in folder.iterdir():
+        cv2.imwrite(str(tmp_path / file.name), cv2.GaussianBlur(cv2.imread(str(file)), (0, 0), 5.0))
+    said = run("calibrate", "intrinsics", tmp_path, "-o", tmp_path / "c.yaml", code=1)
+    assert "too few views: 0 usable" in said
+    assert "10 pictures are blurred: hold the board still" in said
+    assert not (tmp_path / "c.yaml").exists()
+
+
+def test_too_few_pictures_are_refused(folder: Path, tmp_path: Path) -> None:
+    files = sorted(folder.iterdir())[:4]
+    assert "too few views: 4 usable" in run("calibrate", "intrinsics", *files, "-o", tmp_path / "c.yaml", code=1)
+
+
+def test_broken_and_foreign_pictures_are_named(folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "broken.png").write_bytes(b"no picture")
+    said = run("calibrate", "intrinsics", tmp_path / "broken.png", folder, "-o", tmp_path / "c.yaml")
+    assert "broken.png: is no image" in said
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (["--board", "7by5"], "say the squares across x down, as 7x5"),
+        (["--family", "DICT"], "no marker family"),
+        (["--live"], "name pictures of the board, or use --live"),
+    ],
+)
+def test_impossible_options_are_refused(folder: Path, tmp_path: Path, options: list[str], reason: str) -> None:
+    assert reason in run("calibrate", "intrinsics", folder, "-o", tmp_path / "c.yaml", *options, code=1)
+
+
+def test_a_foreign_calibration_is_refused(folder: Path, tmp_path: Path) -> None:
+    bad = tmp_path / "c.yaml"
+    bad.write_text("focal: 500")
+    command = ["--markers-camera", bad, "--people-camera", bad, folder, "-o", tmp_path / "d.yaml"]
+    assert "c.yaml: no calibration" in run("calibrate", "extrinsics", *command, code=1)
+
+
+def test_markers_are_printed_to_a_file(tmp_path: Path) -> None:
+    said = run("markers", "-o", tmp_path / "m.pdf", "--ids", "1,4-6", "--size-mm", "60", "--paper", "letter")
+    assert "100 %" in said
+    with pypdfium2.PdfDocument(tmp_path / "m.pdf") as document:
+        text = document[0].get_textpage().get_text_range()
+    assert all(f"id {number}" in text.splitlines() for number in (1, 4, 5, 6))
+
+
+def test_the_board_is_printed_to_a_file(tmp_path: Path) -> None:
+    assert "7x5 squares of 35 mm" in run("markers", "-o", tmp_path / "b.pdf", "--board")
+    assert (tmp_path / "b.pdf").read_bytes().startswith(b"%PDF")
+
+
+@pytest.mark.parametrize("ids", ["", "a", "5-1", "1,,2", "0-99999999999"])
+def test_ids_that_are_none_are_refused(tmp_path: Path, ids: str) -> None:
+    assert "--ids" in run("markers", "-o", tmp_path / "m.pdf", "--ids", ids, code=1)
