@@ -1,116 +1,128 @@
-"""Markers in an image, and each one's pose from its four corners."""
+"""Markers of several families in an image, their corners to a fraction of a pixel."""
 
+import math
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from marker_tracker.images import Camera, Pixels
+from marker_tracker import reading
+from marker_tracker.corners import refine
+from marker_tracker.families import Family, family
+from marker_tracker.images import Pixels
 
 Array = NDArray[np.float64]
 
-FURTHEST_M = 100.0
-FULL_SIDE_PX = 24.0
-"""From this side on, four pixels for each cell of a 4x4 marker with its border, size costs no confidence."""
-
-# The pose is solved with y down, for a marker that faces the camera is then close to the identity. With y up it
-# is a half turn, whose rotation vector OpenCV gets wrong (by tens of pixels when the marker is exactly frontal).
-SQUARE_FROM_MARKER = np.diag([1.0, -1.0, -1.0])
+BORDER_TOLERANCE = 0.1
+"""Part of the border's cells that may look white once the corners are exact."""
+SMALL_FAMILY = 50
+"""Codes up to which it costs little to search all of them, so that unknown markers are found and told."""
+MOST_LOOKED_AT_AGAIN = 16
+SAME_PLACE = 0.25
+"""Markers whose centres are nearer than this, in parts of a side, are one printed marker."""
 
 
 @dataclass(frozen=True)
 class Marker:
-    """A detected marker; `corners_px` is (4, 2), clockwise from the marker's own top left."""
+    """A detected marker with `wrong` cells misread; `corners_px` (4, 2) go clockwise from the marker's own top left."""
 
+    family: str
     id: int
     corners_px: Array
+    wrong: int = 0
 
-    @property
+    @cached_property
     def side_px(self) -> float:
         """Mean length of the four sides."""
-        sides = self.corners_px - np.roll(self.corners_px, 1, axis=0)
-        return float(np.linalg.norm(sides, axis=1).mean())
+        sides = self.corners_px - self.corners_px[[3, 0, 1, 2]]
+        return float(np.sqrt((sides * sides).sum(axis=1)).mean())
 
-
-@dataclass(frozen=True)
-class MarkerPose:
-    """Where a marker is; `error_px` is the root mean square reprojection error of its corners.
-
-    The marker frame has its origin in the centre, x to the right, y up, z out of the printed face.
-    """
-
-    image_from_marker: Array
-    error_px: float
-
-
-class BadPoseError(ValueError):
-    """Corners that no marker in front of the camera can have."""
+    @cached_property
+    def centre_px(self) -> Array:
+        """Mean of the corners."""
+        centre: Array = self.corners_px.sum(axis=0) / 4
+        return centre
 
 
 class MarkerDetector:
-    """OpenCV's ArUco detector for one dictionary, with corners refined to sub-pixel precision."""
+    """OpenCV finds squares and reads them; corners are then refined, and each code is read again at exact corners.
 
-    def __init__(self, dictionary: str) -> None:
-        parameters = cv2.aruco.DetectorParameters()
-        parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
-        # Half a cell: OpenCV's 0.3 leaves too few pixels at two metres, more than 0.5 reaches the next cell's corner.
-        parameters.relativeCornerRefinmentWinSize = 0.5
-        markers = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
-        self._detector = cv2.aruco.ArucoDetector(markers, parameters)
+    What OpenCV took for a marker and cannot be read again is dropped; while a wanted marker is missing, squares that
+    OpenCV could not read are given a second look, which finds markers that are small or steep.
+    """
+
+    def __init__(self, wanted: Mapping[str, Collection[int]]) -> None:
+        """Search these families: for these ids, or for all where there are none or the family is small."""
+        self._families = [family(name) for name in wanted]
+        self._wanted = {(name, number) for name, ids in wanted.items() for number in ids}
+        self._open = not all(wanted.values())
+        dictionaries = [_searched(one, ids) for one, ids in zip(self._families, wanted.values(), strict=True)]
+        self._detector = cv2.aruco.ArucoDetector(dictionaries, cv2.aruco.DetectorParameters())
 
     def detect(self, pixels: Pixels) -> list[Marker]:
         """Find the markers of a grey image."""
-        corners, ids, _rejected = self._detector.detectMarkers(pixels)
-        if ids is None:
+        corners, _ids, rejected, families = self._detector.detectMarkersMultiDict(pixels)
+        found = _quads(corners)
+        numbers = np.zeros(0, dtype=int) if families is None else np.ravel(families)
+        markers: list[Marker] = []
+        refined = refine(pixels, found)
+        for index in np.unique(numbers):
+            markers += self._read(pixels, refined[numbers == index], self._families[int(index)])
+        if self._open or not self._wanted <= {(marker.family, marker.id) for marker in markers}:
+            markers += self._second_look(pixels, _quads(rejected), found)
+        return _apart(markers)
+
+    def _second_look(self, pixels: Pixels, rejected: Array, found: Array) -> list[Marker]:
+        """Read squares with a black rim that OpenCV could not read, the largest first."""
+        free = _outside(rejected, found)
+        rimmed = free[reading.has_black_rim(pixels, free)] if len(free) else free
+        largest = rimmed[np.argsort([-cv2.contourArea(quad.astype(np.float32)) for quad in rimmed])]
+        refined = refine(pixels, largest[:MOST_LOOKED_AT_AGAIN])
+        return [marker for one in self._families for marker in self._read(pixels, refined, one)]
+
+    @staticmethod
+    def _read(pixels: Pixels, squares: Array, one: Family) -> list[Marker]:
+        if not len(squares):
             return []
-        numbers = np.asarray(ids).ravel().tolist()
-        quads = [np.asarray(quad, dtype=np.float64).reshape(4, 2) for quad in corners]
-        return [Marker(int(number), quad) for number, quad in zip(numbers, quads, strict=True)]
+        markers: list[Marker] = []
+        for quad, shown in zip(squares, reading.read(pixels, squares, one.cells), strict=True):
+            match = one.match(shown[1:-1, 1:-1])
+            border = reading.border_wrong(shown)
+            if match is not None and border <= BORDER_TOLERANCE * 4 * (one.cells + 1):
+                turned = quad[(np.arange(4) - match.turns) % 4]
+                markers.append(Marker(one.name, match.id, turned, match.wrong + border))
+        return markers
 
 
-def locate(marker: Marker, size_m: float, camera: Camera) -> MarkerPose:
-    """Solve a marker's pose by IPPE (Collins and Bartoli 2014), taking the better of its two solutions.
-
-    Raises:
-        BadPoseError: the solution is not finite, behind the camera or absurdly far.
-    """
-    _count, rotations, translations, errors = cv2.solvePnPGeneric(
-        _square(size_m), marker.corners_px, camera.matrix, camera.distortion, flags=cv2.SOLVEPNP_IPPE
-    )
-    if errors is None or not np.isfinite(errors).all():
-        raise BadPoseError(f"no pose fits the corners of marker {marker.id}")
-    best = int(np.argmin(errors))
-    image_from_marker = np.eye(4)
-    image_from_marker[:3, :3] = cv2.Rodrigues(rotations[best])[0] @ SQUARE_FROM_MARKER
-    image_from_marker[:3, 3] = translations[best].ravel()
-    if not np.isfinite(image_from_marker).all() or not 0 < image_from_marker[2, 3] < FURTHEST_M:
-        raise BadPoseError(f"marker {marker.id} would be at {image_from_marker[:3, 3].tolist()} m")
-    return MarkerPose(image_from_marker, float(np.ravel(errors)[best]))
+def _searched(one: Family, ids: Collection[int]) -> Any:
+    """Leave out of a large family what is not wanted: time and false markers grow with the codes compared."""
+    return one.only(ids) if ids and len(one.codes) > SMALL_FAMILY else one.dictionary
 
 
-def confidence(pose: MarkerPose, side_px: float) -> float:
-    """Rate a pose from 0 to 1: 1 / (1 + reprojection error in px), less in proportion below `FULL_SIDE_PX`."""
-    return min(1.0, side_px / FULL_SIDE_PX) / (1.0 + pose.error_px)
+def _quads(corners: object) -> Array:
+    return np.asarray(corners, dtype=np.float64).reshape(-1, 4, 2)
 
 
-def quaternion_xyzw(rotation: Array) -> list[float]:
-    """Turn a rotation matrix (3, 3) into a unit quaternion with w >= 0 (Bar-Itzhack 2000)."""
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation
-    symmetric = np.array(
-        [
-            [xx - yy - zz, yx + xy, zx + xz, zy - yz],
-            [yx + xy, yy - xx - zz, zy + yz, xz - zx],
-            [zx + xz, zy + yz, zz - xx - yy, yx - xy],
-            [zy - yz, xz - zx, yx - xy, xx + yy + zz],
-        ]
-    )
-    quaternion = np.linalg.eigh(symmetric).eigenvectors[:, -1]
-    listed: list[float] = (np.copysign(1.0, quaternion[3]) * quaternion).tolist()
-    return listed
+def _outside(squares: Array, found: Array) -> Array:
+    """Leave out squares whose centre is in one that was found: cells of its code."""
+    centres = squares.mean(axis=1)
+    inside = [
+        any(cv2.pointPolygonTest(quad.astype(np.float32), (float(x), float(y)), False) >= 0 for quad in found)
+        for x, y in centres
+    ]
+    outside: Array = squares[~np.array(inside, dtype=bool)]
+    return outside
 
 
-def _square(size_m: float) -> Array:
-    """Corners of a marker in the order in which they are detected, y down and z into its printed face."""
-    half = size_m / 2
-    return np.array([[-half, -half, 0], [half, -half, 0], [half, half, 0], [-half, half, 0]])
+def _apart(markers: list[Marker]) -> list[Marker]:
+    """Keep one marker in each place: the one with the fewest wrong cells."""
+    kept: list[Marker] = []
+    for marker in sorted(markers, key=lambda one: one.wrong):
+        reach_px = SAME_PLACE * marker.side_px
+        if not any(math.dist(marker.centre_px, one.centre_px) < reach_px for one in kept):
+            kept.append(marker)
+    return kept

@@ -18,6 +18,9 @@ Pixels = NDArray[np.uint8]
 LARGEST_PIXELS = 4096 * 4096
 LARGEST_FOCAL_PX = 1e5
 LARGEST_COEFFICIENT = 100.0
+FURTHEST_OFF_CENTRE = 0.2
+"""How far from the image's centre, in parts of its size, the optical axis may meet it."""
+SAME_ASPECT = 0.01
 DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
 JPEG_START = b"\xff\xd8"
 RIGID_TOLERANCE = 1e-3
@@ -52,11 +55,11 @@ def gray(image: Image) -> Pixels:
     return _from_jpeg(image) if image.format == "jpeg" else _from_bgr(image)
 
 
-def camera(image: Image) -> Camera:
-    """Read an image's calibration.
+def camera(image: Image, calibrated_size_px: tuple[int, int] | None = None) -> Camera:
+    """Read an image's calibration; K is scaled to the image where the calibrated size is known and has its aspect.
 
     Raises:
-        UnusableImageError: of kind `bad_calibration`.
+        UnusableImageError: of kind `bad_calibration` or `calibration_size_mismatch`.
     """
     matrix = np.array(image.K, dtype=np.float64).reshape(3, 3)
     focal = (matrix[0, 0], matrix[1, 1])
@@ -67,7 +70,31 @@ def camera(image: Image) -> Camera:
     skeleton_from_image = geometry.from_flat(image.skeleton_from_image)
     if not _is_rigid(skeleton_from_image):
         raise UnusableImageError("bad_calibration", "skeleton_from_image is no rigid transform")
+    matrix = _of_size(matrix, (image.width, image.height), calibrated_size_px)
     return Camera(matrix, _distortion(image.distortion), skeleton_from_image)
+
+
+def _of_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tuple[int, int] | None) -> Array:
+    """Hold K against the image's size: pixel centres are at whole numbers, so that (c + 1/2) scales."""
+    width, height = size_px
+    if calibrated_px is None:
+        off_px = np.abs(matrix[:2, 2] + 0.5 - np.divide(size_px, 2))
+        if (off_px > 1 + FURTHEST_OFF_CENTRE * np.array(size_px)).any():
+            raise UnusableImageError(
+                "calibration_size_mismatch",
+                f"K has its centre at ({matrix[0, 2]:g}, {matrix[1, 2]:g}) in an image of {width}x{height}: "
+                "calibrate at this size, or give calibrated-size-px",
+            )
+        return matrix
+    across, down = width / calibrated_px[0], height / calibrated_px[1]
+    if abs(across / down - 1) > SAME_ASPECT:
+        raise UnusableImageError(
+            "calibration_size_mismatch",
+            f"an image of {width}x{height}, but calibrated at {calibrated_px[0]}x{calibrated_px[1]}",
+        )
+    half = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1]])
+    scaled: Array = np.linalg.inv(half) @ np.diag([across, down, 1.0]) @ half @ matrix
+    return scaled
 
 
 def _from_jpeg(image: Image) -> Pixels:

@@ -2,14 +2,24 @@
 
 from collections.abc import Iterable
 
+import numpy as np
+
 from actum import keys
 from actum.messages import Image, Message, Objects, TrackedObject
 from actum.node import SECOND_NS, Tally, Tick
 from actum.stamps import Order, StampGuard
-from marker_tracker.detection import BadPoseError, Marker, MarkerDetector, confidence, locate, quaternion_xyzw
+from marker_tracker.catalogue import Carried, Catalogue, plain
+from marker_tracker.detection import Marker, MarkerDetector
 from marker_tracker.images import Camera, UnusableImageError, camera, gray
-from marker_tracker.memory import Memory
-from marker_tracker.settings import ObjectSpec, Settings
+from marker_tracker.poses import WORST_ERROR_PX, BadPoseError, Pose, confidence, solve
+from marker_tracker.rotations import Array
+from marker_tracker.scene_file import SceneFileError, load
+from marker_tracker.settings import Settings
+from marker_tracker.tracks import Sighting, Tracks
+
+OnObject = list[tuple[Marker, Carried]]
+LEAST_NOISE_PX = 0.2
+LEAST_NOISE_M = 5e-4
 
 
 class MarkerTracker:
@@ -19,10 +29,16 @@ class MarkerTracker:
     inputs: tuple[keys.Topic, ...] = (keys.COLOR,)
 
     def __init__(self, settings: Settings) -> None:
+        """Read the scene.
+
+        Raises:
+            SceneFileError: the scene file cannot be used.
+        """
         self.tally = Tally()
         self._settings = settings
-        self._detector = MarkerDetector(settings.dictionary)
-        self._memory = Memory(round(settings.memory_s * SECOND_NS))
+        self._catalogue = _catalogue(settings)
+        self._detector = MarkerDetector(self._catalogue.wanted())
+        self._tracks = Tracks(round(settings.memory_s * SECOND_NS))
         self._order = StampGuard()
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
@@ -34,55 +50,82 @@ class MarkerTracker:
             self.tally.reject("stale_stamp", f"image at {message.stamp_ns} after {self._order.newest_ns}")
             return []
         if order is Order.RESTART:
-            self._memory.clear()
+            self._tracks.clear()
         return [self._objects(message)]
 
     def _objects(self, image: Image) -> Objects:
         if not image.valid:
             return _answer(image, [], image.reason or "the source says so")
         try:
-            seen = self._seen(image)
+            pixels, view = gray(image), camera(image, self._settings.calibrated_size_px)
         except UnusableImageError as error:
             self.tally.reject(error.kind, f"image at {image.stamp_ns}: {error.detail}")
             return _answer(image, [], str(error))
-        return _answer(image, self._memory.update(image.stamp_ns, seen))
+        for number, markers in self._carried(self._detector.detect(pixels)).items():
+            self._see(image.stamp_ns, number, markers, view)
+        return _answer(image, self._tracks.listed(image.stamp_ns))
 
-    def _seen(self, image: Image) -> list[TrackedObject]:
-        view, pixels = camera(image), gray(image)
-        found: dict[int, TrackedObject] = {}
-        for marker in self._detector.detect(pixels):
-            tracked = self._tracked(marker, view)
-            if tracked is None:
-                continue
-            if tracked.id in found:
-                self.tally.reject("repeated_marker", f"marker {tracked.id} twice in the image at {image.stamp_ns}")
-            found[tracked.id] = max(tracked, found.get(tracked.id, tracked), key=lambda one: one.confidence)
-        return list(found.values())
+    def _carried(self, markers: list[Marker]) -> dict[int, OnObject]:
+        """Group markers by the objects they are on, the largest first; of one seen twice the largest counts."""
+        objects: dict[int, OnObject] = {}
+        taken: set[tuple[str, int]] = set()
+        for marker in sorted(markers, key=lambda one: -one.side_px):
+            carried = self._catalogue.find(marker.family, marker.id)
+            if carried is None:
+                self.tally.reject("unknown_marker", f"marker {marker.id} of {marker.family} is on none of the objects")
+            elif (marker.family, marker.id) in taken:
+                self.tally.reject("repeated_marker", f"marker {marker.id} of {marker.family} twice in one image")
+            else:
+                taken.add((marker.family, marker.id))
+                objects.setdefault(carried.object_id, []).append((marker, carried))
+        return objects
 
-    def _tracked(self, marker: Marker, view: Camera) -> TrackedObject | None:
-        spec = self._spec(marker.id)
-        if spec is None:
-            self.tally.reject("unknown_marker", f"marker {marker.id} is on none of the objects of the settings")
-            return None
+    def _see(self, stamp_ns: int, number: int, markers: OnObject, view: Camera) -> None:
+        name = self._catalogue.name(number)
         try:
-            pose = locate(marker, spec.size_m or self._settings.marker_size_m, view)
+            poses = self._poses(name, markers, view)
         except BadPoseError as error:
             self.tally.reject("bad_pose", str(error))
-            return None
-        skeleton_from_marker = view.skeleton_from_image @ pose.image_from_marker
-        return TrackedObject(
-            id=marker.id,
-            name=spec.name,
-            position_m=skeleton_from_marker[:3, 3].tolist(),
-            quaternion_xyzw=quaternion_xyzw(skeleton_from_marker[:3, :3]),
-            confidence=confidence(pose, marker.side_px),
-            seen=True,
-        )
+            return
+        if not self._tracks.see(stamp_ns, number, name, _sighting(poses, markers, view)):
+            self.tally.reject("outlying_pose", f"{name} far from where it was a moment before {stamp_ns}")
 
-    def _spec(self, marker_id: int) -> ObjectSpec | None:
-        if not self._settings.objects:
-            return ObjectSpec(name=f"marker {marker_id}")
-        return self._settings.objects.get(marker_id)
+    def _poses(self, name: str, markers: OnObject, view: Camera) -> list[Pose]:
+        poses = solve(markers, view)
+        if len(markers) > 1 and poses[0].error_px > WORST_ERROR_PX:
+            ids = ", ".join(str(marker.id) for marker, _ in markers)
+            self.tally.reject("markers_disagree", f"markers {ids} of {name} are not where the scene file puts them")
+            return solve(markers[:1], view)
+        return poses
+
+
+def _catalogue(settings: Settings) -> Catalogue:
+    if settings.scene is None:
+        return plain(settings)
+    if settings.objects:
+        raise SceneFileError("scene and objects both say what carries which marker: set only one of them")
+    return load(settings.scene)
+
+
+def _sighting(poses: list[Pose], markers: OnObject, view: Camera) -> Sighting:
+    side_px = markers[0][0].side_px
+    return Sighting(
+        [Pose(view.skeleton_from_image @ pose.image_from_object, pose.error_px) for pose in poses],
+        _noise(poses[0], side_px, view),
+        confidence(poses[0], side_px),
+    )
+
+
+def _noise(pose: Pose, side_px: float, view: Camera) -> Array:
+    """Covariance of a position, from the corners' error: along the ray it grows with depth over the marker's side."""
+    position_m = pose.image_from_object[:3, 3]
+    distance_m = float(np.linalg.norm(position_m))
+    corner_px = max(LEAST_NOISE_PX, pose.error_px)
+    across_m, along_m = distance_m * corner_px / view.matrix[0, 0], distance_m * corner_px / side_px
+    ray = view.skeleton_from_image[:3, :3] @ (position_m / distance_m)
+    along = np.outer(ray, ray)
+    noise: Array = (along_m**2) * along + across_m**2 * (np.eye(3) - along) + LEAST_NOISE_M**2 * np.eye(3)
+    return noise
 
 
 def _answer(image: Image, objects: list[TrackedObject], reason: str | None = None) -> Objects:

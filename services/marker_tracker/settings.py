@@ -1,9 +1,12 @@
 """Settings of the marker tracker."""
 
-import cv2
+from pathlib import Path
+from typing import Annotated
+
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from actum.settings import ServiceSettings
+from marker_tracker.families import canonical
 
 
 class ObjectSpec(BaseModel):
@@ -18,6 +21,9 @@ class ObjectSpec(BaseModel):
 class Settings(ServiceSettings):
     """What the tracker can be told beside what every service can."""
 
+    scene: Path | None = Field(
+        None, description="a YAML file of objects and their markers, instead of dictionary, marker-size-m and objects"
+    )
     dictionary: str = Field("DICT_4X4_50", description="the markers' dictionary, by OpenCV's name")
     marker_size_m: float = Field(0.08, gt=0, le=10, description="side of a marker's black square")
     objects: dict[int, ObjectSpec] = Field(
@@ -25,11 +31,12 @@ class Settings(ServiceSettings):
         description='what carries which marker, as {"3": {"name": "cup", "size_m": 0.06}}; empty: every marker counts',
     )
     memory_s: float = Field(1.0, gt=0, le=60, description="how long a hidden object stays listed, by stamps")
+    calibrated_size_px: tuple[Annotated[int, Field(gt=0)], Annotated[int, Field(gt=0)]] | None = Field(
+        None, description="width and height of the images that the camera was calibrated with, where images may differ"
+    )
 
     @field_validator("dictionary")
     @classmethod
     def _known(cls, name: str) -> str:
-        known = sorted(entry for entry in dir(cv2.aruco) if entry.startswith("DICT_"))
-        if name not in known:
-            raise ValueError(f"{name!r} is no marker dictionary: use one of {', '.join(known)}")
+        canonical(name)
         return name

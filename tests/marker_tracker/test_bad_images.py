@@ -72,6 +72,39 @@ def test_it_is_counted_by_kind_and_answered_as_invalid(image, kind) -> None:
     assert answer.reason.startswith(kind)
 
 
+OTHER_SIZES = {
+    "half": small(width=32, height=24, data=bytes(32 * 24 * 3)),
+    "double": small(width=128, height=96, data=bytes(128 * 96 * 3)),
+    "turned": small(width=24, height=64, data=bytes(24 * 64 * 3)),
+}
+
+
+@pytest.mark.parametrize("image", OTHER_SIZES.values(), ids=OTHER_SIZES.keys())
+def test_a_size_that_the_calibration_cannot_be_of_is_counted(image) -> None:
+    tracker = MarkerTracker(Settings())
+    (answer,) = tracker.handle(image)
+    assert tracker.tally.rejects == {"calibration_size_mismatch": 1}
+    assert (answer.valid, answer.objects) == (False, [])
+    assert f"{image.width}x{image.height}" in answer.reason
+
+
+def test_a_calibration_of_another_aspect_is_counted() -> None:
+    tracker = MarkerTracker(Settings(calibrated_size_px=(64, 64)))
+    (answer,) = tracker.handle(small())
+    assert tracker.tally.rejects == {"calibration_size_mismatch": 1}
+    assert "an image of 64x48, but calibrated at 64x64" in answer.reason
+
+
+@pytest.mark.parametrize("scale", [0.5, 2.0])
+def test_a_calibration_of_the_same_aspect_is_scaled(image_of, pose_at, scale) -> None:
+    image = image_of([(3, 0.12, pose_at((0.1, -0.05, 0.8)))])
+    k = [scale * 525.0, 0.0, scale * 320 - 0.5, 0.0, scale * 525.0, scale * 240 - 0.5, 0.0, 0.0, 1.0]
+    size = (round(scale * 640), round(scale * 480))
+    tracker = MarkerTracker(Settings(marker_size_m=0.12, calibrated_size_px=size))
+    (answer,) = tracker.handle(image.model_copy(update={"K": k}))
+    assert answer.objects[0].position_m == pytest.approx([0.1, -0.05, 0.8], abs=0.005)
+
+
 def test_a_good_image_right_after_bad_ones_is_handled(image_of, pose_at) -> None:
     tracker = MarkerTracker(Settings(marker_size_m=0.12))
     for stamp_ns, (bad, _) in enumerate(CASES.values()):
@@ -92,7 +125,8 @@ def test_random_bytes_are_survived(tail, head) -> None:
 @given(st.integers(1, 40), st.integers(1, 40), st.randoms())
 def test_tiny_images_of_noise_are_survived(width, height, random) -> None:
     tracker = MarkerTracker(Settings())
-    (answer,) = tracker.handle(small(width=width, height=height, data=random.randbytes(width * height * 3)))
+    k = [60.0, 0.0, width / 2, 0.0, 60.0, height / 2, 0.0, 0.0, 1.0]
+    (answer,) = tracker.handle(small(width=width, height=height, data=random.randbytes(width * height * 3), K=k))
     assert (answer.valid, answer.objects) == (True, [])
 
 

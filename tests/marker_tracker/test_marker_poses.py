@@ -9,9 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from actum.messages import Image, Objects
-from marker_tracker.detection import quaternion_xyzw
 from marker_tracker.node import MarkerTracker
+from marker_tracker.rotations import quaternion_xyzw
 from marker_tracker.settings import ObjectSpec, Settings
+from rotation_of import rotation_of
 
 POSES = [
     ((0.0, 0.0, 0.8), (0.0, 0.0, 0.0)),
@@ -25,17 +26,6 @@ def track(image: Image, **settings: Any) -> Objects:
     (answer,) = MarkerTracker(Settings(**settings)).handle(image)
     assert isinstance(answer, Objects)
     return answer
-
-
-def rotation_of(quaternion: list[float]) -> Any:
-    x, y, z, w = quaternion
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 @pytest.mark.parametrize("image_format", ["bgr8", "jpeg"])

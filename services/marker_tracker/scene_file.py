@@ -1,0 +1,173 @@
+"""The scene file, `objects.yaml`: which object carries which markers. Whatever is wrong is named with its line."""
+
+from collections.abc import Iterator
+from itertools import combinations
+from pathlib import Path
+from typing import Annotated, Any
+
+import cv2
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
+
+from marker_tracker.catalogue import Carried, Catalogue, Key
+from marker_tracker.families import canonical, family
+
+Array = NDArray[np.float64]
+Triple = Annotated[list[Annotated[FiniteFloat, Field(ge=-360, le=360)]], Field(min_length=3, max_length=3)]
+FamilyName = Annotated[str, AfterValidator(canonical)]
+Size = Annotated[float, Field(gt=0, le=10)]
+
+
+class SceneFileError(ValueError):
+    """A scene file that cannot be used; the message names file, line and field, and what to do."""
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Placement(_Part):
+    """Where a marker is on its object: its centre seen from the object's, and turns about x, then y, then z."""
+
+    translation_m: Triple = [0.0, 0.0, 0.0]
+    rotation_deg: Triple = [0.0, 0.0, 0.0]
+
+    def transform(self) -> Array:
+        """Build object_from_marker (4, 4)."""
+        object_from_marker = np.eye(4)
+        for axis, degrees in zip(np.eye(3), self.rotation_deg, strict=True):
+            object_from_marker[:3, :3] = cv2.Rodrigues(axis * np.radians(degrees))[0] @ object_from_marker[:3, :3]
+        object_from_marker[:3, 3] = self.translation_m
+        return object_from_marker
+
+
+class MarkerEntry(_Part):
+    """One marker of an object; family and size are the object's or the file's where they are left out."""
+
+    id: int = Field(ge=0)
+    family: FamilyName | None = None
+    size_m: Size | None = None
+    object_from_marker: Placement = Placement()
+
+
+class ObjectEntry(_Part):
+    """One object; without `markers` it carries the marker of its own id, in its centre."""
+
+    name: str = Field(min_length=1, max_length=200)
+    family: FamilyName | None = None
+    size_m: Size | None = None
+    markers: Annotated[list[MarkerEntry], Field(min_length=1, max_length=64)] | None = None
+
+
+class SceneFile(_Part):
+    """The whole file."""
+
+    family: FamilyName | None = None
+    size_m: Size | None = None
+    objects: dict[Annotated[int, Field(ge=0, lt=2**31)], ObjectEntry] = Field(min_length=1, max_length=1024)
+
+
+def load(path: Path) -> Catalogue:
+    """Read a scene file.
+
+    Raises:
+        SceneFileError: it cannot be read or used.
+    """
+    try:
+        root = yaml.compose(path.read_text(encoding="utf-8"), Loader=yaml.SafeLoader)
+        content = yaml.SafeLoader("").construct_document(root) if root is not None else None
+    except (OSError, UnicodeDecodeError) as error:
+        raise SceneFileError(f"{path} cannot be read as text: {error}") from None
+    except yaml.YAMLError as error:
+        raise SceneFileError(f"{path} is no YAML: {' '.join(str(error).split())}") from None
+    if root is None or not isinstance(content, dict):
+        raise SceneFileError(f"{path} holds no scene: it needs `objects:` with an id and a name for each")
+    _refuse_repeated_keys(path, root)
+    try:
+        scene = SceneFile.model_validate(content)
+    except ValidationError as error:
+        raise SceneFileError("; ".join(_problem(path, root, each) for each in error.errors())) from None
+    return _catalogue(path, root, scene)
+
+
+def _catalogue(path: Path, root: yaml.Node, scene: SceneFile) -> Catalogue:
+    markers: dict[Key, Carried] = {}
+    for place, object_id, key, carried in _carried(path, root, scene):
+        owner = markers.get(key)
+        if owner is not None:
+            raise _refusal(
+                path,
+                root,
+                place,
+                f"marker {key[1]} of {key[0]} is already on object {owner.object_id}: "
+                f"give object {object_id} another marker",
+            )
+        markers[key] = carried
+    families = tuple(sorted({name for name, _ in markers}))
+    _refuse_shared_codes(path, families)
+    return Catalogue(families, markers, {number: entry.name for number, entry in scene.objects.items()})
+
+
+def _carried(
+    path: Path, root: yaml.Node, scene: SceneFile
+) -> Iterator[tuple[tuple[str | int, ...], int, Key, Carried]]:
+    for number, entry in scene.objects.items():
+        for index, marker in enumerate(entry.markers or [MarkerEntry(id=number)]):
+            place: tuple[str | int, ...] = ("objects", number) + (("markers", index) if entry.markers else ())
+            name = marker.family or entry.family or scene.family
+            size_m = marker.size_m or entry.size_m or scene.size_m
+            if name is None or size_m is None:
+                lacking = "family" if name is None else "size_m"
+                raise _refusal(path, root, place, f"`{lacking}` is given neither here nor for the whole file: add it")
+            ids = len(family(name).codes)
+            if marker.id >= ids:
+                raise _refusal(path, root, place, f"{name} has no marker {marker.id}: use 0 to {ids - 1}")
+            yield place, number, (name, marker.id), Carried(number, size_m, marker.object_from_marker.transform())
+
+
+def _refuse_shared_codes(path: Path, families: tuple[str, ...]) -> None:
+    """Refuse two sizes of one dictionary: their markers look the same."""
+    for one, other in combinations(families, 2):
+        if family(one).cells == family(other).cells and family(one).codes[0, 0] == family(other).codes[0, 0]:
+            raise SceneFileError(f"{path}: {one} and {other} hold the same markers: use the larger for both")
+
+
+def _refuse_repeated_keys(path: Path, node: yaml.Node) -> None:
+    if isinstance(node, yaml.MappingNode):
+        seen: set[str] = set()
+        for key, value in node.value:
+            if key.value in seen:
+                raise SceneFileError(f"{path}, line {key.start_mark.line + 1}: {key.value} is given twice: remove one")
+            seen.add(key.value)
+            _refuse_repeated_keys(path, value)
+    elif isinstance(node, yaml.SequenceNode):
+        for value in node.value:
+            _refuse_repeated_keys(path, value)
+
+
+def _problem(path: Path, root: yaml.Node, error: Any) -> str:
+    advice = {"extra_forbidden": "no such field: remove it or mend its spelling", "missing": "is missing: add it"}
+    said = advice.get(error["type"], error["msg"].removeprefix("Value error, "))
+    return str(_refusal(path, root, error["loc"], said))
+
+
+def _refusal(path: Path, root: yaml.Node, place: tuple[str | int, ...], said: str) -> SceneFileError:
+    field = ".".join(str(part) for part in place if part != "[key]")
+    return SceneFileError(f"{path}, line {_line(root, place)}: {field}: {said}")
+
+
+def _line(node: yaml.Node, place: tuple[str | int, ...]) -> int:
+    """Find the line of the deepest part of a place that the file has."""
+    for part in place:
+        if isinstance(node, yaml.MappingNode):
+            inner = [(key, value) for key, value in node.value if key.value == str(part)]
+            if not inner:
+                break
+            key, node = inner[0]
+            if isinstance(node, yaml.ScalarNode):
+                return int(key.start_mark.line) + 1
+        elif isinstance(node, yaml.SequenceNode) and isinstance(part, int) and part < len(node.value):
+            node = node.value[part]
+    return int(node.start_mark.line) + 1

@@ -1,0 +1,156 @@
+"""Each object's track: where it is and how it moves, also for a while when a hand covers its markers."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from actum.messages import TrackedObject
+from actum.node import SECOND_NS
+from marker_tracker import kalman
+from marker_tracker.facing import Facing
+from marker_tracker.poses import Pose
+from marker_tracker.rotations import Array, apart_rad, between, quaternion_xyzw
+
+REJOIN_S = 0.5
+"""What has been hidden for longer starts anew where it is seen again."""
+GATE = 60.0
+"""Squared Mahalanobis distance from which a sighting is doubted once, and believed when the next one agrees."""
+PREDICTED_S = 0.3
+SLOWING_S = 0.15
+"""While predicted, an object comes to rest with this time constant."""
+MOVING = 16.0
+"""Squared velocity over its variance from which an object counts as moving, when that is also 5 cm/s."""
+SLOWEST_MPS = 0.05
+JITTER_RAD = 0.035
+"""Turns much smaller than this are smoothed, much larger ones followed at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sighting:
+    """What one image says of an object, in the skeleton's camera frame.
+
+    `poses` are the one or two possible ones, the better first, `noise` (3, 3) the covariance of the position.
+    """
+
+    poses: Sequence[Pose]
+    noise: Array
+    confidence: float
+
+
+class Track:
+    """One object's filtered motion and smoothed rotation."""
+
+    def __init__(self, number: int, name: str) -> None:
+        self._number, self._name = number, name
+        self._motion: kalman.Motion | None = None
+        self._rotation: Array | None = None
+        self._facing = Facing()
+        self._doubted = False
+        self._sightings = 0
+        self._confidence = 0.0
+        self.seen_ns = 0
+
+    def see(self, stamp_ns: int, sighting: Sighting) -> bool:
+        """Take in a sighting; false where it is too far off to be believed yet."""
+        seconds = (stamp_ns - self.seen_ns) / SECOND_NS
+        if self._motion is None or seconds > REJOIN_S:
+            self._begin(stamp_ns, sighting)
+            return True
+        pose = self._facing.choose(sighting.poses, self._rotation)
+        position_m = pose.image_from_object[:3, 3]
+        motion, surprise = kalman.corrected(kalman.predicted(self._motion, seconds), position_m, sighting.noise)
+        if surprise > GATE:
+            if not self._doubted:
+                self._doubted = True
+                return False
+            self._begin(stamp_ns, sighting)
+            return True
+        self._motion = motion
+        self._turn(pose)
+        self._believed(stamp_ns, sighting)
+        return True
+
+    def now(self) -> TrackedObject:
+        """Describe the object as it was just seen."""
+        assert self._motion is not None
+        velocity = self._motion.velocity_mps.tolist() if self._sightings > 1 else None
+        return self._described(self._motion.position_m, velocity, self._confidence, seen=True, predicted=False)
+
+    def hidden(self, stamp_ns: int, memory_ns: int) -> TrackedObject:
+        """Describe where the object should be; confidence falls to 0 over the memory's length."""
+        assert self._motion is not None
+        seconds = (stamp_ns - self.seen_ns) / SECOND_NS
+        confidence = self._confidence * (1.0 - (stamp_ns - self.seen_ns) / memory_ns)
+        moved_s = SLOWING_S * (1 - np.exp(-min(seconds, PREDICTED_S) / SLOWING_S))
+        start_mps = self._motion.velocity_mps if self._is_moving() else np.zeros(3)
+        velocity = (np.exp(-seconds / SLOWING_S) * start_mps).tolist() if seconds <= PREDICTED_S else None
+        position_m = self._motion.position_m + moved_s * start_mps
+        return self._described(position_m, velocity, confidence, seen=False, predicted=seconds <= PREDICTED_S)
+
+    def _begin(self, stamp_ns: int, sighting: Sighting) -> None:
+        pose = self._facing.choose(sighting.poses, None)
+        self._motion = kalman.started(pose.image_from_object[:3, 3], sighting.noise)
+        self._rotation = pose.image_from_object[:3, :3]
+        self._sightings = 0
+        self._believed(stamp_ns, sighting)
+
+    def _believed(self, stamp_ns: int, sighting: Sighting) -> None:
+        self._doubted = False
+        self._sightings += 1
+        self._confidence = sighting.confidence
+        self.seen_ns = stamp_ns
+
+    def _turn(self, pose: Pose) -> None:
+        assert self._rotation is not None
+        measured = pose.image_from_object[:3, :3]
+        angle = apart_rad(self._rotation, measured)
+        self._rotation = between(self._rotation, measured, angle / (angle + JITTER_RAD))
+
+    def _is_moving(self) -> bool:
+        assert self._motion is not None
+        velocity = self._motion.velocity_mps
+        if self._sightings < 3 or float(np.linalg.norm(velocity)) < SLOWEST_MPS:
+            return False
+        return float(velocity @ np.linalg.solve(self._motion.covariance[3:, 3:], velocity)) > MOVING
+
+    def _described(
+        self, position_m: Array, velocity_mps: list[float] | None, confidence: float, *, seen: bool, predicted: bool
+    ) -> TrackedObject:
+        assert self._rotation is not None
+        return TrackedObject(
+            id=self._number,
+            name=self._name,
+            position_m=position_m.tolist(),
+            quaternion_xyzw=quaternion_xyzw(self._rotation),
+            confidence=confidence,
+            seen=seen,
+            velocity_mps=velocity_mps,
+            predicted=predicted,
+        )
+
+
+class Tracks:
+    """The tracks of all objects that were seen within the last `memory_ns`, by stamps."""
+
+    def __init__(self, memory_ns: int) -> None:
+        self._memory_ns = memory_ns
+        self._tracks: dict[int, Track] = {}
+
+    def clear(self) -> None:
+        """Forget everything: the source has started anew."""
+        self._tracks.clear()
+
+    def see(self, stamp_ns: int, number: int, name: str, sighting: Sighting) -> bool:
+        """Take in one object's sighting; false where it is too far off to be believed yet."""
+        return self._tracks.setdefault(number, Track(number, name)).see(stamp_ns, sighting)
+
+    def listed(self, stamp_ns: int) -> list[TrackedObject]:
+        """List the objects seen at an instant and the hidden ones, by id; drop those hidden for too long."""
+        self._tracks = {
+            number: track for number, track in self._tracks.items() if stamp_ns - track.seen_ns <= self._memory_ns
+        }
+        return [
+            track.now() if track.seen_ns == stamp_ns else track.hidden(stamp_ns, self._memory_ns)
+            for _, track in sorted(self._tracks.items())
+        ]
