@@ -7,6 +7,11 @@ from action_fusion.samples import Array
 DIRECTIONS = (("right", "left"), ("up", "down"), ("away", "towards"))
 """Words for a positive and a negative step along right, up and forward."""
 
+UNMOVED = "unmoved"
+
+STEEPEST_SURFACE = 0.25
+"""What rises by more than a quarter of its way has left the surface: a table seen by a tilted camera is flatter."""
+
 _SMALLEST = 1e-3
 
 
@@ -26,10 +31,37 @@ def level_from_camera(ego_from_camera: Array, up_in_camera: Array) -> Array | No
     return np.stack([np.cross(forward, up), up, forward])
 
 
-def result(displacement_m: Array, moved_m: float) -> str:
-    """Say how the object moved along the axis on which it moved most, e.g. "0.21 m away", or "unmoved"."""
+def direction(displacement_m: Array, moved_m: float, faces: bool = True) -> str | None:
+    """Name the direction in which the object moved most; None where it did not move.
+
+    Args:
+        displacement_m: right, up, forward.
+        moved_m: less is no motion.
+        faces: whether forward is the actor's own; if not, all that is level is sideways.
+    """
     if float(np.linalg.norm(displacement_m)) < moved_m:
-        return "unmoved"
+        return None
     axis = int(np.argmax(np.abs(displacement_m)))
-    step = float(displacement_m[axis])
-    return f"{abs(step):.2f} m {DIRECTIONS[axis][step < 0]}"
+    return DIRECTIONS[axis][float(displacement_m[axis]) < 0] if faces or axis == 1 else "sideways"
+
+
+def result(displacement_m: Array, moved_m: float, faces: bool = True) -> str:
+    """Say how the object moved along the axis on which it moved most, e.g. "0.21 m away", or "unmoved"."""
+    word = direction(displacement_m, moved_m, faces)
+    return UNMOVED if word is None else f"{float(np.abs(displacement_m).max()):.2f} m {word}"
+
+
+def outcome(displacement_m: Array, moved_m: float, faces: bool = True) -> str:
+    """Say what was done to the object: lifted, put down, pushed, pulled, moved or unmoved.
+
+    Args as of `direction`.
+    """
+    length = float(np.linalg.norm(displacement_m))
+    if length < moved_m:
+        return UNMOVED
+    _, up, forward = map(float, displacement_m)
+    if abs(up) >= max(moved_m, STEEPEST_SURFACE * length):
+        return "lifted" if up > 0 else "put down"
+    if direction(displacement_m, moved_m, faces) in DIRECTIONS[2]:
+        return "pushed" if forward > 0 else "pulled"
+    return "moved"

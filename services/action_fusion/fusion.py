@@ -2,32 +2,23 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from action_fusion import displacement, proximity
-from action_fusion.proximity import Actor
-from action_fusion.samples import Array, ObjectsSample, PostureSample
+from action_fusion.carrying import carried_tracks
+from action_fusion.choosing import Choice, Evidence, choose, evidence
+from action_fusion.hands import HandPath, hand_path
+from action_fusion.samples import ObjectsSample, PostureSample
 from action_fusion.settings import Settings
 from action_fusion.tracks import Track, tracks
-from actum.messages import ActedObject, Action, Event, Hand, Motion
+from action_fusion.wording import sentence
+from actum.messages import ActedObject, Action, Event, Hand, HeldObject, Motion
 
 PART_HANDS: dict[str | None, Hand] = {"right_arm": "right", "left_arm": "left"}
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """What speaks for one object: how near which hand came, how well which arm points at it, how far it moved."""
-
-    track: Track
-    distance_m: float
-    near_hand: Hand
-    angle: float
-    pointing_hand: Hand
-    shift: Array
+BOTH: tuple[Hand, Hand] = ("right", "left")
 
 
 def fuse(
@@ -37,29 +28,31 @@ def fuse(
 
     Args:
         action: a valid final action with label and end.
-        postures: its agent's, with start <= stamp <= end.
-        frames: the objects', from some time before the start up to the end.
+        postures: its agent's, from some time before the start up to the end.
+        frames: the objects', over the same time.
         settings: thresholds and labels.
     """
     hands = _hands(action)
-    actor = proximity.actor(postures, action.start_ns)
-    seen = tracks(frames, action.start_ns)
-    evidence = [] if actor is None else [_evidence(track, actor, hands) for track in seen]
-    pointing = action.action in settings.pointing_labels
-    chosen = _pointed_at(evidence, settings) if pointing else _acted_on(evidence, settings)
-    motion = _motion(chosen, postures, settings)
-    result = None if motion is None else displacement.result(np.array(motion.displacement_m), settings.moved_m)
-    distances = {str(e.track.id): e.distance_m for e in evidence if math.isfinite(e.distance_m)}
+    inside = [sample for sample in postures if sample.stamp_ns >= action.start_ns]
+    paths = _paths(postures, action.start_ns)
+    seen = _tracks(action, frames, paths, settings)
+    actor = proximity.actor(inside, action.start_ns)
+    found = [] if actor is None else [evidence(track, actor, hands) for track in seen]
+    choice = choose(action, found, paths, hands, settings)
+    became = _became(action, choice, inside, settings)
     return Event(
         **_common(action),
-        object=_acted_object(chosen),
-        hand=_hand_of(chosen, pointing, hands),
+        **became,
+        object=_acted_object(choice.evidence),
+        held=None if choice.held is None else HeldObject(id=choice.held.id, name=choice.held.name),
+        hand=hands[0] if len(hands) == 1 else choice.hand,
         objects_present=[track.id for track in seen],
-        distances_m=distances,
-        motion=motion,
-        result=result,
-        sentence=_sentence(action, chosen, result, _absence(distances, pointing)),
-        missed=action.missed + _gaps(postures),
+        distances_m={str(e.track.id): e.distance_m for e in found if math.isfinite(e.distance_m)},
+        candidates=_candidates(choice),
+        pointing=choice.pointing,
+        why=choice.why,
+        sentence=sentence(action, choice, became["result"]),
+        missed=action.missed + _gaps(inside),
     )
 
 
@@ -70,6 +63,7 @@ def rejected(action: Action, reason: str) -> Event:
         valid=False,
         reason=reason,
         object=None,
+        held=None,
         hand=action.hand,
         objects_present=[],
         distances_m={},
@@ -81,7 +75,7 @@ def rejected(action: Action, reason: str) -> Event:
 
 
 def _common(action: Action) -> dict[str, Any]:
-    """Copy what an event takes over from its action; nothing fills `held` in this version."""
+    """Copy what an event takes over from its action."""
     return {
         "stamp_ns": action.stamp_ns,
         "sensor": action.sensor,
@@ -94,7 +88,6 @@ def _common(action: Action) -> dict[str, Any]:
         "unknown": action.unknown,
         "missing_joints": action.missing_joints,
         "activations": action.activations,
-        "held": None,
         "frames": action.frames,
     }
 
@@ -102,74 +95,62 @@ def _common(action: Action) -> dict[str, Any]:
 def _hands(action: Action) -> tuple[Hand, ...]:
     """List the hands that may have acted: the one that was marked, the moving arm's, or both."""
     hand = action.hand or PART_HANDS.get(action.part)
-    return ("right", "left") if hand is None else (hand,)
+    return BOTH if hand is None else (hand,)
 
 
-def _evidence(track: Track, actor: Actor, hands: Sequence[Hand]) -> Evidence:
-    view, head = actor.view(track), actor.head()
-    distances = {hand: proximity.smallest_distance(view, actor.hand(hand)) for hand in hands}
-    angles = {hand: proximity.pointing_angle(view, actor.fingertip(hand), head) for hand in hands}
-    near_hand, pointing_hand = min(hands, key=distances.__getitem__), min(hands, key=angles.__getitem__)
-    return Evidence(track, distances[near_hand], near_hand, angles[pointing_hand], pointing_hand, track.shift())
+def _paths(postures: Sequence[PostureSample], start_ns: int) -> dict[Hand, HandPath]:
+    """Follow the hands that are known, from before the segment on."""
+    actor = proximity.actor(postures, start_ns)
+    if actor is None:
+        return {}
+    paths = [hand_path(actor, hand) for hand in BOTH]
+    return {path.hand: path for path in paths if len(path.stamps_ns)}
 
 
-def _acted_on(evidence: Sequence[Evidence], settings: Settings) -> Evidence | None:
-    """Take the object with the smallest distance among those that were reached or moved; none: a pantomime."""
-    candidates = [
-        e
-        for e in evidence
-        if math.isfinite(e.distance_m)
-        and (e.distance_m <= settings.reach_m or float(np.linalg.norm(e.shift)) >= settings.moved_m)
-    ]
-    return min(candidates, key=lambda e: e.distance_m, default=None)
+def _tracks(
+    action: Action, frames: Sequence[ObjectsSample], paths: dict[Hand, HandPath], settings: Settings
+) -> list[Track]:
+    """Follow the objects; the paper's measure takes what was seen alone."""
+    seen = tracks(frames, action.start_ns)
+    if settings.measure == "proximity" or action.end_ns is None:
+        return seen
+    return carried_tracks(seen, list(paths.values()), action.end_ns - action.start_ns, settings)
 
 
-def _pointed_at(evidence: Sequence[Evidence], settings: Settings) -> Evidence | None:
-    """Take the object nearest to the ray from the head through the fingertip."""
-    candidates = [e for e in evidence if math.degrees(e.angle) <= settings.pointing_limit_deg]
-    return min(candidates, key=lambda e: e.angle, default=None)
-
-
-def _motion(chosen: Evidence | None, postures: Sequence[PostureSample], settings: Settings) -> Motion | None:
-    """Express the object's displacement in the level frame of the segment's first valid posture."""
-    if chosen is None:
-        return None
+def _became(action: Action, choice: Choice, postures: Sequence[PostureSample], settings: Settings) -> dict[str, Any]:
+    """Tell what became of the object, in the level frame of the segment's first valid posture."""
+    nothing = {"motion": None, "result": None, "outcome": None, "agrees": None}
+    if choice.evidence is None:
+        return nothing
     first = next(sample.body for sample in postures if sample.body is not None)
     level_from_camera = displacement.level_from_camera(first.ego_from_camera, np.array(settings.up_in_camera))
     if level_from_camera is None:
-        return None
-    return Motion(displacement_m=(level_from_camera @ chosen.shift).tolist())
+        return nothing
+    shift = level_from_camera @ choice.evidence.track.shift()
+    outcome = displacement.outcome(shift, settings.moved_m, first.faces)
+    expected = settings.expected_outcomes.get(str(action.action))
+    direction = displacement.direction(shift, settings.moved_m, first.faces)
+    return {
+        "motion": Motion(displacement_m=shift.tolist(), direction=direction),
+        "result": displacement.result(shift, settings.moved_m, first.faces),
+        "outcome": outcome,
+        "agrees": None if expected is None else outcome == expected,
+    }
 
 
 def _acted_object(chosen: Evidence | None) -> ActedObject | None:
-    if chosen is None:
+    if chosen is None or not math.isfinite(chosen.distance_m):
         return None
-    return ActedObject(id=chosen.track.id, name=chosen.track.name, distance_m=chosen.distance_m)
+    track = chosen.track
+    return ActedObject(id=track.id, name=track.name, distance_m=chosen.distance_m, carried=track.carried)
 
 
-def _hand_of(chosen: Evidence | None, pointing: bool, hands: tuple[Hand, ...]) -> Hand | None:
-    """Name the hand that acted; None where both might have and no object tells which."""
-    if len(hands) == 1:
-        return hands[0]
-    if chosen is None:
-        return None
-    return chosen.pointing_hand if pointing else chosen.near_hand
-
-
-def _absence(distances: dict[str, float], pointing: bool) -> str | None:
-    """Say why no object was chosen, where there were objects to choose from."""
-    if not distances:
-        return None
-    return "no object along the arm" if pointing else "no object within reach"
-
-
-def _sentence(action: Action, chosen: Evidence | None, result: str | None, absence: str | None) -> str:
-    """Write e.g. `push object 3 "cup", 0.21 m away, 0.94`; what may be no such action is said to be unknown."""
-    what = f"unknown, most like {action.action}" if action.unknown else str(action.action)
-    if chosen is not None:
-        what = f'{what} object {chosen.track.id} "{chosen.track.name}"'
-    clauses = [what, result if chosen is not None else absence, f"{action.confidence:.2f}"]
-    return ", ".join(clause for clause in clauses if clause)
+def _candidates(choice: Choice) -> list[ActedObject]:
+    """List the object and its rivals, where it has any."""
+    if choice.evidence is None or not choice.rivals:
+        return []
+    listed = [_acted_object(e) for e in (choice.evidence, *choice.rivals)]
+    return [candidate for candidate in listed if candidate is not None]
 
 
 def _gaps(postures: Sequence[PostureSample]) -> int:

@@ -124,7 +124,7 @@ class ActionFusion:
             buffer.answered(action.start_ns, end_ns)
         return fuse(
             action,
-            postures.between(action.start_ns, end_ns),
+            postures.between(action.start_ns - LOOK_BACK_NS, end_ns),
             self._objects.between(action.start_ns - LOOK_BACK_NS, end_ns),
             self._settings,
         )

@@ -11,6 +11,8 @@ from actum.messages import Joint, Objects, Posture
 from actum.node import Tally
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Indices = NDArray[np.int64]
 
 FURTHEST_M = 100.0
 RIGID_TOLERANCE = 1e-3
@@ -19,10 +21,14 @@ MISSING = [math.nan] * 3
 
 @dataclass(frozen=True)
 class Body:
-    """A valid posture's frame, and its joints (15, 3), metric egocentric, NaN where one is missing."""
+    """A valid posture's frame, and its joints (15, 3), metric egocentric, NaN where one is missing.
+
+    `faces` is false where the frame is no body's, so that its forward is nobody's.
+    """
 
     ego_from_camera: Array
     joints_m: Array
+    faces: bool = True
 
 
 @dataclass(frozen=True)
@@ -81,7 +87,7 @@ def _body(posture: Posture, tally: Tally) -> Body | None:
     known = np.isfinite(joints_m).all(axis=1)
     if np.count_nonzero(~known) > posture.joints_m.count(None):
         tally.reject("bad_joint", f"agent {posture.agent} at {posture.stamp_ns}: a joint not finite or absurdly far")
-    return Body(ego_from_camera, joints_m)
+    return Body(ego_from_camera, joints_m, posture.frame != "world")
 
 
 def _joints(joints: list[Joint]) -> Array:

@@ -1,6 +1,7 @@
 """Settings of the fusion."""
 
 import math
+from typing import Literal
 
 from pydantic import Field, FiniteFloat, field_validator
 
@@ -12,8 +13,19 @@ Direction = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 class Settings(ServiceSettings):
     """What the fusion can be told beside what every service can."""
 
+    measure: Literal["joint", "proximity"] = Field(
+        "joint",
+        description="joint: closeness, the reach and moving together, over the segment; proximity: the paper's smallest"
+        " distance",
+    )
     reach_m: float = Field(
         0.25, gt=0, description="an object whose marker never came this near to the hand was not reached"
+    )
+    grasp_m: float = Field(
+        0.20,
+        gt=0,
+        description="an object may be in a hand up to this distance of their centres: a decimetre from the palm to the"
+        " fingertips, and half of a thing of two decimetres",
     )
     moved_m: float = Field(0.03, gt=0, description="an object displaced by less has not moved")
     pointing_labels: frozenset[str] = Field(
@@ -21,6 +33,16 @@ class Settings(ServiceSettings):
     )
     pointing_limit_deg: float = Field(
         30.0, gt=0, lt=180, description="an object further than this from the line of the arm is not pointed at"
+    )
+    uncertainty_m: float = Field(
+        0.02, ge=0, description="objects that the hand missed by amounts this close are both named"
+    )
+    pointing_uncertainty_deg: float = Field(
+        2.0, ge=0, description="objects whose angles to the line of the arm are this close are both named"
+    )
+    expected_outcomes: dict[str, str] = Field(
+        {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
+        description="what an action is to do to its object; it applies no held thing to another",
     )
     up_in_camera: Direction = Field((0.0, -1.0, 0.0), description="against gravity, in the camera's frame")
 

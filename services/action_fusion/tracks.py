@@ -13,12 +13,16 @@ SETTLED_SAMPLES = 3
 
 @dataclass(frozen=True)
 class Track:
-    """An object's sightings: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera frame."""
+    """An object's sightings: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera frame.
+
+    Where it is `carried`, some are no sightings but places in the hand that covered it.
+    """
 
     id: int
     name: str
     stamps_ns: Array
     positions_m: Array
+    carried: bool = False
 
     def at(self, stamps_ns: Array) -> Array:
         """Interpolate linearly between sightings, holding the first and the last: (p,) to (p, 3)."""

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from actum.recording import Recorder
-from sensor_gateway import msr_action3d, utkinect
+from sensor_gateway import bimacs, msr_action3d, utkinect
+from sensor_gateway.bimacs import HandsTake
 from sensor_gateway.takes import Take
 
 SENSOR = "kinect0"
@@ -40,6 +41,13 @@ class ImportReport:
         self.excluded += "excluded" in take.fields
         self.skipped += take.skipped
         self.notes += take.notes
+
+    def add_hands(self, take: HandsTake) -> None:
+        """Count one written take of hands and objects."""
+        self.files += 1
+        self.frames += len(take.postures)
+        self.segments += sum(mark.kind == "start" for mark in take.marks)
+        self.skipped += take.skipped
 
     def lines(self) -> list[str]:
         """Say it for people."""
@@ -78,6 +86,24 @@ def import_utkinect(src: Path, out: Path, progress: Progress) -> ImportReport:
     labels = utkinect.read_labels(src)
     takes = (utkinect.read_labelled(file, SENSOR, labels) for file in files)
     return _import("utkinect", takes, len(files), out, progress)
+
+
+def import_bimacs(src: Path, out: Path, progress: Progress) -> ImportReport:
+    """Write one recording per take of hands and objects, `out/subject0_take0.mcap`.
+
+    Raises:
+        DatasetError: `src` does not hold the takes with their labels, or a file is damaged.
+    """
+    files = bimacs.take_files(src)
+    report = ImportReport()
+    for file in files:
+        take = bimacs.read_take(file, SENSOR)
+        with Recorder(out / f"{take.name}.mcap", person=take.person, source="bimacs") as recorder:
+            for message in take.messages():
+                recorder.write(message)
+        report.add_hands(take)
+        progress(report.files, len(files))
+    return report
 
 
 def _import(source: str, takes: Iterable[Take], total: int, out: Path, progress: Progress) -> ImportReport:

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from actum_command.context import console, fail
-from actum_command.importing import ImportReport, Progress, import_msr_action3d, import_utkinect
+from actum_command.importing import ImportReport, Progress, import_bimacs, import_msr_action3d, import_utkinect
 from actum_command.progress import bars
 from sensor_gateway.takes import DatasetError
 
@@ -27,6 +27,12 @@ def msr_action3d(source: Source, out: Out) -> None:
 def utkinect(source: Source, out: Out) -> None:
     """Import UTKinect-Action3D: one recording per file, with its labelled segments."""
     _run(import_utkinect, source, out)
+
+
+@app.command("bimacs")
+def bimacs(source: Source, out: Out) -> None:
+    """Import OptiTrack takes of two hands and objects: one recording per take, with each hand's labelled segments."""
+    _run(import_bimacs, source, out)
 
 
 def _run(importer: Callable[[Path, Path, Progress], ImportReport], source: Path, out: Path) -> None:

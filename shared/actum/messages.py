@@ -180,28 +180,48 @@ class Action(Message):
 
 
 class ActedObject(Model):
-    """The object an action is applied to, and how close the hand came to it."""
+    """The object an action is applied to, and how close the hand came to it.
+
+    It is `carried` where a hand covered it for a while and its track there is the hand's.
+    """
 
     id: int
     name: str
     distance_m: FiniteFloat
+    carried: bool = False
 
 
 class HeldObject(Model):
-    """The object in the hand."""
+    """The object in the hand: what is acted on itself, or the tool that is applied to it."""
 
     id: int
     name: str
 
 
+class Pointing(Model):
+    """How far off the arm's line the object is, and how much further the runner-up; null where there is no other."""
+
+    angle_deg: FiniteFloat
+    margin_deg: FiniteFloat | None
+
+
 class Motion(Model):
-    """How the object moved over the segment, in the level frame of its first posture: right, up, forward."""
+    """How the object moved over the segment, in the level frame of its first posture: right, up, forward.
+
+    `direction` is the word for the axis on which it moved most, null where it did not move.
+    """
 
     displacement_m: FinitePoint
+    direction: Name | None = None
 
 
 class Event(Message):
-    """The product: what was done, to which object, and what became of it."""
+    """The product: what was done, to which object, and what became of it.
+
+    `candidates` are two or more objects that are as likely, the likeliest first; empty where one is. `why` tells why
+    there is no object. `outcome` is lifted, put down, pushed, pulled, moved or unmoved, and `agrees` whether that is
+    what the action is to do; null where the action is not one that is to do something of the kind.
+    """
 
     SCHEMA = "actum.event"
     agent: AgentId
@@ -223,6 +243,11 @@ class Event(Message):
     missed: Annotated[int, Field(ge=0, lt=2**63)]
     unknown: bool = False
     missing_joints: list[Name] = []
+    candidates: list[ActedObject] = []
+    pointing: Pointing | None = None
+    outcome: Name | None = None
+    agrees: bool | None = None
+    why: Reason | None = None
 
 
 class Status(Message):

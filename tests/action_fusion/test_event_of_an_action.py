@@ -217,3 +217,27 @@ def test_it_has_nothing_to_say_to_ticks_and_partial_actions() -> None:
     node = ActionFusion(Settings())
     partial = action("push").model_copy(update={"final": False, "end_ns": None})
     assert [*node.handle(Tick(0)), *node.handle(partial)] == []
+
+
+def test_pointing_tells_its_angle_and_its_margin_over_the_runner_up() -> None:
+    event = event_of(pointing_at((0.1, 0.0, 0.9), 0.5), action("point"))
+    assert event.pointing is not None and event.pointing.margin_deg is not None
+    assert event.pointing.angle_deg == pytest.approx(0.0, abs=1e-5)
+    sights = [np.subtract(place, HEAD) for place in ((0.1, 0.0, 0.9), (0.5, 0.0, 0.9), (-0.3, 0.0, 0.9))]
+    units = [sight / np.linalg.norm(sight) for sight in sights]
+    assert event.pointing.margin_deg == pytest.approx(np.degrees(np.arccos(max(units[0] @ u for u in units[1:]))))
+    assert event.candidates == []
+
+
+def test_pointing_between_two_objects_names_both() -> None:
+    event = event_of(pointing_at((-0.1, 0.0, 0.9), 0.5), action("point"))
+    assert event.object is not None
+    assert {candidate.id for candidate in event.candidates} == {1, 2}
+    assert event.candidates[0].id == event.object.id
+    assert " or object " in event.sentence
+
+
+def test_with_one_object_there_is_no_margin() -> None:
+    scene = pointing_at((0.1, 0.0, 0.9), 0.5)
+    event = event_of(Scene(right_hand=scene.right_hand, objects={2: scene.objects[2]}), action("point"))
+    assert event.pointing is not None and event.pointing.margin_deg is None

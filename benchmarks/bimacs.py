@@ -1,0 +1,155 @@
+"""Which object the hands of the OptiTrack takes act on: the plain proximity measure and the joint one, as Markdown.
+
+python benchmarks/bimacs.py DIR, the folder of the takes (see sensor_gateway.bimacs). Fusion gets the hands, objects
+and the bounds of each segment; what is done in it, and to what, is compared afterwards.
+"""
+
+import sys
+import tempfile
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from operator import attrgetter
+from pathlib import Path
+
+from action_fusion.node import ActionFusion
+from action_fusion.settings import Settings
+from actum.messages import Action, Event, Message, Segment, Truth
+from actum.node import replay
+from actum.recording import Recording
+from actum_command.importing import import_bimacs
+from model_trainer.evaluation import wilson_interval
+
+ACTIONS = ("lift", "place", "hold", "approach", "retreat", "pour", "stir", "idle")
+APPLIED = ("pour", "stir")
+NAMELESS = "act"
+MEASURES = {"proximity": Settings(measure="proximity"), "joint": Settings(measure="joint")}
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A labelled segment: what is done, to which object, with what in the hand; and each measure's event."""
+
+    label: str
+    seconds: float
+    target: int | None
+    tool: int | None
+    events: Mapping[str, Event]
+
+    def object_right(self, measure: str) -> bool:
+        found = self.events[measure].object
+        return (None if found is None else found.id) == self.target
+
+    def held_right(self, measure: str) -> bool:
+        held = self.events[measure].held
+        return held is not None and held.id == self.tool
+
+    def outcome_is(self, outcome: str) -> bool:
+        return self.events["joint"].outcome == outcome
+
+
+def trials(folder: Path) -> Iterator[Trial]:
+    with tempfile.TemporaryDirectory() as out:
+        import_bimacs(folder, Path(out), lambda done, total: None)
+        for file in sorted(Path(out).glob("*.mcap")):
+            yield from _trials(list(Recording(file).messages()))
+
+
+def _trials(messages: Sequence[Message]) -> Iterator[Trial]:
+    starts = {m.segment_id: m for m in messages if isinstance(m, Segment) and m.kind == "start"}
+    ends = {m.segment_id: m for m in messages if isinstance(m, Segment) and m.kind == "end"}
+    truths = {m.segment_id: m for m in messages if isinstance(m, Truth)}
+    events = {name: _events(messages, starts, ends, settings) for name, settings in MEASURES.items()}
+    tools = _tools(starts, truths)
+    for number, start in starts.items():
+        target = truths[number].object_id if number in truths else None
+        seconds = (ends[number].stamp_ns - start.stamp_ns) / 1e9
+        found = {name: of_segment[number] for name, of_segment in events.items()}
+        yield Trial(str(start.label), seconds, target, tools.get(number), found)
+
+
+def _events(
+    messages: Sequence[Message], starts: Mapping[str, Segment], ends: Mapping[str, Segment], settings: Settings
+) -> dict[str, Event]:
+    """Let the fusion hear postures, objects, and at each segment's end that something was done in it."""
+    unseen = [m for m in messages if not isinstance(m, (Segment, Truth))]
+    actions = [_nameless(start, ends[number]) for number, start in starts.items()]
+    stream = sorted([*unseen, *actions], key=attrgetter("stamp_ns"))
+    answered = replay(ActionFusion(settings), [(m.stamp_ns, m) for m in stream])
+    return {event.segment_id: event for event in answered if isinstance(event, Event)}
+
+
+def _nameless(start: Segment, end: Segment) -> Action:
+    return Action(
+        stamp_ns=end.stamp_ns,
+        sensor=start.sensor,
+        agent=start.agent or 0,
+        segment_id=start.segment_id,
+        start_ns=start.stamp_ns,
+        end_ns=end.stamp_ns,
+        final=True,
+        action=NAMELESS,
+        confidence=1.0,
+        activations={},
+        part=None,
+        hand=start.hand,
+        frames=0,
+        missed=0,
+    )
+
+
+def _tools(starts: Mapping[str, Segment], truths: Mapping[str, Truth]) -> dict[str, int]:
+    """Tell by the labels what each hand has lifted and not yet placed."""
+    tools = {}
+    ordered = sorted(starts.values(), key=lambda start: (str(start.hand), start.stamp_ns))
+    for _, of_hand in groupby(ordered, key=attrgetter("hand")):
+        held: int | None = None
+        for start in of_hand:
+            if start.label == "lift":
+                held = truths[start.segment_id].object_id
+            if held is not None:
+                tools[start.segment_id] = held
+            if start.label == "place":
+                held = None
+    return tools
+
+
+def row(what: str, of: Sequence[Trial], right: Callable[[Trial, str], bool], measures: Sequence[str]) -> str:
+    cells = [_share(sum(right(trial, name) for trial in of), len(of)) if name in measures else "" for name in MEASURES]
+    return f"| {what} | {len(of)} | {' | '.join(cells)} |"
+
+
+def _share(right: int, n: int) -> str:
+    low, high = wilson_interval(right, n)
+    return f"{right} ({right / n:.0%}; {low:.0%} to {high:.0%})" if n else "-"
+
+
+def table(done: Sequence[Trial]) -> Iterator[str]:
+    by_label: dict[str, list[Trial]] = defaultdict(list)
+    for trial in done:
+        by_label[trial.label].append(trial)
+    yield "| segments, and what is to be right | n | plain proximity | joint |"
+    yield "|---|---:|---|---|"
+    for label in ACTIONS:
+        what = "no object" if label == "idle" else "object"
+        yield row(f"{label}: {what}", by_label[label], Trial.object_right, list(MEASURES))
+        if label in APPLIED:
+            yield row(f"{label}: in the hand", by_label[label], Trial.held_right, ["joint"])
+    for label, outcome in (("lift", "lifted"), ("place", "put down")):
+        yield row(f"{label}: {outcome}", by_label[label], lambda t, _, o=outcome: t.outcome_is(o), ["joint"])
+    idle = by_label["idle"]
+    seconds = {name: sum(t.seconds for t in idle if not t.object_right(name)) for name in MEASURES}
+    total = sum(trial.seconds for trial in idle)
+    claimed = ", ".join(f"{seconds[name] / total:.1%} ({name})" for name in MEASURES) if total else "-"
+    yield f"\nOf {total:.0f} s idle an object is claimed for: {claimed}. Intervals are Wilson's, 95 %."
+
+
+def main() -> None:
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    print("\n".join(table(list(trials(Path(sys.argv[1]))))))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,111 @@
+"""The object of an action: by where the arm points, by the paper's plain proximity, or by the joint decision."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from action_fusion import proximity
+from action_fusion.decision import decide
+from action_fusion.hands import HandPath
+from action_fusion.proximity import Actor
+from action_fusion.settings import Settings
+from action_fusion.tracks import Track
+from actum.messages import Action, Hand, Pointing
+
+NO_HAND = "the hand is not known"
+NO_OBJECT = "no object in sight"
+OUT_OF_REACH = "no object within reach"
+OFF_THE_LINE = "no object along the arm"
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What speaks for one object: how near which hand came, and how well which arm points at it."""
+
+    track: Track
+    distance_m: float
+    near_hand: Hand
+    angle: float
+    pointing_hand: Hand
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The object acted on, its rivals (as likely, or nearly), and what is in the hand; or why there is none."""
+
+    evidence: Evidence | None = None
+    hand: Hand | None = None
+    held: Track | None = None
+    rivals: tuple[Evidence, ...] = ()
+    pointing: Pointing | None = None
+    why: str | None = None
+
+
+def evidence(track: Track, actor: Actor, hands: Sequence[Hand]) -> Evidence:
+    """Measure how near each hand came to an object, and how each arm points at it."""
+    view, head = actor.view(track), actor.head()
+    distances = {hand: proximity.smallest_distance(view, actor.hand(hand)) for hand in hands}
+    angles = {hand: proximity.pointing_angle(view, actor.fingertip(hand), head) for hand in hands}
+    near_hand, pointing_hand = min(hands, key=distances.__getitem__), min(hands, key=angles.__getitem__)
+    return Evidence(track, distances[near_hand], near_hand, angles[pointing_hand], pointing_hand)
+
+
+def choose(
+    action: Action,
+    found: Sequence[Evidence],
+    paths: Mapping[Hand, HandPath],
+    hands: Sequence[Hand],
+    settings: Settings,
+) -> Choice:
+    """Choose the object by the measure that the action and the settings ask for."""
+    if not found:
+        return Choice(why=NO_OBJECT)
+    if action.action in settings.pointing_labels:
+        return _pointed_at(found, settings)
+    near = [e for e in found if math.isfinite(e.distance_m)]
+    if not near:
+        return Choice(why=NO_HAND)
+    if settings.measure == "proximity":
+        return _nearest(near, settings)
+    return _jointly(action, near, paths, hands, settings)
+
+
+def _jointly(
+    action: Action, near: Sequence[Evidence], paths: Mapping[Hand, HandPath], hands: Sequence[Hand], settings: Settings
+) -> Choice:
+    applies = action.action not in settings.expected_outcomes
+    decision = decide(paths, [e.track for e in near], hands, applies, settings)
+    if decision is None:
+        return Choice(why=OUT_OF_REACH)
+    of_track = {e.track.id: e for e in near}
+    rivals = tuple(of_track[track.id] for track in decision.rivals)
+    return Choice(of_track[decision.track.id], decision.hand, decision.held, rivals)
+
+
+def _nearest(near: Sequence[Evidence], settings: Settings) -> Choice:
+    """Take the object with the smallest distance among those that were reached or moved (paper, section 2.2)."""
+    candidates = [
+        e
+        for e in near
+        if e.distance_m <= settings.reach_m or float(np.linalg.norm(e.track.shift())) >= settings.moved_m
+    ]
+    if not candidates:
+        return Choice(why=OUT_OF_REACH)
+    best = min(candidates, key=lambda e: e.distance_m)
+    return Choice(best, best.near_hand)
+
+
+def _pointed_at(found: Sequence[Evidence], settings: Settings) -> Choice:
+    """Take the object nearest to the ray from the head through the fingertip."""
+    ranked = sorted((e for e in found if math.isfinite(e.angle)), key=lambda e: e.angle)
+    if not ranked:
+        return Choice(why=NO_HAND)
+    best, angles = ranked[0], [math.degrees(e.angle) for e in ranked]
+    if angles[0] > settings.pointing_limit_deg:
+        return Choice(why=OFF_THE_LINE)
+    closest = min(angles[0] + settings.pointing_uncertainty_deg, settings.pointing_limit_deg)
+    rivals = tuple(e for e, angle in zip(ranked[1:], angles[1:], strict=True) if angle <= closest)
+    margin = angles[1] - angles[0] if len(angles) > 1 else None
+    return Choice(best, best.pointing_hand, None, rivals, Pointing(angle_deg=angles[0], margin_deg=margin))

@@ -1,0 +1,78 @@
+"""Which hand moves which object: what moves as the hand does, near it, is in it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from action_fusion.hands import HandPath, furthest
+from action_fusion.samples import Array, Mask
+from action_fusion.tracks import Track
+from actum.messages import Hand
+from actum.node import SECOND_NS
+
+RECENT_NS = 1 * SECOND_NS
+"""Steps are taken over this long: a joint's noise is small beside them, and what moves no further is at rest."""
+
+EXPLAINED = 0.5
+"""The hand's step explains the object's where it takes away more than half of its square."""
+
+
+@dataclass(frozen=True)
+class Comotion:
+    """A hand and an object at the hand's instants.
+
+    `relative_m` (n, 3) is from hand to object, `steps_m` (n,) how far the object went since the instant before,
+    `near` (n,) whether it was within reach, `moving` (n,) whether it moved noticeably, `with_hand` (n,) whether the
+    hand moved it.
+    """
+
+    path: HandPath
+    track: Track
+    object_m: Array
+    relative_m: Array
+    steps_m: Array
+    near: Mask
+    moving: Mask
+    with_hand: Mask
+
+    @property
+    def distances_m(self) -> Array:
+        """How far the object was from the hand (n,)."""
+        distances: Array = np.linalg.norm(self.relative_m, axis=1)
+        return distances
+
+    def moved_by_hand_m(self, since_ns: float = -np.inf) -> float:
+        """Sum the object's way in the hand from an instant on."""
+        return float(self.steps_m[self.with_hand & (self.path.stamps_ns >= since_ns)].sum())
+
+    def is_carried(self, moved_m: float) -> bool:
+        """Whether the hand moved the object noticeably, and for more of its way near the hand than not."""
+        otherwise_m = float(self.steps_m[self.moving & self.near & ~self.with_hand].sum())
+        return self.moved_by_hand_m() >= max(moved_m, otherwise_m)
+
+
+def comotion(path: HandPath, track: Track, reach_m: float, moved_m: float) -> Comotion:
+    """Compare what hand and object did in the second before each instant.
+
+    With d_o and d_h their displacements since the object was furthest from where it is, the hand moves the object
+    where |d_o| is `moved_m` or more and 1 - |d_o - d_h|^2 / |d_o|^2 > 1/2, within reach.
+    """
+    object_m = track.at(path.stamps_ns)
+    since = furthest(object_m, path.stamps_ns, RECENT_NS)
+    object_step = object_m - object_m[since]
+    moving: Mask = np.linalg.norm(object_step, axis=1) >= moved_m
+    difference = object_step - (path.positions_m - path.positions_m[since])
+    unexplained = np.einsum("ij,ij->i", difference, difference)
+    explained = unexplained < (1 - EXPLAINED) * np.einsum("ij,ij->i", object_step, object_step)
+    relative = object_m - path.positions_m
+    near: Mask = np.linalg.norm(relative, axis=1) <= reach_m
+    steps = np.linalg.norm(np.diff(object_m, axis=0, prepend=object_m[:1]), axis=1)
+    return Comotion(path, track, object_m, relative, steps, near, moving, moving & explained & near)
+
+
+def carriers(pairs: Sequence[Comotion], moved_m: float) -> Mapping[int, Hand]:
+    """Name the hand that carries each object, by the object's id: of two the one that moved it further."""
+    carried = [pair for pair in pairs if pair.is_carried(moved_m)]
+    carried.sort(key=lambda pair: pair.moved_by_hand_m())
+    return {pair.track.id: pair.path.hand for pair in carried}
