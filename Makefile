@@ -53,8 +53,11 @@ bench-recognition: $(STAMP)  ## the recogniser beside its peers on public record
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
 	$(BIN)/python -m benchmarks.recognition
 
-picture: $(STAMP)  ## the README's picture
+picture: $(STAMP)  ## the README's pictures
 	$(BIN)/python docs/picture.py docs/scene.png
+	folder=$$(mktemp -d) && $(BIN)/actum simulate $$folder/learnt.mcap && $(BIN)/actum train $$folder/learnt.mcap -o $$folder/model.npz \
+	  && $(BIN)/actum simulate $$folder/seen.mcap --actor 24 --seed 3 --repetitions 2 \
+	  && $(BIN)/actum inspect $$folder/model.npz $$folder/seen.mcap -o $$folder && cp $$folder/time-lift.png docs/time.png && rm -r $$folder
 
 schemas: $(STAMP)  ## write the JSON Schemas anew
 	$(BIN)/python -m actum.schemas
