@@ -159,6 +159,16 @@ def _assembled(
         "log_duration_sd": stages.log_duration_sd,
         "concept_contrast": upper.concepts.contrast,
         "gains": gains,
-        "familiar": float(np.quantile(fitted[-1].axes.held_out.max(axis=1), 1 - preset.known_share)),
+        "familiar": _familiar(samples, fitted[-1].axes.held_out, preset),
     }
     return PyramidModel(first, stages, upper.concepts, upper.layer3, PyramidDescription.model_validate(about))
+
+
+def _familiar(samples: Sequence[SegmentSample], held_out: Floats, preset: PyramidPreset) -> float:
+    """Return the largest score that most samples of people left out of training exceed.
+
+    From one person alone it cannot be told how other people differ, and nothing is to be taken for unknown.
+    """
+    if len({sample.person for sample in samples}) == 1:
+        return 0.0
+    return float(np.quantile(held_out.max(axis=1), 1 - preset.known_share))

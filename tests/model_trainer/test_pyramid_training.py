@@ -46,6 +46,14 @@ def test_axes_are_fitted_to_what_the_recogniser_pools(samples: list[SegmentSampl
     assert model.description.familiar == pytest.approx(familiar, abs=0.02)
 
 
+def test_a_model_of_one_person_takes_nobody_for_unknown(samples: list[SegmentSample]) -> None:
+    one = [replace(sample, person="1") for sample in samples]
+    model = trained(one, PLAIN)
+    still = replace(one[0], postures=one[0].postures * 3.0, velocities=one[0].velocities * -5.0)
+    assert model.description.familiar == 0.0
+    assert not any(answer(model, encoded(model, sample)).unknown for sample in [*one, still])
+
+
 def test_each_stage_is_fitted_to_that_share_of_the_action(samples: list[SegmentSample]) -> None:
     model = trained(samples, replace(PLAIN, stages=((0.3, 0.5), (1.0,))))
     assert model.description.fractions == pytest.approx([0.4, 1.0])
