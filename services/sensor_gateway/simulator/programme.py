@@ -9,13 +9,16 @@ from sensor_gateway.simulator.parameters import load_parameters
 
 ACTIONS: tuple[str, ...] = ("push", "pull", "put", "lift", "point")
 
+NO_OBJECT = -1
+"""Where an id belongs: a pantomime, done in empty space as if an object were there."""
+
 
 @dataclass(frozen=True)
 class Sample:
-    """One repetition: an action of `ACTIONS` on the object with that id.
+    """One repetition: an action of `ACTIONS` on the object with that id, or a pantomime of it (`NO_OBJECT`).
 
     Raises:
-        ValueError: there is no such action or object.
+        ValueError: there is no such action or object, or pointing is to be pantomimed.
     """
 
     action: str
@@ -24,8 +27,15 @@ class Sample:
     def __post_init__(self) -> None:
         if self.action not in ACTIONS:
             raise ValueError(f"no action {self.action!r}: use one of {', '.join(ACTIONS)}")
-        if self.object_id not in object_ids():
+        if self.is_pantomime and self.action == "point":
+            raise ValueError("pointing has no pantomime: it touches no object")
+        if self.object_id not in (*object_ids(), NO_OBJECT):
             raise ValueError(f"no object {self.object_id}: use one of {object_ids()}")
+
+    @property
+    def is_pantomime(self) -> bool:
+        """Whether there is no object where the action is done."""
+        return self.object_id == NO_OBJECT
 
 
 def object_ids() -> tuple[int, ...]:

@@ -17,6 +17,7 @@ FACES = (
     ((0, 1, 3, 2), 1.0),  # front
 )
 RISER_COLOUR: Colour = (150, 160, 170)
+DAZZLING: Colour = (250, 250, 250)
 TURN = np.linspace(0, 2 * np.pi, 32, endpoint=False)
 
 
@@ -30,6 +31,15 @@ class MarkerCard:
         self._texture = np.stack([np.clip(printed, 25, 235), np.full_like(printed, 255)], axis=-1)
         half = marker_size_m * (0.5 + QUIET_CELLS / MARKER_CELLS)
         self._corners_m = np.array([[-half, half, 0], [half, half, 0], [half, -half, 0], [-half, -half, 0]])
+
+    @property
+    def reach_m(self) -> float:
+        """From the middle to a corner."""
+        return float(np.linalg.norm(self._corners_m[0]))
+
+    def draw_dazzling(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
+        """Draw the card with light reflected on it: the print does not show."""
+        polygon(canvas, camera.project(_moved(camera_from_object, self._corners_m)), DAZZLING)
 
     def draw(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
         """Draw the card through the homography of its face, oversampled and averaged."""
@@ -66,6 +76,16 @@ class Prop:
         """Draw body and card."""
         self._draw_body(canvas, camera, camera_from_object)
         self._card.draw(canvas, camera, camera_from_object)
+
+    def draw_dazzling(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
+        """Draw body and card, with light reflected on the card."""
+        self._draw_body(canvas, camera, camera_from_object)
+        self._card.draw_dazzling(canvas, camera, camera_from_object)
+
+    @property
+    def card_reach_m(self) -> float:
+        """How far the card's corners are from its middle."""
+        return self._card.reach_m
 
     def draw_shadow(self, canvas: Canvas, camera: Pinhole, position_m: Array, ground_y_m: float) -> None:
         """Darken the ground under the object; the higher it hangs, the smaller the shadow."""

@@ -8,8 +8,10 @@ import numpy as np
 
 from sensor_gateway.simulator.actor import Stance, draw_actor, fingertip, pose
 from sensor_gateway.simulator.chance import stream
+from sensor_gateway.simulator.conditions import PLAIN, Conditions
 from sensor_gateway.simulator.motion import Array
 from sensor_gateway.simulator.noise import Sway
+from sensor_gateway.simulator.pantomime import draw_pantomime
 from sensor_gateway.simulator.parameters import Parameters, load_parameters
 from sensor_gateway.simulator.programme import Sample
 from sensor_gateway.simulator.timeline import Clip, acting, resetting, still
@@ -24,9 +26,9 @@ class SceneState:
     """What is true in one frame, camera frame; rows of the objects in the order of `Scene.items`.
 
     `joints_m` (15, 3); `positions_m` (n, 3) the marker centres, `yaw_rad` (n,), `riser_tops_m` (n, 3) the top of
-    the riser at each object's place. `grip` (0 to 1) is how far the hand is closed on object `target`, `pointing`
-    how far the index finger is stretched. `segment` numbers the repetition going on, `mark` says that it starts
-    or ends with this frame.
+    the riser at each object's place. `grip` (0 to 1) is how far the hand is closed on object `target` (None: on
+    nothing), `pointing` how far the index finger is stretched. `segment` numbers the repetition going on, `mark` says
+    that it starts or ends with this frame.
     """
 
     frame: int
@@ -37,7 +39,7 @@ class SceneState:
     riser_tops_m: Array
     grip: float
     pointing: float
-    target: int
+    target: int | None
     finger_overlap_m: float
     segment: int | None
     mark: Mark | None
@@ -64,28 +66,35 @@ class Scene:
     """
 
     def __init__(
-        self, programme: Sequence[Sample], actor_seed: int, seed: int, parameters: Parameters | None = None
+        self,
+        programme: Sequence[Sample],
+        actor_seed: int,
+        seed: int,
+        parameters: Parameters | None = None,
+        conditions: Conditions = PLAIN,
     ) -> None:
         if not programme:
             raise ValueError("the programme is empty: give at least one sample")
-        self.parameters = parameters or load_parameters()
+        self.conditions = conditions
+        self.parameters = conditions.arranged(parameters or load_parameters())
         self.items = self.parameters.objects.items
         self.actor = draw_actor(self.parameters.actor, actor_seed)
         self.places_x_m = stream("places", seed).permutation(self.parameters.objects.place_x_m)
-        self._seeds = (actor_seed, seed)
+        self.seeds = (actor_seed, seed)
         self.trials = tuple(self._trial(number, sample) for number, sample in enumerate(programme))
 
     def states(self, tail_s: float = 3.0) -> Iterator[SceneState]:
         """Yield every frame: a lead-in, the programme with its pauses, and `tail_s` of returning to rest."""
-        sway = Sway(stream("sway", *self._seeds), self.parameters.sway)
+        sway = Sway(stream("sway", *self.seeds), self.parameters.sway)
         frame = 0
         for clip in self._clips(tail_s):
             yield from self._posed(clip, frame, sway)
             frame += len(clip)
 
     def _trial(self, number: int, sample: Sample) -> Trial:
-        rng = stream("trial", *self._seeds, number)
-        return draw_trial(self.parameters, self.actor, sample, self.places_x_m, rng)
+        rng = stream("trial", *self.seeds, number)
+        draw = draw_pantomime if sample.is_pantomime else draw_trial
+        return draw(self.parameters, self.actor, sample, self.places_x_m, rng)
 
     def _clips(self, tail_s: float) -> Iterator[Clip]:
         yield still(self.parameters, self.trials[0], self.parameters.pause.lead_in_s)

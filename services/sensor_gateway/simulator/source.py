@@ -8,7 +8,10 @@ import numpy as np
 from actum.messages import Agent, Image, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS, Tally
 from sensor_gateway.simulator.chance import stream
+from sensor_gateway.simulator.conditions import PLAIN, Conditions
+from sensor_gateway.simulator.exposure import while_open
 from sensor_gateway.simulator.noise import SkeletonNoise
+from sensor_gateway.simulator.paint import Canvas, Pinhole
 from sensor_gateway.simulator.programme import Sample
 from sensor_gateway.simulator.render import Renderer
 from sensor_gateway.simulator.scene import Scene, SceneState
@@ -20,16 +23,18 @@ class Simulator:
     """A source of skeletons, images and truth; the same arguments give the same messages, bit for bit.
 
     `image_hz` must divide the frame rate; 0 means no images. A `Truth` stands in the first and the last frame of
-    each action; the one at the end tells how far the object moved, in the camera frame.
+    each action; the one at the end tells how far the object moved, in the camera frame. That of a pantomime has the
+    object id `NO_OBJECT`, an empty name and no displacement.
 
     Raises:
-        ValueError: the programme is empty, or `image_hz` does not divide the frame rate.
+        ValueError: the programme is empty, `image_hz` does not divide the frame rate, or there is no room for a
+            pantomime.
     """
 
     name = "sensor_gateway"
     paced = True
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - what a scene is, and how it is put
         self,
         programme: Sequence[Sample],
         actor_seed: int = 0,
@@ -40,14 +45,16 @@ class Simulator:
         start_ns: int = 0,
         session_id: str | None = None,
         tail_s: float = 3.0,
+        conditions: Conditions = PLAIN,
     ) -> None:
         self.tally = Tally()
         self.programme = tuple(programme)
-        self.scene = Scene(programme, actor_seed, seed)
+        self.scene = Scene(programme, actor_seed, seed, conditions=conditions)
         self._rate_hz = self.scene.parameters.camera.frame_rate_hz
         if image_hz and (image_hz < 0 or self._rate_hz % image_hz):
             raise ValueError(f"image_hz {image_hz} does not divide the frame rate {self._rate_hz}")
         self._frames_per_image = self._rate_hz // image_hz if image_hz else 0
+        self._open_share = min(conditions.exposure_s * self._rate_hz, 1.0)
         self._seeds = (actor_seed, seed)
         self._sensor, self._start_ns, self._tail_s = sensor, start_ns, tail_s
         self._session_id = session_id or f"simulator-{actor_seed}-{seed}"
@@ -61,16 +68,18 @@ class Simulator:
             self._rate_hz,
         )
         renderer = Renderer(self.scene, stream("image noise", *self._seeds)) if self._frames_per_image else None
-        start_m = np.zeros(3)
+        start = before = None
         for state in self.scene.states(self._tail_s):
             messages: list[Message] = [self._skeleton(state, noise)]
             if state.mark == "start":
-                start_m = state.positions_m[state.target]
-            if state.mark is not None:
-                messages.insert(0, self._truth(state, start_m))
+                start = state
+            if state.mark is not None and start is not None:
+                messages.insert(0, self._truth(state, start))
             if renderer is not None and state.frame % self._frames_per_image == 0:
-                messages.append(self._image(state, renderer))
+                image = renderer.image(*while_open(before or state, state, self._open_share))
+                messages.append(self._image(state, image, renderer.camera))
             yield messages
+            before = state
 
     def stamp_ns(self, frame: int) -> int:
         """Return a frame's capture time: exact to the nanosecond, without drift."""
@@ -88,10 +97,10 @@ class Simulator:
             stamp_ns=self.stamp_ns(state.frame), sensor=self._sensor, agents=[agent], session_id=self._session_id
         )
 
-    def _truth(self, state: SceneState, start_m: np.ndarray) -> Truth:
+    def _truth(self, state: SceneState, start: SceneState) -> Truth:
         assert state.segment is not None and state.mark is not None
-        sample = self.programme[state.segment]
-        moved = (state.positions_m[state.target] - start_m).tolist()
+        sample, target = self.programme[state.segment], state.target
+        moved = None if target is None else (state.positions_m[target] - start.positions_m[target]).tolist()
         return Truth(
             stamp_ns=self.stamp_ns(state.frame),
             sensor=self._sensor,
@@ -101,15 +110,14 @@ class Simulator:
             hand=self.scene.actor.hand,
             action=sample.action,
             object_id=sample.object_id,
-            object_name=self.scene.items[state.target].name,
+            object_name="" if target is None else self.scene.items[target].name,
             displacement_m=moved if state.mark == "end" else None,
         )
 
-    def _image(self, state: SceneState, renderer: Renderer) -> Image:
+    def _image(self, state: SceneState, taken: Canvas, camera: Pinhole) -> Image:
         quality = self.scene.parameters.image.jpeg_quality
-        done, data = cv2.imencode(".jpg", renderer.image(state), [cv2.IMWRITE_JPEG_QUALITY, quality])
+        done, data = cv2.imencode(".jpg", taken, [cv2.IMWRITE_JPEG_QUALITY, quality])
         assert done
-        camera = renderer.camera
         return Image(
             stamp_ns=self.stamp_ns(state.frame),
             sensor=self._sensor,

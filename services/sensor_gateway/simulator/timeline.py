@@ -64,7 +64,8 @@ def acting(parameters: Parameters, trial: Trial, segment: int, column: int) -> C
     moved = _moved(trial, time)
     hands, positions = base.hands_m.copy(), base.positions_m.copy()
     hands[:, column] = moved + reach(trial.layout.rest_m[column], trial.hand_m, trial.bulge_m, share)
-    positions[:, trial.target] += moved
+    if trial.target is not None:
+        positions[:, trial.target] += moved
     pointing = minimum_jerk(share) * (trial.sample.action == "point")
     return replace(
         base, segment=segment, hands_m=hands, positions_m=positions, grip=_grip(trial, time), pointing=pointing

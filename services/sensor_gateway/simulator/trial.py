@@ -42,7 +42,7 @@ class Layout:
 
 @dataclass(frozen=True)
 class Trial:
-    """One drawn repetition.
+    """One drawn repetition; `target` is the object's row, None for a pantomime.
 
     `hand_m` (3,) is where the reach ends, `bulge_m` (3,) how it is bent, `displacement_m` (3,) what the effect
     does to the object, `finger_overlap_m` how far the fingers come down over the marked face.
@@ -51,7 +51,7 @@ class Trial:
     sample: Sample
     timing: Timing
     layout: Layout
-    target: int
+    target: int | None
     hand_m: Array
     bulge_m: Array
     displacement_m: Array
@@ -63,22 +63,23 @@ def draw_trial(parameters: Parameters, actor: Actor, sample: Sample, places: Arr
     """Draw one repetition; `places` (3,) is where each object's lane lies, x in metres."""
     items = parameters.objects.items
     target = [item.id for item in items].index(sample.object_id)
-    layout = _draw_layout(parameters, actor, sample, places, target, rng)
+    layout = draw_layout(parameters, actor, sample.action, places, target, rng)
     hand = {True: _draw_aim, False: _draw_grasp}[sample.action == "point"]
     return Trial(
         sample=sample,
-        timing=_draw_timing(parameters.trial, actor, sample.action, rng),
+        timing=draw_timing(parameters.trial, actor, sample.action, rng),
         layout=layout,
         target=target,
         hand_m=hand(parameters, actor, layout, target, rng),
-        bulge_m=_draw_bulge(parameters.trial, actor, rng),
-        displacement_m=_draw_displacement(parameters.trial, sample.action, layout, items[target], target, rng),
+        bulge_m=draw_bulge(parameters.trial, actor, rng),
+        displacement_m=draw_displacement(parameters, sample.action, layout, items[target], rng),
         finger_overlap_m=uniform(rng, parameters.trial.finger_overlap_range_m),
         pause_s=uniform(rng, parameters.pause.reset_range_s),
     )
 
 
-def _draw_timing(parameters: TrialParameters, actor: Actor, action: str, rng: np.random.Generator) -> Timing:
+def draw_timing(parameters: TrialParameters, actor: Actor, action: str, rng: np.random.Generator) -> Timing:
+    """Draw how long the phases last."""
     duration = float(np.clip(actor.tempo * normal(rng, parameters.duration_mean_sd_s), *parameters.duration_range_s))
     if action == "point":
         return Timing(duration, duration * normal(rng, parameters.pointing_reach_share_mean_sd), 0.0, 0.0)
@@ -86,12 +87,13 @@ def _draw_timing(parameters: TrialParameters, actor: Actor, action: str, rng: np
     return Timing(duration, *(duration * normal(rng, share) for share in shares))
 
 
-def _draw_layout(
-    parameters: Parameters, actor: Actor, sample: Sample, places: Array, target: int, rng: np.random.Generator
+def draw_layout(
+    parameters: Parameters, actor: Actor, action: str, places: Array, target: int | None, rng: np.random.Generator
 ) -> Layout:
+    """Draw where things stand, the target perhaps on a riser; a pantomime has no target."""
     objects, items = parameters.objects, parameters.objects.items
     risers = np.zeros(len(items))
-    if rng.random() < RISEN.get(sample.action, parameters.trial.riser_probability):
+    if rng.random() < RISEN.get(action, parameters.trial.riser_probability) and target is not None:
         risers[target] = uniform(rng, parameters.trial.riser_height_range_m)
     heights = np.array([item.size_m[1] for item in items])
     x = places + normals(rng, objects.place_jitter_x_sd_m, len(items))
@@ -123,7 +125,7 @@ def _draw_rest(parameters: Parameters, middle_x_m: float, side: int, rng: np.ran
     return np.array([middle_x_m + side * trial.rest_side_m + x, y, parameters.table.far_z_m - inset])
 
 
-def _draw_bulge(parameters: TrialParameters, actor: Actor, rng: np.random.Generator) -> Array:
+def draw_bulge(parameters: TrialParameters, actor: Actor, rng: np.random.Generator) -> Array:
     """Draw how the reach is bent: upward, and a little to a side."""
     up = actor.arc_scale * uniform(rng, parameters.arc_height_range_m)
     return np.array([normal(rng, (0.0, parameters.arc_side_sd_m)), -up, 0.0])
@@ -149,22 +151,23 @@ def _draw_aim(parameters: Parameters, actor: Actor, layout: Layout, target: int,
     return aim(actor, stance, layout.rest_m[None], layout.positions_m[target], error, stand_off)
 
 
-def _draw_displacement(
-    parameters: TrialParameters, action: str, layout: Layout, item: ObjectItem, target: int, rng: np.random.Generator
+def draw_displacement(
+    parameters: Parameters, action: str, layout: Layout, item: ObjectItem, rng: np.random.Generator
 ) -> Array:
     """Draw what the action does to its object, camera frame; the directions are the person's."""
-    angle = layout.heading_rad + np.deg2rad(normal(rng, (0.0, parameters.effect_direction_sd_deg)))
+    trial = parameters.trial
+    angle = layout.heading_rad + np.deg2rad(normal(rng, (0.0, trial.effect_direction_sd_deg)))
     away = np.array([-np.sin(angle), 0.0, -np.cos(angle)])
-    far = uniform(rng, parameters.effect_distance_range_m)
+    far = uniform(rng, trial.effect_distance_range_m)
     match action:
         case "push":
             return np.asarray(far * away)
         case "pull":
-            return np.asarray(-uniform(rng, parameters.pull_distance_range_m) * away)
+            return np.asarray(-uniform(rng, trial.pull_distance_range_m) * away)
         case "lift":
             return np.array([0.0, -far, 0.0]) + normals(rng, 0.1 * far, 3) * (1, 0, 1)
         case "put":
-            drop = np.array([0.0, float(layout.riser_heights_m[target]), 0.0])
-            return np.asarray((item.size_m[2] + parameters.put_clearance_m) * away + drop)
+            drop = np.array([0.0, float(layout.riser_heights_m.max()), 0.0])
+            return np.asarray((item.size_m[2] + trial.put_clearance_m) * away + drop)
         case _:
             return np.zeros(3)
