@@ -13,7 +13,7 @@ from som_classifier.supervised import SupervisedLayer
 POINTS = 3
 LEVELS = [1, 2]
 FRACTIONS = [0.5, 1.0]
-UNITS = 9 + 6
+UNITS = 3 * 9
 PROVENANCE: dict[str, object] = {
     "labels": ["pull", "push"],
     "preset": "handmade",
@@ -36,18 +36,18 @@ def paper_model(**changes: object) -> PaperModel:
 
 
 def pyramid_model(**changes: object) -> PyramidModel:
-    """Two maps of 3×3 and 2×3 units, two stages, a 3×3 map of actions, all drawn at random."""
+    """Three maps of 3×3 units, two stages, a 3×3 map of actions, all drawn at random."""
     about = {
-        "posture_contrast": 0.5, "velocity_contrast": 0.1, "levels": LEVELS, "overlap": 0.25, "fractions": FRACTIONS,
-        "log_duration_mean": 0.5, "log_duration_sd": 0.4, "concept_contrast": 2.0, "gains": [4.0, 8.0], "familiar": 0.3,
+        "posture_contrast": 0.5, "velocity_contrast": 0.1, "arm_contrast": 0.2, "arm_share": 0.4,
+        "levels": LEVELS, "overlap": 0.25, "fractions": FRACTIONS, "log_duration_mean": 0.5, "log_duration_sd": 0.4,
+        "concept_contrast": 2.0, "gains": [4.0, 8.0], "familiar": 0.3,
     }  # fmt: skip
     description = PyramidDescription.model_validate(PROVENANCE | about | changes)
     rng = np.random.default_rng(0)
-    maps = [
-        Som(rows, 3, rng.normal(size=(rows * 3, dim)).astype(np.float32)) for rows, dim in ((3, 45), (2, 45), (3, 2))
-    ]
+    maps = [Som(3, 3, rng.normal(size=(9, dim)).astype(np.float32)) for dim in (45, 45, 12, 2)]
     axes = rng.normal(size=(2, sum(LEVELS) * UNITS, 2)).astype(np.float32)
-    first = FirstMaps(maps[0], maps[1], (description.posture_contrast, description.velocity_contrast))
+    contrasts = description.posture_contrast, description.velocity_contrast, description.arm_contrast
+    first = FirstMaps(maps[0], maps[1], maps[2], contrasts, description.arm_share)
     stages = Stages(
         axes,
         rng.normal(size=(2, 2)).astype(np.float32),
@@ -55,7 +55,7 @@ def pyramid_model(**changes: object) -> PyramidModel:
         description.log_duration_mean,
         description.log_duration_sd,
     )
-    concepts = Concepts(maps[2], description.concept_contrast, (0.1 * rng.random(9)).astype(np.float32))
+    concepts = Concepts(maps[3], description.concept_contrast, (0.1 * rng.random(9)).astype(np.float32))
     return PyramidModel(first, stages, concepts, SupervisedLayer.random(2, 9, rng), description)
 
 

@@ -17,6 +17,7 @@ TINY = PyramidPreset(
     unit_epochs=4,
     unit_radius=(2.0, 0.6),
     relative_contrast=0.5,
+    arm_share=0.36,
     levels=(1, 2, 4),
     overlap=0.25,
     turns_deg=(-15.0, 15.0),

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum import geometry, keys
-from actum.messages import Skeleton
+from actum.messages import Agent, Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
 from actum_command.importing import ImportReport, Progress, import_msr_action3d, import_utkinect
@@ -101,7 +101,11 @@ def _by_stamp(recording: Recording) -> dict[int, Array]:
     skeletons: Iterable[Skeleton] = (
         message for message in recording.messages((keys.SKELETON,)) if isinstance(message, Skeleton)
     )
-    return {skeleton.stamp_ns: np.array(skeleton.agents[0].joints) for skeleton in skeletons if skeleton.agents}
+    return {skeleton.stamp_ns: _array(skeleton.agents[0]) for skeleton in skeletons if skeleton.agents}
+
+
+def _array(agent: Agent) -> Array:
+    return np.array([joint or [np.nan] * 3 for joint in agent.joints])
 
 
 def _camera_m(sample: SegmentSample, joints_m: dict[int, Array]) -> Array:

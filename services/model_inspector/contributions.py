@@ -15,16 +15,16 @@ from som_classifier.streams import Frame
 class Contributions:
     """Why one action's score is as much above another's as it is.
 
-    score[winner] − score[second] = Σ units + level.
+    score[winner] − score[second] = Σ units + level. The first maps are those of postures, velocities and arms.
 
     Attributes:
         winner: index of the action decided for.
         second: index of the other one.
         scores: of these two.
-        units: (cells, units of both first maps), root activity × (axis of the winner − axis of the second).
+        units: (cells, first maps, units of each), fourth root of the mean activity × (axis of the winner − axis of
+            the second).
         level: the difference of their offsets, what the score is before anything is seen.
-        activities: (cells, units of both first maps), their mean activity in each cell.
-        postures: how many of the units are the posture map's; the rest are the velocity map's.
+        activities: (cells, first maps, units of each), their mean activity in each cell.
         in_mirror: whether the segment was read in a mirror, because the left arm acts.
     """
 
@@ -34,14 +34,13 @@ class Contributions:
     units: Floats
     level: float
     activities: Floats
-    postures: int
     in_mirror: bool
 
     @property
     def cells(self) -> Floats:
-        """What each cell adds through the posture map and through the velocity map, shape (cells, 2)."""
-        both = self.units[:, : self.postures].sum(axis=1), self.units[:, self.postures :].sum(axis=1)
-        return np.stack(both, axis=1)
+        """What each cell adds through each of the first maps, shape (cells, first maps)."""
+        added: Floats = self.units.sum(axis=2)
+        return added
 
     @property
     def difference(self) -> float:
@@ -64,7 +63,7 @@ def contributions(model: PyramidModel, frames: Sequence[Frame], instead: str | N
     codes = [frame.code for frame in frames]
     weights = complete_weights(model, frames)
     scores = model.scores(codes, weights)
-    units = np.zeros((model.pyramid.cells, model.first.units))
+    units = np.zeros((model.pyramid.cells, len(model.first.maps), len(model.first.postures.weights)))
     for axes, weight in zip(model.stages.axes, weights, strict=True):
         if weight:
             units += weight * (axes[:, winner] - axes[:, second]).reshape(units.shape)
@@ -72,6 +71,6 @@ def contributions(model: PyramidModel, frames: Sequence[Frame], instead: str | N
     offsets = np.array(weights) @ model.stages.offsets
     return Contributions(
         winner, second, (float(scores[winner]), float(scores[second])), units * vector,
-        float(offsets[winner] - offsets[second]), np.square(vector), len(model.first.postures.weights),
+        float(offsets[winner] - offsets[second]), vector**4,
         Spreads.of(codes[-1].spread - codes[0].spread_before).left_handed,
     )  # fmt: skip

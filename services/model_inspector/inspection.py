@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from model_inspector.action_map import action_map
 from model_inspector.anatomy import Anatomy, PyramidAnatomy
 from model_inspector.answered import Answered
+from model_inspector.arm_map import arm_map
 from model_inspector.confusion import confusion_picture
 from model_inspector.course import course_picture
 from model_inspector.examples import examples, file_names, mistake_name, mistakes
@@ -78,8 +79,14 @@ def _of_maps(anatomy: Anatomy, segments: Sequence[Answered]) -> Iterator[Picture
     if isinstance(anatomy, PyramidAnatomy):
         yield Picture(
             section, "movement-map",
-            "The first layer's other map. Every unit stands for a way of moving, drawn as arrows at the joints.",
+            "The first layer's second map. Every unit stands for a way of moving, drawn as arrows at the joints.",
             partial(movement_map, anatomy.model.first.velocities),
+        )  # fmt: skip
+        yield Picture(
+            section, "arm-map",
+            "The first layer's third map. Every unit stands for where the acting arm is, seen from its shoulder, and "
+            "where it is going; who acts with the left arm is read in a mirror.",
+            partial(arm_map, anatomy.model.first.arms),
         )  # fmt: skip
     yield Picture(
         section, "action-map",

@@ -19,6 +19,7 @@ nav a { margin-right: 1rem; white-space: nowrap; }
 .pictures { display: grid; gap: 1.5rem; align-items: start; }
 .pictures { grid-template-columns: repeat(auto-fill, minmax(min(34rem, 100%), 1fr)); }
 figure { margin: 0; }
+figure[id^="why-"] { grid-column: 1 / -1; }
 img { width: 100%; height: auto; border: 1px solid #ddd; border-radius: 4px; }
 """
 

@@ -10,7 +10,8 @@ from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from model_inspector.answered import Answered, encoded
-from model_inspector.bodies import Pen, draw_arrows, draw_bodies
+from model_inspector.arm_map import ArmsOnBodies, fastest_m
+from model_inspector.bodies import LONGEST_ARROW_M, Pen, draw_arrows, draw_bodies
 from model_inspector.contributions import Contributions, contributions
 from model_inspector.movement_map import arrows_of
 from model_inspector.style import FAINT, PAPER, axes_at, bare, board, in_house_style
@@ -25,7 +26,13 @@ SHADES = LinearSegmentedColormap.from_list("for and against", [AGAINST, PAPER, F
 _STRONGEST = 0.65
 FIGURE_UNITS = 5
 """How many units a figure is the mean of."""
-WIDTH_IN, ROW_IN, SCALE_IN = 6.0, 1.35, 0.28
+WIDTH_IN, GAP_IN, ROW_IN, SCALE_IN = 5.2, 0.4, 1.35, 0.28
+FIGURE_IN = 0.95 * ROW_IN
+TITLES = (
+    "POSTURES, in the whole action and in its parts",
+    "MOVEMENTS: where the joints are going",
+    "THE ACTING ARM as seen from its shoulder",
+)
 NARROWEST_IN = 0.5
 """A cell that is narrower gets no figure."""
 
@@ -42,15 +49,13 @@ def reasons_picture(model: PyramidModel, answered: Answered) -> Figure:
     lines = _sum(found, winner, second)
     height_in = ROW_IN * len(model.pyramid.levels) + SCALE_IN
     title = f"Why {winner} and not {second}" + (", which was done" if done else "")
-    figure = board(2 * WIDTH_IN + 0.8, height_in + 0.8 + 0.2 * len(lines), title)
+    figure = board(len(TITLES) * (WIDTH_IN + GAP_IN), height_in + 0.8 + 0.2 * len(lines), title)
     figure.text(0.005, (height_in + 0.42) / figure.get_figheight(), "\n".join(lines), linespacing=1.35, va="bottom")
-    left, right = (axes_at(figure, at_in, 0.1, WIDTH_IN, height_in) for at_in in (0.1, WIDTH_IN + 0.6))
-    _draw_cells(left, model, found, 0)
-    _draw_postures(left, model, found)
-    _draw_cells(right, model, found, 1)
-    _draw_movements(right, model, found)
-    left.set_title("POSTURES, in the whole action and in its parts")
-    right.set_title("MOVEMENTS: where the joints are going")
+    for which, (heading, draw) in enumerate(zip(TITLES, (_draw_postures, _draw_movements, _draw_arms), strict=True)):
+        axes = axes_at(figure, 0.1 + which * (WIDTH_IN + GAP_IN), 0.1, WIDTH_IN, height_in)
+        _draw_cells(axes, model, found, which)
+        draw(axes, model, found)
+        axes.set_title(heading)
     return figure
 
 
@@ -63,11 +68,11 @@ def leading(units: Floats) -> tuple[NDArray[np.intp], Floats]:
 
 
 def _sum(found: Contributions, winner: str, second: str) -> list[str]:
-    postures, movements = found.cells.sum(axis=0)
+    postures, movements, arm = found.cells.sum(axis=0)
     lines = [
         f"green speaks for {winner}, purple for {second}; the figures: what the units hold that say so most",
         f"scores {found.scores[0]:.2f} and {found.scores[1]:.2f}: {found.difference:+.2f} = {postures:+.2f} by postures"
-        f" {movements:+.2f} by movements {found.level:+.2f} before anything is seen",
+        f" {movements:+.2f} by movements {arm:+.2f} by the acting arm {found.level:+.2f} before anything is seen",
     ]
     if found.difference < 0:
         lines.append(f"the scores lean to {second}: the place on the map of actions decided otherwise")
@@ -116,27 +121,44 @@ def _middles(model: PyramidModel) -> tuple[NDArray[np.intp], Floats]:
 def _draw_postures(axes: Axes, model: PyramidModel, found: Contributions) -> None:
     """Draw into each cell the mean posture of the units that add most to it."""
     broad, middles = _middles(model)
-    units = model.first.postures.weights.reshape(found.postures, -1, 3)
-    means = [np.tensordot(share, units[chosen], 1) for chosen, share in _leading(found, broad, 0)]
-    draw_bodies(axes, _as_it_was(np.array(means), found), middles, 0.95 * ROW_IN, pen=Pen(1.8))
+    means = _leading(found, broad, 0, _postures(model))
+    draw_bodies(axes, _as_it_was(means, found), middles, FIGURE_IN, pen=Pen(1.8))
 
 
 def _draw_movements(axes: Axes, model: PyramidModel, found: Contributions) -> None:
     """Draw into each cell its mean posture, and as arrows the mean velocity of the units that add most to it."""
     broad, middles = _middles(model)
-    seen = found.activities[broad, : found.postures]
-    units = model.first.postures.weights.reshape(found.postures, -1, 3)
-    bodies = np.tensordot(seen / seen.sum(axis=1, keepdims=True), units, 1)
     _, arrows_m = arrows_of(model.first.velocities)
-    means = np.array([np.tensordot(share, arrows_m[chosen], 1) for chosen, share in _leading(found, broad, 1)])
-    bodies, means = _as_it_was(bodies, found), _as_it_was(means, found)
-    draw_bodies(axes, bodies, middles, 0.95 * ROW_IN, pen=Pen(1.2, FAINT))
-    draw_arrows(axes, bodies, means, middles, 0.95 * ROW_IN)
+    means = _as_it_was(_leading(found, broad, 1, arrows_m), found)
+    bodies = _as_it_was(_seen(model, found, broad), found)
+    draw_bodies(axes, bodies, middles, FIGURE_IN, pen=Pen(1.2, FAINT))
+    draw_arrows(axes, bodies, means, middles, FIGURE_IN)
 
 
-def _leading(found: Contributions, cells: NDArray[np.intp], which: int) -> list[tuple[NDArray[np.intp], Floats]]:
-    of_map = found.units[cells, found.postures :] if which else found.units[cells, : found.postures]
-    return [leading(units) for units in of_map]
+def _draw_arms(axes: Axes, model: PyramidModel, found: Contributions) -> None:
+    """Draw into each cell its mean posture, on it the mean arm of the units that add most to it and where it goes."""
+    broad, middles = _middles(model)
+    means = _leading(found, broad, 2, model.first.arms.weights)
+    drawn = ArmsOnBodies.of(means, _seen(model, found, broad))
+    drawn = drawn.in_a_mirror() if found.in_mirror else drawn
+    drawn.draw(axes, middles, FIGURE_IN, LONGEST_ARROW_M / fastest_m(model.first.arms))
+
+
+def _postures(model: PyramidModel) -> Floats:
+    return model.first.postures.weights.reshape(len(model.first.postures.weights), -1, 3)
+
+
+def _seen(model: PyramidModel, found: Contributions, cells: NDArray[np.intp]) -> Floats:
+    """Return each cell's mean posture, (cells, 15, 3)."""
+    seen = found.activities[cells, 0]
+    postures: Floats = np.tensordot(seen / seen.sum(axis=1, keepdims=True), _postures(model), 1)
+    return postures
+
+
+def _leading(found: Contributions, cells: NDArray[np.intp], which: int, units: Floats) -> Floats:
+    """Return for each cell the mean over those units of a map that add most to it."""
+    chosen = (leading(added) for added in found.units[cells, which])
+    return np.array([np.tensordot(share, units[indices], 1) for indices, share in chosen])
 
 
 def _as_it_was(vectors: Floats, found: Contributions) -> Floats:

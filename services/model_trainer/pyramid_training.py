@@ -1,6 +1,6 @@
 """The default recogniser, trained layer after layer: first maps, discriminant axes, map of actions, neurons."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -15,11 +15,11 @@ from model_trainer.discriminants import discriminant_axes, folds_of
 from model_trainer.progress import Progress
 from model_trainer.samples import SegmentSample
 from model_trainer.upper_layers import Scored, UpperLayers, held_out_gains, train_upper
-from som_classifier.layers import FirstMaps
+from som_classifier.layers import FirstMaps, arm_inputs, frame_inputs
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid import Pyramid, Trail, quantised
 from som_classifier.pyramid_model import PyramidDescription, PyramidModel
-from som_classifier.stages import Stages
+from som_classifier.stages import Stages, familiarity_of
 
 Floats = NDArray[Any]
 Indices = NDArray[np.intp]
@@ -58,24 +58,32 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
 def _first_maps(
     shown: Sequence[View], preset: PyramidPreset, rng: np.random.Generator, progress: Progress
 ) -> FirstMaps:
-    postures = _some(np.concatenate([view.postures for view in shown]), rng)
-    velocities = _some(np.concatenate([view.velocities for view in shown]), rng)
-    maps = [
-        Som.linear(*preset.units, inputs).train_batch(
-            inputs, preset.unit_epochs, preset.unit_radius, partial(progress, stage)
+    postures = np.concatenate([view.postures for view in shown])
+    velocities = np.concatenate([view.velocities for view in shown])
+    trained = (
+        _first_map(_some(inputs, rng), preset, partial(progress, stage))
+        for inputs, stage in (
+            (postures, "map of postures"),
+            (velocities, "map of velocities"),
+            (arm_inputs(frame_inputs(postures, velocities)), "map of arms"),
         )
-        for inputs, stage in ((postures, "map of postures"), (velocities, "map of velocities"))
-    ]
-    contrasts = [
-        preset.relative_contrast * typical_distance2(som, inputs)
-        for som, inputs in zip(maps, (postures, velocities), strict=True)
-    ]
-    return FirstMaps(maps[0], maps[1], (contrasts[0], contrasts[1]))
+    )
+    (posture_map, posture), (velocity_map, velocity), (arm_map, arm) = trained
+    return FirstMaps(posture_map, velocity_map, arm_map, (posture, velocity, arm), preset.arm_share)
+
+
+def _first_map(inputs: Floats, preset: PyramidPreset, report: Callable[[int, int], None]) -> tuple[Som, float]:
+    """Return a map of the inputs and the contrast of its activity."""
+    som = Som.linear(*preset.units, inputs).train_batch(inputs, preset.unit_epochs, preset.unit_radius, report)
+    return som, preset.relative_contrast * typical_distance2(som, inputs)
 
 
 def _some(vectors: Floats, rng: np.random.Generator) -> NDArray[np.float32]:
-    """Return no more rows than a map needs, each flat and in single precision."""
+    """Return no more rows than a map needs, each flat and in single precision, none of them wholly missing."""
     flat = vectors.reshape(len(vectors), -1).astype(np.float32)
+    flat = flat[~np.isnan(flat).all(axis=1)]
+    if not len(flat):
+        return np.zeros((1, vectors[0].size), np.float32)
     return flat if len(flat) <= MOST_INPUTS else flat[rng.choice(len(flat), MOST_INPUTS, replace=False)]
 
 
@@ -152,6 +160,8 @@ def _assembled(
     about = provenance(samples, preset, seed) | {
         "posture_contrast": first.contrasts[0],
         "velocity_contrast": first.contrasts[1],
+        "arm_contrast": first.contrasts[2],
+        "arm_share": first.arm_share,
         "levels": list(preset.levels),
         "overlap": preset.overlap,
         "fractions": list(stages.fractions),
@@ -164,11 +174,11 @@ def _assembled(
     return PyramidModel(first, stages, upper.concepts, upper.layer3, PyramidDescription.model_validate(about))
 
 
-def _familiar(samples: Sequence[SegmentSample], held_out: Floats, preset: PyramidPreset) -> float:
-    """Return the largest score that most samples of people left out of training exceed.
+def _familiar(samples: Sequence[SegmentSample], held_out: Floats, preset: PyramidPreset) -> float | None:
+    """Return the familiarity that most samples of people left out of training exceed.
 
     From one person alone it cannot be told how other people differ, and nothing is to be taken for unknown.
     """
     if len({sample.person for sample in samples}) == 1:
-        return 0.0
-    return float(np.quantile(held_out.max(axis=1), 1 - preset.known_share))
+        return None
+    return float(np.quantile(familiarity_of(held_out), 1 - preset.known_share))

@@ -1,4 +1,4 @@
-"""Which way an actor is turned, smoothed: what the upright posture goes by."""
+"""Which way an actor is turned, smoothed, and how far that can be believed: what the upright posture goes by."""
 
 import math
 
@@ -14,6 +14,11 @@ TIME_CONSTANT_S = 1.0
 FIRST_S = 1 / 30
 """How long the first frame counts for."""
 
+FACING_SD_RAD = math.radians(15.0)
+"""How far people who act for a camera are turned from it."""
+DOUBT = 2.0
+"""How much more than the unsteadiness of single frames their mean is off: what disturbs one disturbs the next."""
+
 _SMALLEST = 1e-3
 _LEFT = [INDEX["left_hip"], INDEX["left_shoulder"]]
 _RIGHT = [INDEX["right_hip"], INDEX["right_shoulder"]]
@@ -24,12 +29,16 @@ class HeadingFilter:
 
     m += a (h - m), with a = max(1 - exp(-dt / 1 s), dt / T) and T the time since the filter began: a turn within
     an action stays in the posture, the direction in which the actor stands does not.
+
+    A heading that sways with variance v, as where the hips are tracked poorly, is believed the less: its yaw ψ from
+    facing the camera becomes ψ (1 - cos ψ · 2v / (2v + (15°)²)), and stays itself beyond a quarter turn.
     """
 
     def __init__(self) -> None:
         self._stamp_ns: int | None = None
         self._span_s = 0.0
         self._mean = (0.0, 0.0)
+        self._sway_rad2 = 0.0
         self._left = (1.0, 0.0)
 
     def step(self, stamp_ns: int, joints: NDArray[np.float64]) -> tuple[float, float]:
@@ -44,20 +53,33 @@ class HeadingFilter:
         before_ns, self._stamp_ns = self._stamp_ns, stamp_ns
         left = _horizontal_left(joints)
         if before_ns is None or stamp_ns - before_ns > GAP_NS:
-            self._span_s, self._mean = FIRST_S, left
+            self._span_s, self._mean, self._sway_rad2 = FIRST_S, left, 0.0
         else:
             self._approach(left, (stamp_ns - before_ns) / SECOND_NS)
-        x, z = self._mean
-        length = math.hypot(x, z)
-        if length >= _SMALLEST:
-            self._left = (x / length, z / length)
+        if math.hypot(*self._mean) >= _SMALLEST:
+            yaw_rad = self._believed_rad(_yaw_rad(self._mean))
+            self._left = (math.cos(yaw_rad), math.sin(yaw_rad))
         return self._left
 
     def _approach(self, left: tuple[float, float], elapsed_s: float) -> None:
         self._span_s += elapsed_s
-        share = max(1.0 - math.exp(-elapsed_s / TIME_CONSTANT_S), elapsed_s / self._span_s)
+        fading = 1.0 - math.exp(-elapsed_s / TIME_CONSTANT_S)
+        share = max(fading, elapsed_s / self._span_s)
         (x, z), (left_x, left_z) = self._mean, left
         self._mean = (x + share * (left_x - x), z + share * (left_z - z))
+        if math.hypot(*left) >= _SMALLEST:
+            off_rad = math.remainder(_yaw_rad(left) - _yaw_rad(self._mean), math.tau)
+            self._sway_rad2 += fading * (off_rad * off_rad - self._sway_rad2)
+
+    def _believed_rad(self, yaw_rad: float) -> float:
+        """Return a yaw drawn towards facing the camera, as far as it sways."""
+        doubted = DOUBT * self._sway_rad2
+        return yaw_rad * (1.0 - max(math.cos(yaw_rad), 0.0) * doubted / (doubted + FACING_SD_RAD**2))
+
+
+def _yaw_rad(left: tuple[float, float]) -> float:
+    """Return by how much one whose left is (camera x, z) is turned from facing the camera."""
+    return math.atan2(left[1], left[0])
 
 
 def _horizontal_left(joints: NDArray[np.float64]) -> tuple[float, float]:

@@ -1,55 +1,119 @@
 """The two layers of maps of the default recogniser, each answering with a soft activity."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.skeletons import INDEX, JOINTS
 from actum.som import Som
+from som_classifier.handedness import ACROSS, OPPOSITE
 from som_classifier.supervised import activity
 
 Floats = NDArray[Any]
 
+ARM_SPEED = 3.0
+"""What a joint's velocity counts beside its position in the map of arms: both then spread about alike."""
+ARM_INPUTS = 12
+
+_SIZE = 3 * len(JOINTS)
+_ARM = np.arange(3 * INDEX["right_elbow"], 3 * INDEX["right_hand"] + 3)
+_SHOULDER = np.tile(np.arange(3), 2) + 3 * INDEX["right_shoulder"]
+_ENDS, _ROOTS = (np.concatenate([components, components + _SIZE]) for components in (_ARM, _SHOULDER))
+_COUNTS = np.repeat([1.0, ARM_SPEED], len(_ARM))
+_MIRROR = np.concatenate([(3 * OPPOSITE[:, None] + np.arange(3)).ravel() + start for start in (0, _SIZE)])
+_SIGNS = np.tile(ACROSS, 2 * len(JOINTS))
+
+
+def frame_inputs(postures: Floats, velocities: Floats) -> Floats:
+    """Return postures and velocities (n, 15, 3) as rows of all their components, shape (n, 90)."""
+    return np.concatenate([postures.reshape(-1, _SIZE), velocities.reshape(-1, _SIZE)], axis=1)
+
+
+def arm_inputs(rows: Floats) -> Floats:
+    """Return the right elbow and hand as seen from the shoulder, where and how fast, shape (n, 12), of (n, 90).
+
+    In a mirror it is the left arm.
+    """
+    inputs: Floats = (rows[:, _ENDS] - rows[:, _ROOTS]) * _COUNTS
+    return inputs
+
 
 @dataclass(frozen=True, eq=False)
 class FirstMaps:
-    """The first layer: a map of postures and one of velocities, each answering with a soft activity.
+    """The first layer: a map of postures, one of velocities, one of the acting arm, each with a soft activity.
 
     Attributes:
         contrasts: of each map's activity, in its squared distance.
+        arm_share: what the activity of the map of arms adds up to; that of the others adds up to 1.
     """
 
     postures: Som
     velocities: Som
-    contrasts: tuple[float, float]
+    arms: Som
+    contrasts: tuple[float, float, float]
+    arm_share: float
+
+    @property
+    def maps(self) -> tuple[Som, Som, Som]:
+        """All three."""
+        return self.postures, self.velocities, self.arms
 
     @property
     def units(self) -> int:
-        """How many there are in both."""
-        return len(self.postures.weights) + len(self.velocities.weights)
+        """How many units there are in all, as many in each."""
+        return sum(len(som.weights) for som in self.maps)
 
     def activities(self, postures: Floats, velocities: Floats) -> Floats:
-        """Return y = exp(−(d² − d²_min) / contrast) / Σ y of both maps for (n, 15, 3) inputs, shape (n, units)."""
-        return np.concatenate(
-            [
-                shares(activity(som.excess2s(vectors.reshape(len(vectors), -1)), contrast))
-                for som, vectors, contrast in self._with(postures, velocities)
-            ],
-            axis=1,
-        )
+        """Return y = share × exp(−(d² − d²_min) / contrast) / Σ of each map for (n, 15, 3) inputs, shape (n, units)."""
+        rows = frame_inputs(postures, velocities)
+        excess2s = [_excess2s(som, inputs) for som, inputs in zip(self.maps, _of_maps(rows), strict=True)]
+        return self._shared(np.concatenate(excess2s, axis=1))
 
-    def activity(self, posture: Floats, velocity: Floats) -> Floats:
-        """Return the same for one frame (15, 3), by products of one row, so that it never depends on other frames."""
-        return np.concatenate(
-            [
-                shares(activity(som.excess2(vector.ravel()), contrast))
-                for som, vector, contrast in self._with(posture, velocity)
-            ]
-        )
+    def sides(self, posture: Floats, velocity: Floats) -> Floats:
+        """Return the same for one frame (15, 3) as seen and in a mirror, shape (2, units).
 
-    def _with(self, posture: Floats, velocity: Floats) -> list[tuple[Som, Floats, float]]:
-        return [(self.postures, posture, self.contrasts[0]), (self.velocities, velocity, self.contrasts[1])]
+        By products of one row, so that it never depends on other frames.
+        """
+        row = np.concatenate([posture, velocity]).ravel()
+        inputs = _of_maps(np.array([row, row[_MIRROR] * _SIGNS]))
+        excess2 = _excess2 if np.isnan(inputs[-1]).any() else Som.excess2
+        excess2s = [excess2(som, rows[side]) for side in (0, 1) for som, rows in zip(self.maps, inputs, strict=True)]
+        return self._shared(np.concatenate(excess2s).reshape(2, -1))
+
+    def _shared(self, excess2s: Floats) -> Floats:
+        """Make activities of d² − d²_min (n, units)."""
+        activities = excess2s.reshape(len(excess2s), len(self.contrasts), -1)
+        activities *= self._slopes
+        np.exp(activities, out=activities)
+        activities *= self._shares / activities.sum(axis=2, keepdims=True)
+        return activities.reshape(excess2s.shape)
+
+    @cached_property
+    def _slopes(self) -> NDArray[np.float32]:
+        return (-1 / np.array(self.contrasts))[:, None].astype(np.float32)
+
+    @cached_property
+    def _shares(self) -> NDArray[np.float32]:
+        return np.array([[1.0], [1.0], [self.arm_share]], np.float32)
+
+
+def _of_maps(rows: Floats) -> tuple[Floats, Floats, Floats]:
+    return rows[:, :_SIZE], rows[:, _SIZE:], arm_inputs(rows)
+
+
+def _excess2(som: Som, x: Floats) -> Floats:
+    """Return d² − d²_min of each unit; where nothing is known of x they are all as near."""
+    return np.zeros(len(som.weights), som.dtype) if np.isnan(x).all() else som.excess2(x)
+
+
+def _excess2s(som: Som, rows: Floats) -> Floats:
+    known = ~np.isnan(rows).all(axis=1)
+    excess2s = np.zeros((len(rows), len(som.weights)), som.dtype)
+    excess2s[known] = som.excess2s(rows[known])
+    return excess2s
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,9 +139,3 @@ class Concepts:
         lengths = np.sqrt(np.square(activities).sum(axis=-1, keepdims=True))
         centred: Floats = activities / lengths - self.mean
         return centred
-
-
-def shares(activities: Floats) -> Floats:
-    """Divide activities (…, units) by their sum."""
-    divided: Floats = activities / activities.sum(axis=-1, keepdims=True)
-    return divided

@@ -43,8 +43,9 @@ class PyramidPreset:
     """Everything that a training of the default recogniser depends on beside its samples and its seed.
 
     Attributes:
-        units: rows and columns of the maps of posture and velocity, trained for `unit_epochs` over `unit_radius`.
+        units: rows and columns of the maps of posture, velocity and arm, trained for `unit_epochs` over `unit_radius`.
         relative_contrast: of their activity, in units of the median squared distance to the winner.
+        arm_share: what the activity of the map of arms adds up to, that of the others adding up to 1.
         levels: the pyramid's cells on each level.
         overlap: how far each reaches over its borders, in parts of its length.
         turns_deg: the turns about the vertical in which each sample is also shown.
@@ -66,6 +67,7 @@ class PyramidPreset:
     unit_epochs: int
     unit_radius: tuple[float, float]
     relative_contrast: float
+    arm_share: float
     levels: tuple[int, ...]
     overlap: float
     turns_deg: tuple[float, ...]
@@ -105,7 +107,8 @@ PYRAMID = PyramidPreset(
     units=(20, 20),
     unit_epochs=12,
     unit_radius=(7.0, 0.6),
-    relative_contrast=0.5,
+    relative_contrast=0.3,
+    arm_share=0.36,
     levels=(1, 2, 4),
     overlap=0.25,
     turns_deg=(-15.0, 15.0),

@@ -16,7 +16,7 @@ Floats = NDArray[Any]
 Sums = NDArray[np.uint32]
 
 SCALE = float(2**19)
-"""The whole number that stands for an activity of 1: 8192 frames of it stay below 2³²."""
+"""The whole number that stands for an activity of 1: 8191 frames of it stay below 2³²."""
 
 
 def quantised(activities: Floats) -> Sums:
@@ -66,7 +66,7 @@ class Pyramid:
         return sum(self.levels)
 
     def vector(self, trail: Trail) -> NDArray[np.float32]:
-        """Return the root of each cell's mean activity, shape (cells * units,).
+        """Return the fourth root of each cell's mean activity, shape (cells * units,).
 
         Raises:
             ValueError: there is no frame.
@@ -76,12 +76,16 @@ class Pyramid:
         at = np.interp(self._borders, _progress(trail.travelled_um), np.arange(len(trail) + 1))
         below = np.minimum(at.astype(np.intp), len(trail) - 1)
         sums = [trail.sums[k] for k in below.tolist()] + [trail.sums[k + 1] for k in below.tolist()]
-        rows = np.concatenate(sums).reshape(len(sums), -1)
-        rows -= trail.sums[0]
-        means: Floats = self._mixing(at, at - below) @ rows.astype(np.float64)
-        vector: NDArray[np.float32] = np.maximum(means.astype(np.float32).ravel(), 0.0)
-        np.sqrt(vector, out=vector)
-        return vector
+        until, beyond = np.concatenate(sums).reshape(2, len(below), -1)
+        whole = until[self._ends] - until[self._begins]
+        partly = (beyond - until).astype(np.float32)
+        lengths = np.maximum((at[self._ends] - at[self._begins]) * SCALE, 1.0)[:, None]
+        means: NDArray[np.float32] = whole.astype(np.float32)
+        means += (self._differences * (at - below)).astype(np.float32) @ partly
+        means /= lengths.astype(np.float32)
+        np.maximum(means, 0.0, out=means)
+        np.sqrt(np.sqrt(means, out=means), out=means)
+        return means.ravel()
 
     @cached_property
     def _spans(self) -> list[tuple[float, float]]:
@@ -97,18 +101,20 @@ class Pyramid:
         return np.unique(np.array(self._spans))
 
     @cached_property
+    def _begins(self) -> NDArray[np.intp]:
+        """At which border each cell begins."""
+        return np.searchsorted(self._borders, [begin for begin, _ in self._spans])
+
+    @cached_property
+    def _ends(self) -> NDArray[np.intp]:
+        return np.searchsorted(self._borders, [end for _, end in self._spans])
+
+    @cached_property
     def _differences(self) -> Floats:
         """What takes each cell's end less its beginning, shape (cells, borders)."""
-        begins, ends = (np.equal.outer(np.array(side), self._borders) for side in zip(*self._spans, strict=True))
-        differences: Floats = ends.astype(np.float64) - begins
+        borders = np.eye(len(self._borders))
+        differences: Floats = borders[self._ends] - borders[self._begins]
         return differences
-
-    def _mixing(self, at: Floats, share: Floats) -> Floats:
-        """What makes cell means of the sums below and above each border, shape (cells, 2 * borders)."""
-        lengths = self._differences @ at
-        differences = self._differences / np.maximum(lengths * SCALE, 1.0)[:, None]
-        mixing: Floats = np.concatenate([differences * (1 - share), differences * share], axis=1)
-        return mixing
 
 
 def _progress(travelled_um: NDArray[np.int64]) -> Floats:

@@ -1,9 +1,9 @@
-"""The default recogniser: maps of posture and velocity, pooled over a segment, told apart, and laid out on a map."""
+"""The default recogniser: maps of posture, velocity and arm, pooled over a segment, told apart, laid out on a map."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any, Literal, overload
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +12,13 @@ from pydantic import Field
 from actum.node import SECOND_NS
 from actum.skeletons import JOINTS
 from actum.som import Som
-from som_classifier.attention import PART_NAMES, attended
-from som_classifier.handedness import Spreads, mirrored, moments
-from som_classifier.layers import Concepts, FirstMaps
+from som_classifier.attention import PART_NAMES
+from som_classifier.handedness import Spreads, moments
+from som_classifier.layers import ARM_INPUTS, Concepts, FirstMaps
 from som_classifier.model import Arrays, Description, Model
 from som_classifier.pyramid import Pyramid, Sums, Trail, quantised
 from som_classifier.recognition import Recognition
-from som_classifier.stages import Stages
+from som_classifier.stages import Stages, familiarity_of
 from som_classifier.streams import Frame
 from som_classifier.supervised import SupervisedLayer
 from som_classifier.trace import without_repeats
@@ -34,6 +34,8 @@ class PyramidDescription(Description):
     Attributes:
         posture_contrast: of the posture map's activity, in squared metres.
         velocity_contrast: of the velocity map's activity.
+        arm_contrast: of the activity of the map of arms.
+        arm_share: what the latter adds up to.
         levels: the pyramid's cells on each level.
         overlap: how far each reaches over its borders, in parts of its length.
         fractions: the share of an action that each stage of the discriminant axes has seen.
@@ -41,12 +43,14 @@ class PyramidDescription(Description):
         log_duration_sd: their standard deviation.
         concept_contrast: of the second map's activity, in squared scores.
         gains: what makes cosines logits, by stage.
-        familiar: the familiarity below which an action may be none of those trained.
+        familiar: the familiarity below which an action may be none of those trained; None where that cannot be told.
     """
 
     kind: Literal["pyramid"] = "pyramid"
     posture_contrast: Positive
     velocity_contrast: Positive
+    arm_contrast: Positive
+    arm_share: Positive
     levels: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=1)]
     overlap: Annotated[float, Field(ge=0, le=1)]
     fractions: Annotated[list[Annotated[float, Field(gt=0, le=1)]], Field(min_length=1)]
@@ -54,21 +58,22 @@ class PyramidDescription(Description):
     log_duration_sd: Positive
     concept_contrast: Positive
     gains: list[Positive]
-    familiar: Annotated[float, Field(allow_inf_nan=False)]
+    familiar: Annotated[float, Field(allow_inf_nan=False)] | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Code:
     """One frame as this recogniser remembers it: running sums before and after it, and the posture map's winner.
 
-    `sums` are (2, units), the actor as seen and in a mirror; `travelled_um` how far the parts have moved; `spread`
-    the summed moments of the limbs. All are whole numbers.
+    `sums` are (2, units), the actor as seen and in a mirror; `moved_um` how far each part has moved, `travelled_um` all
+    of them; `spread` the summed moments of the limbs. All are whole numbers.
     """
 
     sums_before: Sums
     sums: Sums
     travelled_before_um: int
     travelled_um: int
+    moved_um: NDArray[np.int64]
     spread_before: NDArray[np.int64]
     spread: NDArray[np.int64]
     winner: int
@@ -79,7 +84,7 @@ class PyramidModel(Model):
     """The trained layers. `confidence` is a probability, calibrated on people left out of training.
 
     Attributes:
-        first: the maps of posture and velocity.
+        first: the maps of posture, velocity and the acting arm.
         stages: the discriminant axes on their pooled activities.
         concepts: the map of actions.
         layer3: one neuron per label on its activity.
@@ -106,6 +111,7 @@ class PyramidModel(Model):
         return {
             "postures": self.first.postures.planes,
             "velocities": self.first.velocities.planes,
+            "arms": self.first.arms.planes,
             "axes": self.stages.axes,
             "offsets": self.stages.offsets,
             "concepts": self.concepts.layout.planes,
@@ -121,10 +127,12 @@ class PyramidModel(Model):
             ValueError, KeyError: the parts are not there or do not fit together.
         """
         about = PyramidDescription.model_validate_json(metadata)
-        postures, velocities, layout = (Som.of_planes(arrays[name]) for name in ("postures", "velocities", "concepts"))
+        layout = Som.of_planes(arrays["concepts"])
+        postures, velocities, arms = (Som.of_planes(arrays[name]) for name in ("postures", "velocities", "arms"))
+        contrasts = about.posture_contrast, about.velocity_contrast, about.arm_contrast
         durations = about.log_duration_mean, about.log_duration_sd
         return cls(
-            FirstMaps(postures, velocities, (about.posture_contrast, about.velocity_contrast)),
+            FirstMaps(postures, velocities, arms, contrasts, about.arm_share),
             Stages(arrays["axes"], arrays["offsets"], tuple(about.fractions), *durations),
             Concepts(layout, about.concept_contrast, arrays["concept_mean"]),
             SupervisedLayer(arrays["layer3"]),
@@ -154,16 +162,19 @@ class PyramidModel(Model):
         cosines = self.layer3.cosines(self.concepts.activity(scores))
         winner = int(cosines.argmax())
         gain = sum(weight * gain for weight, gain in zip(weights, self.description.gains, strict=True))
-        familiarity = float(scores.max())
+        familiarity = float(familiarity_of(scores))
         return Recognition(
             label=self.labels[winner],
             confidence=_probability(cosines, winner, gain * seen_share(frames)),
             activations=dict(zip(self.labels, cosines.tolist(), strict=True)),
-            part=PART_NAMES[attended(np.array([frame.motion for frame in frames]))],
+            part=PART_NAMES[int((codes[-1].moved_um - codes[0].moved_um).argmax())],
             trace=self.first.postures.coordinates[without_repeats(np.array([code.winner for code in codes]))],
             familiarity=familiarity,
-            unknown=complete and familiarity < self.description.familiar,
+            unknown=complete and self._is_strange(familiarity),
         )
+
+    def _is_strange(self, familiarity: float) -> bool:
+        return self.description.familiar is not None and familiarity < self.description.familiar
 
     def scores(self, codes: Sequence[Code], weights: Sequence[float]) -> NDArray[np.float32]:
         """Return the actions' scores on the discriminant axes of the stages that the weights name."""
@@ -181,8 +192,10 @@ class PyramidModel(Model):
         if not all(array.dtype == np.float32 and np.isfinite(array).all() for array in loose):
             return "its axes, their offsets or its mean are not finite single-precision numbers"
         shapes = {
+            "maps of the first layer": ({len(som.weights) for som in first.maps}, {len(first.postures.weights)}),
             "map of postures": (first.postures.weights.shape[1:], (3 * len(JOINTS),)),
             "map of velocities": (first.velocities.weights.shape[1:], (3 * len(JOINTS),)),
+            "map of arms": (first.arms.weights.shape[1:], (ARM_INPUTS,)),
             "discriminant axes": (self.stages.axes.shape, (stages, inputs, actions)),
             "offsets of them": (self.stages.offsets.shape, (stages, actions)),
             "map of actions": (layout.weights.shape[1:], (actions,)),
@@ -202,21 +215,22 @@ class FrameEncoder:
         self._first = first
         self._sums: Sums = np.zeros((2, first.units), np.uint32)
         self._travelled_um = 0
+        self._moved_um = np.zeros(len(PART_NAMES), np.int64)
         self._spread = np.zeros((4, 8), np.int64)
 
     def encode(self, frame: Frame) -> Code:
         """Add a valid frame."""
         assert frame.movement is not None and frame.motion is not None
         posture, velocity = frame.movement.posture, frame.movement.velocity
-        straight = self._first.activity(posture, velocity)
-        both = quantised(np.stack([straight, self._first.activity(mirrored(posture), mirrored(velocity))]))
+        sides = self._first.sides(posture, velocity)
         before = self._sums, self._travelled_um, self._spread
-        self._sums = self._sums + both
+        self._sums = self._sums + quantised(sides)
         self._travelled_um += round(sum(frame.motion.tolist()) * _UM_PER_M)
+        self._moved_um = self._moved_um + np.rint(frame.motion * _UM_PER_M).astype(np.int64)
         self._spread = self._spread + moments(posture)
-        winner = int(straight[: len(self._first.postures.weights)].argmax())
+        winner = int(sides[0, : len(self._first.postures.weights)].argmax())
         return Code(
-            before[0], self._sums, before[1], self._travelled_um, before[2], self._spread, winner
+            before[0], self._sums, before[1], self._travelled_um, self._moved_um, before[2], self._spread, winner
         )  # fmt: skip
 
 
@@ -224,28 +238,7 @@ def trail_of(codes: Sequence[Code]) -> Trail:
     """Return a segment's running sums, in a mirror where the left arm acts."""
     side = int(Spreads.of(codes[-1].spread - codes[0].spread_before).left_handed)
     travelled_um = [codes[0].travelled_before_um, *[code.travelled_um for code in codes]]
-    return Trail(_Side(codes, side), np.array(travelled_um))
-
-
-class _Side(Sequence[Sums]):
-    """The running sums of the actor as seen or in a mirror, before, between and after the frames."""
-
-    def __init__(self, codes: Sequence[Code], side: int) -> None:
-        self._codes, self._side = codes, side
-
-    def __len__(self) -> int:
-        return len(self._codes) + 1
-
-    @overload
-    def __getitem__(self, index: int) -> Sums: ...
-    @overload
-    def __getitem__(self, index: slice) -> Sequence[Sums]: ...
-    def __getitem__(self, index: int | slice) -> Sums | Sequence[Sums]:
-        if isinstance(index, slice):
-            return [self[k] for k in range(*index.indices(len(self)))]
-        index = range(len(self))[index]
-        sums: Sums = (self._codes[index - 1].sums if index else self._codes[0].sums_before)[self._side]
-        return sums
+    return Trail([codes[0].sums_before[side], *[code.sums[side] for code in codes]], np.array(travelled_um))
 
 
 def seen_share(frames: Sequence[Frame]) -> float:

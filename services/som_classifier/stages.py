@@ -53,3 +53,13 @@ class Stages:
             if weight:
                 total += np.float32(weight) * (row_product(vector, axes) + offsets)
         return total
+
+
+def familiarity_of(scores: Floats) -> Floats:
+    """Return how much scores (…, actions) are like those of an action that was trained.
+
+    1 − ‖s − e‖, with e the scores that the likeliest action should have, 1 for itself and 0 for the others: 1 at best.
+    """
+    likeliest = np.arange(scores.shape[-1]) == scores.argmax(axis=-1)[..., None]
+    familiarity: Floats = 1 - np.sqrt(np.square(scores - likeliest).sum(axis=-1))
+    return familiarity

@@ -55,7 +55,7 @@ def test_every_picture_of_a_model_and_a_recording_is_a_sound_png(
     planned = list(pictures(anatomy, segments, evaluate(anatomy.model, [recording])))
     names = {picture.name for picture in planned}
     assert {"posture-map", "action-map", "confusion", "trace-push", "time-lift"} <= names
-    assert ("why-push" in names) == ("movement-map" in names) == isinstance(anatomy, PyramidAnatomy)
+    assert ("why-push" in names) == ({"movement-map", "arm-map"} <= names) == isinstance(anatomy, PyramidAnatomy)
     of_lifting = [picture for picture in planned if not picture.name.endswith(("push", "swing", "1", "2", "3"))]
     for file in drawn(of_lifting, tmp_path):
         assert min(imread(file).shape[:2]) > SMALLEST_PX
@@ -63,7 +63,7 @@ def test_every_picture_of_a_model_and_a_recording_is_a_sound_png(
 
 def test_pictures_of_a_model_alone_are_its_maps(anatomy: Anatomy) -> None:
     names = [picture.name for picture in pictures(anatomy, [], None)]
-    assert names == ["posture-map", *["movement-map"] * isinstance(anatomy, PyramidAnatomy), "action-map"]
+    assert names == ["posture-map", *["movement-map", "arm-map"] * isinstance(anatomy, PyramidAnatomy), "action-map"]
 
 
 def test_svg_files_parse_and_the_same_picture_makes_the_same_file(anatomy: Anatomy, tmp_path: Path) -> None:

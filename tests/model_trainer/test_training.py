@@ -80,6 +80,7 @@ STAGES_OF_TRAINING = [
         [
             ("map of postures", TINY.unit_epochs),
             ("map of velocities", TINY.unit_epochs),
+            ("map of arms", TINY.unit_epochs),
             ("discriminant axes", len(TINY.stages)),
             ("map of actions", TINY.concept_epochs),
             ("neurons", TINY.epochs),

@@ -1,8 +1,11 @@
-"""The upright posture: scaled joints from the torso, up along gravity, turned by the smoothed heading."""
+"""The upright posture: scaled joints from the torso, up along gravity, turned by the smoothed heading.
+
+Whose heading is steady is seen from the front, however they stand; whose heading sways is believed to face the camera.
+"""
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -10,12 +13,16 @@ from actum import geometry
 from actum.messages import Posture
 from actum.skeletons import INDEX
 from people import FRAME_NS, STANDING, lacking, reaching, skeleton, turned
-from pose_preprocessor.heading import FIRST_S, TIME_CONSTANT_S, HeadingFilter
+from pose_preprocessor.heading import DOUBT, FACING_SD_RAD, FIRST_S, TIME_CONSTANT_S, HeadingFilter
 from pose_preprocessor.node import PosePreprocessor
 
 Array = NDArray[np.float64]
 
 HEADINGS = st.floats(-np.pi, np.pi)
+AWAY = st.floats(np.pi / 2 + 0.6, 3 * np.pi / 2 - 0.6)
+"""Beyond a quarter turn, also for one who sways by 0.6 rad about it."""
+SHIFTS = st.tuples(*[st.floats(-2, 2)] * 3)
+SIZES = st.floats(0.7, 1.3)
 SECOND_NS = 10**9
 HIPS, SHOULDERS = ("left_hip", "right_hip"), ("left_shoulder", "right_shoulder")
 
@@ -26,6 +33,21 @@ def upright(frames: list[Array], first_ns: int = 0, step_ns: int = FRAME_NS) -> 
     made = [p for i, joints in enumerate(frames) for p in node.handle(skeleton(first_ns + i * step_ns, joints))]
     assert all(isinstance(posture, Posture) and posture.valid and posture.upright for posture in made)
     return np.array([posture.upright for posture in made if isinstance(posture, Posture)])
+
+
+def steady(frames: int = 15, seed: int = 0) -> list[Array]:
+    """A reaching person whose limbs tremble and whose hips and shoulders stay where they are."""
+    trunk = np.isin(np.arange(15), [INDEX[name] for name in ("torso", *HIPS, *SHOULDERS)])
+    noise = np.where(trunk[:, None], 0.0, np.random.default_rng(seed).normal(0, 0.01, (frames, 15, 3)))
+    return [reaching(i / frames) + noise[i] for i in range(frames)]
+
+
+def elsewhere(frames: list[Array], heading: float, shift: tuple[float, ...] = (0, 0, 0), size: float = 1.0) -> Array:
+    """The same person at another place, turned about the vertical as a whole, and larger or smaller."""
+    about = frames[0][INDEX["torso"]]
+    c, s = np.cos(heading), np.sin(heading)
+    yaw = np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]])
+    return np.array([about + size * (joints - about) @ yaw.T + np.array(shift) for joints in frames])
 
 
 def moving(frames: int = 15, seed: int = 0) -> list[Array]:
@@ -75,15 +97,26 @@ def test_a_bow_stays_a_bow() -> None:
     np.testing.assert_allclose(seen[INDEX["head"]], [0, 0.22, 0.44 * np.sqrt(0.75)], atol=1e-12)
 
 
-@given(HEADINGS, st.tuples(*[st.floats(-2, 2)] * 3), st.floats(0.7, 1.3))
-def test_place_heading_and_size_leave_it_alone(heading: float, shift: tuple[float, ...], size: float) -> None:
-    """The camera's place and its yaw do, therefore; a heading smoothed from the first frame on turns with it."""
+@given(HEADINGS, SHIFTS, SIZES)
+def test_place_heading_and_size_of_a_steady_body_leave_it_alone(
+    heading: float, shift: tuple[float, ...], size: float
+) -> None:
+    """The camera's place and its yaw do, therefore."""
+    frames = steady()
+    np.testing.assert_allclose(upright([*elsewhere(frames, heading, shift, size)]), upright(frames), atol=1e-9)
+
+
+@given(SHIFTS, SIZES)
+def test_place_and_size_leave_who_sways_alone(shift: tuple[float, ...], size: float) -> None:
     frames = moving()
-    about = frames[0][INDEX["torso"]]
-    c, s = np.cos(heading), np.sin(heading)
-    yaw = np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]])
-    elsewhere = [about + size * (joints - about) @ yaw.T + np.array(shift) for joints in frames]
-    np.testing.assert_allclose(upright(elsewhere), upright(frames), atol=1e-9)
+    np.testing.assert_allclose(upright([*elsewhere(frames, 0.0, shift, size)]), upright(frames), atol=1e-9)
+
+
+@given(AWAY)
+def test_the_heading_of_who_sways_leaves_it_alone_beyond_a_quarter_turn(heading: float) -> None:
+    frames = moving()
+    from_behind = upright([*elsewhere(frames, np.pi)])
+    np.testing.assert_allclose(upright([*elsewhere(frames, heading)]), from_behind, atol=1e-9)
 
 
 def test_the_heading_is_the_mean_of_hips_and_shoulders() -> None:
@@ -98,21 +131,90 @@ def test_the_heading_is_the_mean_of_hips_and_shoulders() -> None:
     assert np.degrees(angle(HeadingFilter().step(0, lacking(twisted, "left_shoulder")))) == pytest.approx(10)
 
 
+def swaying(rate_hz: int, *headings_rad: float, seconds: int = 20) -> tuple[HeadingFilter, float]:
+    """One who takes these headings in turn, frame by frame: their filter, and the heading that it has at the end."""
+    heading, persons = HeadingFilter(), [turned(level(STANDING), each) for each in headings_rad]
+    for i in range(seconds * rate_hz):
+        left = heading.step(i * SECOND_NS // rate_hz, persons[i % len(persons)])
+    return heading, angle(left)
+
+
+def drawn(yaw_rad: float, variance_rad2: float) -> float:
+    """How far a yaw is believed that sways with a variance."""
+    return yaw_rad * (1 - max(np.cos(yaw_rad), 0) * DOUBT * variance_rad2 / (DOUBT * variance_rad2 + FACING_SD_RAD**2))
+
+
+@given(HEADINGS)
+def test_a_steady_heading_is_believed_wholly(heading_rad: float) -> None:
+    _, found = swaying(30, heading_rad, seconds=1)
+    assert np.remainder(found - heading_rad + 1, 2 * np.pi) == pytest.approx(1, abs=1e-9)
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.floats(-1.2, 1.2), st.floats(0.01, 0.3), st.sampled_from([15, 30, 60]))
+def test_a_swaying_heading_is_drawn_towards_the_camera(heading_rad: float, sway_rad: float, rate_hz: int) -> None:
+    """From side to side by σ at each frame: the mean follows each by a / (2 - a), and lies off by the rest."""
+    _, found = swaying(rate_hz, heading_rad - sway_rad, heading_rad + sway_rad)
+    share = 1 - np.exp(-1 / rate_hz / TIME_CONSTANT_S)
+    follows_rad = np.arctan(share / (2 - share) * np.tan(sway_rad))
+    yaw_rad = heading_rad + follows_rad
+    assert found == pytest.approx(drawn(yaw_rad, (sway_rad - follows_rad) ** 2), abs=1e-6)
+    assert abs(found) <= abs(yaw_rad)
+
+
+def test_who_sways_by_ten_degrees_is_believed_about_half() -> None:
+    """Twice its variance is then about that of how people stand, 15°."""
+    _, found = swaying(100, np.radians(20 - 15 / 2**0.5), np.radians(20 + 15 / 2**0.5))
+    assert np.degrees(found) == pytest.approx(20 * (1 - 0.5 * np.cos(np.radians(20))), abs=0.2)
+
+
+def test_the_more_it_sways_the_less_it_is_believed() -> None:
+    found = [swaying(30, 0.5 - sway_rad, 0.5 + sway_rad)[1] for sway_rad in (0.0, 0.05, 0.1, 0.2, 0.4)]
+    assert found[0] == pytest.approx(0.5)
+    assert found == sorted(found, reverse=True)
+    assert 0 < found[-1] < 0.25
+
+
+@settings(deadline=None, max_examples=20)
+@given(AWAY, st.floats(0.0, 0.5))
+def test_beyond_a_quarter_turn_a_swaying_heading_is_itself(heading_rad: float, sway_rad: float) -> None:
+    _, found = swaying(30, heading_rad - sway_rad, heading_rad + sway_rad)
+    share = 1 - np.exp(-1 / 30 / TIME_CONSTANT_S)
+    yaw_rad = heading_rad + np.arctan(share / (2 - share) * np.tan(sway_rad))
+    assert np.remainder(found - yaw_rad + 1, 2 * np.pi) == pytest.approx(1, abs=1e-6)
+
+
 def test_after_a_turn_the_heading_follows_as_a_first_order_filter() -> None:
-    """After 1 s of facing the camera a quarter turn to the left: m goes exponentially from (1, 0) to (0, 1)."""
-    heading, person = HeadingFilter(), level(STANDING)
+    """The back to the camera, a quarter turn after 10 s: m goes exponentially from the one to the other."""
+    heading, person, first_rad = HeadingFilter(), level(STANDING), 0.75 * np.pi
+    for i in range(300):
+        heading.step(i * SECOND_NS // 30, turned(person, first_rad))
+    for i in range(300, 360):
+        left = heading.step(i * SECOND_NS // 30, turned(person, first_rad + np.pi / 2))
+        rest = np.exp(-(i - 299) / 30 / TIME_CONSTANT_S)
+        assert np.tan(angle(left) - first_rad) == pytest.approx((1 - rest) / rest, rel=1e-6)
+
+
+def test_a_turn_in_front_of_the_camera_is_believed_the_more_the_longer_it_lasts() -> None:
+    """The variance is that of the way from the mean to the new heading, and fades with it."""
+    heading, person, turn_rad, variance_rad2 = HeadingFilter(), level(STANDING), np.radians(40), 0.0
     for i in range(300):
         heading.step(i * SECOND_NS // 30, person)
-    for i in range(300, 360):
-        left = heading.step(i * SECOND_NS // 30, turned(person, np.pi / 2))
-        rest = np.exp(-(i - 299) / 30 / TIME_CONSTANT_S)
-        assert np.tan(angle(left)) == pytest.approx((1 - rest) / rest, rel=1e-6)
+    rest, kept, found = 1.0, np.exp(-1 / 30 / TIME_CONSTANT_S), [0.0]
+    for i in range(300, 600):
+        found.append(angle(heading.step(i * SECOND_NS // 30, turned(person, turn_rad))))
+        rest *= kept
+        yaw_rad = np.arctan2((1 - rest) * np.sin(turn_rad), rest + (1 - rest) * np.cos(turn_rad))
+        variance_rad2 = kept * variance_rad2 + (1 - kept) * (turn_rad - yaw_rad) ** 2
+        assert found[-1] == pytest.approx(drawn(yaw_rad, variance_rad2), abs=1e-6)
+    assert found == sorted(found)
+    assert found[-1] == pytest.approx(turn_rad, rel=0.01)
 
 
 def test_at_first_the_heading_is_the_mean_of_what_was_seen() -> None:
-    """Frames at 30 Hz count the same as long as the mean is quicker than the filter."""
+    """Frames at 30 Hz count the same as long as the mean is quicker than the filter; seen from behind it stays so."""
     heading, person = HeadingFilter(), level(STANDING)
-    headings_rad = np.random.default_rng(3).uniform(-1, 1, 20)
+    headings_rad = np.random.default_rng(3).uniform(np.pi - 1, np.pi + 1, 20)
     for i, heading_rad in enumerate(headings_rad):
         left = heading.step(round(i * FIRST_S * SECOND_NS), turned(person, heading_rad))
         seen = headings_rad[: i + 1]
@@ -120,15 +222,15 @@ def test_at_first_the_heading_is_the_mean_of_what_was_seen() -> None:
 
 
 def test_the_filter_does_not_know_the_frame_rate() -> None:
-    """Once the mean has given way to the filter, a hundred steps go as far as one."""
+    """Once the mean has given way to the filter, a hundred steps go as far as one; seen from behind it shows."""
     fine, coarse, person = HeadingFilter(), HeadingFilter(), level(STANDING)
     for i in range(11):
-        fine.step(i * SECOND_NS // 2, person)
-        coarse.step(i * SECOND_NS // 2, person)
+        fine.step(i * SECOND_NS // 2, turned(person, np.pi))
+        coarse.step(i * SECOND_NS // 2, turned(person, np.pi))
     late_ns = 5 * SECOND_NS
     for i in range(1, 101):
-        left = fine.step(late_ns + i * SECOND_NS // 200, turned(person, 1.0))
-    assert left == pytest.approx(coarse.step(late_ns + SECOND_NS // 2, turned(person, 1.0)))
+        left = fine.step(late_ns + i * SECOND_NS // 200, turned(person, np.pi - 1.0))
+    assert left == pytest.approx(coarse.step(late_ns + SECOND_NS // 2, turned(person, np.pi - 1.0)))
 
 
 @pytest.mark.parametrize(("gap_ns", "expected"), [(SECOND_NS // 2, False), (SECOND_NS // 2 + 1, True)])
@@ -138,6 +240,13 @@ def test_the_heading_begins_anew_after_a_gap(gap_ns: int, expected: bool) -> Non
         heading.step(i * FRAME_NS, person)
     left = heading.step(59 * FRAME_NS + gap_ns, turned(person, 1.0))
     assert (angle(left) == pytest.approx(1.0)) is expected
+
+
+def test_what_swayed_before_a_gap_is_forgotten() -> None:
+    heading, found = swaying(30, 0.2, 1.0, seconds=2)
+    assert found < 0.4
+    after_ns = 2 * SECOND_NS + SECOND_NS
+    assert angle(heading.step(after_ns, turned(level(STANDING), 0.6))) == pytest.approx(0.6)
 
 
 def test_another_session_begins_anew() -> None:
@@ -155,6 +264,15 @@ def test_one_who_lies_on_the_side_keeps_the_last_heading() -> None:
     turned_left = heading.step(SECOND_NS, turned(level(STANDING), 0.7))
     assert angle(turned_left) == pytest.approx(0.7)
     assert heading.step(2 * SECOND_NS, lying) == turned_left
+    for i in range(1, 61):
+        assert heading.step(2 * SECOND_NS + i * FRAME_NS, lying) == turned_left
+
+
+def test_who_lies_down_on_the_side_does_not_sway() -> None:
+    lying = STANDING[INDEX["torso"]] + (level(STANDING) - STANDING[INDEX["torso"]])[:, [1, 0, 2]]
+    heading, _ = swaying(30, 0.7, seconds=1)
+    for i in range(30, 90):
+        assert angle(heading.step(i * SECOND_NS // 30, lying)) == pytest.approx(0.7)
 
 
 def test_each_person_has_a_heading_of_their_own() -> None:

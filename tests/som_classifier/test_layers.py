@@ -1,14 +1,19 @@
 """Maps that answer with a soft activity: shares of one, the same for a frame alone as among others."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from actum.skeletons import INDEX
 from actum.som import Som
 from people import STANDING
-from som_classifier.layers import Concepts, FirstMaps, shares
+from som_classifier.handedness import mirrored
+from som_classifier.layers import ARM_SPEED, Concepts, FirstMaps, arm_inputs, frame_inputs
 
+SHARE = 0.4
 POSTURE = STANDING - STANDING[2]
 
 
@@ -17,7 +22,8 @@ def map_of(rows: int, cols: int, dim: int, seed: int = 0) -> Som:
 
 
 def first_maps(posture_contrast: float = 3.0, velocity_contrast: float = 2.0) -> FirstMaps:
-    return FirstMaps(map_of(5, 4, 45), map_of(3, 4, 45, 1), (posture_contrast, velocity_contrast))
+    contrasts = posture_contrast, velocity_contrast, 1.0
+    return FirstMaps(map_of(5, 4, 45), map_of(5, 4, 45, 1), map_of(5, 4, 12, 2), contrasts, SHARE)
 
 
 def inputs(frames: int = 30, missing: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -28,37 +34,40 @@ def inputs(frames: int = 30, missing: float = 0.0) -> tuple[np.ndarray, np.ndarr
 
 
 @pytest.mark.parametrize("missing", [0.0, 0.3])
-def test_a_frame_alone_answers_as_among_others(missing: float) -> None:
+def test_a_frame_alone_answers_as_among_others_on_either_side(missing: float) -> None:
     maps, (postures, velocities) = first_maps(), inputs(missing=missing)
-    alone = np.array([maps.activity(*frame) for frame in zip(postures, velocities, strict=True)])
-    np.testing.assert_allclose(alone, maps.activities(postures, velocities), atol=1e-6)
+    alone = np.array([maps.sides(*frame) for frame in zip(postures, velocities, strict=True)])
+    np.testing.assert_allclose(alone[:, 0], maps.activities(postures, velocities), atol=1e-6)
+    np.testing.assert_allclose(alone[:, 1], maps.activities(mirrored(postures), mirrored(velocities)), atol=1e-6)
 
 
-@pytest.mark.parametrize("missing", [0.0, 0.3])
-def test_each_maps_activity_is_shares_of_one(missing: float) -> None:
+@pytest.mark.parametrize("missing", [0.0, 0.3, 1.0])
+def test_each_maps_activity_adds_up_to_its_share(missing: float) -> None:
     maps = first_maps()
     activities = maps.activities(*inputs(missing=missing))
-    assert activities.shape == (30, maps.units) == (30, 20 + 12)
+    assert activities.shape == (30, maps.units) == (30, 60)
     assert activities.min() >= 0
-    for units in (slice(0, 20), slice(20, 32)):
-        np.testing.assert_allclose(activities[:, units].sum(axis=1), 1.0, atol=1e-6)
+    np.testing.assert_allclose(activities.reshape(30, 3, 20).sum(axis=2), [[1.0, 1.0, SHARE]] * 30, atol=1e-6)
 
 
 def test_activity_by_hand() -> None:
-    """y is exp(−(d² − d²_min) / contrast) over its sum, each map with its own contrast."""
+    """y is share × exp(−(d² − d²_min) / contrast) over its sum, each map with its own contrast."""
     maps, (postures, velocities) = first_maps(), inputs(1)
+    arms = arm_inputs(frame_inputs(postures, velocities))
     expected = []
-    for som, x, contrast in ((maps.postures, postures, 3.0), (maps.velocities, velocities, 2.0)):
-        y = np.exp(-som.distances2(x.reshape(1, -1)[0]) / contrast)
-        expected.append(y / y.sum())
-    np.testing.assert_allclose(maps.activity(postures[0], velocities[0]), np.concatenate(expected), rtol=1e-4)
+    for som, x, contrast, share in (
+        (maps.postures, postures, 3.0, 1.0),
+        (maps.velocities, velocities, 2.0, 1.0),
+        (maps.arms, arms, 1.0, SHARE),
+    ):
+        y = np.exp(-som.distances2(x.reshape(-1)) / contrast)
+        expected.append(share * y / y.sum())
+    np.testing.assert_allclose(maps.sides(postures[0], velocities[0])[0], np.concatenate(expected), rtol=1e-4)
 
 
 def test_the_smaller_the_contrast_the_more_the_winner_takes() -> None:
     postures, velocities = inputs(1)
-    winners_share = [
-        first_maps(contrast, 1.0).activity(postures[0], velocities[0])[:20].max() for contrast in (0.01, 1.0, 100.0)
-    ]
+    winners_share = [first_maps(contrast).activities(postures, velocities)[0, :20].max() for contrast in (0.01, 1, 100)]
     assert winners_share == sorted(winners_share, reverse=True)
     assert winners_share[0] == pytest.approx(1.0)
     assert winners_share[2] == pytest.approx(1 / 20, rel=0.5)
@@ -72,14 +81,33 @@ def test_what_a_missing_joint_would_have_said_does_not_matter(joint: int) -> Non
     weights = first_maps().postures.weights.copy()
     weights[1] = weights[0]
     weights[1, 3 * joint : 3 * joint + 3] += 1.0
-    maps = FirstMaps(Som(5, 4, weights), first_maps().velocities, (3.0, 2.0))
+    maps = replace(first_maps(), postures=Som(5, 4, weights))
     postures[0, joint] = np.nan
-    activity = maps.activity(postures[0], velocities[0])
+    activity = maps.activities(postures, velocities)[0]
     assert activity[0] == pytest.approx(activity[1], rel=1e-5)
 
 
-def test_shares_divide_by_the_sum_of_each_row() -> None:
-    np.testing.assert_allclose(shares(np.array([[1.0, 3.0], [2.0, 2.0]])), [[0.25, 0.75], [0.5, 0.5]])
+def test_the_arm_is_seen_from_its_shoulder() -> None:
+    """Where the body stands and how it moves on the whole says nothing about the arm."""
+    postures, velocities = inputs(3)
+    arms = arm_inputs(frame_inputs(postures, velocities))
+    shoulder, elbow, hand = (INDEX[f"right_{name}"] for name in ("shoulder", "elbow", "hand"))
+    expected = [
+        speed * (vectors[:, joint] - vectors[:, shoulder])
+        for vectors, speed in ((postures, 1.0), (velocities, ARM_SPEED))
+        for joint in (elbow, hand)
+    ]
+    np.testing.assert_allclose(arms, np.concatenate(expected, axis=1))
+    elsewhere = frame_inputs(postures + np.array([1.0, 2.0, 3.0]), velocities - np.array([0.3, 0.2, 0.1]))
+    np.testing.assert_allclose(arm_inputs(elsewhere), arms)
+
+
+def test_where_the_acting_arm_is_hidden_its_map_says_nothing() -> None:
+    postures, velocities = inputs(1)
+    postures[:, INDEX["right_shoulder"]] = velocities[:, INDEX["right_shoulder"]] = np.nan
+    sides = first_maps().sides(postures[0], velocities[0])
+    np.testing.assert_allclose(sides[0, 40:], SHARE / 20, rtol=1e-6)
+    assert np.ptp(sides[1, 40:]) > 0
 
 
 def concepts(mean: np.ndarray | None = None) -> Concepts:

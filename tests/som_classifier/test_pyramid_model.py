@@ -13,10 +13,12 @@ from actum.skeletons import INDEX, PARTS
 from model_trainer.answering import answer, encoded
 from model_trainer.samples import SegmentSample
 from recognisers import tiny_model, tiny_samples
+from som_classifier.attention import PART_NAMES, attended
 from som_classifier.handedness import mirrored
 from som_classifier.pyramid import SCALE
 from som_classifier.pyramid_model import Code, PyramidModel, seen_share, trail_of
 from som_classifier.recognition import Recognition
+from som_classifier.stages import familiarity_of
 from som_classifier.streams import Frame
 
 SAMPLES = tiny_samples()
@@ -79,7 +81,7 @@ def test_an_answer_is_cosines_and_the_share_of_their_softmax(sample: SegmentSamp
     shares = np.exp(model().description.gains[-1] * cosines)
     assert found.activations == dict(zip(model().labels, cosines.tolist(), strict=True))
     assert found.confidence == pytest.approx(shares.max() / shares.sum())
-    assert found.familiarity == scores.max()
+    assert found.familiarity == familiarity_of(scores)
     assert found.label == model().labels[int(np.argmax(cosines))]
 
 
@@ -128,6 +130,15 @@ def test_left_handed_segments_are_read_in_the_mirror() -> None:
         np.testing.assert_array_equal(np.stack(trail_of(codes).sums[1:]), np.stack([code.sums[side] for code in codes]))
 
 
+@settings(deadline=None)
+@given(st.integers(0, 2), st.integers(0, 15), st.integers(0, 2**32 - 1))
+def test_the_part_is_the_one_attended_to(which: int, first: int, seed: int) -> None:
+    """Whatever moved before the segment, and however its parts move."""
+    motion = np.random.default_rng(seed).uniform(0, 0.03, SAMPLES[which].motion.shape)
+    frames = encoded(model(), replace(SAMPLES[which], motion=motion))[first:]
+    assert model().recognise(frames, True).part == PART_NAMES[attended(motion[first:])]
+
+
 def each_estimate(frames: Sequence[Frame]) -> list[Recognition]:
     return [model().recognise(frames[:count], False) for count in range(1, len(frames) + 1)]
 
@@ -163,8 +174,9 @@ def test_no_frame_is_an_error() -> None:
         model().recognise([], True)
 
 
-@pytest.mark.parametrize(("familiar", "unknown"), [(-1e9, False), (1e9, True)])
-def test_only_a_whole_segment_is_unknown(familiar: float, unknown: bool) -> None:
+@pytest.mark.parametrize(("familiar", "unknown"), [(-1e9, False), (1e9, True), (None, False)])
+def test_only_a_whole_segment_is_unknown(familiar: float | None, unknown: bool) -> None:
+    """And none where it cannot be told."""
     about = model().description.model_copy(update={"familiar": familiar})
     strict = replace(model(), description=about)
     frames = encoded(strict, SAMPLES[0])
@@ -198,7 +210,7 @@ def test_the_share_of_the_joints_that_was_there() -> None:
 
 
 def test_the_more_joints_are_missing_the_lower_the_confidence() -> None:
-    doubtful = replace(model(), description=model().description.model_copy(update={"gains": [5.0] * 3}))
+    doubtful = replace(model(), description=model().description.model_copy(update={"gains": [2.0] * 3}))
 
     def mean_confidence(*names: str) -> float:
         found = [answer(doubtful, encoded(doubtful, lacking(sample, *names))) for sample in SAMPLES]
