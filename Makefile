@@ -4,7 +4,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-data test-live test-containers check bench bench-maps bench-recognition picture schemas clean
+.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-latency bench-maps bench-recognition bench-objects picture schemas clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -13,6 +13,11 @@ $(STAMP): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit("actum needs Python 3.11 or newer: make PYTHON=python3.12 …" if sys.version_info < (3, 11) else 0)'
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[dev]"
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[camera]" \
+	  || echo "MediaPipe cannot be installed here: without it there is no source camera, and its tests are skipped" >&2
+	@# MediaPipe's OpenCV has windows and needs libGL; it shares its files with the one that has none and needs nothing.
+	$(BIN)/pip uninstall --quiet --yes opencv-contrib-python
+	$(BIN)/pip install --quiet --disable-pip-version-check --force-reinstall --no-deps opencv-python-headless
 	touch $@
 
 demo: $(STAMP)  ## the paper's experiment with a simulated actor, through live processes
@@ -44,6 +49,17 @@ check: $(STAMP)  ## format, lint, types, layers
 bench: $(STAMP)  ## latency beside a bare Zenoh chain, and throughput
 	$(BIN)/python benchmarks/latency.py
 
+bench-camera: $(STAMP)  ## real people in video clips, beside the same peers, about five minutes
+	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
+	@test -d "$$ACTUM_DATA" || { echo "bench-camera needs ACTUM_DATA: the folder that holds florence3d_rgb/" >&2; exit 1; }
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
+	$(BIN)/python -m benchmarks.camera
+
+bench-camera-latency: $(STAMP)  ## from a picture's capture to the event, beside the pose model's own time
+	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera-latency needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
+	@test -d "$$ACTUM_DATA" || { echo "bench-camera-latency needs ACTUM_DATA: the folder that holds florence3d_rgb/" >&2; exit 1; }
+	$(BIN)/python benchmarks/camera_latency.py
+
 bench-maps: $(STAMP)  ## the map library beside MiniSom
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
 	$(BIN)/python benchmarks/som.py
@@ -52,6 +68,9 @@ bench-recognition: $(STAMP)  ## the recogniser beside its peers on public record
 	@test -d "$$ACTUM_DATA" || { echo "bench-recognition needs ACTUM_DATA: the folder that holds msr_action3d/ and utkinect/" >&2; exit 1; }
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
 	$(BIN)/python -m benchmarks.recognition
+
+bench-objects: $(STAMP)  ## the right object in simulated scenes that are hard to see, about ten minutes
+	$(BIN)/python -m benchmarks.objects
 
 picture: $(STAMP)  ## the README's pictures
 	$(BIN)/python docs/picture.py docs/scene.png

@@ -1,6 +1,9 @@
 """What all tests share: where the recordings are, and one line when they are not there."""
 
 import os
+import sys
+from ctypes.util import find_library
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -11,6 +14,29 @@ if os.environ.get("CI"):
     settings.load_profile("ci")
 
 NEEDS_DATA = "recordings not found: set ACTUM_DATA to the folder that holds msr_action3d/ and utkinect/"
+
+
+NEEDS_MODEL = "pose model not found: set ACTUM_POSE_MODEL to the file that `actum models fetch` gets"
+NEEDS_LIBRARIES = "MediaPipe is linked against libEGL and libGLESv2: apt install libegl1 libgles2"
+NEEDS_CAMERA_EXTRA = "MediaPipe is not installed: pip install -e '.[camera]'"
+SKIPPED = (
+    ("on real recordings", NEEDS_DATA),
+    ("with the pose model", NEEDS_MODEL),
+    ("with the pose model", NEEDS_CAMERA_EXTRA),
+    ("with the pose model", NEEDS_LIBRARIES),
+    ("with librealsense", "the source realsense needs pyrealsense2"),
+    ("with OpenNI 2", "the source openni2 needs OpenNI 2"),
+)
+
+
+def pose_model_missing() -> str | None:
+    """Say why no pose can be found here, if so."""
+    if not Path(os.environ.get("ACTUM_POSE_MODEL") or "nowhere").is_file():
+        return NEEDS_MODEL
+    if find_spec("mediapipe") is None:
+        return NEEDS_CAMERA_EXTRA
+    linked = sys.platform != "linux" or (find_library("EGL") and find_library("GLESv2"))
+    return None if linked else NEEDS_LIBRARIES
 
 
 def data_folder() -> Path | None:
@@ -30,12 +56,22 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for item in items:
             if item.get_closest_marker("data"):
                 item.add_marker(pytest.mark.skip(reason=NEEDS_DATA))
+    if (reason := pose_model_missing()) is not None:
+        for item in items:
+            if item.get_closest_marker("pose_model"):
+                item.add_marker(pytest.mark.skip(reason=reason))
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    without = [r for r in terminalreporter.stats.get("skipped", []) if NEEDS_DATA in str(r.longrepr)]
-    if without:
-        terminalreporter.write_line(f"{len(without)} tests on real recordings skipped: {NEEDS_DATA}")
+    for what, reason in SKIPPED:
+        without = [r for r in terminalreporter.stats.get("skipped", []) if reason in str(r.longrepr)]
+        if without:
+            terminalreporter.write_line(f"{len(without)} tests {what} skipped: {reason}")
+
+
+@pytest.fixture(scope="session")
+def pose_model() -> Path:
+    return Path(os.environ["ACTUM_POSE_MODEL"])
 
 
 @pytest.fixture(scope="session")

@@ -9,11 +9,13 @@ from actum_command import (
     calibrating,
     demo,
     doctor,
+    drawing,
     importing_commands,
     inspecting,
     learning,
     marker_sheets,
     marks,
+    models,
     scene,
     streaming,
     system,
@@ -35,6 +37,8 @@ app.add_typer(marks.app, name="segment")
 app.command("record")(streaming.record)
 app.command("play")(streaming.play)
 app.add_typer(importing_commands.app, name="import")
+app.add_typer(models.app, name="models")
+app.command("draw")(drawing.draw_command)
 app.command("markers")(marker_sheets.markers)
 app.add_typer(calibrating.app, name="calibrate")
 app.command("train")(learning.train_command)

@@ -89,6 +89,8 @@ def _problems(name: str, instances: int, info: Info | None, status: Status | Non
     problems = []
     if status is None:
         problems.append(f"{name} is alive but sent no status in {STATUS_S:g} s")
+    elif status.state.startswith("camera lost"):
+        problems.append(f"{name}: {status.state}; it tries again by itself")
     if info is None:
         problems.append(f"{name} does not answer on its info key")
     elif missing := {schema_name(message) for message in MESSAGES} - set(info.schemas):

@@ -2,12 +2,16 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from actum.recording import Recorder
 from sensor_gateway import bimacs, msr_action3d, utkinect
 from sensor_gateway.bimacs import HandsTake
+from sensor_gateway.camera.bodies import Estimator
+from sensor_gateway.camera.clips import Naming, clip_files, read_clip
+from sensor_gateway.camera.perceiving import Optics
 from sensor_gateway.takes import Take
 
 SENSOR = "kinect0"
@@ -104,6 +108,27 @@ def import_bimacs(src: Path, out: Path, progress: Progress) -> ImportReport:
         report.add_hands(take)
         progress(report.files, len(files))
     return report
+
+
+def import_video(
+    src: Path,
+    out: Path,
+    progress: Progress,
+    *,
+    naming: Naming,
+    optics: Optics,
+    opened: Callable[[], AbstractContextManager[Estimator]],
+) -> ImportReport:
+    """Write one recording per clip, the whole of it one segment labelled as its name tells; no image is kept.
+
+    Raises:
+        DatasetError: there is no clip, or one's name or content is not of that form.
+    """
+    files = clip_files(src)
+    for file in files:
+        naming.read(file)
+    takes = (read_clip(file, naming, SENSOR, optics, opened) for file in files)
+    return _import("video", takes, len(files), out, progress)
 
 
 def _import(source: str, takes: Iterable[Take], total: int, out: Path, progress: Progress) -> ImportReport:

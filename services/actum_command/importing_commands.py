@@ -1,17 +1,28 @@
 """`actum import`: public data sets as recordings."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from actum_command.context import console, fail
-from actum_command.importing import ImportReport, Progress, import_bimacs, import_msr_action3d, import_utkinect
+from actum_command.importing import (
+    ImportReport,
+    Progress,
+    import_bimacs,
+    import_msr_action3d,
+    import_utkinect,
+    import_video,
+)
 from actum_command.progress import bars
+from sensor_gateway.camera.clips import DEFAULT_PATTERN, Naming
+from sensor_gateway.camera.source import estimator_of, optics_of
+from sensor_gateway.settings import Settings
 from sensor_gateway.takes import DatasetError
 
-app = typer.Typer(no_args_is_help=True, help="Turn public data sets into recordings.")
+app = typer.Typer(no_args_is_help=True, help="Turn public data sets and video clips into recordings.")
 
 Source = Annotated[Path, typer.Argument(help="the folder of the data set", exists=True)]
 Out = Annotated[Path, typer.Argument(help="the folder to write to")]
@@ -33,6 +44,31 @@ def utkinect(source: Source, out: Out) -> None:
 def bimacs(source: Source, out: Out) -> None:
     """Import OptiTrack takes of two hands and objects: one recording per take, with each hand's labelled segments."""
     _run(import_bimacs, source, out)
+
+
+@app.command("video")
+def video(
+    source: Annotated[Path, typer.Argument(help="a folder of video clips, each of one action", exists=True)],
+    out: Out,
+    pattern: Annotated[
+        str, typer.Option(help="a regular expression over the file name without its ending: the groups action, person")
+    ] = DEFAULT_PATTERN,
+    names: Annotated[str, typer.Option(help="what the actions are called, e.g. 1=wave,2=drink")] = "",
+    people: Annotated[int, typer.Option(min=1, max=4, help="how many people are looked for in a clip")] = 1,
+) -> None:
+    """Import video clips named with their action (wave_anna_2.mp4): one recording per clip, the whole clip a segment.
+
+    The camera is described as for the gateway: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION,
+    ACTUM_MIRRORED, ACTUM_PERSON_HEIGHT_M. No image is kept.
+    """
+    try:
+        naming, settings = Naming.of(pattern, names), Settings(people=people)
+        opened = partial(estimator_of, settings)
+        with opened():
+            pass
+        _run(partial(import_video, naming=naming, optics=optics_of(settings), opened=opened), source, out)
+    except ValueError as error:
+        fail(str(error))
 
 
 def _run(importer: Callable[[Path, Path, Progress], ImportReport], source: Path, out: Path) -> None:

@@ -35,7 +35,9 @@ def router(
 
 
 def up(
-    source: Annotated[str, typer.Option(help="simulator, recording, msr-action3d or utkinect")] = "simulator",
+    source: Annotated[
+        str, typer.Option(help="simulator, camera, realsense, openni2, recording, msr-action3d or utkinect")
+    ] = "simulator",
     path: Annotated[Path | None, typer.Option(help="what a source from files plays")] = None,
     model: Annotated[
         Path | None, typer.Option(help="the model; it may come or change later", envvar="ACTUM_MODEL")

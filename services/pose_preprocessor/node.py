@@ -103,6 +103,7 @@ class PosePreprocessor:
             upright=_listed(geometry.upright(both[1], *person.heading.step(frame.stamp_ns, joints))),
             ego_from_camera=geometry.flat(egos[0]),
             motion=person.motion.step(frame.stamp_ns, joints),
+            depth_std_m=agent.depth_std_m,
             agents=present,
             previous_ns=self._previous_ns,
             missed=missed,

@@ -6,15 +6,18 @@ from typing import Literal
 from pydantic import Field
 
 from actum.settings import ServiceSettings
+from sensor_gateway.camera.model_file import default_model
 
 
 class Settings(ServiceSettings):
     """What the gateway can be told beside what every service can."""
 
-    source: Literal["simulator", "recording", "msr-action3d", "utkinect"] = Field(
+    source: Literal["simulator", "recording", "msr-action3d", "utkinect", "camera", "realsense", "openni2"] = Field(
         "simulator", description="where the frames come from"
     )
-    path: Path | None = Field(None, description="the recording or data set: a file, or a folder played in order")
+    path: Path | None = Field(
+        None, description="the recording or data set: a file, or a folder played in order; a depth camera's recording"
+    )
     actor: int = Field(0, ge=0, description="simulator: who acts")
     seed: int = Field(1, ge=0, description="simulator: which repetitions")
     repetitions: int = Field(0, ge=0, description="simulator: how often each action is done; 0 goes on for ever")
@@ -22,3 +25,23 @@ class Settings(ServiceSettings):
     calibration: Path | None = Field(
         None, description="a file of `actum calibrate`: where given, its camera is put with each colour image"
     )
+    camera: str = Field("0", description="camera: a device's number or path, a URL, or a video file")
+    camera_size: str | None = Field(
+        None,
+        pattern=r"^\d{2,5}x\d{2,5}$",
+        description="any camera: the image size to ask a device for, such as 1280x720",
+    )
+    field_of_view_deg: float = Field(
+        60.0,
+        gt=5,
+        lt=170,
+        description="camera, openni2: how much it sees from left to right, where it is not calibrated",
+    )
+    mirrored: bool = Field(False, description="camera: its images are mirrored, and are to be turned back")
+    pose_model: Path = Field(
+        default_factory=default_model, description="any camera: the pose model that `actum models fetch` gets"
+    )
+    person_height_m: float | None = Field(
+        None, gt=0.5, lt=2.5, description="any camera: how tall the person is; where given, distances rest on it"
+    )
+    people: int = Field(2, ge=1, le=4, description="any camera: how many people are looked for")

@@ -7,6 +7,8 @@ from actum.calibration import Calibration
 from actum.messages import Message
 from actum.node import SECOND_NS, Source, Tally
 from sensor_gateway.calibrated import CalibratedSource
+from sensor_gateway.camera.source import CameraSource, camera_of
+from sensor_gateway.depth.source import openni2_of, realsense_of
 from sensor_gateway.msr_action3d import MsrAction3dSource
 from sensor_gateway.recording_source import RecordingSource
 from sensor_gateway.settings import Settings
@@ -22,6 +24,12 @@ FROM_FILES: Mapping[str, Callable[[Path, str], Source]] = {
     "utkinect": UtKinectSource,
 }
 
+CAMERAS: Mapping[str, Callable[[Settings, int], CameraSource]] = {
+    "camera": camera_of,
+    "realsense": realsense_of,
+    "openni2": openni2_of,
+}
+
 
 class SourceError(ValueError):
     """The settings name no usable source."""
@@ -33,14 +41,20 @@ def source_of(settings: Settings, start_ns: int) -> Source:
     Raises:
         SourceError: a source from files has no path.
         CalibrationError: the calibration file is missing or no calibration.
+        PoseModelError: a camera's pose model is missing.
+        DepthSourceError, RealSenseError, OpenNiError: a depth camera's library or recording is missing.
     """
     source = _named(settings, start_ns)
-    return source if settings.calibration is None else CalibratedSource(source, Calibration.load(settings.calibration))
+    if settings.calibration is None or isinstance(source, CameraSource):
+        return source
+    return CalibratedSource(source, Calibration.load(settings.calibration))
 
 
 def _named(settings: Settings, start_ns: int) -> Source:
     if settings.source == "simulator":
         return EndlessSimulator(settings, start_ns) if settings.repetitions == 0 else _scene(settings, start_ns)
+    if settings.source in CAMERAS:
+        return CAMERAS[settings.source](settings, start_ns)
     if settings.path is None:
         raise SourceError(f"source {settings.source} needs --path (ACTUM_PATH): the file or folder to play")
     return FROM_FILES[settings.source](settings.path, settings.sensor)

@@ -22,6 +22,7 @@ Intrinsics = Annotated[list[FiniteFloat], Field(min_length=9, max_length=9)]
 SegmentId = Annotated[str, Field(min_length=1, max_length=200)]
 Name = Annotated[str, Field(max_length=200)]
 Reason = Annotated[str, Field(max_length=1000)]
+Deviation = Annotated[FiniteFloat, Field(ge=0)]
 Hand = Literal["left", "right"]
 
 MOST_AGENTS = 64
@@ -60,11 +61,16 @@ class Tensor(Model):
 
 
 class Agent(Model):
-    """One tracked person of a skeleton frame."""
+    """One tracked person of a skeleton frame.
+
+    `depth_std_m` is the standard deviation of the whole body's distance along the line of sight, where the source
+    infers that from the body's size, beside that of all else in the image; null where it is measured.
+    """
 
     agent: Annotated[int, Field(ge=1, lt=2**31)]
     joints: Joints
     confidence: Annotated[list[float], Field(min_length=15, max_length=15)]
+    depth_std_m: Deviation | None = None
 
 
 class Skeleton(Message):
@@ -76,7 +82,10 @@ class Skeleton(Message):
 
 
 class Image(Message):
-    """A colour (`jpeg`, `bgr8`) or depth (`depth16_mm`, little-endian) image with its camera."""
+    """A colour (`jpeg`, `bgr8`) or depth (`depth16_mm`, little-endian) image with its camera.
+
+    `intrinsics_assumed` tells that `K` follows from a field of view that nobody has measured.
+    """
 
     SCHEMA = "actum.image"
     format: Literal["jpeg", "bgr8", "depth16_mm"]
@@ -86,6 +95,7 @@ class Image(Message):
     K: Intrinsics
     distortion: list[FiniteFloat]
     skeleton_from_image: Transform
+    intrinsics_assumed: bool = False
     session_id: Name = ""
 
 
@@ -97,6 +107,7 @@ class Posture(Message):
     gravity, z horizontal, and the actor's heading smoothed over a second.
     `motion` is the mean displacement (m) of each part of `skeletons.PARTS` since the last valid frame, of joints
     relative to the torso and low-passed; 0 for a part of which no joint is known.
+    `depth_std_m` is the agent's of the skeleton.
     `agents` names every agent of the captured frame, `previous_ns` is the stamp of the captured frame before it
     (its postures may be on other agents' keys), `missed` counts the frames lost just before this one.
     """
@@ -109,6 +120,7 @@ class Posture(Message):
     ego_from_camera: Transform | None
     motion: Annotated[list[FiniteFloat], Field(min_length=5, max_length=5)] | None
     frame: Name = "egocentric"
+    depth_std_m: Deviation | None = None
     agents: Annotated[list[AgentId], Field(max_length=MOST_AGENTS)] = []
     previous_ns: Stamp | None = None
     missed: Seq = 0

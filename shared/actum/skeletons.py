@@ -40,6 +40,9 @@ PARTS: Mapping[str, tuple[int, int, int]] = MappingProxyType(
 
 NITE_15: tuple[int, ...] = tuple(range(15))
 
+NITE2_15: tuple[int, ...] = (0, 1, 8, 2, 4, 6, 3, 5, 7, 9, 11, 13, 10, 12, 14)
+"""NiTE 2's own numbers: head neck, shoulders elbows hands (left, right), torso, hips knees feet (left, right)."""
+
 KINECT_V1_20: tuple[int, ...] = (3, 2, 1, 4, 5, 7, 8, 9, 11, 12, 13, 15, 16, 17, 19)
 """Kinect SDK v1: HipCenter Spine ShoulderCenter Head, then Shoulder Elbow Wrist Hand (left, right),
 Hip Knee Ankle Foot (left, right). The torso is the spine joint, the neck the shoulder centre."""
@@ -48,7 +51,7 @@ MSR_ACTION3D_20: tuple[int, ...] = (19, 2, 3, 0, 7, 11, 1, 8, 12, 4, 13, 17, 5, 
 """MSR Action3D's own order of the same twenty joints; its side B (larger x) is the actor's right."""
 
 SKELETON_MAPS: Mapping[str, tuple[int, ...]] = MappingProxyType(
-    {"nite-15": NITE_15, "kinect-v1-20": KINECT_V1_20, "msr-action3d-20": MSR_ACTION3D_20}
+    {"nite-15": NITE_15, "nite2-15": NITE2_15, "kinect-v1-20": KINECT_V1_20, "msr-action3d-20": MSR_ACTION3D_20}
 )
 
 

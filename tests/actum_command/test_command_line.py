@@ -8,7 +8,7 @@ from actum_command.__main__ import app
 COMMANDS = (
     "demo", "up", "router", "watch", "doctor", "segment start", "segment end", "segment toggle", "record", "play",
     "import msr-action3d", "import utkinect", "train", "evaluate", "inspect", "simulate", "scene", "markers",
-    "calibrate intrinsics", "calibrate extrinsics",
+    "calibrate intrinsics", "calibrate extrinsics", "import video", "models fetch", "draw",
 )  # fmt: skip
 
 

@@ -131,6 +131,7 @@ def test_tokens_go_with_their_process(running: System) -> None:
     [
         (["sensor_gateway", "--source", "recording"], "needs --path"),
         (["sensor_gateway", "--source", "recording", "--path", "/nowhere"], "/nowhere"),
+        (["sensor_gateway", "--source", "camera", "--pose-model", "/nowhere"], "'actum models fetch'"),
         (["marker_tracker", "--dictionary", "DICT_NONE"], "dictionary: "),
         (["pose_preprocessor", "--sensor", "Kinect 0"], "sensor: "),
     ],

@@ -1,0 +1,61 @@
+"""`actum draw`: the joints found in a video, drawn into its pictures."""
+
+from pathlib import Path
+from typing import Annotated
+
+import cv2
+import numpy as np
+import typer
+
+from actum.node import SECOND_NS, Tally
+from actum_command.context import console, fail
+from sensor_gateway.camera.drawing import Pixels, drawn, sheet
+from sensor_gateway.camera.perceiving import Optics, Perceiver
+from sensor_gateway.camera.source import estimator_of, optics_of
+from sensor_gateway.camera.video import Picture, pictures_of
+from sensor_gateway.settings import Settings
+
+COLUMNS = 3
+
+
+def draw_command(
+    video: Annotated[Path, typer.Argument(help="a video file", exists=True, dir_okay=False)],
+    output: Annotated[Path, typer.Option("-o", "--output", help="the image to write, .png or .jpg")],
+    count: Annotated[int, typer.Option("--pictures", min=1, max=30, help="how many, evenly over the video")] = 6,
+    people: Annotated[int, typer.Option(min=1, max=4, help="how many people are looked for")] = 2,
+) -> None:
+    """Draw the fifteen joints of everybody in a video: is the person found, is left their left, does the lens fit?
+
+    The camera is described as for the gateway: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION,
+    ACTUM_MIRRORED.
+    """
+    try:
+        settings = Settings(people=people)
+        pictures = _drawn(video, settings, optics_of(settings))
+        chosen = [pictures[i] for i in np.linspace(0, len(pictures) - 1, min(count, len(pictures))).round().astype(int)]
+        if not cv2.imwrite(str(output), sheet(chosen, COLUMNS)):
+            fail(f"{output}: cannot be written; does the folder exist?")
+    except (ValueError, OSError, cv2.error) as error:
+        fail(str(error))
+    console.print(f"{len(chosen)} of {len(pictures)} pictures, the actor's left blue: {output}", soft_wrap=True)
+
+
+def _drawn(video: Path, settings: Settings, optics: Optics) -> list[Pixels]:
+    """See a video as the camera source does."""
+    with estimator_of(settings) as estimator:
+        perceiver = Perceiver(estimator, optics, settings.sensor, video.stem, Tally())
+        return [_with_joints(picture, perceiver, optics) for picture in pictures_of(video)]
+
+
+def _with_joints(picture: Picture, perceiver: Perceiver, optics: Optics) -> Pixels:
+    skeleton, lens = perceiver.skeleton(picture), optics.lens_of(picture)
+    if lens is None:
+        raise ValueError(skeleton.reason)
+    distances = ", ".join(f"{_distance_m(agent.joints):.2f} m" for agent in skeleton.agents) or "nobody"
+    return drawn(
+        optics.seen(picture).image_bgr, skeleton.agents, lens, f"{picture.stamp_ns / SECOND_NS:.2f} s: {distances}"
+    )
+
+
+def _distance_m(joints: list[list[float] | None]) -> float:
+    return float(np.mean([joint[2] for joint in joints if joint is not None]))

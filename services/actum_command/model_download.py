@@ -1,0 +1,85 @@
+"""A published file fetched, checked against its digest, and only then given its name."""
+
+import hashlib
+import urllib.error
+import urllib.request
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from http.client import HTTPException
+from pathlib import Path
+
+CHUNK_BYTES = 64 * 1024
+TIMEOUT_S = 30.0
+Progress = Callable[[int, int], None]
+"""Told after each piece: how many bytes are there, of how many."""
+
+
+class FetchError(ValueError):
+    """A file that could not be fetched: which, why, what to do."""
+
+
+@dataclass(frozen=True)
+class Published:
+    """A file as its publisher has it."""
+
+    url: str
+    size: int
+    sha256: str
+
+    def is_at(self, path: Path) -> bool:
+        """Tell whether a file is this one."""
+        return path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() == self.sha256
+
+
+def fetch(published: Published, path: Path, progress: Progress) -> None:
+    """Fetch a file to a path; what was there stays until the new one is whole and right.
+
+    Raises:
+        FetchError: it cannot be reached, or what came is not it.
+        OSError: it cannot be written.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(path.name + ".part")
+    try:
+        _check(published, *_received(published, part, progress))
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _received(published: Published, part: Path, progress: Progress) -> tuple[int, str]:
+    """Write what comes, and return its size and SHA-256."""
+    digest, size = hashlib.sha256(), 0
+    with part.open("wb") as file:
+        for chunk in _chunks(published.url):
+            file.write(chunk)
+            digest.update(chunk)
+            size += len(chunk)
+            if size > published.size:
+                break
+            progress(size, published.size)
+    return size, digest.hexdigest()
+
+
+def _chunks(url: str) -> Iterator[bytes]:
+    if not url.startswith(("http://", "https://")):
+        raise FetchError(f"{url}: not an http or https address")
+    try:
+        with urllib.request.urlopen(url, timeout=TIMEOUT_S) as answer:
+            while chunk := answer.read(CHUNK_BYTES):
+                yield chunk
+    except urllib.error.HTTPError as error:
+        raise FetchError(f"{url}: the server says {error.code} {error.reason}; try again later") from None
+    except (OSError, HTTPException) as error:
+        reason = getattr(error, "reason", None) or error
+        raise FetchError(f"{url} cannot be reached ({reason}); is there a network, a proxy?") from None
+
+
+def _check(published: Published, size: int, sha256: str) -> None:
+    if size < published.size:
+        raise FetchError(f"{published.url}: broke off after {size} of {published.size} bytes; try again")
+    if size > published.size or sha256 != published.sha256:
+        raise FetchError(
+            f"{published.url}: not the file that was published (SHA-256 {sha256}, expected {published.sha256}); "
+            "nothing was kept"
+        )

@@ -1,0 +1,56 @@
+"""`actum models`: the pose model that the camera needs."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TransferSpeedColumn
+
+from actum_command.context import console, errors, fail
+from actum_command.model_download import FetchError, Published, fetch
+from sensor_gateway.camera.model_file import default_model
+
+POSE = Published(
+    url="https://storage.googleapis.com/mediapipe-models/pose_landmarker/pose_landmarker_full/float16/1/"
+    "pose_landmarker_full.task",
+    size=9_398_198,
+    sha256="5134a3aad27a58b93da0088d431f366da362b44e3ccfbe3462b3827a839011b1",
+)
+"""MediaPipe's full pose landmarker, revision 1, Apache-2.0."""
+
+app = typer.Typer(no_args_is_help=True, help="Get the model that finds people's poses in a camera's images.")
+
+
+@app.callback()
+def _models() -> None:
+    """Make `fetch` a command of its own, though it is the only one."""
+
+
+@app.command("fetch")
+def fetch_command(
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="the file to write; default: where the gateway looks")
+    ] = None,
+    url: Annotated[str, typer.Option(help="another place that has the same file")] = POSE.url,
+) -> None:
+    """Download MediaPipe's pose model (9 MB, Apache-2.0) and check its digest."""
+    path = output or default_model()
+    published = replace(POSE, url=url)
+    if published.is_at(path):
+        console.print(f"the pose model is already at {path}", soft_wrap=True)
+        return
+    try:
+        _fetch(published, path)
+    except (FetchError, OSError) as error:
+        fail(str(error))
+    console.print(f"fetched and checked: {path}", soft_wrap=True)
+    if output is not None:
+        console.print(f"the gateway reads it with ACTUM_POSE_MODEL={path}", soft_wrap=True)
+
+
+def _fetch(published: Published, path: Path) -> None:
+    columns = TextColumn("fetching"), BarColumn(), DownloadColumn(), TransferSpeedColumn()
+    with Progress(*columns, console=errors, transient=True) as progress:
+        task = progress.add_task("fetching", total=published.size)
+        fetch(published, path, lambda done, _total: progress.update(task, completed=done))

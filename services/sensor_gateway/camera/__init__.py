@@ -1,0 +1,1 @@
+"""A colour camera as a sensor: people's poses found in its images, placed in the camera frame."""

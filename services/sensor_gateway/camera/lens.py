@@ -1,0 +1,36 @@
+"""What turns pixels into lines of sight: calibrated, or assumed from a field of view."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import cv2
+import numpy as np
+
+from actum.calibration import Calibration
+from sensor_gateway.camera.landmarks import Array
+
+
+@dataclass(frozen=True)
+class Lens:
+    """Intrinsics K (3, 3; px) and OpenCV's distortion; `assumed` tells that nobody has measured them."""
+
+    matrix: Array
+    distortion: Array
+    assumed: bool
+
+    @classmethod
+    def of_field_of_view(cls, width: int, height: int, horizontal_deg: float) -> Self:
+        """Assume an ideal camera of this horizontal field of view, square pixels and no distortion."""
+        focal_px = width / 2 / np.tan(np.radians(horizontal_deg) / 2)
+        matrix = np.array([[focal_px, 0, (width - 1) / 2], [0, focal_px, (height - 1) / 2], [0, 0, 1]])
+        return cls(matrix, np.zeros(5), assumed=True)
+
+    @classmethod
+    def of_calibration(cls, calibration: Calibration) -> Self:
+        """Take what was measured."""
+        return cls(calibration.matrix, np.array(calibration.distortion, dtype=np.float64), assumed=False)
+
+    def sights(self, points_px: Array) -> Array:
+        """Return x and y at z = 1 of the lines of sight through points (n, 2)."""
+        points = points_px.reshape(-1, 1, 2)
+        return np.asarray(cv2.undistortPoints(points, self.matrix, self.distortion), dtype=np.float64).reshape(-1, 2)

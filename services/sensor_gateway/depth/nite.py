@@ -1,0 +1,184 @@
+"""People as NiTE 2 tracks them in depth images, where its library is installed; no pose model is needed then."""
+
+import logging
+import os
+from collections.abc import Callable, Sequence
+from contextlib import chdir
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.messages import Agent, Joint, Skeleton
+from actum.skeletons import INDEX, JOINTS, to_actum
+from sensor_gateway.camera.bodies import LEAST_CONFIDENCE, TRUNK
+from sensor_gateway.camera.capture import CameraLostError
+from sensor_gateway.camera.landmarks import Landmarks
+from sensor_gateway.camera.lens import Lens
+from sensor_gateway.camera.perceiving import Perceiver
+from sensor_gateway.camera.video import Picture
+from sensor_gateway.depth.openni2 import OpenNi2Capture, Streams
+from sensor_gateway.depth.openni2_library import library
+from sensor_gateway.depth.picture import DepthPicture
+
+log = logging.getLogger("actum")
+
+FOLDERS = "NITE2_REDIST64", "NITE2_REDIST"
+"""Environment variables that NiTE's installer sets to the folder with its library and data."""
+
+MILLIMETRES = 1000.0
+LEFT_SHOULDER, RIGHT_SHOULDER = INDEX["left_shoulder"], INDEX["right_shoulder"]
+
+
+def _other(name: str) -> str:
+    side, _, joint = name.partition("_")
+    return f"{({'left': 'right', 'right': 'left'})[side]}_{joint}" if joint else name
+
+
+OTHER_SIDE = tuple(INDEX[_other(name)] for name in JOINTS)
+"""For each joint, that of the other side; the middle ones are their own."""
+
+
+@dataclass(frozen=True, eq=False)
+class UsersPicture(DepthPicture):
+    """A picture with the people that NiTE tracks at its time."""
+
+    agents: tuple[Agent, ...]
+
+
+class Nobody:
+    """An estimator that is not asked: people come with the picture."""
+
+    def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
+        """Return nobody."""
+        return []
+
+
+class UsersPerceiver(Perceiver):
+    """Takes people as they come with the picture."""
+
+    def _skeleton(self, picture: Picture, lens: Lens | None) -> Skeleton:
+        assert isinstance(picture, UsersPicture)
+        agents = list(picture.agents)
+        return Skeleton(stamp_ns=picture.stamp_ns, sensor=self._sensor, agents=agents, session_id=self._session_id)
+
+
+def nite() -> Any | None:
+    """Start NiTE where its installer's environment variable tells that it is there; None elsewhere.
+
+    Raises:
+        OpenNiError: OpenNI 2 or its bindings are not installed.
+    """
+    folders = [os.environ[name] for name in FOLDERS if name in os.environ]
+    if not folders:
+        return None
+    library()
+    from openni import nite2
+    from openni.utils import InitializationError
+
+    try:
+        nite2.initialize(folders)
+    except InitializationError as error:
+        log.warning("NiTE cannot be started, so people are looked for in colour: %s", error)
+        return None
+    return nite2
+
+
+class NiteCapture(OpenNi2Capture):
+    """The first camera found, with the people that NiTE tracks; it sees them in the dark as well."""
+
+    live = False
+
+    def __init__(self, nite2: Any, size: tuple[int, int] | None = None, field_of_view_deg: float = 60.0) -> None:
+        super().__init__(size, field_of_view_deg)
+        self._nite2 = nite2
+        self._tracker: Any = None
+        self._users = Users(self._follow)
+
+    def next(self, patience_s: float) -> Picture | None:
+        """Return a picture newer than the last, with its people, or None.
+
+        Raises:
+            CameraLostError: there is no camera, it cannot be used, was unplugged, or has been silent for too long.
+        """
+        picture = super().next(patience_s)
+        if not isinstance(picture, DepthPicture):
+            return None
+        frame = self._tracker.read_frame()
+        agents = self._users.agents(frame.users)
+        frame.close()
+        return UsersPicture(picture.image_bgr, picture.stamp_ns, picture.depth_m, picture.lens, tuple(agents))
+
+    def close(self) -> None:
+        """Let go of the camera."""
+        tracker, self._tracker = self._tracker, None
+        if tracker is not None:
+            tracker.close()
+        super().close()
+
+    def _opened(self) -> Streams:
+        from openni.utils import NiteError
+
+        streams = super()._opened()
+        try:
+            with chdir(self._nite2.loaded_dll_directory):  # its data is looked for from where the process is
+                self._tracker = self._nite2.UserTracker(streams.device)
+        except NiteError as error:
+            streams.close()
+            raise CameraLostError(f"NiTE cannot track people with this camera ({error})") from None
+        return streams
+
+    def _follow(self, user: int) -> None:
+        self._tracker.start_skeleton_tracking(user)
+
+
+class Users:
+    """Makes agents of NiTE's users; `follow` has a new one's skeleton tracked.
+
+    NiTE gives a number to somebody else once it is free, agents are numbered on. It takes everybody to face the
+    camera, but whether its left is the actor's depends on whether images were mirrored when it looked: the side on
+    which the left shoulder is when somebody is first seen tells.
+    """
+
+    def __init__(self, follow: Callable[[int], None]) -> None:
+        self._follow = follow
+        self._agents: dict[int, int] = {}
+        self._exchanged: dict[int, bool] = {}
+        self._next = 1
+
+    def agents(self, users: Sequence[Any]) -> list[Agent]:
+        """Return those whose skeleton is tracked."""
+        for user in users:
+            self._meet_or_forget(user)
+        return [self._agent(user) for user in users if user.id in self._agents and _is_tracked(user)]
+
+    def _meet_or_forget(self, user: Any) -> None:
+        if user.is_lost():
+            self._agents.pop(user.id, None)
+            self._exchanged.pop(user.id, None)
+        elif user.id not in self._agents:
+            self._agents[user.id], self._next = self._next, self._next + 1
+            self._follow(user.id)
+
+    def _agent(self, user: Any) -> Agent:
+        joints: list[Joint] = to_actum([_in_metres(joint.position) for joint in user.skeleton.joints], "nite2-15")
+        confidence = to_actum([float(joint.positionConfidence) for joint in user.skeleton.joints], "nite2-15")
+        if self._is_exchanged(user.id, joints):
+            joints, confidence = [joints[i] for i in OTHER_SIDE], [confidence[i] for i in OTHER_SIDE]
+        known = [joints[i] if confidence[i] >= LEAST_CONFIDENCE or i in TRUNK else None for i in range(len(JOINTS))]
+        return Agent(agent=self._agents[user.id], joints=known, confidence=confidence)
+
+    def _is_exchanged(self, user: int, joints: list[Joint]) -> bool:
+        left, right = joints[LEFT_SHOULDER], joints[RIGHT_SHOULDER]
+        assert left is not None and right is not None
+        return self._exchanged.setdefault(user, left[0] < right[0])
+
+
+def _is_tracked(user: Any) -> bool:
+    return bool(user.skeleton.state.value == user.skeleton.state.NITE_SKELETON_TRACKED)
+
+
+def _in_metres(position: Any) -> Joint:
+    """Turn NiTE's position (x right, y up, z forward; mm) into the camera frame (x right, y down, z forward; m)."""
+    return [position.x / MILLIMETRES, -position.y / MILLIMETRES, position.z / MILLIMETRES]

@@ -1,0 +1,70 @@
+"""Joints are drawn where they are, the actor's left in one colour and their right in another."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from actum.messages import Agent
+from actum.skeletons import INDEX
+from actum_command.__main__ import app
+from camera_bodies import K, projected
+from camera_videos import write_video
+from people import STANDING, lacking, listed
+from sensor_gateway.camera.drawing import LEFT, MIDDLE, RIGHT, drawn, sheet
+from sensor_gateway.camera.lens import Lens
+
+LENS = Lens(K, np.zeros(5), assumed=False)
+GREY = np.full((480, 640, 3), 90, np.uint8)
+
+
+def picture(joints: np.ndarray) -> np.ndarray:
+    agent = Agent(agent=1, joints=listed(joints), confidence=[1.0] * 15)
+    return drawn(GREY, [agent], LENS, "")
+
+
+@pytest.mark.parametrize(
+    ("name", "colour"), [("left_elbow", LEFT), ("left_knee", LEFT), ("right_elbow", RIGHT), ("torso", MIDDLE)]
+)
+def test_each_joint_is_where_it_projects_to_in_the_colour_of_its_side(name: str, colour: tuple[int, int, int]) -> None:
+    x, y = projected(STANDING[[INDEX[name]]])[0].round().astype(int)
+    assert tuple(picture(STANDING)[y, x]) == colour
+
+
+def test_a_missing_joint_is_not_drawn_and_the_picture_given_stays_as_it_was() -> None:
+    x, y = projected(STANDING[[INDEX["left_elbow"]]])[0].round().astype(int)
+    assert tuple(picture(lacking(STANDING, "left_elbow"))[y, x]) == (90, 90, 90)
+    assert (GREY == 90).all()
+
+
+def test_pictures_are_put_side_by_side_row_by_row() -> None:
+    levels = [np.full((2, 3, 3), level, np.uint8) for level in (1, 2, 3, 4)]
+    assert sheet(levels, columns=3)[::2, ::3, 0].tolist() == [[1, 2, 3], [4, 0, 0]]
+    assert sheet(levels[:2], columns=3).shape == (2, 6, 3)
+
+
+def test_without_a_model_the_command_says_how_to_get_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ACTUM_POSE_MODEL", str(tmp_path / "pose.task"))
+    video = write_video(tmp_path / "a.avi")
+    refused = CliRunner().invoke(app, ["draw", str(video), "-o", str(tmp_path / "a.png")])
+    assert refused.exit_code == 1
+    assert "actum models fetch" in " ".join(refused.stderr.split())
+    imported = CliRunner().invoke(app, ["import", "video", str(tmp_path), str(tmp_path / "out")])
+    assert imported.exit_code == 1
+    assert "actum models fetch" in " ".join(imported.stderr.split())
+
+
+@pytest.mark.data
+@pytest.mark.pose_model
+def test_a_real_clip_becomes_a_sheet(data: Path, tmp_path: Path) -> None:
+    clip = data / "florence3d_rgb" / "GestureRecording_Id1actor1idAction1category1.mp4"
+    done = CliRunner().invoke(app, ["draw", str(clip), "-o", str(tmp_path / "a.png"), "--pictures", "4"])
+    assert done.exit_code == 0, done.output
+    drawing = cv2.imread(str(tmp_path / "a.png"))
+    assert drawing.shape == (2 * 480, 3 * 640, 3)
+    first = drawing[:480, :640]
+    assert (first == LEFT).all(axis=2).sum() > 300
+    left_x, right_x = ((first == colour).all(axis=2).nonzero()[1].mean() for colour in (LEFT, RIGHT))
+    assert left_x > right_x, "they face the camera"

@@ -1,0 +1,97 @@
+"""Pictures of files and devices: their stamps, their pace, and that a device's old ones are left out."""
+
+from pathlib import Path
+
+import pytest
+
+from actum.node import SECOND_NS
+from camera_videos import write_video
+from live import wait_until
+from sensor_gateway.camera.capture import (
+    CameraLostError,
+    CaptureEndedError,
+    FileCapture,
+    LiveCapture,
+    capture_of,
+)
+from sensor_gateway.camera.video import Picture, VideoError, pictures_of
+
+TENTH_NS = SECOND_NS // 10
+
+
+def test_a_files_pictures_carry_its_own_times_from_the_first_on(tmp_path: Path) -> None:
+    pictures = list(pictures_of(write_video(tmp_path / "a.avi"), start_ns=5 * SECOND_NS))
+    assert [picture.stamp_ns for picture in pictures] == [5 * SECOND_NS + i * TENTH_NS for i in range(6)]
+    assert [round(float(picture.image_bgr.mean()) / 10) for picture in pictures] == [2, 3, 4, 5, 6, 7]
+
+
+def test_what_is_no_video_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "a.mp4"
+    path.write_text("no video")
+    with pytest.raises(VideoError, match=r"a\.mp4: no video"):
+        list(pictures_of(path))
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now_ns = SECOND_NS
+
+    def pause(self, seconds: float) -> None:
+        self.now_ns += round(seconds * SECOND_NS)
+
+
+def test_a_file_is_played_at_its_own_pace_and_each_picture_is_given_when_it_is_due(tmp_path: Path) -> None:
+    clock = Clock()
+    capture = FileCapture(write_video(tmp_path / "a.avi"), now_ns=lambda: clock.now_ns, pause=clock.pause)
+    given: list[tuple[int, int]] = []
+    looks = 0
+    with pytest.raises(CaptureEndedError):
+        while True:
+            looks += 1
+            picture = capture.next(patience_s=0.03)
+            if picture is not None:
+                given.append((clock.now_ns, picture.stamp_ns))
+    assert [stamp_ns for _, stamp_ns in given] == [SECOND_NS + i * TENTH_NS for i in range(6)]
+    assert all(0 <= at_ns - stamp_ns < 1000 for at_ns, stamp_ns in given)
+    assert looks == 1 + 5 * 4 + 1
+
+
+def test_a_slow_reader_of_a_file_misses_nothing_and_catches_up(tmp_path: Path) -> None:
+    clock = Clock()
+    capture = FileCapture(write_video(tmp_path / "a.avi"), now_ns=lambda: clock.now_ns, pause=clock.pause)
+    clock.now_ns += 10 * SECOND_NS
+    given = [capture.next(0.03) for _ in range(6)]
+    assert [picture.stamp_ns for picture in given if picture] == [SECOND_NS + i * TENTH_NS for i in range(6)]
+    assert clock.now_ns == 11 * SECOND_NS
+
+
+def test_a_device_gives_its_newest_picture_and_what_came_before_is_left_out(tmp_path: Path) -> None:
+    capture = LiveCapture(str(write_video(tmp_path / "a.avi", frames=20)))
+    wait_until(lambda: capture.over, "the device has given all")
+    newest = capture.next(0.0)
+    assert isinstance(newest, Picture)
+    assert round(float(newest.image_bgr.mean())) == pytest.approx(20 + 10 * 19, abs=2)
+    with pytest.raises(CameraLostError, match="no more pictures"):
+        capture.next(0.0)
+
+
+def test_a_device_that_cannot_be_opened_is_lost(tmp_path: Path) -> None:
+    capture = LiveCapture(str(tmp_path / "video9"))
+    wait_until(lambda: capture.over, "it has been tried")
+    with pytest.raises(CameraLostError, match="cannot be opened"):
+        capture.next(0.0)
+
+
+def test_a_file_that_is_there_is_played_and_all_else_is_a_device(tmp_path: Path) -> None:
+    played = capture_of(str(write_video(tmp_path / "a.avi")), None)
+    other = capture_of(str(tmp_path / "gone.avi"), None)
+    assert (played.live, other.live) == (False, True)
+    played.close()
+    other.close()
+
+
+def test_a_file_that_is_no_video_is_a_lost_camera(tmp_path: Path) -> None:
+    path = tmp_path / "a.mp4"
+    path.write_text("no video")
+    with pytest.raises(CameraLostError, match="no video"):
+        capture_of(str(path), None).next(0.0)

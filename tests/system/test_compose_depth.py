@@ -1,0 +1,48 @@
+"""The files laid over the camera host's for depth cameras: what they say of the gateway."""
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[2]
+SOURCES = {"realsense": "libusb-1.0-0", "openni2": "libopenni2-0"}
+
+
+def gateway(source: str) -> dict[str, Any]:
+    loader = type("ComposeLoader", (yaml.SafeLoader,), {})
+    loader.add_multi_constructor("!", lambda made, _tag, node: made.construct_sequence(node))
+    content = yaml.load((ROOT / "deploy" / f"compose.{source}.yml").read_text(), loader)
+    assert list(content["services"]) == ["sensor_gateway"]
+    return content["services"]["sensor_gateway"]
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_the_image_has_the_sources_extra_and_the_library_it_needs(source: str) -> None:
+    extras = (ROOT / "pyproject.toml").read_text()
+    arguments = gateway(source)["build"]["args"]
+
+    assert arguments["EXTRA"] == source
+    assert f"\n{source} = [" in extras
+    assert SOURCES[source] in arguments["PACKAGES"].split()
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_every_variable_is_a_setting_of_the_gateway_and_the_source_is_one_of_its(source: str) -> None:
+    fields = import_module("sensor_gateway.settings").Settings.model_fields
+    environment = gateway(source)["environment"]
+
+    assert {name.removeprefix("ACTUM_").lower() for name in environment} <= set(fields)
+    assert environment["ACTUM_SOURCE"] == source
+    assert source in fields["source"].annotation.__args__
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_usb_devices_that_come_later_can_be_used(source: str) -> None:
+    service = gateway(source)
+
+    assert "/dev/bus/usb:/dev/bus/usb" in service["volumes"]
+    assert "c 189:* rmw" in service["device_cgroup_rules"]
+    assert service["devices"] == []
