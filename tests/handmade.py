@@ -38,7 +38,7 @@ def paper_model(**changes: object) -> PaperModel:
 def pyramid_model(**changes: object) -> PyramidModel:
     """Three maps of 3×3 units, two stages, a 3×3 map of actions, all drawn at random."""
     about = {
-        "posture_contrast": 0.5, "velocity_contrast": 0.1, "arm_contrast": 0.2, "arm_share": 0.4,
+        "posture_contrast": 0.5, "velocity_contrast": 0.1, "arm_contrast": 0.2, "arm_share": 0.4, "mirrors": True,
         "levels": LEVELS, "overlap": 0.25, "fractions": FRACTIONS, "log_duration_mean": 0.5, "log_duration_sd": 0.4,
         "concept_contrast": 2.0, "gains": [4.0, 8.0], "familiar": 0.3,
     }  # fmt: skip

@@ -1,6 +1,7 @@
 """Small trained models for tests that need a classifier and not a good one."""
 
 import tempfile
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from som_classifier.presets import Preset
 
 @cache
 def tiny_model(preset: Preset = TINY) -> Model:
-    """Train on one synthetic person who does every action twice."""
+    """Train on two synthetic people, of whom the one who swings does so with the left arm; every action twice."""
     return train(tiny_samples(), preset)
 
 
@@ -26,4 +27,5 @@ def tiny_samples() -> tuple[SegmentSample, ...]:
         with Recorder(path, person="1", source="test") as recorder:
             for message in [*skeletons, *marks]:
                 recorder.write(message)
-        return tuple(samples_from([Recording(path)]).usable)
+        samples = samples_from([Recording(path)]).usable
+    return tuple(replace(sample, person="left-handed" if sample.label == "swing" else "1") for sample in samples)

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from model_inspector.anatomy import Floats, complete_weights
-from som_classifier.handedness import Spreads
-from som_classifier.pyramid_model import PyramidModel, trail_of
+from som_classifier.pyramid_model import PyramidModel, left_handed
 from som_classifier.streams import Frame
 
 
@@ -67,10 +66,10 @@ def contributions(model: PyramidModel, frames: Sequence[Frame], instead: str | N
     for axes, weight in zip(model.stages.axes, weights, strict=True):
         if weight:
             units += weight * (axes[:, winner] - axes[:, second]).reshape(units.shape)
-    vector = model.pyramid.vector(trail_of(codes)).reshape(units.shape)
+    vector = model.pyramid.vector(model.trail(codes)).reshape(units.shape)
     offsets = np.array(weights) @ model.stages.offsets
     return Contributions(
         winner, second, (float(scores[winner]), float(scores[second])), units * vector,
         float(offsets[winner] - offsets[second]), vector**4,
-        Spreads.of(codes[-1].spread - codes[0].spread_before).left_handed,
+        model.description.mirrors and left_handed(codes),
     )  # fmt: skip

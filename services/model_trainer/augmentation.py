@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from actum.geometry import BONES
 from actum.skeletons import JOINTS
+from model_trainer.hands import acting_hand
 from model_trainer.samples import SegmentSample
-from som_classifier.handedness import Spreads, mirrored, moments
+from som_classifier.handedness import mirrored
 from som_classifier.presets import PyramidPreset
 
 Array = NDArray[np.float64]
@@ -19,15 +20,17 @@ _BONE_NAMES = sorted({JOINTS[child].removeprefix("left_").removeprefix("right_")
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A sample as it is shown: (n, 15, 3) postures and velocities, left-handed ones in a mirror."""
+    """A sample as it is shown: (n, 15, 3) postures and velocities."""
 
     postures: Array
     velocities: Array
 
 
-def views(sample: SegmentSample, preset: PyramidPreset, rng: np.random.Generator) -> Iterator[View]:
-    """Yield the sample itself, then turned, then as other people."""
-    postures, velocities = _right_handed(sample)
+def views(sample: SegmentSample, preset: PyramidPreset, mirrors: bool, rng: np.random.Generator) -> Iterator[View]:
+    """Yield the sample itself, then turned, then as other people; where `mirrors`, the left arm's in a mirror."""
+    postures, velocities = sample.postures, sample.velocities
+    if mirrors and acting_hand(sample) == "left":
+        postures, velocities = mirrored(postures), mirrored(velocities)
     yield View(postures, velocities)
     for turn_deg in preset.turns_deg:
         turn = turned(np.radians(turn_deg))
@@ -55,13 +58,6 @@ def rebuilt(factors: dict[str, float]) -> Array:
         build[child, child] += factor
         build[child, parent] -= factor
     return build
-
-
-def _right_handed(sample: SegmentSample) -> tuple[Array, Array]:
-    summed = np.sum([moments(posture) for posture in sample.postures], axis=0)
-    if Spreads.of(summed).left_handed:
-        return mirrored(sample.postures), mirrored(sample.velocities)
-    return sample.postures, sample.velocities
 
 
 def _applied(build: Array, vectors: Array) -> Array:

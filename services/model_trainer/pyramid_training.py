@@ -12,6 +12,7 @@ from actum.som import Som
 from model_trainer.augmentation import View, views
 from model_trainer.description import labels_of, provenance
 from model_trainer.discriminants import discriminant_axes, folds_of
+from model_trainer.hands import keep_to_one_hand
 from model_trainer.progress import Progress
 from model_trainer.samples import SegmentSample
 from model_trainer.upper_layers import Scored, UpperLayers, held_out_gains, train_upper
@@ -40,7 +41,8 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
     """
     labels = labels_of(samples)
     rng = np.random.default_rng(seed)
-    shown = [list(views(sample, preset, rng)) for sample in samples]
+    mirrors = keep_to_one_hand(samples)
+    shown = [list(views(sample, preset, mirrors, rng)) for sample in samples]
     first = _first_maps([view for own in shown for view in own], preset, rng, progress)
     targets = np.array([labels.index(sample.label) for sample in samples])
     folds = folds_of(samples)
@@ -52,7 +54,9 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
     progress("discriminant axes", len(preset.stages), len(preset.stages))
     upper = train_upper(fitted[-1], len(labels), preset, rng, progress)
     gains = held_out_gains(fitted, len(labels), preset, rng, progress)
-    return _assembled(samples, first, fitted, upper, gains, preset, seed)
+    return _assembled(
+        samples, first, fitted, upper, gains, provenance(samples, preset, seed) | {"mirrors": mirrors}, preset
+    )
 
 
 def _first_maps(
@@ -146,8 +150,8 @@ def _assembled(
     fitted: Sequence[Scored],
     upper: UpperLayers,
     gains: list[float],
+    origin: dict[str, Any],
     preset: PyramidPreset,
-    seed: int,
 ) -> PyramidModel:
     durations = np.log([max(np.ptp(sample.stamps_ns) / SECOND_NS, SHORTEST_S) for sample in samples])
     stages = Stages(
@@ -157,7 +161,7 @@ def _assembled(
         float(durations.mean()),
         float(max(durations.std(), SMALLEST_LOG_SD)),
     )
-    about = provenance(samples, preset, seed) | {
+    about = origin | {
         "posture_contrast": first.contrasts[0],
         "velocity_contrast": first.contrasts[1],
         "arm_contrast": first.contrasts[2],

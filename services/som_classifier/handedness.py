@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.messages import Hand
 from actum.skeletons import INDEX, JOINTS
 
 Integers = NDArray[np.int64]
@@ -67,7 +68,16 @@ class Spreads:
         return cls(np.sqrt(np.maximum(summed[:, 6] / count - (means * means).sum(axis=1), 0.0)))
 
     @property
+    def acting_hand(self) -> Hand | None:
+        """Whose arm is the limb that moves most, and clearly more than the other arm."""
+        sides: tuple[tuple[Hand, int, int], ...] = (("left", _LEFT_ARM, _RIGHT_ARM), ("right", _RIGHT_ARM, _LEFT_ARM))
+        most = self.limbs.argmax()
+        for hand, own, other in sides:
+            if most == own and self.limbs[own] + _JITTER > _FACTOR * (self.limbs[other] + _JITTER):
+                return hand
+        return None
+
+    @property
     def left_handed(self) -> bool:
-        """Whether the left arm is the limb that moves most, and clearly more than the right."""
-        left, right = self.limbs[_LEFT_ARM] + _JITTER, self.limbs[_RIGHT_ARM] + _JITTER
-        return bool(self.limbs.argmax() == _LEFT_ARM and left > _FACTOR * right)
+        """Whether the left arm acts."""
+        return self.acting_hand == "left"

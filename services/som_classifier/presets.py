@@ -104,7 +104,7 @@ Action3D, and the demo's simulated training set.
 
 PYRAMID = PyramidPreset(
     name="pyramid",
-    units=(20, 20),
+    units=(18, 18),
     unit_epochs=12,
     unit_radius=(7.0, 0.6),
     relative_contrast=0.3,
@@ -117,9 +117,9 @@ PYRAMID = PyramidPreset(
     stages=((0.2, 0.3, 0.4), (0.5, 0.6), (0.7, 0.8), (1.0,)),
     shrinkage=0.15,
     held_out_share=0.5,
-    concepts=(35, 35),
+    concepts=(25, 25),
     concept_epochs=20,
-    concept_radius=(12.0, 1.0),
+    concept_radius=(9.0, 0.8),
     relative_concept_contrast=40.0,
     beta=0.05,
     epochs=10,

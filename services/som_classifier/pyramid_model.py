@@ -36,6 +36,7 @@ class PyramidDescription(Description):
         velocity_contrast: of the velocity map's activity.
         arm_contrast: of the activity of the map of arms.
         arm_share: what the latter adds up to.
+        mirrors: whether an action of the left arm is read in a mirror.
         levels: the pyramid's cells on each level.
         overlap: how far each reaches over its borders, in parts of its length.
         fractions: the share of an action that each stage of the discriminant axes has seen.
@@ -51,6 +52,7 @@ class PyramidDescription(Description):
     velocity_contrast: Positive
     arm_contrast: Positive
     arm_share: Positive
+    mirrors: bool
     levels: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=1)]
     overlap: Annotated[float, Field(ge=0, le=1)]
     fractions: Annotated[list[Annotated[float, Field(gt=0, le=1)]], Field(min_length=1)]
@@ -173,12 +175,16 @@ class PyramidModel(Model):
             unknown=complete and self._is_strange(familiarity),
         )
 
+    def trail(self, codes: Sequence[Code]) -> Trail:
+        """Return a segment's running sums, of the actor as seen or in a mirror."""
+        return trail_of(codes, in_mirror=self.description.mirrors and left_handed(codes))
+
     def _is_strange(self, familiarity: float) -> bool:
         return self.description.familiar is not None and familiarity < self.description.familiar
 
     def scores(self, codes: Sequence[Code], weights: Sequence[float]) -> NDArray[np.float32]:
         """Return the actions' scores on the discriminant axes of the stages that the weights name."""
-        return self.stages.scores(self.pyramid.vector(trail_of(codes)), weights)
+        return self.stages.scores(self.pyramid.vector(self.trail(codes)), weights)
 
     def _mismatch(self) -> str | None:
         """Name the first thing about the layers that does not fit together."""
@@ -234,9 +240,14 @@ class FrameEncoder:
         )  # fmt: skip
 
 
-def trail_of(codes: Sequence[Code]) -> Trail:
-    """Return a segment's running sums, in a mirror where the left arm acts."""
-    side = int(Spreads.of(codes[-1].spread - codes[0].spread_before).left_handed)
+def left_handed(codes: Sequence[Code]) -> bool:
+    """Tell whether the left arm acts."""
+    return Spreads.of(codes[-1].spread - codes[0].spread_before).left_handed
+
+
+def trail_of(codes: Sequence[Code], in_mirror: bool) -> Trail:
+    """Return a segment's running sums."""
+    side = int(in_mirror)
     travelled_um = [codes[0].travelled_before_um, *[code.travelled_um for code in codes]]
     return Trail([codes[0].sums_before[side], *[code.sums[side] for code in codes]], np.array(travelled_um))
 

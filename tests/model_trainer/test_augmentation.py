@@ -21,8 +21,8 @@ RIGHT_HANDED, LEFT_HANDED = tiny_samples()[0], tiny_samples()[2]
 TORSO = INDEX["torso"]
 
 
-def shown(sample: SegmentSample, seed: int = 0, **changes: object) -> list[View]:
-    return list(views(sample, replace(TINY, **changes), np.random.default_rng(seed)))
+def shown(sample: SegmentSample, seed: int = 0, mirrors: bool = True, **changes: object) -> list[View]:
+    return list(views(sample, replace(TINY, **changes), mirrors, np.random.default_rng(seed)))
 
 
 def bones(postures: np.ndarray) -> np.ndarray:
@@ -55,6 +55,7 @@ def test_left_handed_samples_are_shown_in_a_mirror() -> None:
     image = replace(LEFT_HANDED, postures=itself.postures, velocities=itself.velocities)
     for view, same in zip(others, shown(image)[1:], strict=True):
         np.testing.assert_array_equal(view.postures, same.postures)
+    np.testing.assert_array_equal(shown(LEFT_HANDED, mirrors=False)[0].postures, LEFT_HANDED.postures)
 
 
 @settings(deadline=None)

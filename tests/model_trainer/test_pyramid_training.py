@@ -10,6 +10,7 @@ from actum.skeletons import INDEX, PARTS
 from actum.som import Som
 from model_trainer.answering import answer, encoded
 from model_trainer.discriminants import discriminant_axes, folds_of
+from model_trainer.hands import acting_hand, keep_to_one_hand
 from model_trainer.pyramid_training import typical_distance2
 from model_trainer.samples import SegmentSample
 from model_trainer.training import train
@@ -17,7 +18,7 @@ from performers import TINY
 from som_classifier.handedness import mirrored
 from som_classifier.layers import arm_inputs, frame_inputs
 from som_classifier.presets import PyramidPreset
-from som_classifier.pyramid_model import PyramidModel, trail_of
+from som_classifier.pyramid_model import PyramidModel
 from som_classifier.stages import familiarity_of
 
 PLAIN = replace(TINY, turns_deg=(), builds=0, stages=((1.0,),))
@@ -32,7 +33,7 @@ def trained(samples: list[SegmentSample], preset: PyramidPreset = TINY, seed: in
 
 def pooled(model: PyramidModel, sample: SegmentSample, fraction: float = 1.0) -> np.ndarray:
     codes = [frame.code for frame in encoded(model, sample)]
-    return model.pyramid.vector(trail_of(codes[: round(fraction * len(codes))]))
+    return model.pyramid.vector(model.trail(codes[: round(fraction * len(codes))]))
 
 
 def wanted(model: PyramidModel, samples: list[SegmentSample]) -> np.ndarray:
@@ -92,22 +93,47 @@ def test_durations_are_those_of_the_samples(samples: list[SegmentSample]) -> Non
     assert trained(samples).description.log_duration_sd == pytest.approx(0.1), "however alike they are"
 
 
+def right_handed(samples: list[SegmentSample]) -> list[SegmentSample]:
+    return [in_a_mirror(sample) if sample.label == "swing" else sample for sample in samples]
+
+
+def with_a_left_hander(samples: list[SegmentSample]) -> list[SegmentSample]:
+    """Everybody acts with one hand, person 1 with the left one."""
+    return [in_a_mirror(sample) if sample.person == "1" else sample for sample in right_handed(samples)]
+
+
+def test_where_people_change_hands_the_hand_belongs_to_the_action(samples: list[SegmentSample]) -> None:
+    assert {acting_hand(sample) for sample in samples if sample.label == "swing"} == {"left"}
+    assert not keep_to_one_hand(samples)
+    assert not trained(samples).description.mirrors
+    for others in (right_handed(samples), with_a_left_hander(samples), [replace(s, person=s.label) for s in samples]):
+        assert keep_to_one_hand(others)
+        assert trained(others).description.mirrors
+
+
+def test_now_and_then_a_person_may_use_the_other_hand(samples: list[SegmentSample]) -> None:
+    first, *others = right_handed(samples)
+    assert keep_to_one_hand([in_a_mirror(first), *others])
+    assert not keep_to_one_hand([in_a_mirror(first), *others[:5]])
+
+
 def test_contrasts_are_relative_to_the_distances_on_the_maps(samples: list[SegmentSample]) -> None:
-    half, whole = (trained(samples, replace(TINY, relative_contrast=contrast)) for contrast in (0.5, 1.0))
+    mixed = with_a_left_hander(samples)
+    half, whole = (trained(mixed, replace(TINY, relative_contrast=contrast)) for contrast in (0.5, 1.0))
     for name in ("posture_contrast", "velocity_contrast", "arm_contrast"):
         assert getattr(whole.description, name) == pytest.approx(2 * getattr(half.description, name))
     postures = np.concatenate([sample.postures for sample in samples]).reshape(-1, 45)
-    plain = trained(samples, PLAIN)
-    right_handed = [mirrored(s.postures) if s.label == "swing" else s.postures for s in samples]
-    distances2 = [plain.first.postures.distances2(x.ravel()).min() for x in np.concatenate(right_handed)]
+    plain = trained(mixed, PLAIN)
+    acting = np.concatenate([sample.postures for sample in right_handed(samples)])
+    distances2 = [plain.first.postures.distances2(x.ravel()).min() for x in acting]
     assert len(distances2) == len(postures)
     assert plain.description.posture_contrast == pytest.approx(0.5 * np.median(distances2), rel=1e-3)
 
 
 def test_the_map_of_arms_learns_the_arm_that_acts(samples: list[SegmentSample]) -> None:
     """The right one, and of who acts with the left one that of the mirror image."""
-    model = trained(samples, PLAIN)
-    acting = [s if s.label != "swing" else in_a_mirror(s) for s in samples]
+    model = trained(with_a_left_hander(samples), PLAIN)
+    acting = right_handed(samples)
     postures, velocities = (
         np.concatenate([getattr(sample, name) for sample in acting]) for name in ("postures", "velocities")
     )
@@ -128,7 +154,8 @@ def test_where_no_arm_was_ever_seen_from_its_shoulder_its_map_says_nothing(sampl
 
 
 def test_mirror_images_teach_the_same(samples: list[SegmentSample]) -> None:
-    one, other = trained(samples), trained([in_a_mirror(sample) for sample in samples])
+    mixed = with_a_left_hander(samples)
+    one, other = trained(mixed), trained([in_a_mirror(sample) for sample in mixed])
     for name, array in one.arrays.items():
         np.testing.assert_array_equal(array, other.arrays[name])
 

@@ -16,7 +16,7 @@ from recognisers import tiny_model, tiny_samples
 from som_classifier.attention import PART_NAMES, attended
 from som_classifier.handedness import mirrored
 from som_classifier.pyramid import SCALE
-from som_classifier.pyramid_model import Code, PyramidModel, seen_share, trail_of
+from som_classifier.pyramid_model import Code, PyramidModel, seen_share
 from som_classifier.recognition import Recognition
 from som_classifier.stages import familiarity_of
 from som_classifier.streams import Frame
@@ -127,7 +127,9 @@ def test_left_handed_segments_are_read_in_the_mirror() -> None:
     for sample in SAMPLES[:3]:
         codes = [frame.code for frame in encoded(model(), sample)]
         side = 1 if sample.label == "swing" else 0
-        np.testing.assert_array_equal(np.stack(trail_of(codes).sums[1:]), np.stack([code.sums[side] for code in codes]))
+        np.testing.assert_array_equal(
+            np.stack(model().trail(codes).sums[1:]), np.stack([code.sums[side] for code in codes])
+        )
 
 
 @settings(deadline=None)
