@@ -23,6 +23,7 @@ TINY = PyramidPreset(
     turns_deg=(-15.0, 15.0),
     builds=1,
     build_sd=0.1,
+    builds_of_one=(2, 0.1),
     stages=((0.3, 0.5), (0.7,), (1.0,)),
     shrinkage=0.15,
     held_out_share=0.5,

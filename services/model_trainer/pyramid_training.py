@@ -1,6 +1,7 @@
 """The default recogniser, trained layer after layer: first maps, discriminant axes, map of actions, neurons."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -42,7 +43,7 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
     labels = labels_of(samples)
     rng = np.random.default_rng(seed)
     mirrors = keep_to_one_hand(samples)
-    shown = [list(views(sample, preset, mirrors, rng)) for sample in samples]
+    shown = [list(views(sample, _varied(preset, samples), mirrors, rng)) for sample in samples]
     first = _first_maps([view for own in shown for view in own], preset, rng, progress)
     targets = np.array([labels.index(sample.label) for sample in samples])
     folds = folds_of(samples)
@@ -57,6 +58,14 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
     return _assembled(
         samples, first, fitted, upper, gains, provenance(samples, preset, seed) | {"mirrors": mirrors}, preset
     )
+
+
+def _varied(preset: PyramidPreset, samples: Sequence[SegmentSample]) -> PyramidPreset:
+    """Return the preset with as many and as different bodies as the people learnt from call for."""
+    if len({sample.person for sample in samples}) > 1:
+        return preset
+    builds, build_sd = preset.builds_of_one
+    return replace(preset, builds=builds, build_sd=build_sd)
 
 
 def _first_maps(

@@ -51,6 +51,7 @@ class PyramidPreset:
         turns_deg: the turns about the vertical in which each sample is also shown.
         builds: how many people of other proportions each sample is also shown as.
         build_sd: by how much (log) their bones differ.
+        builds_of_one: both where all samples are one person's, from whom it cannot be learnt how people differ.
         stages: the shares of an action that each set of discriminant axes is trained on; the last is the whole.
         shrinkage: of the discriminant axes, in units of the mean squared length of the pooled vectors.
         held_out_share: of the scores that the map of actions learns, how much comes from axes that were trained
@@ -73,6 +74,7 @@ class PyramidPreset:
     turns_deg: tuple[float, ...]
     builds: int
     build_sd: float
+    builds_of_one: tuple[int, float]
     stages: tuple[tuple[float, ...], ...]
     shrinkage: float
     held_out_share: float
@@ -114,6 +116,7 @@ PYRAMID = PyramidPreset(
     turns_deg=(-15.0, 15.0),
     builds=2,
     build_sd=0.1,
+    builds_of_one=(7, 0.2),
     stages=((0.2, 0.3, 0.4), (0.5, 0.6), (0.7, 0.8), (1.0,)),
     shrinkage=0.15,
     held_out_share=0.5,

@@ -75,6 +75,17 @@ def test_a_model_of_one_person_takes_nobody_for_unknown(samples: list[SegmentSam
     assert not any(answer(model, encoded(model, sample)).unknown for sample in [*one, still])
 
 
+def test_one_persons_samples_are_shown_as_more_other_people(samples: list[SegmentSample]) -> None:
+    of_one = replace(PLAIN, builds_of_one=(3, 0.2))
+    one = [replace(sample, person="1") for sample in samples]
+    told = trained(one, of_one), trained(one, replace(PLAIN, builds=3, build_sd=0.2, builds_of_one=(3, 0.2)))
+    for name, array in told[0].arrays.items():
+        np.testing.assert_array_equal(array, told[1].arrays[name])
+    usual = trained(samples, of_one), trained(samples, PLAIN)
+    np.testing.assert_array_equal(usual[0].stages.axes, usual[1].stages.axes)
+    assert not np.array_equal(told[0].stages.axes, usual[0].stages.axes)
+
+
 def test_each_stage_is_fitted_to_that_share_of_the_action(samples: list[SegmentSample]) -> None:
     model = trained(samples, replace(PLAIN, stages=((0.3, 0.5), (1.0,))))
     assert model.description.fractions == pytest.approx([0.4, 1.0])
