@@ -9,6 +9,7 @@ from action_fusion.comotion import comotion
 from action_fusion.hands import HandPath
 from action_fusion.samples import Array
 from action_fusion.settings import Settings
+from action_fusion.stops import RESTING_M_PER_S
 from action_fusion.tracks import Track
 from actum.node import SECOND_NS
 
@@ -25,9 +26,9 @@ Grasp = tuple[HandPath, int, int]
 def carried_tracks(tracks: Sequence[Track], paths: Sequence[HandPath], end_ns: int, settings: Settings) -> list[Track]:
     """Let what is not seen move with the hand that has it, until it is seen again or the segment ends.
 
-    It is in a hand if it was within grasp when it was last seen and, where it is seen again, has moved and is within
-    reach of that hand. Of several that are not seen again a hand has the nearest, and none if it moves one that is
-    seen.
+    It is in a hand that came within grasp of where it was last seen: things do not move by themselves. Where it is seen
+    again, it has moved and is within reach of that hand. Of several that are not seen again a hand has the nearest,
+    and none if it moves one that is seen.
     """
     bridged = [_bridged(track, paths, settings) for track in tracks]
     lost = [(distance_m, grasp, t) for path in paths for distance_m, grasp, t in _lost(bridged, path, end_ns, settings)]
@@ -76,7 +77,7 @@ def _grasp(
     if not len(instants):
         return None
     distances = np.linalg.norm(path.positions_m[instants] - track.positions_m[sighting], axis=1)
-    if distances[0] > settings.reach_m or distances.min() > settings.grasp_m:
+    if distances.min() > settings.grasp_m:
         return None
     taken = int(instants[_first_closest(distances)])
     if sighting + 1 == len(track.stamps_ns):
@@ -103,9 +104,10 @@ def _following(track: Track, grasp: Grasp) -> Track:
     """Carry the object from its last sighting on, at the place in the hand at which it was taken."""
     path, taken, left = grasp
     way = path.positions_m[taken : left + 1]
-    return _inserted(
-        track, len(track.stamps_ns), path.stamps_ns[taken : left + 1], way + (track.positions_m[-1] - way[0])
-    )
+    moving = np.flatnonzero(path.speeds()[taken : left + 1] > RESTING_M_PER_S)
+    taking = way[: max(1, moving[0] if len(moving) else len(way))]
+    in_hand = track.positions_m[-1] - taking.mean(axis=0)
+    return _inserted(track, len(track.stamps_ns), path.stamps_ns[taken : left + 1], way + in_hand)
 
 
 def _inserted(track: Track, index: int, stamps_ns: Array, positions_m: Array) -> Track:
@@ -117,5 +119,5 @@ def _inserted(track: Track, index: int, stamps_ns: Array, positions_m: Array) ->
         track,
         stamps_ns=np.insert(track.stamps_ns, index, stamps_ns[inside]),
         positions_m=np.insert(track.positions_m, index, positions_m[inside], axis=0),
-        carried=track.carried or bool(inside.any()),
+        seen=np.insert(track.seen, index, np.zeros(int(inside.sum()), dtype=bool)),
     )

@@ -1,14 +1,14 @@
 """The object of an action: by where the arm points, by the paper's plain proximity, or by the joint decision."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from action_fusion import proximity
 from action_fusion.decision import decide
-from action_fusion.hands import HandPath
+from action_fusion.hands import Hands
 from action_fusion.proximity import Actor
 from action_fusion.settings import Settings
 from action_fusion.tracks import Track
@@ -22,7 +22,7 @@ OFF_THE_LINE = "no object along the arm"
 
 @dataclass(frozen=True)
 class Evidence:
-    """What speaks for one object: how near which hand came, and how well which arm points at it."""
+    """What speaks for one object: how near which hand came, and how well the arm that is out points at it."""
 
     track: Track
     distance_m: float
@@ -43,19 +43,24 @@ class Choice:
     why: str | None = None
 
 
-def evidence(track: Track, actor: Actor, hands: Sequence[Hand]) -> Evidence:
-    """Measure how near each hand came to an object, and how each arm points at it."""
-    view, head = actor.view(track), actor.head()
+def evidence(tracks: Sequence[Track], actor: Actor, hands: Sequence[Hand]) -> list[Evidence]:
+    """Measure how near each hand came to each object, and how the arm that is out points at it."""
+    pointing_hand = proximity.pointing_hand(actor, hands)
+    return [_evidence(track, actor, hands, pointing_hand) for track in tracks]
+
+
+def _evidence(track: Track, actor: Actor, hands: Sequence[Hand], pointing_hand: Hand) -> Evidence:
+    view = actor.view(track)
     distances = {hand: proximity.smallest_distance(view, actor.hand(hand)) for hand in hands}
-    angles = {hand: proximity.pointing_angle(view, actor.fingertip(hand), head) for hand in hands}
-    near_hand, pointing_hand = min(hands, key=distances.__getitem__), min(hands, key=angles.__getitem__)
-    return Evidence(track, distances[near_hand], near_hand, angles[pointing_hand], pointing_hand)
+    near_hand = min(hands, key=distances.__getitem__)
+    angle = proximity.pointing_angle(view, actor.fingertip(pointing_hand), actor.head())
+    return Evidence(track, distances[near_hand], near_hand, angle, pointing_hand)
 
 
 def choose(
     action: Action,
     found: Sequence[Evidence],
-    paths: Mapping[Hand, HandPath],
+    paths: Hands,
     hands: Sequence[Hand],
     settings: Settings,
 ) -> Choice:
@@ -73,7 +78,7 @@ def choose(
 
 
 def _jointly(
-    action: Action, near: Sequence[Evidence], paths: Mapping[Hand, HandPath], hands: Sequence[Hand], settings: Settings
+    action: Action, near: Sequence[Evidence], paths: Hands, hands: Sequence[Hand], settings: Settings
 ) -> Choice:
     applies = action.action not in settings.expected_outcomes
     decision = decide(paths, [e.track for e in near], hands, applies, settings)

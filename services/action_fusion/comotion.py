@@ -8,7 +8,6 @@ import numpy as np
 from action_fusion.hands import HandPath, furthest
 from action_fusion.samples import Array, Mask
 from action_fusion.tracks import Track
-from actum.messages import Hand
 from actum.node import SECOND_NS
 
 RECENT_NS = 1 * SECOND_NS
@@ -71,8 +70,8 @@ def comotion(path: HandPath, track: Track, reach_m: float, moved_m: float) -> Co
     return Comotion(path, track, object_m, relative, steps, near, moving, moving & explained & near)
 
 
-def carriers(pairs: Sequence[Comotion], moved_m: float) -> Mapping[int, Hand]:
-    """Name the hand that carries each object, by the object's id: of two the one that moved it further."""
+def carriers(pairs: Sequence[Comotion], moved_m: float) -> Mapping[int, HandPath]:
+    """Tell the hand that carries each object, by the object's id: of several the one that moved it further."""
     carried = [pair for pair in pairs if pair.is_carried(moved_m)]
     carried.sort(key=lambda pair: pair.moved_by_hand_m())
-    return {pair.track.id: pair.path.hand for pair in carried}
+    return {pair.track.id: pair.path for pair in carried}

@@ -6,17 +6,12 @@ import numpy as np
 
 from action_fusion.comotion import Comotion
 from action_fusion.hands import HandPath, departures
-from action_fusion.samples import Array, Mask
+from action_fusion.samples import Array, Indices, Mask
 from action_fusion.settings import Settings
+from action_fusion.stops import stops
 
 REACH_STEP_M = 0.05
 """The last of a reach, by which its goal is told: several times a joint's noise, less than a hand's breadth."""
-
-RESTING_M_PER_S = 0.15
-"""A reach is several times as fast (0.3 m/s and more), and comes to rest at its goal."""
-
-SLOWEST_SHARE = 0.2
-"""Where a hand never rests, its slowest instants count."""
 
 NUDGE_M = 0.001
 """A thing that is touched gives way by more; less is the table's trembling."""
@@ -25,6 +20,10 @@ NUDGE_TO_NOISE = 5.0
 FEWEST_PLACES = 10
 GAUSSIAN = 0.6745
 """The median of absolute deviations, in standard deviations."""
+
+TOUCHED_M = 0.13
+"""A hand that has acted elsewhere is at a thing only if it touches it: from the palm to the fingertips, and half of a
+small thing."""
 
 AIMED = 0.5
 """A reach heads at an object where at least half of its last step brought the hand nearer to it: within 60 degrees."""
@@ -35,24 +34,24 @@ def misses_m(path: HandPath, pairs: Sequence[Comotion], settings: Settings) -> M
 
     A reach ends on a line to its goal. With c = (r' - r) / s the share of the hand's last step s by which the
     distance r fell, the line of the step passes the object at r sqrt(1 - c^2); a hand that made no such step, or
-    moved away, misses it by r. The median over the instants at which a reach has come to rest is taken or,
-    where none was seen to, over those at which the hand rests with the object in grasp, if most of the segment is.
+    moved away, misses it by r. The median over the instants at which the hand rests where it works last, with the
+    object in grasp, is taken: those to which a reach for any object has led or, where none was seen to, all, if they
+    are most of the segment. A hand that has stopped elsewhere before has acted there, and on nothing, for nothing was
+    moved: it has to touch what it is to have reached for.
     """
     if not pairs:
         return {}
-    closings = np.stack([_closing(path, pair) for pair in pairs])
+    since = departures(path.positions_m, REACH_STEP_M)
+    closings = np.stack([_closing(path, pair, since) for pair in pairs])
     distances = np.stack([pair.distances_m for pair in pairs])
-    aimed = (closings >= AIMED) & (distances <= settings.reach_m)
-    allowed = aimed | (distances <= settings.grasp_m)
-    resting = _resting(path)
-    arrived: Mask = resting & np.asarray(aimed.any(axis=0))
+    stopped = stops(path)
+    at_hand = distances <= (TOUCHED_M if stopped.acted_before else settings.grasp_m)
+    aimed = at_hand & (closings >= AIMED)
+    arrived: Mask = stopped.last & np.asarray(aimed.any(axis=0))
     missed = distances * np.sqrt(1 - closings**2)
-    if arrived.any():
-        counted = arrived & allowed
-        touched: Mask = np.asarray(counted.any(axis=1))
-    else:
-        counted = resting & allowed
-        touched = counted.sum(axis=1) >= max(1, np.count_nonzero(path.stamps_ns >= 0) / 2)
+    counted = at_hand & (arrived if arrived.any() else stopped.last)
+    fewest = 1 if arrived.any() else max(1, np.count_nonzero(path.stamps_ns >= 0) / 2)
+    touched: Mask = counted.sum(axis=1) >= fewest
     return {
         pair.track.id: float(np.median(missed[row, counted[row]])) for row, pair in enumerate(pairs) if touched[row]
     }
@@ -71,19 +70,8 @@ def gives_way_m(pair: Comotion) -> float:
     return nudge_m if nudge_m >= max(NUDGE_M, NUDGE_TO_NOISE * noise_m) else 0.0
 
 
-def _resting(path: HandPath) -> Mask:
-    """Tell the segment's instants at which the hand rests, or is slowest."""
-    inside = path.stamps_ns >= 0
-    if not inside.any():
-        return inside
-    speeds = path.speeds()
-    slowest = float(np.quantile(speeds[inside], SLOWEST_SHARE))
-    return inside & (speeds <= (RESTING_M_PER_S if speeds[inside].min() <= RESTING_M_PER_S else slowest))
-
-
-def _closing(path: HandPath, pair: Comotion) -> Array:
+def _closing(path: HandPath, pair: Comotion, since: Indices) -> Array:
     """Measure the share of the hand's last step by which it came nearer to where the object is, 0 to 1 (n,)."""
-    since = departures(path.positions_m, REACH_STEP_M)
     steps = np.linalg.norm(path.positions_m - path.positions_m[since], axis=1)
     nearer = np.linalg.norm(pair.object_m - path.positions_m[since], axis=1) - pair.distances_m
     shares = np.divide(nearer, steps, out=np.zeros_like(steps), where=(since >= 0) & (steps > 0))

@@ -8,7 +8,7 @@ import numpy as np
 from action_fusion.application import applied_to
 from action_fusion.comotion import Comotion, carriers, comotion
 from action_fusion.contact import gives_way_m, misses_m
-from action_fusion.hands import HandPath
+from action_fusion.hands import HandPath, Hands
 from action_fusion.settings import Settings
 from action_fusion.tracks import Track
 from actum.messages import Hand
@@ -35,7 +35,7 @@ class Decision:
 
 
 def decide(
-    paths: Mapping[Hand, HandPath], tracks: Sequence[Track], hands: Sequence[Hand], applies: bool, settings: Settings
+    paths: Hands, tracks: Sequence[Track], hands: Sequence[Hand], applies: bool, settings: Settings
 ) -> Decision | None:
     """Decide what was acted on; None where nothing was: an empty reach, a pantomime.
 
@@ -44,31 +44,28 @@ def decide(
     is, what it has just let go of, and last what moved without a hand at it: thrown, or pushed with something.
 
     Args:
-        paths: both hands from some time before the segment to its end.
+        paths: both hands, and others' too, from some time before the segment to its end: what another moves is not
+            this actor's.
         tracks: the objects over the same time.
         hands: those that may have acted.
         applies: whether a held object may be a tool.
         settings: thresholds.
     """
-    concerned = _concerned(paths, tracks, settings)
+    concerned = _concerned(paths.own, tracks, settings)
     pairs = [
-        comotion(path, track, settings.reach_m, settings.moved_m) for path in paths.values() for track in concerned
+        comotion(path, track, settings.reach_m, settings.moved_m) for path in paths.everybodys for track in concerned
     ]
     carrier = carriers(pairs, settings.moved_m)
-    own = [pair for pair in pairs if pair.path.hand in hands]
-    held = [pair for pair in own if carrier.get(pair.track.id) == pair.path.hand and _is_kept(pair, settings)]
+    acting = [paths.own[hand] for hand in hands if hand in paths.own]
+    own = [pair for path in acting for pair in pairs if pair.path is path]
+    held = [pair for pair in own if carrier.get(pair.track.id) is pair.path and _is_kept(pair, settings)]
     if held:
         best = max(held, key=lambda pair: (pair.moved_by_hand_m(0.0), pair.moved_by_hand_m()))
         return _with_held(best, pairs, carrier, applies, settings)
-    free = [pair for pair in own if carrier.get(pair.track.id, pair.path.hand) == pair.path.hand]
+    free = [pair for pair in own if carrier.get(pair.track.id, pair.path) is pair.path]
     displaced = [pair for pair in free if float(np.linalg.norm(pair.track.shift())) >= settings.moved_m]
     at_hand = [pair for pair in displaced if (pair.near & pair.moving & (pair.path.stamps_ns >= 0)).any()]
-    return (
-        _nearest(at_hand)
-        or _reached([paths[hand] for hand in hands if hand in paths], free, settings)
-        or _released(own, carrier)
-        or _nearest(displaced)
-    )
+    return _nearest(at_hand) or _reached(acting, free, settings) or _released(own, carrier) or _nearest(displaced)
 
 
 def _concerned(paths: Mapping[Hand, HandPath], tracks: Sequence[Track], settings: Settings) -> list[Track]:
@@ -95,12 +92,11 @@ def _is_kept(pair: Comotion, settings: Settings) -> bool:
 
 
 def _with_held(
-    held: Comotion, pairs: Sequence[Comotion], carrier: Mapping[int, Hand], applies: bool, settings: Settings
+    held: Comotion, pairs: Sequence[Comotion], carrier: Mapping[int, HandPath], applies: bool, settings: Settings
 ) -> Decision:
-    hand = held.path.hand
-    others = [pair for pair in pairs if pair.path.hand == hand and pair.track.id not in carrier]
+    others = [pair for pair in pairs if pair.path is held.path and pair.track.id not in carrier]
     patient = applied_to(held, others, settings) if applies else None
-    return Decision(held.track if patient is None else patient.track, hand, held.track)
+    return Decision(held.track if patient is None else patient.track, held.path.hand, held.track)
 
 
 def _reached(paths: Sequence[HandPath], free: Sequence[Comotion], settings: Settings) -> Decision | None:
@@ -131,9 +127,9 @@ def _missed(path: HandPath, own: Sequence[Comotion], settings: Settings) -> list
     return [(pair, misses[pair.track.id]) for pair in own if pair.track.id in misses]
 
 
-def _released(own: Sequence[Comotion], carrier: Mapping[int, Hand]) -> Decision | None:
+def _released(own: Sequence[Comotion], carrier: Mapping[int, HandPath]) -> Decision | None:
     """Take what a hand has just let go of."""
-    released = [pair for pair in own if carrier.get(pair.track.id) == pair.path.hand]
+    released = [pair for pair in own if carrier.get(pair.track.id) is pair.path]
     latest = max(released, key=lambda pair: float(pair.path.stamps_ns[pair.with_hand].max()), default=None)
     return None if latest is None else Decision(latest.track, latest.path.hand)
 

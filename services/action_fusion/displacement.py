@@ -15,14 +15,13 @@ STEEPEST_SURFACE = 0.25
 _SMALLEST = 1e-3
 
 
-def level_from_camera(ego_from_camera: Array, up_in_camera: Array) -> Array | None:
-    """Build the level frame of a posture as a rotation (3, 3): rows right, up, forward in the camera frame.
+def level_from_camera(facing: Array, up_in_camera: Array) -> Array | None:
+    """Build an actor's level frame as a rotation (3, 3): rows right, up, forward in the camera frame.
 
-    Up is against gravity, forward the actor's own made horizontal, right = forward x up. None where the actor
-    faces straight up or down.
+    Up is against gravity, forward where the actor faces (3,) made horizontal, right = forward x up. None where the
+    actor faces straight up or down.
     """
     up = up_in_camera / np.linalg.norm(up_in_camera)
-    facing = ego_from_camera[2, :3]
     level = facing - (facing @ up) * up
     length = float(np.linalg.norm(level))
     if length < _SMALLEST:

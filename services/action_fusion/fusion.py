@@ -10,34 +10,45 @@ import numpy as np
 from action_fusion import displacement, proximity
 from action_fusion.carrying import carried_tracks
 from action_fusion.choosing import Choice, Evidence, choose, evidence
-from action_fusion.hands import HandPath, hand_path
+from action_fusion.hands import HandPath, Hands, hand_path
 from action_fusion.samples import ObjectsSample, PostureSample
 from action_fusion.settings import Settings
+from action_fusion.sightline import aligned, depth_std_m
 from action_fusion.tracks import Track, tracks
 from action_fusion.wording import sentence
 from actum.messages import ActedObject, Action, Event, Hand, HeldObject, Motion
+from actum.node import SECOND_NS
 
 PART_HANDS: dict[str | None, Hand] = {"right_arm": "right", "left_arm": "left"}
+FACING_NS = 2 * SECOND_NS
+"""Where an actor faces is the mean over this long from the start: the hips of one posture are several degrees out."""
+
 BOTH: tuple[Hand, Hand] = ("right", "left")
 
 
 def fuse(
-    action: Action, postures: Sequence[PostureSample], frames: Sequence[ObjectsSample], settings: Settings
+    action: Action,
+    postures: Sequence[PostureSample],
+    others: Sequence[Sequence[PostureSample]],
+    frames: Sequence[ObjectsSample],
+    settings: Settings,
 ) -> Event:
     """Tell what a recognised action was applied to, and what became of it.
 
     Args:
         action: a valid final action with label and end.
         postures: its agent's, from some time before the start up to the end.
+        others: those of each of the other agents who are there, over the same time.
         frames: the objects', over the same time.
         settings: thresholds and labels.
     """
     hands = _hands(action)
     inside = [sample for sample in postures if sample.stamp_ns >= action.start_ns]
-    paths = _paths(postures, action.start_ns)
-    seen = _tracks(action, frames, paths, settings)
+    strangers = [path for other in others for path in _paths(other, action.start_ns).values()]
+    paths = Hands(_paths(postures, action.start_ns), strangers)
+    seen = _tracks(action, frames, paths, depth_std_m(inside), settings)
     actor = proximity.actor(inside, action.start_ns)
-    found = [] if actor is None else [evidence(track, actor, hands) for track in seen]
+    found = [] if actor is None else evidence(seen, actor, hands)
     choice = choose(action, found, paths, hands, settings)
     became = _became(action, choice, inside, settings)
     return Event(
@@ -108,22 +119,24 @@ def _paths(postures: Sequence[PostureSample], start_ns: int) -> dict[Hand, HandP
 
 
 def _tracks(
-    action: Action, frames: Sequence[ObjectsSample], paths: dict[Hand, HandPath], settings: Settings
+    action: Action, frames: Sequence[ObjectsSample], paths: Hands, std_m: float, settings: Settings
 ) -> list[Track]:
     """Follow the objects; the paper's measure takes what was seen alone."""
-    seen = tracks(frames, action.start_ns)
+    seen = aligned(tracks(frames, action.start_ns), paths.own.values(), std_m, settings)
     if settings.measure == "proximity" or action.end_ns is None:
         return seen
-    return carried_tracks(seen, list(paths.values()), action.end_ns - action.start_ns, settings)
+    return carried_tracks(seen, paths.everybodys, action.end_ns - action.start_ns, settings)
 
 
 def _became(action: Action, choice: Choice, postures: Sequence[PostureSample], settings: Settings) -> dict[str, Any]:
-    """Tell what became of the object, in the level frame of the segment's first valid posture."""
+    """Tell what became of the object, in the level frame of the actor as the segment starts."""
     nothing = {"motion": None, "result": None, "outcome": None, "agrees": None}
     if choice.evidence is None:
         return nothing
-    first = next(sample.body for sample in postures if sample.body is not None)
-    level_from_camera = displacement.level_from_camera(first.ego_from_camera, np.array(settings.up_in_camera))
+    known = [(sample.stamp_ns, sample.body) for sample in postures if sample.body is not None]
+    first_ns, first = known[0]
+    ahead = [body.ego_from_camera[2, :3] for stamp_ns, body in known if stamp_ns <= first_ns + FACING_NS]
+    level_from_camera = displacement.level_from_camera(np.mean(ahead, axis=0), np.array(settings.up_in_camera))
     if level_from_camera is None:
         return nothing
     shift = level_from_camera @ choice.evidence.track.shift()

@@ -4,6 +4,7 @@ Distances are the same in it as in the egocentric frame, which is a rigid transf
 """
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,6 +51,19 @@ class HandPath:
         return speeds
 
 
+@dataclass(frozen=True)
+class Hands:
+    """The actor's hands that are known, and those of the others who are there."""
+
+    own: Mapping[Hand, HandPath]
+    others: Sequence[HandPath] = ()
+
+    @property
+    def everybodys(self) -> list[HandPath]:
+        """All of them, the actor's first."""
+        return [*self.own.values(), *self.others]
+
+
 def hand_path(actor: Actor, hand: Hand) -> HandPath:
     """Take one hand of an actor's postures; of very many instants every so-many-th."""
     in_ego = actor.joints_m[:, ARMS[hand][1]] - actor.translations
@@ -92,9 +106,12 @@ def furthest(positions_m: Array, stamps_ns: Array, within_ns: float) -> Indices:
 
     That is the last instant with at least four fifths of the greatest distance: a thing that was still has left.
     """
+    if not len(positions_m):
+        return np.empty(0, dtype=np.int64)
+    here = np.arange(len(positions_m))
     earliest = np.searchsorted(stamps_ns, stamps_ns - within_ns)
-    found = np.empty(len(positions_m), dtype=np.int64)
-    for i, first in enumerate(earliest):
-        away = np.linalg.norm(positions_m[first : i + 1] - positions_m[i], axis=1)
-        found[i] = first + np.flatnonzero(away >= FURTHEST_SHARE * away.max())[-1]
-    return found
+    window = earliest[:, None] + np.arange((here - earliest).max() + 1)
+    away = np.linalg.norm(positions_m[np.minimum(window, here[:, None])] - positions_m[:, None], axis=2)
+    far = (away >= FURTHEST_SHARE * away.max(axis=1, keepdims=True)) & (window <= here[:, None])
+    last: Indices = window[here, far.shape[1] - 1 - np.argmax(far[:, ::-1], axis=1)]
+    return last

@@ -1,6 +1,6 @@
 """The fusion's pure step: it waits until a segment's streams have reached its end, and answers once."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from action_fusion.buffers import LOOK_BACK_NS, Buffer, S
@@ -112,20 +112,32 @@ class ActionFusion:
 
     def _is_complete(self, pending: Pending) -> bool:
         postures = self._postures.get(pending.action.agent)
-        if postures is None:
+        if postures is None or min(postures.newest_ns, self._objects.newest_ns) < pending.end_ns:
             return False
-        return min(postures.newest_ns, self._objects.newest_ns) >= pending.end_ns
+        others = self._others(pending.action.agent, self._own(pending))
+        return all(buffer is not None and buffer.newest_ns >= last_ns for buffer, last_ns in others)
+
+    def _own(self, pending: Pending) -> list[PostureSample]:
+        first_ns = pending.action.start_ns - LOOK_BACK_NS
+        return self._buffer(pending.action.agent).between(first_ns, pending.end_ns)
+
+    def _others(self, agent: int, postures: Sequence[PostureSample]) -> list[tuple[Buffer[PostureSample] | None, int]]:
+        """List the streams of the others who are there, and when each is there last."""
+        last_ns = {other: sample.stamp_ns for sample in postures for other in sample.agents if other != agent}
+        return [(self._postures.get(other), last) for other, last in last_ns.items()]
 
     def _answer(self, pending: Pending) -> Event:
         self._pending.remove(pending)
-        action, end_ns = pending.action, pending.end_ns
-        postures = self._buffer(action.agent)
-        for buffer in (postures, self._objects):
+        action, end_ns, first_ns = pending.action, pending.end_ns, pending.action.start_ns - LOOK_BACK_NS
+        postures = self._own(pending)
+        others = [buffer for buffer, _ in self._others(action.agent, postures) if buffer is not None]
+        for buffer in (self._buffer(action.agent), self._objects):
             buffer.answered(action.start_ns, end_ns)
         return fuse(
             action,
-            postures.between(action.start_ns - LOOK_BACK_NS, end_ns),
-            self._objects.between(action.start_ns - LOOK_BACK_NS, end_ns),
+            postures,
+            [buffer.between(first_ns, end_ns) for buffer in others],
+            self._objects.between(first_ns, end_ns),
             self._settings,
         )
 

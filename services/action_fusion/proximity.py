@@ -13,6 +13,9 @@ from actum.skeletons import INDEX
 HOLDING_SHARE = 1 / 3
 """The last part of a pointing action, in which the arm is out."""
 
+POINTING_M = 0.08
+"""As long as the fingertip is this near to where it is in that part, the arm is out: a joint's noise is a third."""
+
 FINGER_M = 0.10
 """How far the stretched index finger ends beyond the hand joint, on the line of the forearm."""
 
@@ -73,8 +76,23 @@ def smallest_distance(object_ego: Array, hand_ego: Array) -> float:
     return float(np.nanmin(distances)) if np.isfinite(distances).any() else np.inf
 
 
+def pointing_hand(actor: Actor, hands: Sequence[Hand]) -> Hand:
+    """Name the hand whose finger is furthest from the line of hips and head, the median over the action's last part."""
+    return max(hands, key=lambda hand: _outstretched_m(actor, hand))
+
+
+def _outstretched_m(actor: Actor, hand: Hand) -> float:
+    fingertip, head = actor.fingertip(hand), actor.head()
+    known = np.flatnonzero(np.isfinite(fingertip + head).all(axis=1))
+    held = known[-max(1, round(len(known) * HOLDING_SHARE)) :]
+    if not len(held):
+        return -np.inf
+    aside = np.linalg.norm(np.cross(fingertip[held], head[held]), axis=1)
+    return float(np.median(aside / np.maximum(np.linalg.norm(head[held], axis=1), _SMALLEST_M)))
+
+
 def pointing_angle(object_ego: Array, fingertip_ego: Array, head_ego: Array) -> float:
-    """Compute the median angle (rad) between head-to-fingertip and head-to-object over the segment's last part.
+    """Compute the angle (rad) between head-to-fingertip and head-to-object, each the median while the arm is out.
 
     Infinite where head and arm are never known together.
     """
@@ -82,7 +100,9 @@ def pointing_angle(object_ego: Array, fingertip_ego: Array, head_ego: Array) -> 
     held = known[-max(1, round(len(known) * HOLDING_SHARE)) :]
     if not len(held):
         return np.inf
-    ray, sight = fingertip_ego[held] - head_ego[held], object_ego[held] - head_ego[held]
-    lengths = np.linalg.norm(ray, axis=1) * np.linalg.norm(sight, axis=1)
-    cosines = np.einsum("ij,ij->i", ray, sight) / np.maximum(lengths, _SMALLEST_M)
-    return float(np.median(np.arccos(np.clip(cosines, -1.0, 1.0))))
+    rays, sights = fingertip_ego[known] - head_ego[known], object_ego[known] - head_ego[known]
+    last = np.median(rays[-len(held) :], axis=0)
+    out = np.linalg.norm(rays - last, axis=1) <= POINTING_M
+    ray, sight = (np.median(rays[out], axis=0), np.median(sights[out], axis=0)) if out.any() else (last, sights[-1])
+    length = float(np.linalg.norm(ray) * np.linalg.norm(sight))
+    return float(np.arccos(np.clip(ray @ sight / max(length, _SMALLEST_M), -1.0, 1.0)))

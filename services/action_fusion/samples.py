@@ -23,12 +23,14 @@ MISSING = [math.nan] * 3
 class Body:
     """A valid posture's frame, and its joints (15, 3), metric egocentric, NaN where one is missing.
 
-    `faces` is false where the frame is no body's, so that its forward is nobody's.
+    `faces` is false where the frame is no body's, so that its forward is nobody's. `depth_std_m` is 0 where the
+    distance along the line of sight was measured.
     """
 
     ego_from_camera: Array
     joints_m: Array
     faces: bool = True
+    depth_std_m: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -41,10 +43,11 @@ class Sample:
 
 @dataclass(frozen=True)
 class PostureSample(Sample):
-    """A posture; `body` is None where it is invalid and only tells that time went on."""
+    """A posture of one of the `agents` who are there; `body` is None where it only tells that time went on."""
 
     seq: int | None
     body: Body | None
+    agents: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,7 @@ def posture_sample(posture: Posture, tally: Tally) -> PostureSample:
     body = _body(posture, tally) if posture.valid else None
     if posture.valid and body is None:
         tally.reject("bad_posture", f"agent {posture.agent} at {posture.stamp_ns}: no joints_m or no rigid frame")
-    return PostureSample(posture.stamp_ns, posture.session_id, posture.seq, body)
+    return PostureSample(posture.stamp_ns, posture.session_id, posture.seq, body, tuple(posture.agents))
 
 
 def objects_sample(message: Objects, tally: Tally) -> ObjectsSample:
@@ -87,7 +90,7 @@ def _body(posture: Posture, tally: Tally) -> Body | None:
     known = np.isfinite(joints_m).all(axis=1)
     if np.count_nonzero(~known) > posture.joints_m.count(None):
         tally.reject("bad_joint", f"agent {posture.agent} at {posture.stamp_ns}: a joint not finite or absurdly far")
-    return Body(ego_from_camera, joints_m, posture.frame != "world")
+    return Body(ego_from_camera, joints_m, posture.frame != "world", min(posture.depth_std_m or 0.0, FURTHEST_M))
 
 
 def _joints(joints: list[Joint]) -> Array:

@@ -9,13 +9,14 @@ from actum.messages import Image, Message, Objects, TrackedObject
 from actum.node import SECOND_NS, Tally, Tick
 from actum.stamps import Order, StampGuard
 from marker_tracker.catalogue import Carried, Catalogue, plain
-from marker_tracker.detection import Marker, MarkerDetector
+from marker_tracker.detection import Marker
 from marker_tracker.images import Camera, UnusableImageError, camera, gray
 from marker_tracker.poses import WORST_ERROR_PX, BadPoseError, Pose, confidence, solve
 from marker_tracker.rotations import Array
 from marker_tracker.scene_file import SceneFileError, load
 from marker_tracker.settings import Settings
 from marker_tracker.tracks import Sighting, Tracks
+from marker_tracker.watching import Watch
 
 OnObject = list[tuple[Marker, Carried]]
 LEAST_NOISE_PX = 0.2
@@ -37,7 +38,7 @@ class MarkerTracker:
         self.tally = Tally()
         self._settings = settings
         self._catalogue = _catalogue(settings)
-        self._detector = MarkerDetector(self._catalogue.wanted())
+        self._watch = Watch(self._catalogue.wanted())
         self._tracks = Tracks(round(settings.memory_s * SECOND_NS))
         self._order = StampGuard()
 
@@ -51,6 +52,7 @@ class MarkerTracker:
             return []
         if order is Order.RESTART:
             self._tracks.clear()
+            self._watch.clear()
         return [self._objects(message)]
 
     def _objects(self, image: Image) -> Objects:
@@ -61,7 +63,7 @@ class MarkerTracker:
         except UnusableImageError as error:
             self.tally.reject(error.kind, f"image at {image.stamp_ns}: {error.detail}")
             return _answer(image, [], str(error))
-        for number, markers in self._carried(self._detector.detect(pixels)).items():
+        for number, markers in self._carried(self._watch.markers(image.stamp_ns, pixels)).items():
             self._see(image.stamp_ns, number, markers, view)
         return _answer(image, self._tracks.listed(image.stamp_ns))
 

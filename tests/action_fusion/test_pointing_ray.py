@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from action_fusion.proximity import Actor, pointing_angle
+from action_fusion.proximity import Actor, pointing_angle, pointing_hand
 from actum.skeletons import INDEX
 
 
@@ -34,3 +34,17 @@ def test_only_the_last_third_of_the_known_frames_counts() -> None:
 def test_an_arm_that_is_never_known_points_nowhere() -> None:
     unknown = np.full((4, 3), np.nan)
     assert pointing_angle(np.ones((4, 3)), unknown, np.zeros((4, 3))) == np.inf
+
+
+def test_the_hand_that_points_is_the_one_furthest_from_the_body() -> None:
+    head, hanging, out = (0.0, 0.75, 0.0), (-0.25, 0.0, 0.05), (0.2, 0.5, 0.6)
+    actor = still_actor(
+        6, head=head, left_elbow=(0.2, 0.3, 0.3), left_hand=out, right_elbow=(-0.25, 0.3, 0.0), right_hand=hanging
+    )
+    assert pointing_hand(actor, ("right", "left")) == "left"
+    assert pointing_hand(actor, ("right",)) == "right"
+
+
+def test_a_hand_that_is_never_known_does_not_point() -> None:
+    actor = still_actor(4, head=(0.0, 0.75, 0.0), left_elbow=(0.2, 0.3, 0.0), left_hand=(0.2, 0.0, 0.0))
+    assert pointing_hand(actor, ("right", "left")) == "left"

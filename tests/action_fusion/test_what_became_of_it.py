@@ -1,5 +1,7 @@
 """The outcome comes from the object's own track, or from the hand that covers it; it may contradict the action."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from action_fusion.displacement import outcome
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
 from actum.messages import Event, Message
-from scenes import Place, Scene, acting_on, action, moving, still
+from scenes import Place, Scene, Stance, acting_on, action, moving, still
 
 CUP: Place = (0.1, 0.0, 0.45)
 OTHERS = {2: (-0.25, 0.0, 0.5), 3: (0.45, 0.0, 0.5)}
@@ -105,3 +107,54 @@ def test_an_object_out_of_reach_when_it_was_seen_last_is_not_carried() -> None:
     )
     event = event_of(scene, "push")
     assert event.object is None
+
+
+def test_one_sighting_where_it_was_left_tells_all() -> None:
+    then = (0.1, 0.0, 0.66)
+    seen_at = 1.94
+    covered = acting_on(
+        CUP, then, others=OTHERS, hidden=lambda number, t: number == 1 and t > 0.75 and abs(t - seen_at) > 0.02
+    )
+    crooked = Scene(
+        right_hand=lambda t: tuple(np.add(covered.right_hand(t), (0.03, 0.02, 0.0) if t > 1.2 else 0.0).tolist()),
+        objects=covered.objects,
+        hidden=covered.hidden,
+    )
+    event = event_of(crooked, "push")
+    assert event.motion is not None
+    assert np.allclose(event.motion.displacement_m, np.subtract(then, CUP), atol=1e-9)
+
+
+def test_a_thing_not_seen_since_before_the_hand_came_goes_with_it() -> None:
+    covered = acting_on(CUP, (0.1, 0.0, 0.66), others=OTHERS, hidden=lambda number, t: number == 1 and t > 0.1)
+    event = event_of(covered, "push")
+    assert event.object is not None
+    assert (event.object.id, event.object.carried, event.outcome) == (1, True, "pushed")
+
+
+def test_what_was_moved_before_the_segment_has_not_moved_in_it() -> None:
+    """It is seen last while it is being set down, and again when the segment has begun."""
+    scene = Scene(
+        right_hand=moving((0.3, (0.2, 0.1, 0.2)), (1.0, (0.1, 0.08, 0.45))),
+        objects={1: moving((-0.9, (0.1, 0.1, 0.45)), (-0.2, CUP))},
+        hidden=lambda _, t: -0.5 < t < 0.1,
+    )
+    event = event_of(scene, "touch")
+    assert event.object is not None
+    assert (event.object.id, event.outcome) == (1, "unmoved")
+
+
+def test_one_crooked_posture_at_the_start_turns_no_direction() -> None:
+    scene = acting_on(CUP, (0.1, 0.0, 0.66), others=OTHERS)
+    aside = replace(scene, stance=Stance(heading_rad=0.6))
+    node = ActionFusion(Settings())
+    first = min(p.stamp_ns for p in scene.postures() if p.stamp_ns >= action("push").start_ns)
+    turned = {p.stamp_ns: p for p in aside.postures()}
+    postures = [
+        turned[p.stamp_ns].model_copy(update={"joints_m": p.joints_m}) if p.stamp_ns == first else p
+        for p in scene.postures()
+    ]
+    messages: list[Message] = [*postures, *scene.sightings(), action("push")]
+    (event,) = [event for message in messages for event in node.handle(message)]
+    assert isinstance(event, Event) and event.motion is not None
+    assert np.allclose(event.motion.displacement_m, (0.0, 0.0, 0.21), atol=0.01)

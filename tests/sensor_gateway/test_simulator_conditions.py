@@ -17,7 +17,6 @@ from sensor_gateway.simulator import (
     SceneState,
     Simulator,
     load_conditions,
-    pantomime,
 )
 from sensor_gateway.simulator.chance import stream
 from sensor_gateway.simulator.exposure import averaged, while_open
@@ -169,6 +168,16 @@ def test_a_pantomime_is_done_far_from_every_object_and_moves_none(spacing_m: flo
     assert renderer(made).image(state).shape == (480, 640, 3)
 
 
+@pytest.mark.parametrize("near_m", [0.12, 0.2])
+def test_a_pantomime_comes_as_near_to_an_object_as_asked(near_m: float) -> None:
+    made = scene([Sample(action, NO_OBJECT) for action in CONTACT], spacing_m=0.2, pantomime_m=near_m)
+    hand = INDEX[f"{made.actor.hand}_hand"]
+    for number in range(len(CONTACT)):
+        held = [state for state in made.states() if state.segment == number and state.grip > CLOSED]
+        nearest_m = min(np.linalg.norm(s.positions_m - s.joints_m[hand], axis=1).min() for s in held)
+        assert near_m - 0.02 < nearest_m < near_m + 0.1
+
+
 def test_pantomimes_differ_as_the_actions_do() -> None:
     moved = {action: scene([Sample(action, NO_OBJECT)]).trials[0].displacement_m for action in CONTACT}
     assert moved["push"][2] < -0.08
@@ -190,10 +199,9 @@ def test_pointing_has_no_pantomime() -> None:
         Sample("point", NO_OBJECT)
 
 
-def test_a_pantomime_without_room_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pantomime, "CLEAR_M", 3.0)
+def test_a_pantomime_without_room_is_refused() -> None:
     with pytest.raises(ValueError, match="no empty space"):
-        scene([Sample("push", NO_OBJECT)])
+        scene([Sample("push", NO_OBJECT)], pantomime_m=3.0)
 
 
 def test_the_named_conditions_are_all_different() -> None:

@@ -15,6 +15,7 @@ SIZE_TO_SPACING = 0.875
 
 ROW_BEHIND_EDGE_M = 0.05
 ROW_DEPTH_M = 0.02
+PANTOMIME_RANGE_M = 0.05
 
 Length = Annotated[float, Field(gt=0, le=5)]
 
@@ -25,6 +26,7 @@ class Conditions(Section):
     Attributes:
         spacing_m: middle to middle of neighbouring objects, which then stand in a row.
         distance_m: how far behind the row, which then is at the table's near edge, the person stands.
+        pantomime_m: how near a pantomime comes to the nearest object's middle, or up to 5 cm further from it.
         clutter: how many shapes, edges and false squares are on the wall, and again on the table.
         defocus_sd_px: the width of the camera's blur.
         exposure_s: how long the shutter is open, at most a frame: what moves is smeared.
@@ -34,6 +36,7 @@ class Conditions(Section):
 
     spacing_m: Length | None = None
     distance_m: Length | None = None
+    pantomime_m: Length | None = None
     clutter: int = Field(0, ge=0)
     defocus_sd_px: float = Field(0.0, ge=0)
     exposure_s: float = Field(0.0, ge=0)
@@ -43,8 +46,13 @@ class Conditions(Section):
     def arranged(self, parameters: Parameters) -> Parameters:
         """Put the objects and the person where the conditions have them."""
         objects = parameters.objects if self.spacing_m is None else _in_a_row(parameters.objects, self.spacing_m)
+        pantomime = parameters.pantomime
+        if self.pantomime_m is not None:
+            near = {"clear_range_m": (self.pantomime_m, self.pantomime_m + PANTOMIME_RANGE_M)}
+            pantomime = pantomime.model_copy(update=near)
+        parameters = parameters.model_copy(update={"objects": objects, "pantomime": pantomime})
         if self.distance_m is None:
-            return parameters.model_copy(update={"objects": objects})
+            return parameters
         row_z_m = parameters.table.near_z_m + ROW_BEHIND_EDGE_M
         far_z_m = row_z_m + self.distance_m - parameters.actor.stand_off_mean_sd_m[0]
         return parameters.model_copy(

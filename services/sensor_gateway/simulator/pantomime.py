@@ -9,14 +9,6 @@ from sensor_gateway.simulator.parameters import Parameters
 from sensor_gateway.simulator.programme import Sample
 from sensor_gateway.simulator.trial import Layout, Trial, draw_bulge, draw_displacement, draw_layout, draw_timing
 
-CLEAR_M = 0.37
-"""So far from every object's middle the hand acts, all the way."""
-
-ASIDE_RANGE_M = (0.0, 0.70)
-ABOVE_RANGE_M = (0.08, 0.50)
-AHEAD_RANGE_M = (0.20, 0.65)
-"""Where it acts: to the acting hand's side of the person, above the table, before the person."""
-
 TRIES = 10_000
 
 
@@ -50,16 +42,21 @@ def _draw_empty_place(
     parameters: Parameters, actor: Actor, layout: Layout, displacement_m: Array, rng: np.random.Generator
 ) -> Array:
     """Draw where the palm is when it takes nothing."""
-    lowest_y_m = parameters.table_y_m - ABOVE_RANGE_M[0]
+    where = parameters.pantomime
+    lowest_y_m = parameters.table_y_m - where.above_range_m[0]
     for _ in range(TRIES):
-        aside, above, ahead = (uniform(rng, one) for one in (ASIDE_RANGE_M, ABOVE_RANGE_M, AHEAD_RANGE_M))
+        ranges_m = (where.aside_range_m, where.above_range_m, where.ahead_range_m)
+        aside, above, ahead = (uniform(rng, one) for one in ranges_m)
         x, z = layout.pelvis_m[0] + actor.side * aside, layout.pelvis_m[2] - ahead
         place = np.array([x, parameters.table_y_m - above, z])
-        if _is_clear(place, displacement_m, layout.positions_m) and place[1] + displacement_m[1] <= lowest_y_m:
+        nearest_m = _nearest_m(place, displacement_m, layout.positions_m)
+        is_there = where.clear_range_m[0] <= nearest_m <= where.clear_range_m[1]
+        if is_there and place[1] + displacement_m[1] <= lowest_y_m:
             return place
-    raise ValueError("no empty space for a pantomime: put the objects closer together")
+    raise ValueError("no empty space for a pantomime: put the objects closer together, or the pantomime nearer")
 
 
-def _is_clear(place: Array, displacement_m: Array, positions_m: Array) -> bool:
+def _nearest_m(place: Array, displacement_m: Array, positions_m: Array) -> float:
+    """Measure how near the palm comes to an object's middle from where it takes nothing to where it leaves it."""
     way = place + np.linspace(0, 1, 8)[:, None] * displacement_m
-    return bool(np.linalg.norm(way[:, None] - positions_m, axis=2).min() >= CLEAR_M)
+    return float(np.linalg.norm(way[:, None] - positions_m, axis=2).min())

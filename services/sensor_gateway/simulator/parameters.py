@@ -106,6 +106,15 @@ class TrialParameters(Section):
     pointing_sd_deg: float
 
 
+class PantomimeParameters(Section):
+    """Where an action is done without its object."""
+
+    clear_range_m: Pair
+    aside_range_m: Pair
+    above_range_m: Pair
+    ahead_range_m: Pair
+
+
 class PauseParameters(Section):
     """What happens between two repetitions."""
 
@@ -150,6 +159,7 @@ class Parameters(Section):
     objects: ObjectParameters
     actor: ActorParameters
     trial: TrialParameters
+    pantomime: PantomimeParameters
     pause: PauseParameters
     sway: SwayParameters
     noise: NoiseParameters

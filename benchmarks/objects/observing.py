@@ -1,0 +1,147 @@
+"""The services look on while simulated people act: drawn images, detected markers, hands with a Kinect's noise."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from action_fusion.node import ActionFusion
+from action_fusion.settings import Settings
+from actum.messages import Action, Event, Image, Message, Objects, Skeleton, Truth
+from actum.node import replay
+from actum.skeletons import INDEX
+from marker_tracker.node import MarkerTracker
+from marker_tracker.settings import ObjectSpec
+from marker_tracker.settings import Settings as TrackerSettings
+from pose_preprocessor.node import PosePreprocessor
+from sensor_gateway.simulator import Conditions, Sample, Simulator
+from sensor_gateway.simulator.actor import EYE
+
+from .trials import Trial
+
+TAIL_S = 0.5
+MEASURES = {"proximity": Settings(measure="proximity"), "joint": Settings(measure="joint")}
+LEFT_M = 0.005
+"""An object this near to where it ends has been left there."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One person who does a programme under conditions; the same numbers, the same scene."""
+
+    programme: Sequence[Sample]
+    person: int
+    conditions: Conditions
+    image_hz: int
+
+    def trials(self) -> list[Trial]:
+        """Draw the scene once, and let each measure judge the same sightings."""
+        simulator = Simulator(
+            self.programme,
+            self.person,
+            self.person,
+            image_hz=self.image_hz,
+            tail_s=TAIL_S,
+            conditions=self.conditions,
+        )
+        stream = list(_observed(simulator))
+        events = {name: _events(stream, settings) for name, settings in MEASURES.items()}
+        ends = [message for message in stream if isinstance(message, Truth) and message.kind == "end"]
+        return [_trial(simulator, stream, number, end, events) for number, end in enumerate(ends)]
+
+
+def _trial(
+    simulator: Simulator, stream: Sequence[Message], number: int, end: Truth, events: Mapping[str, Sequence[Event]]
+) -> Trial:
+    return Trial(
+        truth=end,
+        displacement_m=_own_displacement(simulator, number, end),
+        line_right=_line_right(simulator, number),
+        seen_left=_seen_left(simulator, stream, number, end),
+        events={measure: of_measure[number] for measure, of_measure in events.items()},
+    )
+
+
+def _observed(simulator: Simulator) -> Iterator[Message]:
+    """Yield postures, objects and truth, and at each end the action as if it were recognised."""
+    preprocessor, tracker, started = PosePreprocessor(), MarkerTracker(_tracker_settings(simulator)), {}
+    for messages in simulator.frames():
+        for message in messages:
+            if isinstance(message, Skeleton):
+                yield from preprocessor.handle(message)
+            elif isinstance(message, Image):
+                yield from tracker.handle(message)
+            elif isinstance(message, Truth):
+                yield message
+                started.setdefault(message.segment_id, message.stamp_ns)
+                if message.kind == "end":
+                    yield _recognised(message, started[message.segment_id])
+
+
+def _tracker_settings(simulator: Simulator) -> TrackerSettings:
+    objects = simulator.scene.parameters.objects
+    specs = {item.id: ObjectSpec(name=item.name, size_m=objects.marker_size_m) for item in objects.items}
+    return TrackerSettings(objects=specs)
+
+
+def _recognised(end: Truth, start_ns: int) -> Action:
+    return Action(
+        stamp_ns=end.stamp_ns,
+        sensor=end.sensor,
+        agent=end.agent,
+        segment_id=end.segment_id,
+        start_ns=start_ns,
+        end_ns=end.stamp_ns,
+        final=True,
+        action=end.action,
+        confidence=1.0,
+        activations={},
+        part=None,
+        frames=0,
+        missed=0,
+    )
+
+
+def _events(stream: Sequence[Message], settings: Settings) -> list[Event]:
+    answered = replay(ActionFusion(settings), [(message.stamp_ns, message) for message in stream])
+    return sorted((m for m in answered if isinstance(m, Event)), key=lambda event: event.start_ns)
+
+
+def _own_displacement(simulator: Simulator, number: int, end: Truth) -> np.ndarray | None:
+    """Turn the true displacement into the person's own directions."""
+    if end.displacement_m is None:
+        return None
+    forward, up = _forward(simulator, number), np.array([0.0, -1.0, 0.0])
+    return np.stack([np.cross(forward, up), up, forward]) @ end.displacement_m
+
+
+def _forward(simulator: Simulator, number: int) -> np.ndarray:
+    heading = simulator.scene.trials[number].layout.heading_rad
+    return np.array([-np.sin(heading), 0.0, -np.cos(heading)])
+
+
+def _line_right(simulator: Simulator, number: int) -> bool:
+    """Tell whether the true line from eye to fingertip passes its object nearer than the others."""
+    for state in simulator.scene.states(TAIL_S):
+        if state.mark == "end" and state.segment == number:
+            ahead = EYE * simulator.scene.actor.height_m * _forward(simulator, number)
+            eye = state.joints_m[INDEX["head"]] + ahead
+            ray, sights = state.fingertip_m - eye, state.positions_m - eye
+            return int(np.argmax(sights @ ray / np.linalg.norm(sights, axis=1))) == state.target
+    return False
+
+
+def _seen_left(simulator: Simulator, stream: Sequence[Message], number: int, end: Truth) -> bool:
+    """Tell whether the object is seen in the segment where it is left, or held to its end."""
+    states = [state for state in simulator.scene.states(TAIL_S) if state.segment == number]
+    target = states[-1].target
+    if target is None:
+        return True
+    last_m = states[-1].positions_m[target]
+    away = [state for state in states if np.linalg.norm(state.positions_m[target] - last_m) > LEFT_M]
+    since_ns = simulator.stamp_ns(away[-1].frame) if away else 0
+    return any(
+        since_ns < message.stamp_ns <= end.stamp_ns and any(o.id == end.object_id and o.seen for o in message.objects)
+        for message in stream
+        if isinstance(message, Objects)
+    )

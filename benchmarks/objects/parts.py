@@ -1,0 +1,134 @@
+"""What is measured: actions on objects, pointing from afar, and actions in empty space."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache
+from itertools import chain, count
+
+from sensor_gateway.simulator import NO_OBJECT, Conditions, Sample, load_conditions
+
+from .observing import MEASURES, Scene
+from .trials import OURS, Trial, share
+
+CONTACT = ("push", "pull", "put", "lift")
+IDS = (1, 2, 3)
+SPACINGS_M = (0.10, 0.20, 0.30)
+POINTING_SPACING_M = 0.20
+POINTING_DISTANCES_M = (1.0, 1.25, 1.5, 1.75, 2.0)
+EMPTY_M = (0.15, 0.20, 0.37)
+TOUCHING_M = 0.12
+"""The palm of a hand that grasps is a decimetre from an object's middle: a pantomime so near all but touches it."""
+
+EMPTY_SPACINGS_M = (0.10, 0.20)
+EMPTY_CONDITIONS = ("plain", "together")
+IMAGE_HZ = 15
+STILL_IMAGE_HZ = 2
+"""Nothing moves that is pointed at."""
+
+FIRST_PERSON = 1001
+CONTACT_PEOPLE, POINTING_PEOPLE, EMPTY_PEOPLE = 6, 40, 3
+
+Table = Callable[[], Iterator[str]]
+
+
+def contact(name: str) -> Iterator[str]:
+    """Let everybody do the four actions, each on another object."""
+    yield from _contact_table(
+        {f"{100 * spacing_m:.0f} cm apart": _contacts(name, spacing_m) for spacing_m in SPACINGS_M}
+    )
+
+
+def contact_in_all_conditions() -> Iterator[str]:
+    """Put together what was done to the objects in all conditions."""
+    named = {name: [_contacts(name, spacing_m) for spacing_m in SPACINGS_M] for name in load_conditions()}
+    yield from _contact_table({name: list(chain(*of_condition)) for name, of_condition in named.items()})
+
+
+def pointing() -> Iterator[str]:
+    """Let everybody point at each object, from several distances."""
+    yield "| | object | the true line from eye to fingertip |"
+    yield "|---|---|---|"
+    rows = {f"from {distance_m:g} m": _pointings(distance_m) for distance_m in POINTING_DISTANCES_M}
+    for what, trials in {**rows, "**all**": [t for of in rows.values() for t in of]}.items():
+        yield f"| {what} | {share(trials, lambda t: t.object_right(OURS))} | {share(trials, lambda t: t.line_right)} |"
+
+
+def pantomimes() -> Iterator[str]:
+    """Let everybody do the four actions beside the objects."""
+    yield "| the palm at its nearest to an object's middle | no object: proximity | no object: joint |"
+    yield "|---|---|---|"
+    rows = {_nearness(empty_m): _pantomimes(empty_m) for empty_m in EMPTY_M}
+    everything = [t for of in rows.values() for t in of]
+    rows |= {action: [t for t in everything if t.truth.action == action] for action in CONTACT}
+    rows |= {"**all**": everything, f"not among them: {_nearness(TOUCHING_M)}": _pantomimes(TOUCHING_M)}
+    for what, trials in rows.items():
+        shares = [share(trials, lambda t, m=measure: t.object_right(m)) for measure in MEASURES]
+        yield f"| {what} | {' | '.join(shares)} |"
+
+
+PARTS: Mapping[str, tuple[str, Table]] = {
+    **{name: (f"Push, pull, put, lift: {name}", lambda name=name: contact(name)) for name in load_conditions()},
+    "contact": ("Push, pull, put, lift: all conditions", contact_in_all_conditions),
+    "pointing": ("Pointing, objects 20 cm apart", pointing),
+    "pantomimes": ("Pantomimes: push, pull, put, lift where nothing is", pantomimes),
+}
+
+
+def _contact_table(rows: Mapping[str, list[Trial]]) -> Iterator[str]:
+    everything = list(chain(*rows.values()))
+    more = {action: [t for t in everything if t.truth.action == action] for action in CONTACT}
+    more["seen where it ends"] = [t for t in everything if t.seen_left]
+    more["not seen where it ends"] = [t for t in everything if not t.seen_left]
+    yield "| | object: proximity | object: joint | displacement | with direction | outcome |"
+    yield "|---|---|---|---|---|---|"
+    for what, trials in {**rows, **more, "**all**": everything}.items():
+        yield _contact_row(what, trials)
+
+
+def _contact_row(what: str, trials: Sequence[Trial]) -> str:
+    objects = [share(trials, lambda t, m=measure: t.object_right(m)) for measure in MEASURES]
+    became = [share(trials, right) for right in (Trial.displacement_right, Trial.direction_right, Trial.outcome_right)]
+    return f"| {what} | {' | '.join([*objects, *became])} |"
+
+
+@cache
+def _contacts(name: str, spacing_m: float) -> list[Trial]:
+    conditions = load_conditions()[name].model_copy(update={"spacing_m": spacing_m})
+    first = FIRST_PERSON + CONTACT_PEOPLE * (len(SPACINGS_M) * list(load_conditions()).index(name))
+    people = range(first, first + CONTACT_PEOPLE * len(SPACINGS_M))[SPACINGS_M.index(spacing_m) :: len(SPACINGS_M)]
+    return _trials(
+        Scene([Sample(action, IDS[(person + i) % 3]) for i, action in enumerate(CONTACT)], person, conditions, IMAGE_HZ)
+        for person in people
+    )
+
+
+def _pointings(distance_m: float) -> list[Trial]:
+    far = Conditions(spacing_m=POINTING_SPACING_M, distance_m=distance_m)
+    programme = [Sample("point", number) for number in IDS]
+    first = FIRST_PERSON + POINTING_PEOPLE * POINTING_DISTANCES_M.index(distance_m)
+    people = range(first, first + POINTING_PEOPLE)
+    return _trials(Scene(programme, person, far, STILL_IMAGE_HZ) for person in people)
+
+
+def _pantomimes(empty_m: float) -> list[Trial]:
+    programme = [Sample(action, NO_OBJECT) for action in CONTACT]
+    people = count(FIRST_PERSON + round(1e5 * empty_m))
+    return _trials(
+        Scene(programme, next(people), _empty(name, spacing_m, empty_m), IMAGE_HZ)
+        for name in EMPTY_CONDITIONS
+        for spacing_m in EMPTY_SPACINGS_M
+        for _ in range(EMPTY_PEOPLE)
+    )
+
+
+def _empty(name: str, spacing_m: float, empty_m: float) -> Conditions:
+    near = {} if empty_m == EMPTY_M[-1] else {"pantomime_m": empty_m}
+    return load_conditions()[name].model_copy(update={"spacing_m": spacing_m, **near})
+
+
+def _nearness(empty_m: float) -> str:
+    near = f"{100 * empty_m:.0f} cm"
+    return f"{near} or more" if empty_m == EMPTY_M[-1] else f"{near} to {100 * empty_m + 5:.0f} cm"
+
+
+def _trials(scenes: Iterator[Scene]) -> list[Trial]:
+    return [trial for scene in scenes for trial in scene.trials()]

@@ -1,0 +1,176 @@
+"""Corners of small markers by all of their pattern: the image of a known code is laid on the grey levels.
+
+A small marker's sides are too short, and its cells too narrow, for edges to be found each by itself; a finger on one
+of them would pull it along.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cache
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from marker_tracker.families import Cells
+from marker_tracker.images import Pixels
+
+Array = NDArray[np.float64]
+
+SMALL_CELL_PX = 6.5
+"""Cells up to this size are aligned; the sides of larger ones are known well enough."""
+POINTS = 3
+"""Grey levels along each cell."""
+QUIET = 0.5
+"""How many cells of the white around the black border are taken in."""
+ITERATIONS = 3
+START_BLUR_PX = 0.8
+BLUR_PX = np.array([0.35, 2.5])
+OUTLYING = 0.12
+"""Residuals in parts of the contrast from which on a grey level counts little: what covers the marker is no pattern."""
+FURTHEST_PX = 1.5
+LEAST_CONTRAST = 10.0
+NOT_OF_IT = 0.2
+"""Weight below which a grey level is none of the pattern's."""
+DAMPING, LEAST = 1e-3, 1e-3
+SLOPE, CURVE = math.sqrt(2 / math.pi), 0.044715
+
+
+@dataclass(frozen=True)
+class Aligned:
+    """Corners (n, 4, 2), and which part (n,) of each marker is covered: its grey levels are not of the pattern."""
+
+    corners_px: Array
+    covered: Array
+
+
+def aligned(pixels: Pixels, corners_px: Array, shown: Cells) -> Aligned:
+    """Align one family's markers with what they show, border and all (n, across, across), True where white.
+
+    With corners (n, 4, 2) clockwise, blur, black and contrast as parameters, sum rho(I(H u) - black - contrast T(u))
+    over points u of the marker is made small by Gauss-Newton steps, where T is the pattern blurred as the image is and
+    rho Cauchy's. What runs further than `FURTHEST_PX` stays as it is.
+    """
+    return _aligned(pixels, corners_px, shown, np.broadcast_to(np.eye(8), (len(corners_px), 8, 8)))
+
+
+def aligned_alike(pixels: Pixels, corners_px: Array, shown: Cells) -> Aligned:
+    """Align as `aligned` does, but by shift, turn and size alone, by which what is half covered is known better."""
+    around = corners_px - corners_px.mean(axis=1, keepdims=True)
+    turned = np.stack([-around[..., 1], around[..., 0]], axis=-1)
+    across, down = np.broadcast_to([1.0, 0.0], around.shape), np.broadcast_to([0.0, 1.0], around.shape)
+    moves = np.stack(
+        [across, down, around / _sides(corners_px)[:, None, None], turned / _sides(corners_px)[:, None, None]]
+    )
+    return _aligned(pixels, corners_px, shown, np.moveaxis(moves.reshape(4, -1, 8), 0, 2))
+
+
+def is_small(corners_px: Array, across: int) -> NDArray[np.bool_]:
+    """Tell which squares (n, 4, 2) have cells so small that they are to be aligned."""
+    small: NDArray[np.bool_] = _sides(corners_px) <= SMALL_CELL_PX * across
+    return small
+
+
+def _aligned(pixels: Pixels, corners_px: Array, shown: Cells, moves: Array) -> Aligned:
+    """Align by a number of moves: each (8,) is how the corners go, (n, 8, moves)."""
+    white = np.pad(shown, ((0, 0), (1, 1), (1, 1)), constant_values=True).astype(np.float64)
+    look = _first_look(pixels, corners_px, white)
+    found, blurs = corners_px, BLUR_PX / (_sides(corners_px) / shown.shape[1])[:, None]
+    for _ in range(ITERATIONS):
+        step, change, weight = _step(pixels, found, white, look, moves)
+        found, look = found + np.clip(step, -FURTHEST_PX, FURTHEST_PX), look + change
+        look[:, 0] = np.clip(look[:, 0], blurs[:, 0], blurs[:, 1])
+        look[:, 2] = np.maximum(look[:, 2], LEAST_CONTRAST)
+    stays = (np.abs(found - corners_px) <= FURTHEST_PX).all(axis=(1, 2), keepdims=True)
+    return Aligned(np.where(stays, found, corners_px), (weight < NOT_OF_IT).mean(axis=1))
+
+
+def _sides(corners: Array) -> Array:
+    sides: Array = np.linalg.norm(corners - corners[:, [3, 0, 1, 2]], axis=2).mean(axis=1)
+    return sides
+
+
+def _first_look(pixels: Pixels, corners: Array, white: Array) -> Array:
+    """Guess blur in cells, black and contrast (n, 3), by the medians where it is to be darkest and lightest."""
+    across = white.shape[1] - 2
+    blur = START_BLUR_PX / (_sides(corners) / across)
+    levels, pattern = _levels(pixels, corners, _grid(across)), _pattern(white, blur, across)[0]
+    darkest, lightest = np.quantile(pattern, (0.25, 0.75), axis=1, keepdims=True)
+    dark = np.nanmedian(np.where(pattern <= darkest, levels, np.nan), axis=1)
+    light = np.nanmedian(np.where(pattern >= lightest, levels, np.nan), axis=1)
+    return np.stack([blur, dark, np.maximum(light - dark, LEAST_CONTRAST)], axis=1)
+
+
+def _step(pixels: Pixels, corners: Array, white: Array, look: Array, moves: Array) -> tuple[Array, Array, Array]:
+    """Take one Gauss-Newton step: (n, 4, 2) of the corners in px, (n, 3) of the look; and weigh the levels (n, m)."""
+    across = white.shape[1] - 2
+    blur, black, contrast = look.T[:, :, None]
+    levels = _levels(pixels, corners, _grid(across))
+    pattern, slopes, by_blur = _pattern(white, blur[:, 0], across)
+    residual = levels - black - contrast * pattern
+    weight = 1 / (1 + (residual / (OUTLYING * contrast)) ** 2)
+    gradient = contrast[..., None] * _in_image(slopes, corners)
+    by_corner = (gradient[:, :, None, :] * _shares(across)[None, :, :, None]).reshape(*levels.shape, 8)
+    by_look = np.stack([-contrast * by_blur, -np.ones_like(levels), -pattern], axis=2)
+    jacobian = np.concatenate([by_corner @ moves, by_look], axis=2)
+    weighted = np.swapaxes(jacobian * weight[..., None], 1, 2)
+    normal = weighted @ jacobian
+    normal += np.eye(normal.shape[1]) * (DAMPING * np.einsum("nii->ni", normal) + LEAST)[:, None, :]
+    step = -np.linalg.solve(normal, weighted @ residual[..., None])
+    return (moves @ step[:, :-3]).reshape(-1, 4, 2), step[:, -3:, 0], weight
+
+
+@cache
+def _grid(across: int) -> Array:
+    """Points (m, 2) of the unit square and a little beyond, row by row."""
+    ticks = _ticks(across) / across
+    return np.stack(np.meshgrid(ticks, ticks), axis=-1).reshape(-1, 2)
+
+
+def _ticks(across: int) -> Array:
+    count = round((across + 2 * QUIET) * POINTS)
+    return (np.arange(count) + 0.5) / POINTS - QUIET
+
+
+@cache
+def _shares(across: int) -> Array:
+    """How much each corner (4) moves each point (m): bilinearly."""
+    u, v = _grid(across).T
+    return np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v], axis=1)
+
+
+def _levels(pixels: Pixels, corners: Array, unit: Array) -> Array:
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=np.float32)
+    image_from_unit = np.array([cv2.getPerspectiveTransform(square, quad.astype(np.float32)) for quad in corners])
+    mapped = np.column_stack([unit, np.ones(len(unit))]) @ np.swapaxes(image_from_unit, 1, 2)
+    points = (mapped[..., :2] / mapped[..., 2:]).astype(np.float32)
+    sampled = cv2.remap(pixels, points[..., 0], points[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return np.asarray(sampled, dtype=np.float64)
+
+
+def _pattern(white: Array, blur: Array, across: int) -> tuple[Array, Array, Array]:
+    """Blur the cells: (n, m) at each point, its slopes (n, m, 2) along the unit square's sides, and by the blur."""
+    x = (_ticks(across)[:, None] - np.arange(-1, across + 2))[None] / blur[:, None, None]
+    inner = SLOPE * (x + CURVE * x**3)
+    below = np.tanh(inner) / 2
+    density = (1 - 4 * below**2) / 2 * SLOPE * (1 + 3 * CURVE * x**2)
+    cells = below[..., :-1] - below[..., 1:]
+    steep = (density[..., :-1] - density[..., 1:]) / blur[:, None, None]
+    wider = -(x * density)[..., :-1] / blur[:, None, None] + (x * density)[..., 1:] / blur[:, None, None]
+    turned = [np.swapaxes(part, 1, 2) for part in (cells, steep, wider)]
+    rows = cells @ white
+    flat = (len(white), -1)
+    pattern, along, by_blur = (rows @ part for part in turned)
+    down = steep @ white @ turned[0]
+    by_blur = by_blur + wider @ white @ turned[0]
+    slopes = across * np.stack([along.reshape(flat), down.reshape(flat)], axis=-1)
+    return pattern.reshape(flat), slopes, by_blur.reshape(flat)
+
+
+def _in_image(slopes: Array, corners: Array) -> Array:
+    """Turn slopes along the unit square's sides into slopes per pixel (n, m, 2)."""
+    first, second, third, fourth = np.moveaxis(corners, 1, 0)
+    right, down = (second - first + third - fourth) / 2, (fourth - first + third - second) / 2
+    image_from_unit = np.stack([right, down], axis=2)
+    per_px: Array = slopes @ np.linalg.inv(image_from_unit)
+    return per_px

@@ -1,0 +1,44 @@
+"""Markers from image to image: what is still in its place needs no search, which costs more than all the rest."""
+
+from collections.abc import Collection, Mapping
+
+from actum.node import SECOND_NS
+from marker_tracker.detection import Marker, MarkerDetector
+from marker_tracker.following import Follower
+from marker_tracker.images import Pixels
+
+SEARCHED_NS = SECOND_NS // 3
+"""Images are searched as a whole at least this often: others' markers and second copies are to be told, too."""
+MISSING_NS = SECOND_NS // 20
+"""While a marker is missing, they are searched this often, which is every image of a slow camera."""
+
+
+class Watch:
+    """Finds markers where they were, by searching, and by what shows of them under a hand."""
+
+    def __init__(self, wanted: Mapping[str, Collection[int]]) -> None:
+        """Watch for these ids of these families, or for all of a family where there are none."""
+        self._detector = MarkerDetector(wanted)
+        self._follower = Follower()
+        self._last: list[Marker] = []
+        self._searched_ns = 0
+
+    def clear(self) -> None:
+        """Forget everything: the source has started anew."""
+        self._follower.clear()
+        self._last = []
+        self._searched_ns = 0
+
+    def markers(self, stamp_ns: int, pixels: Pixels) -> list[Marker]:
+        """Find the markers of the next grey image."""
+        in_place = [] if self._is_due(stamp_ns) else self._detector.read_again(pixels, self._last)
+        if not in_place or len(in_place) < len(self._last):
+            in_place = self._detector.detect(pixels)
+            self._searched_ns = stamp_ns
+        self._last = in_place
+        return self._follower.followed(stamp_ns, pixels, in_place)
+
+    def _is_due(self, stamp_ns: int) -> bool:
+        """Tell whether an image is to be searched though all the last ones may be in their places."""
+        often_ns = SEARCHED_NS if self._detector.is_complete(self._last) else MISSING_NS
+        return stamp_ns - self._searched_ns >= often_ns

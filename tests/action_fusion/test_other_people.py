@@ -1,0 +1,61 @@
+"""What another person moves is not this person's, and nobody's answer depends on whose postures come first."""
+
+import pytest
+
+from action_fusion.node import ActionFusion
+from action_fusion.settings import Settings
+from actum.messages import Event, Message, Posture
+from actum.node import SECOND_NS, Tick
+from scenes import Place, Scene, acting_on, action, still
+
+CUP: Place = (0.1, 0.0, 0.45)
+PUSHED: Place = (0.1, 0.0, 0.65)
+BESIDE: Place = (0.1, 0.08, 0.72)
+
+PUSHING = acting_on(CUP, PUSHED)
+WATCHING = Scene(right_hand=still(BESIDE), objects=PUSHING.objects)
+
+
+def postures(scene: Scene, agent: int, agents: list[int]) -> list[Posture]:
+    return [posture.model_copy(update={"agent": agent, "agents": agents}) for posture in scene.postures()]
+
+
+def events_of(*streams: list[Message]) -> list[Event]:
+    node = ActionFusion(Settings())
+    answered = [event for stream in streams for message in stream for event in node.handle(message)]
+    return [event for event in answered if isinstance(event, Event)]
+
+
+@pytest.mark.parametrize("others_first", [True, False])
+def test_what_another_moves_is_not_acted_on(others_first) -> None:
+    watching, pushing = postures(WATCHING, 1, [1, 2]), postures(PUSHING, 2, [1, 2])
+    streams = [pushing, watching] if others_first else [watching, pushing]
+    (event,) = events_of([action("act")], WATCHING.sightings(), *streams)
+    assert (event.object, event.why) == (None, "no object within reach")
+
+
+def test_alone_beside_a_thing_that_moves_it_is_acted_on() -> None:
+    (event,) = events_of(postures(WATCHING, 1, [1]), WATCHING.sightings(), [action("act")])
+    assert event.object is not None and event.object.name == "cup"
+
+
+def test_who_moves_it_acts_on_it_though_another_is_near() -> None:
+    streams = [postures(WATCHING, 1, [1, 2]), postures(PUSHING, 2, [1, 2]), PUSHING.sightings()]
+    (event,) = events_of(*streams, [action("push", agent=2)])
+    assert event.object is not None
+    assert (event.object.name, event.outcome) == ("cup", "pushed")
+
+
+def test_one_who_left_is_not_waited_for() -> None:
+    watching, pushing = postures(WATCHING, 1, [1]), postures(PUSHING, 2, [1, 2])
+    there = pushing[: len(pushing) // 3]
+    last_ns = there[-1].stamp_ns
+    watching = [p.model_copy(update={"agents": [1, 2] if p.stamp_ns <= last_ns else [1]}) for p in watching]
+    assert len(events_of(there, watching, WATCHING.sightings(), [action("act")])) == 1
+
+
+def test_one_whose_postures_never_come_is_waited_for_no_longer_than_for_a_stream() -> None:
+    node = ActionFusion(Settings())
+    messages: list[Message] = [*postures(WATCHING, 1, [1, 2]), *WATCHING.sightings(), action("act")]
+    assert [event for message in messages for event in node.handle(message)] == []
+    assert len([event for s in range(4) for event in node.handle(Tick(s * SECOND_NS))]) == 1

@@ -1,0 +1,88 @@
+"""A body whose distance is only guessed: what the hand came to in the image counts, as far as the guess may be off."""
+
+from dataclasses import dataclass
+
+import pytest
+
+from action_fusion.node import ActionFusion
+from action_fusion.settings import Settings
+from actum import geometry
+from actum.messages import Event, Message, Posture
+from scenes import REST_RIGHT, Place, Scene, acting_on, action, moving, still
+
+CUP: Place = (0.1, 0.0, 0.45)
+
+
+@dataclass(frozen=True)
+class Misplaced(Scene):
+    """A scene whose actor seems to stand further away than they do, by a share of their distance."""
+
+    share: float = 0.0
+    depth_std_m: float | None = None
+
+    def posture(self, seconds: float, seq: int | None = None, agent: int = 1, **fields: object) -> Posture:
+        posture = super().posture(seconds, seq, agent, depth_std_m=self.depth_std_m, **fields)
+        assert posture.joints_m is not None
+        assert posture.ego_from_camera is not None
+        camera_from_ego = geometry.invert(geometry.from_flat(posture.ego_from_camera))
+        camera_from_ego[:3, 3] *= 1 + self.share
+        joints = [None if joint is None else [c * (1 + self.share) for c in joint] for joint in posture.joints_m]
+        ego_from_camera = geometry.flat(geometry.invert(camera_from_ego))
+        return posture.model_copy(update={"joints_m": joints, "ego_from_camera": ego_from_camera})
+
+
+def misplaced(scene: Scene, share: float, depth_std_m: float | None) -> Misplaced:
+    return Misplaced(**vars(scene), share=share, depth_std_m=depth_std_m)
+
+
+def event_of(scene: Scene, label: str = "act") -> Event:
+    node = ActionFusion(Settings())
+    messages: list[Message] = [*scene.postures(), *scene.sightings(), action(label)]
+    (event,) = [event for message in messages for event in node.handle(message)]
+    assert isinstance(event, Event)
+    return event
+
+
+def name(event: Event) -> str | None:
+    return event.object and event.object.name
+
+
+def reach_for_the_cup() -> Scene:
+    above = (CUP[0], CUP[1] + 0.08, CUP[2])
+    return Scene(right_hand=moving((0.0, REST_RIGHT), (0.8, above)), objects={1: still(CUP)})
+
+
+@pytest.mark.parametrize("share", [-0.18, 0.18])
+def test_an_object_is_found_though_the_body_is_placed_too_near_or_too_far(share: float) -> None:
+    assert name(event_of(misplaced(reach_for_the_cup(), share, None))) is None
+    told = event_of(misplaced(reach_for_the_cup(), share, depth_std_m=0.15))
+    assert name(told) == "cup"
+    assert told.object is not None
+    assert told.object.distance_m < 0.13
+
+
+def test_what_is_beside_the_hand_across_the_line_of_sight_is_trusted_and_stays_beside() -> None:
+    scene = reach_for_the_cup()
+    beside = Scene(right_hand=scene.right_hand, objects={1: still((CUP[0] + 0.35, CUP[1], CUP[2]))})
+    assert name(event_of(misplaced(beside, 0.0, depth_std_m=0.15))) is None
+
+
+def test_what_is_much_further_behind_than_the_body_can_be_misplaced_is_not_at_the_hand() -> None:
+    scene = reach_for_the_cup()
+    behind = Scene(right_hand=scene.right_hand, objects={1: still((CUP[0], CUP[1], CUP[2] - 0.7))})
+    assert name(event_of(misplaced(behind, 0.0, depth_std_m=0.15))) is None
+    assert name(event_of(misplaced(behind, 0.0, depth_std_m=0.4))) == "cup"
+
+
+def test_an_objects_own_way_is_told_as_it_was_seen() -> None:
+    pushed = acting_on(CUP, (0.1, 0.0, 0.65))
+    exact, guessed = event_of(pushed, "push"), event_of(misplaced(pushed, 0.08, depth_std_m=0.15), "push")
+    assert (name(exact), name(guessed)) == ("cup", "cup")
+    assert exact.motion is not None
+    assert guessed.motion is not None
+    assert guessed.motion.displacement_m == pytest.approx(exact.motion.displacement_m, abs=0.01)
+
+
+def test_a_measured_distance_changes_nothing() -> None:
+    pushed = acting_on(CUP, (0.1, 0.0, 0.65), others={2: (0.3, 0.0, 0.5)})
+    assert event_of(misplaced(pushed, 0.0, None), "push") == event_of(pushed, "push")
