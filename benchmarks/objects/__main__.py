@@ -30,7 +30,8 @@ times a second with a Kinect's noise. Fusion is told which action was done, and 
 but the object's side is measured. `proximity` is the plain smallest distance, `joint` the default; both judge the same
 sightings."""
     yield f"""Protocol: every threshold was chosen on persons 101 to 170 and 200 to 479, on OptiTrack recordings, or
-from anatomy; the persons here are {FIRST_PERSON} and up and had no part in it. Each row has persons of its own:
+from anatomy; the persons here are {FIRST_PERSON} and up and had no part in it; how many of them point, and that the
+nearest pantomimes stand by themselves, was settled after a first look at them. Each row has persons of its own:
 {CONTACT_PEOPLE} for each condition and distance between the objects, {POINTING_PEOPLE} for each distance to point
 from, and for pantomimes {EMPTY_PEOPLE} for each nearness, condition (`plain` and `together`) and distance between the
 objects (10 and 20 cm). Intervals are Wilson's, 95 %."""
