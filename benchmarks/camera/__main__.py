@@ -74,8 +74,9 @@ def _header(examples: Sequence[Example], imported_s: float) -> Iterator[str]:
 is seen by the camera source: MediaPipe's pose landmarker, placed in metres by an assumed field of view, no stature
 given; {frames / imported_s:.0f} frames/s with decoding. The whole clip is one segment. Every model has seed {SEED}."""
     yield """Each person is tested by what learnt from the others; answers pooled. The peers get the same 15 joints,
-with bones of standard length, from the middle of the hips in camera axes, or our upright postures. The default preset
-was chosen on other data (MSR Action3D and simulated actors); how landmarks become joints was chosen on these people."""
+with bones of standard length, from the middle of the hips in camera axes, or our upright postures. These people
+are not wholly unseen: how landmarks become joints was chosen on them, and that left-handed actions are mirrored only
+where people keep to one hand came from their mistakes. The rest of the preset was chosen on other data."""
 
 
 def _listed(numbers: Sequence[int]) -> str:

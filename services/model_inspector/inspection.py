@@ -77,6 +77,7 @@ def _of_maps(anatomy: Anatomy, segments: Sequence[Answered]) -> Iterator[Picture
         partial(posture_map, anatomy),
     )  # fmt: skip
     if isinstance(anatomy, PyramidAnatomy):
+        mirrors = anatomy.model.description.mirrors
         yield Picture(
             section, "movement-map",
             "The first layer's second map. Every unit stands for a way of moving, drawn as arrows at the joints.",
@@ -84,8 +85,8 @@ def _of_maps(anatomy: Anatomy, segments: Sequence[Answered]) -> Iterator[Picture
         )  # fmt: skip
         yield Picture(
             section, "arm-map",
-            "The first layer's third map. Every unit stands for where the acting arm is, seen from its shoulder, and "
-            "where it is going; who acts with the left arm is read in a mirror.",
+            "The first layer's third map. Every unit stands for where the right arm is, seen from its shoulder, and "
+            "where it is going." + (" Who acts with the left arm is read in a mirror." if mirrors else ""),
             partial(arm_map, anatomy.model.first.arms),
         )  # fmt: skip
     yield Picture(

@@ -128,7 +128,7 @@ PYRAMID = PyramidPreset(
     epochs=10,
     known_share=0.95,
 )
-"""The default. Chosen by cross-validation between people 1, 3, 5, 7 and 9 of MSR Action3D and simulated actors."""
+"""The default. How it was chosen, and on whom, is said in benchmarks/recognition."""
 
 DEFAULT = PYRAMID
 
