@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from model_inspector.anatomy import Floats, complete_weights
-from som_classifier.pyramid_model import PyramidModel, left_handed
+from som_classifier.codes import left_handed
+from som_classifier.pyramid_model import PyramidModel
 from som_classifier.streams import Frame
 
 

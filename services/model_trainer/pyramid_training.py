@@ -19,7 +19,7 @@ from model_trainer.samples import SegmentSample
 from model_trainer.upper_layers import Scored, UpperLayers, held_out_gains, train_upper
 from som_classifier.layers import FirstMaps, arm_inputs, frame_inputs
 from som_classifier.presets import PyramidPreset
-from som_classifier.pyramid import Pyramid, Trail, quantised
+from som_classifier.pyramid import Instant, Pyramid, Trail, quantised
 from som_classifier.pyramid_model import PyramidDescription, PyramidModel
 from som_classifier.stages import Stages, familiarity_of
 
@@ -137,7 +137,8 @@ class _Pooling:
         steps_um = np.rint(sample.motion.sum(axis=1) * _UM_PER_M).astype(np.int64)
         sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
         np.cumsum(quantised(activities), axis=0, out=sums[1:])
-        return Trail(list(sums), np.concatenate([[0], np.cumsum(steps_um)]))
+        travelled_um = [0, *np.cumsum(steps_um).tolist()]
+        return Trail([Instant([own], so_far_um) for own, so_far_um in zip(sums, travelled_um, strict=True)])
 
 
 def _frames(frames: int, fraction: float) -> int:
@@ -194,4 +195,4 @@ def _familiar(samples: Sequence[SegmentSample], held_out: Floats, preset: Pyrami
     """
     if len({sample.person for sample in samples}) == 1:
         return None
-    return float(np.quantile(familiarity_of(held_out), 1 - preset.known_share))
+    return float(np.quantile([familiarity_of(row) for row in held_out], 1 - preset.known_share))

@@ -108,7 +108,7 @@ def _trained(
     layer3 = SupervisedLayer.of_means(inputs, targets, actions).train(
         inputs, targets, preset.beta, preset.epochs, rng, partial(progress, "neurons")
     )
-    return UpperLayers(concepts, layer3)
+    return UpperLayers(concepts, SupervisedLayer(layer3.weights.astype(np.float32)))
 
 
 def variance_within(scores: Floats, targets: Indices) -> float:

@@ -1,5 +1,7 @@
 """Which limb acts, and whether it is the left arm: left-handed actions are read in a mirror."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +12,7 @@ from actum.skeletons import INDEX, JOINTS
 
 Integers = NDArray[np.int64]
 
+LIMBS, MOMENTS = 4, 8
 _LIMBS = np.array(
     [
         [INDEX[f"{side}_{middle}"], INDEX[f"{side}_{end}"]]
@@ -45,9 +48,9 @@ def moments(posture: NDArray[np.float64]) -> Integers:
     Six coordinates of its two joints, the sum of their squares, and 1; all 0 where a joint is missing. Being integers
     they add up to the same sums in any order.
     """
-    limbs = (posture[_LIMBS] * _UNITS_PER_M).reshape(4, 6)
+    limbs = (posture[_LIMBS] * _UNITS_PER_M).reshape(LIMBS, 6)
     known = np.isfinite(limbs).all(axis=1)
-    result = np.zeros((4, 8), np.int64)
+    result = np.zeros((LIMBS, MOMENTS), np.int64)
     result[:, :6] = np.rint(np.where(known[:, None], limbs, 0.0))
     result[:, 6] = (result[:, :6] ** 2).sum(axis=1)
     result[:, 7] = known
@@ -58,22 +61,20 @@ def moments(posture: NDArray[np.float64]) -> Integers:
 class Spreads:
     """How much each limb moves about its mean over a segment, in mm."""
 
-    limbs: NDArray[np.float64]
+    limbs: Sequence[float]
 
     @classmethod
     def of(cls, summed: Integers) -> "Spreads":
         """Work it out from the summed moments of the frames, shape (4, 8)."""
-        count = np.maximum(summed[:, 7], 1)
-        means = summed[:, :6] / count[:, None]
-        return cls(np.sqrt(np.maximum(summed[:, 6] / count - (means * means).sum(axis=1), 0.0)))
+        return cls([_spread(limb) for limb in summed.tolist()])
 
     @property
     def acting_hand(self) -> Hand | None:
         """Whose arm is the limb that moves most, and clearly more than the other arm."""
         sides: tuple[tuple[Hand, int, int], ...] = (("left", _LEFT_ARM, _RIGHT_ARM), ("right", _RIGHT_ARM, _LEFT_ARM))
-        most = self.limbs.argmax()
+        most = max(self.limbs)
         for hand, own, other in sides:
-            if most == own and self.limbs[own] + _JITTER > _FACTOR * (self.limbs[other] + _JITTER):
+            if most == self.limbs[own] and most + _JITTER > _FACTOR * (self.limbs[other] + _JITTER):
                 return hand
         return None
 
@@ -81,3 +82,11 @@ class Spreads:
     def left_handed(self) -> bool:
         """Whether the left arm acts."""
         return self.acting_hand == "left"
+
+
+def _spread(limb: Sequence[int]) -> float:
+    """Return √(mean |x|² − |mean x|²) from the sums of x (6), of |x|² and of 1."""
+    a, b, c, d, e, f, squares, count = limb
+    if not count:
+        return 0.0
+    return math.sqrt(max(squares / count - (a * a + b * b + c * c + d * d + e * e + f * f) / count**2, 0.0))

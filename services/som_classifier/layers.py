@@ -132,7 +132,10 @@ class Concepts:
 
     def activity(self, scores: Floats) -> Floats:
         """Return y = exp(−(d² − d²_min) / contrast) of unit length, less its mean, for scores (actions,)."""
-        return self.centred(activity(self.layout.excess2(scores), self.contrast))
+        heard = activity(self.layout.excess2(scores), self.contrast)
+        heard /= np.sqrt(heard @ heard)
+        heard -= self.mean
+        return heard
 
     def centred(self, activities: Floats) -> Floats:
         """Make activities (…, units) unit length and take the mean off."""

@@ -91,6 +91,10 @@ class Model(ABC):
             ValueError: there is no frame.
         """
 
+    @abstractmethod
+    def trace(self, frames: Sequence[Frame]) -> NDArray[np.float64]:
+        """Return the way over the first map: row and column of its winners, repeats removed, shape (n, 2)."""
+
     @property
     def labels(self) -> list[str]:
         """The actions it tells apart."""

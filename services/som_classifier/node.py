@@ -145,8 +145,11 @@ class SomClassifier:
             unknown=recognition.unknown if recognition else False,
             familiarity=recognition.familiarity if recognition else None,
             missing_joints=_missing(closed.frames),
-            trace=_tensor(recognition.trace) if recognition and self._publish_trace else None,
+            trace=self._trace(closed.frames) if recognition and self._publish_trace else None,
         )
+
+    def _trace(self, frames: list[Frame]) -> Tensor | None:
+        return _tensor(self._model.trace([frame for frame in frames if frame.valid])) if self._model else None
 
     def _why_not(self, closed: Closed) -> str:
         if self._model is None:

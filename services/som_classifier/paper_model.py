@@ -87,7 +87,11 @@ class PaperModel(Model):
         """
         if not frames:
             raise ValueError("no frame to recognise an action from")
-        return self.classify(np.array([frame.code for frame in frames]), np.array([frame.motion for frame in frames]))
+        return self.classify(*_cells_and_motion(frames))
+
+    def trace(self, frames: Sequence[Frame]) -> Array:
+        """Return the way of the part attended to over the first map, repeats removed, shape (n, 2)."""
+        return self.way(*_cells_and_motion(frames))
 
     def cells(self, joints: Array) -> NDArray[np.intp]:
         """Return the first map's winner for each of the five parts, shape (5,), for one frame's joints (15, 3)."""
@@ -105,19 +109,27 @@ class PaperModel(Model):
         """
         if not len(cells):
             raise ValueError("no frame to recognise an action from")
-        part = attended(motion, self.description.part, (cells != UNSEEN).any(axis=0))
-        seen = cells[:, part]
-        trace = self.layer1.coordinates[without_repeats(seen[seen != UNSEEN])]
-        excess2 = self.layer2.excess2(ordered_vector(trace, self.description.points))
+        part = self._part(cells, motion)
+        excess2 = self.layer2.excess2(ordered_vector(self._way(cells[:, part]), self.description.points))
         cosines = self.layer3.cosines(activity(excess2, self.description.contrast)).tolist()
         winner = int(np.argmax(cosines))
         return Recognition(
             label=self.labels[winner],
-            confidence=_share(cosines, winner) * float((seen != UNSEEN).mean()),
+            confidence=_share(cosines, winner) * float((cells[:, part] != UNSEEN).mean()),
             activations=dict(zip(self.labels, cosines, strict=True)),
             part=PART_NAMES[part],
-            trace=trace,
         )
+
+    def way(self, cells: NDArray[np.intp], motion: Array) -> Array:
+        """Return the trace of what `classify` takes, shape (n, 2)."""
+        return self._way(cells[:, self._part(cells, motion)])
+
+    def _part(self, cells: NDArray[np.intp], motion: Array) -> int:
+        return attended(motion, self.description.part, (cells != UNSEEN).any(axis=0))
+
+    def _way(self, seen: NDArray[np.intp]) -> Array:
+        coordinates: Array = self.layer1.coordinates[without_repeats(seen[seen != UNSEEN])]
+        return coordinates
 
     def _mismatch(self) -> str | None:
         """Name the first thing about the layers that does not fit together."""
@@ -143,6 +155,10 @@ class _Winners:
     def encode(self, frame: Frame) -> Any:
         assert frame.joints is not None
         return self._model.cells(frame.joints)
+
+
+def _cells_and_motion(frames: Sequence[Frame]) -> tuple[NDArray[np.intp], Array]:
+    return np.array([frame.code for frame in frames]), np.array([frame.motion for frame in frames])
 
 
 def _share(cosines: list[float], winner: int) -> float:

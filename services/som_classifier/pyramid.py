@@ -25,24 +25,49 @@ def quantised(activities: Floats) -> Sums:
     return whole
 
 
-@dataclass(frozen=True, eq=False)
-class Trail:
-    """Running sums at the n + 1 instants before, between and after the n frames of a segment.
+@dataclass(frozen=True, slots=True, eq=False)
+class Instant:
+    """Running totals between two frames.
 
     Attributes:
-        sums: n + 1 arrays (units,), modulo 2³².
-        travelled_um: n + 1 running sums of how far the parts have moved, micrometres.
+        sums: for each side (the actor as seen, and in a mirror) those of its activities, (units,), modulo 2³².
+        travelled_um: how far the parts have moved, micrometres.
     """
 
     sums: Sequence[Sums]
-    travelled_um: NDArray[np.int64]
+    travelled_um: int
+
+
+@dataclass(frozen=True, eq=False)
+class Trail:
+    """A segment of n frames.
+
+    Attributes:
+        instants: the n + 1 before, between and after its frames.
+        side: which of their sums count.
+    """
+
+    instants: Sequence[Instant]
+    side: int = 0
 
     def __len__(self) -> int:
-        return len(self.sums) - 1
+        return len(self.instants) - 1
 
     def until(self, frames: int) -> "Trail":
         """Return the first frames alone."""
-        return Trail(self.sums[: frames + 1], self.travelled_um[: frames + 1])
+        return Trail(self.instants[: frames + 1], self.side)
+
+    def when(self, shares: Sequence[float]) -> Floats:
+        """Return at which instants, 0 to n, the segment is on by these shares (0 to 1): half by time, half by movement.
+
+        By time alone where all is still. Between instants it goes on evenly.
+        """
+        begin_um = self.instants[0].travelled_um
+        moved_um = self.instants[-1].travelled_um - begin_um
+        per_frame, per_um = (0.5 / len(self), 0.5 / moved_um) if moved_um > 0 else (1.0 / len(self), 0.0)
+        progress = [per_frame * k + per_um * (at.travelled_um - begin_um) for k, at in enumerate(self.instants)]
+        instants: Floats = np.interp(shares, progress, np.arange(len(self.instants)))
+        return instants
 
 
 @dataclass(frozen=True)
@@ -73,19 +98,17 @@ class Pyramid:
         """
         if not len(trail):
             raise ValueError("no frame to pool over")
-        at = np.interp(self._borders, _progress(trail.travelled_um), np.arange(len(trail) + 1))
+        at = trail.when(self._borders)
         below = np.minimum(at.astype(np.intp), len(trail) - 1)
-        sums = [trail.sums[k] for k in below.tolist()] + [trail.sums[k + 1] for k in below.tolist()]
-        until, beyond = np.concatenate(sums).reshape(2, len(below), -1)
-        whole = until[self._ends] - until[self._begins]
-        partly = (beyond - until).astype(np.float32)
-        lengths = np.maximum((at[self._ends] - at[self._begins]) * SCALE, 1.0)[:, None]
-        means: NDArray[np.float32] = whole.astype(np.float32)
-        means += (self._differences * (at - below)).astype(np.float32) @ partly
-        means /= lengths.astype(np.float32)
-        np.maximum(means, 0.0, out=means)
-        np.sqrt(np.sqrt(means, out=means), out=means)
-        return means.ravel()
+        sums, beyond = _sums_beside(trail, below.tolist())
+        beyond -= sums
+        beyond *= (at - below).astype(np.float32)[:, None]
+        sums += beyond
+        pooled: NDArray[np.float32] = sums[self._ends]
+        pooled -= sums[self._begins]
+        pooled /= ((at[self._ends] - at[self._begins]) * SCALE).astype(np.float32)[:, None]
+        np.sqrt(np.sqrt(pooled, out=pooled), out=pooled)
+        return pooled.ravel()
 
     @cached_property
     def _spans(self) -> list[tuple[float, float]]:
@@ -96,33 +119,23 @@ class Pyramid:
         ]
 
     @cached_property
-    def _borders(self) -> Floats:
-        """Where cells begin or end, each once."""
-        return np.unique(np.array(self._spans))
+    def _borders(self) -> list[float]:
+        """Where cells begin or end, each once, from the start on."""
+        return sorted({border for span in self._spans for border in span})
 
     @cached_property
     def _begins(self) -> NDArray[np.intp]:
         """At which border each cell begins."""
-        return np.searchsorted(self._borders, [begin for begin, _ in self._spans])
+        return np.array([self._borders.index(begin) for begin, _ in self._spans])
 
     @cached_property
     def _ends(self) -> NDArray[np.intp]:
-        return np.searchsorted(self._borders, [end for _, end in self._spans])
-
-    @cached_property
-    def _differences(self) -> Floats:
-        """What takes each cell's end less its beginning, shape (cells, borders)."""
-        borders = np.eye(len(self._borders))
-        differences: Floats = borders[self._ends] - borders[self._begins]
-        return differences
+        return np.array([self._borders.index(end) for _, end in self._spans])
 
 
-def _progress(travelled_um: NDArray[np.int64]) -> Floats:
-    """Return how far a segment is at each instant, 0 to 1: half time, half movement; time alone where all is still."""
-    frames = len(travelled_um) - 1
-    time = np.arange(frames + 1) / frames
-    moved = travelled_um - travelled_um[0]
-    if moved[-1] <= 0:
-        return time
-    progress: Floats = 0.5 * time + 0.5 * (moved / moved[-1])
-    return progress
+def _sums_beside(trail: Trail, below: Sequence[int]) -> NDArray[np.float32]:
+    """Return the sums at these instants and at those that follow, less those at the start, (2, instants, units)."""
+    instants = [trail.instants[k] for k in below] + [trail.instants[k + 1] for k in below]
+    sums = np.concatenate([instant.sums[trail.side] for instant in instants]).reshape(2, len(below), -1)
+    sums -= trail.instants[0].sums[trail.side]
+    return sums.astype(np.float32)

@@ -12,11 +12,10 @@ from pydantic import Field
 from actum.node import SECOND_NS
 from actum.skeletons import JOINTS
 from actum.som import Som
-from som_classifier.attention import PART_NAMES
-from som_classifier.handedness import Spreads, moments
+from som_classifier.codes import Code, FrameEncoder, left_handed, most_moved_part, seen_share, trail_of
 from som_classifier.layers import ARM_INPUTS, Concepts, FirstMaps
 from som_classifier.model import Arrays, Description, Model
-from som_classifier.pyramid import Pyramid, Sums, Trail, quantised
+from som_classifier.pyramid import Pyramid, Trail
 from som_classifier.recognition import Recognition
 from som_classifier.stages import Stages, familiarity_of
 from som_classifier.streams import Frame
@@ -25,7 +24,6 @@ from som_classifier.trace import without_repeats
 
 Floats = NDArray[Any]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-_UM_PER_M = 1e6
 
 
 class PyramidDescription(Description):
@@ -61,24 +59,6 @@ class PyramidDescription(Description):
     concept_contrast: Positive
     gains: list[Positive]
     familiar: Annotated[float, Field(allow_inf_nan=False)] | None
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Code:
-    """One frame as this recogniser remembers it: running sums before and after it, and the posture map's winner.
-
-    `sums` are (2, units), the actor as seen and in a mirror; `moved_um` how far each part has moved, `travelled_um` all
-    of them; `spread` the summed moments of the limbs. All are whole numbers.
-    """
-
-    sums_before: Sums
-    sums: Sums
-    travelled_before_um: int
-    travelled_um: int
-    moved_um: NDArray[np.int64]
-    spread_before: NDArray[np.int64]
-    spread: NDArray[np.int64]
-    winner: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +126,7 @@ class PyramidModel(Model):
         """How activities are pooled over a segment."""
         return Pyramid(tuple(self.description.levels), self.description.overlap)
 
-    def encoder(self) -> "FrameEncoder":
+    def encoder(self) -> FrameEncoder:
         """Begin to read an agent."""
         return FrameEncoder(self.first)
 
@@ -164,13 +144,12 @@ class PyramidModel(Model):
         cosines = self.layer3.cosines(self.concepts.activity(scores))
         winner = int(cosines.argmax())
         gain = sum(weight * gain for weight, gain in zip(weights, self.description.gains, strict=True))
-        familiarity = float(familiarity_of(scores))
+        familiarity = familiarity_of(scores)
         return Recognition(
             label=self.labels[winner],
-            confidence=_probability(cosines, winner, gain * seen_share(frames)),
+            confidence=_probability(cosines, winner, gain * seen_share(codes)),
             activations=dict(zip(self.labels, cosines.tolist(), strict=True)),
-            part=PART_NAMES[int((codes[-1].moved_um - codes[0].moved_um).argmax())],
-            trace=self.first.postures.coordinates[without_repeats(np.array([code.winner for code in codes]))],
+            part=most_moved_part(codes),
             familiarity=familiarity,
             unknown=complete and self._is_strange(familiarity),
         )
@@ -178,6 +157,11 @@ class PyramidModel(Model):
     def trail(self, codes: Sequence[Code]) -> Trail:
         """Return a segment's running sums, of the actor as seen or in a mirror."""
         return trail_of(codes, in_mirror=self.description.mirrors and left_handed(codes))
+
+    def trace(self, frames: Sequence[Frame]) -> NDArray[np.float64]:
+        """Return row and column of the posture map's winners, repeats removed, shape (n, 2)."""
+        coordinates: NDArray[np.float64] = self.first.postures.coordinates
+        return coordinates[without_repeats(np.array([frame.code.winner for frame in frames]))]
 
     def _is_strange(self, familiarity: float) -> bool:
         return self.description.familiar is not None and familiarity < self.description.familiar
@@ -212,49 +196,6 @@ class PyramidModel(Model):
             f"its {name} is of shape {has}, not {should}" for name, (has, should) in shapes.items() if has != should
         )
         return next(wrong, None)
-
-
-class FrameEncoder:
-    """Adds up one agent's activities, frame by frame, as seen and in a mirror."""
-
-    def __init__(self, first: FirstMaps) -> None:
-        self._first = first
-        self._sums: Sums = np.zeros((2, first.units), np.uint32)
-        self._travelled_um = 0
-        self._moved_um = np.zeros(len(PART_NAMES), np.int64)
-        self._spread = np.zeros((4, 8), np.int64)
-
-    def encode(self, frame: Frame) -> Code:
-        """Add a valid frame."""
-        assert frame.movement is not None and frame.motion is not None
-        posture, velocity = frame.movement.posture, frame.movement.velocity
-        sides = self._first.sides(posture, velocity)
-        before = self._sums, self._travelled_um, self._spread
-        self._sums = self._sums + quantised(sides)
-        self._travelled_um += round(sum(frame.motion.tolist()) * _UM_PER_M)
-        self._moved_um = self._moved_um + np.rint(frame.motion * _UM_PER_M).astype(np.int64)
-        self._spread = self._spread + moments(posture)
-        winner = int(sides[0, : len(self._first.postures.weights)].argmax())
-        return Code(
-            before[0], self._sums, before[1], self._travelled_um, self._moved_um, before[2], self._spread, winner
-        )  # fmt: skip
-
-
-def left_handed(codes: Sequence[Code]) -> bool:
-    """Tell whether the left arm acts."""
-    return Spreads.of(codes[-1].spread - codes[0].spread_before).left_handed
-
-
-def trail_of(codes: Sequence[Code], in_mirror: bool) -> Trail:
-    """Return a segment's running sums."""
-    side = int(in_mirror)
-    travelled_um = [codes[0].travelled_before_um, *[code.travelled_um for code in codes]]
-    return Trail([codes[0].sums_before[side], *[code.sums[side] for code in codes]], np.array(travelled_um))
-
-
-def seen_share(frames: Sequence[Frame]) -> float:
-    """Return which share of the joints was there over all frames."""
-    return 1.0 - sum(len(frame.missing) for frame in frames) / (len(JOINTS) * len(frames))
 
 
 def _probability(cosines: Floats, winner: int, gain: float) -> float:

@@ -2,9 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 
 @dataclass(frozen=True)
 class Recognition:
@@ -15,7 +12,6 @@ class Recognition:
         confidence: how sure that is, within [0, 1]; what it means is the model's to say.
         activations: every neuron's cosine by action.
         part: the body part that moves most.
-        trace: (n, 2), row and column of the first map's winners, repeats removed.
         familiarity: how much the segment is like what was trained; None where the model cannot tell.
         unknown: whether it is so unfamiliar that the action may be none of those trained.
     """
@@ -24,6 +20,5 @@ class Recognition:
     confidence: float
     activations: dict[str, float]
     part: str
-    trace: NDArray[np.float64]
     familiarity: float | None = None
     unknown: bool = False

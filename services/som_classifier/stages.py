@@ -1,5 +1,6 @@
 """Discriminant axes, one set for each stage of an action: early on other things tell actions apart than at the end."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,6 +13,7 @@ from actum.som.blas import row_product
 Floats = NDArray[Any]
 
 NEGLIGIBLE = 0.02
+SHORTEST_S = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +41,11 @@ class Stages:
         """
         if complete:
             return [0.0] * (len(self.fractions) - 1) + [1.0]
-        log_fractions = np.log(max(elapsed_s, 1e-3)) - self.log_duration_mean
-        z = (log_fractions - np.log(self.fractions)) / self.log_duration_sd
-        likely = np.exp(-0.5 * (z * z - (z * z).min()))
-        likely[likely < NEGLIGIBLE * likely.sum()] = 0.0
-        normalised: list[float] = (likely / likely.sum()).tolist()
-        return normalised
+        seen = math.log(max(elapsed_s, SHORTEST_S)) - self.log_duration_mean
+        z2s = [((seen - math.log(fraction)) / self.log_duration_sd) ** 2 for fraction in self.fractions]
+        likely = [math.exp(0.5 * (min(z2s) - z2)) for z2 in z2s]
+        kept = [weight if weight >= NEGLIGIBLE * sum(likely) else 0.0 for weight in likely]
+        return [weight / sum(kept) for weight in kept]
 
     def scores(self, vector: NDArray[np.float32], weights: Sequence[float]) -> NDArray[np.float32]:
         """Return the actions' scores, about 1 for the one done and 0 for the others, shape (actions,)."""
@@ -55,11 +56,11 @@ class Stages:
         return total
 
 
-def familiarity_of(scores: Floats) -> Floats:
-    """Return how much scores (…, actions) are like those of an action that was trained.
+def familiarity_of(scores: Floats) -> float:
+    """Return how much scores (actions,) are like those of an action that was trained.
 
     1 − ‖s − e‖, with e the scores that the likeliest action should have, 1 for itself and 0 for the others: 1 at best.
     """
-    likeliest = np.arange(scores.shape[-1]) == scores.argmax(axis=-1)[..., None]
-    familiarity: Floats = 1 - np.sqrt(np.square(scores - likeliest).sum(axis=-1))
-    return familiarity
+    off = scores.copy()
+    off[off.argmax()] -= 1
+    return 1 - math.sqrt(off @ off)

@@ -2,14 +2,16 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Floats = NDArray[Any]
 
 
-def activity(excess2: Array, contrast: float) -> Array:
+def activity(excess2: Floats, contrast: float) -> Floats:
     """Return the second map's activity y = exp(−(d² − d²_min) / contrast), 1 at the winner.
 
     The paper's exp(−s / 10⁶) is 1 everywhere in floating point at any usual scale of the input, so the contrast
@@ -19,7 +21,8 @@ def activity(excess2: Array, contrast: float) -> Array:
         excess2: d² − d²_min of each neuron.
         contrast: in the same unit as d².
     """
-    return np.exp(excess2 / -contrast)
+    activities: Floats = np.exp(excess2 / -contrast)
+    return activities
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,13 +30,13 @@ class SupervisedLayer:
     """Neurons that answer with the cosine between the input and their weights.
 
     Attributes:
-        weights: (actions, inputs), rows of unit length, read-only.
+        weights: (actions, inputs), rows of unit length in single or double precision, read-only.
     """
 
-    weights: Array
+    weights: Floats
 
     def __post_init__(self) -> None:
-        weights = np.array(self.weights, dtype=np.float64, order="C")
+        weights = np.array(self.weights, order="C")
         if weights.ndim != 2 or not np.allclose(np.linalg.norm(weights, axis=1), 1.0):
             raise ValueError(f"weights of shape {weights.shape} are no vectors of unit length, one per action")
         weights.setflags(write=False)
@@ -52,9 +55,9 @@ class SupervisedLayer:
         sums[~sums.any(axis=1)] = 1.0
         return cls(sums / np.linalg.norm(sums, axis=1, keepdims=True))
 
-    def cosines(self, x: Array) -> Array:
+    def cosines(self, x: Floats) -> Floats:
         """Return each neuron's activity x·w / ‖x‖‖w‖, shape (actions,)."""
-        cosines: Array = self.weights @ (x / np.sqrt(x @ x))
+        cosines: Floats = self.weights @ x / np.sqrt(x @ x)
         return cosines
 
     def train(
@@ -71,7 +74,7 @@ class SupervisedLayer:
         Args:
             targets: (n,), the index of the neuron that is to answer 1; the others are to answer 0.
         """
-        weights = self.weights.copy()
+        weights = self.weights.astype(np.float64)
         unit_inputs = inputs / np.linalg.norm(inputs, axis=1, keepdims=True)
         desired = np.eye(len(weights))[targets]
         for epoch in range(epochs):

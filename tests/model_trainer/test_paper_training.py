@@ -33,7 +33,7 @@ def test_the_description_says_what_it_was_made_of(samples: list[SegmentSample]) 
 
 def test_vectors_are_as_long_as_the_longest_training_trace(samples: list[SegmentSample]) -> None:
     model = trained(samples)
-    walked = [len(model.classify(cells_of(model, sample), sample.motion).trace) for sample in samples]
+    walked = [len(model.way(cells_of(model, sample), sample.motion)) for sample in samples]
     assert model.description.points == max(walked)
 
 

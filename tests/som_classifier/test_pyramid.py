@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from som_classifier.pyramid import SCALE, Pyramid, Trail, quantised
+from som_classifier.pyramid import SCALE, Instant, Pyramid, Trail, quantised
 
 UNITS = 4
 PLAIN = Pyramid((1, 2, 4), 0.0)
@@ -17,7 +17,8 @@ def trail(activities: np.ndarray, steps_um: np.ndarray | None = None, begun: int
     steps = np.zeros(len(activities), np.int64) if steps_um is None else steps_um
     running = np.concatenate([np.zeros((1, activities.shape[1]), np.uint32), quantised(activities)])
     sums = np.cumsum(running, axis=0, dtype=np.uint32) + np.uint32(begun)
-    return Trail(list(sums), far_um + np.concatenate([[0], np.cumsum(steps)]))
+    travelled_um = [far_um, *(far_um + np.cumsum(steps)).tolist()]
+    return Trail([Instant([own], so_far_um) for own, so_far_um in zip(sums, travelled_um, strict=True)])
 
 
 def random_activities(frames: int, seed: int = 0) -> np.ndarray:
@@ -69,7 +70,7 @@ def test_when_the_summing_began_does_not_matter_to_the_bit(frames: int, begun: i
 def test_a_window_of_a_long_trail_is_the_same_as_alone_to_the_bit(before: int, frames: int) -> None:
     activities, steps = random_activities(before + frames), random_steps(before + frames)
     whole = trail(activities, steps)
-    window = Trail(whole.sums[before:], whole.travelled_um[before:])
+    window = Trail(whole.instants[before:])
     alone = trail(activities[before:], steps[before:])
     np.testing.assert_array_equal(OVERLAPPING.vector(window), OVERLAPPING.vector(alone))
     begun = whole.until(before + 1)
