@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from som_classifier.presets import PYRAMID
+from som_classifier.presets import PYRAMID, Others
 
 QUICK = replace(
     PYRAMID,
@@ -10,7 +10,7 @@ QUICK = replace(
     units=(8, 8),
     unit_epochs=5,
     unit_radius=(3.0, 0.6),
-    builds=1,
+    others=Others(1, build_sd=0.1, tempo=1.0),
     stages=((0.3, 0.5), (0.7,), (1.0,)),
     concepts=(10, 10),
     concept_epochs=8,

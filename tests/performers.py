@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from actum.messages import Segment, Skeleton
 from actum.som import Schedule
 from people import FRAME_NS, STANDING, skeleton
-from som_classifier.presets import MapPlan, PaperPreset, PyramidPreset
+from som_classifier.presets import MapPlan, Others, PaperPreset, PyramidPreset
 
 FRAMES = 20
 PAUSE_FRAMES = 5
@@ -21,9 +21,8 @@ TINY = PyramidPreset(
     levels=(1, 2, 4),
     overlap=0.25,
     turns_deg=(-15.0, 15.0),
-    builds=1,
-    build_sd=0.1,
-    builds_of_one=(2, 0.1),
+    others=Others(1, build_sd=0.1, tempo=1.0),
+    others_of_one=Others(2, build_sd=0.1, tempo=0.5),
     stages=((0.3, 0.5), (0.7,), (1.0,)),
     shrinkage=0.15,
     held_out_share=0.5,

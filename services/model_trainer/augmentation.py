@@ -1,4 +1,4 @@
-"""Each sample seen from other sides, and as people of other proportions would have done it."""
+"""Each sample seen from other sides, and as people of other proportions and tempos would have done it."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -35,9 +35,10 @@ def views(sample: SegmentSample, preset: PyramidPreset, mirrors: bool, rng: np.r
     for turn_deg in preset.turns_deg:
         turn = turned(np.radians(turn_deg))
         yield View(postures @ turn, velocities @ turn)
-    for _ in range(preset.builds):
-        build = rebuilt(dict(zip(_BONE_NAMES, np.exp(rng.normal(0.0, preset.build_sd, len(_BONE_NAMES))), strict=True)))
-        yield View(_applied(build, postures), _applied(build, velocities))
+    for _ in range(preset.others.count):
+        factors = np.exp(rng.normal(0.0, preset.others.build_sd, len(_BONE_NAMES)))
+        build = rebuilt(dict(zip(_BONE_NAMES, factors, strict=True)))
+        yield View(_applied(build, postures), preset.others.tempo * _applied(build, velocities))
 
 
 def turned(radians: float) -> Array:

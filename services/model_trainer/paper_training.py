@@ -46,7 +46,7 @@ def train(samples: Sequence[SegmentSample], preset: PaperPreset, seed: int, prog
 
 
 def typical_distance2(vectors: Array) -> float:
-    """Return the median squared distance of each row to its nearest other row; 1 where that is 0.
+    """Return the median squared distance of each row (n, dim) to its nearest other row; 1 where that is 0.
 
     The rows are grid coordinates, so 1 is the smallest distance there is between two neurons.
     """

@@ -61,11 +61,9 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
 
 
 def _varied(preset: PyramidPreset, samples: Sequence[SegmentSample]) -> PyramidPreset:
-    """Return the preset with as many and as different bodies as the people learnt from call for."""
-    if len({sample.person for sample in samples}) > 1:
-        return preset
-    builds, build_sd = preset.builds_of_one
-    return replace(preset, builds=builds, build_sd=build_sd)
+    """Return the preset with as many and as different other people as those learnt from call for."""
+    only_one = len({sample.person for sample in samples}) == 1
+    return replace(preset, others=preset.others_of_one) if only_one else preset
 
 
 def _first_maps(

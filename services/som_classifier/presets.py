@@ -18,6 +18,21 @@ class MapPlan:
 
 
 @dataclass(frozen=True)
+class Others:
+    """As what other people each sample is also shown.
+
+    Attributes:
+        count: how many.
+        build_sd: by how much (log) their bones differ.
+        tempo: how fast they move, in units of the person seen.
+    """
+
+    count: int
+    build_sd: float
+    tempo: float
+
+
+@dataclass(frozen=True)
 class PaperPreset:
     """Everything that a training of the paper's recogniser depends on beside its samples and its seed.
 
@@ -49,9 +64,8 @@ class PyramidPreset:
         levels: the pyramid's cells on each level.
         overlap: how far each reaches over its borders, in parts of its length.
         turns_deg: the turns about the vertical in which each sample is also shown.
-        builds: how many people of other proportions each sample is also shown as.
-        build_sd: by how much (log) their bones differ.
-        builds_of_one: both where all samples are one person's, from whom it cannot be learnt how people differ.
+        others: the other people as whom each sample is also shown.
+        others_of_one: those where all samples are one person's, from whom it cannot be learnt how people differ.
         stages: the shares of an action that each set of discriminant axes is trained on; the last is the whole.
         shrinkage: of the discriminant axes, in units of the mean squared length of the pooled vectors.
         held_out_share: of the scores that the map of actions learns, how much comes from axes that were trained
@@ -72,9 +86,8 @@ class PyramidPreset:
     levels: tuple[int, ...]
     overlap: float
     turns_deg: tuple[float, ...]
-    builds: int
-    build_sd: float
-    builds_of_one: tuple[int, float]
+    others: Others
+    others_of_one: Others
     stages: tuple[tuple[float, ...], ...]
     shrinkage: float
     held_out_share: float
@@ -114,9 +127,8 @@ PYRAMID = PyramidPreset(
     levels=(1, 2, 4),
     overlap=0.25,
     turns_deg=(-15.0, 15.0),
-    builds=2,
-    build_sd=0.1,
-    builds_of_one=(7, 0.2),
+    others=Others(2, build_sd=0.1, tempo=1.0),
+    others_of_one=Others(8, build_sd=0.2, tempo=0.5),
     stages=((0.2, 0.3, 0.4), (0.5, 0.6), (0.7, 0.8), (1.0,)),
     shrinkage=0.15,
     held_out_share=0.5,

@@ -14,6 +14,7 @@ from model_trainer.samples import SegmentSample
 from performers import TINY
 from recognisers import tiny_samples
 from som_classifier.handedness import mirrored
+from som_classifier.presets import Others
 
 PARENTS, CHILDREN = (np.array([bone[end] for bone in BONES]) for end in (0, 1))
 BONE_NAMES = sorted({JOINTS[child].removeprefix("left_").removeprefix("right_") for child in CHILDREN})
@@ -23,6 +24,10 @@ TORSO = INDEX["torso"]
 
 def shown(sample: SegmentSample, seed: int = 0, mirrors: bool = True, **changes: object) -> list[View]:
     return list(views(sample, replace(TINY, **changes), mirrors, np.random.default_rng(seed)))
+
+
+def others(count: int, tempo: float = 1.0) -> Others:
+    return Others(count, build_sd=0.1, tempo=tempo)
 
 
 def bones(postures: np.ndarray) -> np.ndarray:
@@ -40,12 +45,12 @@ def without(sample: SegmentSample, *names: str) -> SegmentSample:
 
 
 def test_there_is_the_sample_itself_and_one_view_of_each_turn_and_build() -> None:
-    found = shown(RIGHT_HANDED, turns_deg=(-20.0, 10.0, 20.0), builds=4)
+    found = shown(RIGHT_HANDED, turns_deg=(-20.0, 10.0, 20.0), others=others(4))
     assert len(found) == 1 + 3 + 4
     np.testing.assert_array_equal(found[0].postures, RIGHT_HANDED.postures)
     np.testing.assert_array_equal(found[0].velocities, RIGHT_HANDED.velocities)
     assert {view.postures.shape for view in found} == {RIGHT_HANDED.postures.shape}
-    assert len(shown(RIGHT_HANDED, turns_deg=(), builds=0)) == 1
+    assert len(shown(RIGHT_HANDED, turns_deg=(), others=others(0))) == 1
 
 
 def test_left_handed_samples_are_shown_in_a_mirror() -> None:
@@ -61,7 +66,7 @@ def test_left_handed_samples_are_shown_in_a_mirror() -> None:
 @settings(deadline=None)
 @given(st.floats(-180, 180))
 def test_a_turn_keeps_every_length_and_the_vertical(degrees: float) -> None:
-    _, view = shown(RIGHT_HANDED, turns_deg=(degrees,), builds=0)
+    _, view = shown(RIGHT_HANDED, turns_deg=(degrees,), others=others(0))
     for seen, original in ((view.postures, RIGHT_HANDED.postures), (view.velocities, RIGHT_HANDED.velocities)):
         np.testing.assert_allclose(seen[..., 1], original[..., 1], atol=1e-12)
         np.testing.assert_allclose(np.linalg.norm(seen, axis=-1), np.linalg.norm(original, axis=-1), atol=1e-12)
@@ -100,7 +105,7 @@ def test_a_build_of_ones_is_the_same_person() -> None:
 
 
 def test_builds_differ_as_much_as_they_should_and_are_alike_on_both_sides() -> None:
-    _, *built = shown(RIGHT_HANDED, turns_deg=(), builds=400, build_sd=0.1)
+    _, *built = shown(RIGHT_HANDED, turns_deg=(), others=others(400))
     factors = np.array([lengths(view.postures[0]) for view in built]) / lengths(RIGHT_HANDED.postures[0])
     assert np.log(factors).std(axis=0) == pytest.approx(np.full(len(CHILDREN), 0.1), rel=0.15)
     for joint in BONE_NAMES:
@@ -113,6 +118,13 @@ def test_postures_and_velocities_are_built_alike() -> None:
     sample = replace(RIGHT_HANDED, velocities=2.0 * RIGHT_HANDED.postures)
     for view in shown(sample):
         np.testing.assert_allclose(view.velocities, 2.0 * view.postures, atol=1e-12)
+
+
+def test_other_people_move_as_fast_as_they_should_along_the_same_way() -> None:
+    slower, alike = (shown(RIGHT_HANDED, turns_deg=(), others=others(2, tempo))[1:] for tempo in (0.5, 1.0))
+    for slow, quick in zip(slower, alike, strict=True):
+        np.testing.assert_array_equal(slow.postures, quick.postures)
+        np.testing.assert_array_equal(slow.velocities, 0.5 * quick.velocities)
 
 
 def test_builds_come_from_the_generator_alone() -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from model_trainer.calibration import LARGEST_GAIN, SMALLEST_GAIN, fitted_gain, surprise
@@ -24,7 +24,6 @@ def test_a_known_gain_is_found(gain: float) -> None:
     assert fitted_gain(*heard(gain, 20_000)) == pytest.approx(gain, rel=0.06)
 
 
-@settings(deadline=None)
 @given(st.integers(0, 1000), st.floats(1.0, 50.0))
 def test_no_gain_explains_the_answers_better(seed: int, gain: float) -> None:
     cosines, targets = heard(gain, 200, seed)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from model_trainer.discriminants import FOLDS_WITHOUT_PEOPLE, MOST_FOLDS, discriminant_axes, folds_of
@@ -53,7 +53,6 @@ def test_held_out_scores_are_those_of_axes_fitted_without_the_fold(fold: int) ->
     np.testing.assert_allclose(found.held_out[fold == FOLDS], centred[fold == FOLDS] @ axes + level, atol=1e-4)
 
 
-@settings(deadline=None)
 @given(st.integers(0, PEOPLE - 1), st.permutations(range(ACTIONS)))
 def test_labels_of_the_held_out_do_not_matter_to_the_bit(fold: int, order: list[int]) -> None:
     vectors, wanted = training()

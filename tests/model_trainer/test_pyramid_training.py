@@ -17,11 +17,12 @@ from model_trainer.training import train
 from performers import TINY
 from som_classifier.handedness import mirrored
 from som_classifier.layers import arm_inputs, frame_inputs
-from som_classifier.presets import PyramidPreset
+from som_classifier.presets import Others, PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.stages import familiarity_of
 
-PLAIN = replace(TINY, turns_deg=(), builds=0, stages=((1.0,),))
+NOBODY = Others(0, build_sd=0.0, tempo=1.0)
+PLAIN = replace(TINY, turns_deg=(), others=NOBODY, stages=((1.0,),))
 OTHER_SIDE = [list(PARTS).index(name) for name in ("left_arm", "right_arm", "left_leg", "right_leg", "body")]
 
 
@@ -76,9 +77,10 @@ def test_a_model_of_one_person_takes_nobody_for_unknown(samples: list[SegmentSam
 
 
 def test_one_persons_samples_are_shown_as_more_other_people(samples: list[SegmentSample]) -> None:
-    of_one = replace(PLAIN, builds_of_one=(3, 0.2))
+    several = Others(3, build_sd=0.2, tempo=0.5)
+    of_one = replace(PLAIN, others_of_one=several)
     one = [replace(sample, person="1") for sample in samples]
-    told = trained(one, of_one), trained(one, replace(PLAIN, builds=3, build_sd=0.2, builds_of_one=(3, 0.2)))
+    told = trained(one, of_one), trained(one, replace(PLAIN, others=several, others_of_one=several))
     for name, array in told[0].arrays.items():
         np.testing.assert_array_equal(array, told[1].arrays[name])
     usual = trained(samples, of_one), trained(samples, PLAIN)

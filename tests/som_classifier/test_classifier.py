@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -54,6 +55,12 @@ def live(node: SomClassifier, messages: Iterable[Message | Tick]) -> list[Action
     return [action for action in put if isinstance(action, Action)]
 
 
+@cache
+def always(preset: Preset) -> list[Action]:
+    """What a node with the model from the start says of the scene."""
+    return live(SomClassifier(tiny_model(preset)), scene())
+
+
 def finals(actions: Iterable[Action]) -> list[Action]:
     return [action for action in actions if action.final]
 
@@ -73,14 +80,14 @@ class Box:
 def test_live_and_replayed_it_puts_the_same_to_the_last_bit(preset: Preset) -> None:
     replayed = list(replay(SomClassifier(tiny_model(preset)), [(m.stamp_ns, m) for m in scene()]))
     assert len(finals(m for m in replayed if isinstance(m, Action))) == len(SAMPLES)
-    assert without_seq(replayed) == without_seq(list(live(SomClassifier(tiny_model(preset)), scene())))
+    assert without_seq(replayed) == without_seq([*always(preset)])
 
 
 @each_preset
 def test_final_answers_are_those_of_the_model_to_the_sample(preset: Preset) -> None:
     """To the last bit: what training sees is what runs."""
     model = tiny_model(preset)
-    answers = finals(live(SomClassifier(model), scene()))
+    answers = finals(always(preset))
     for action, sample in zip(answers, SAMPLES, strict=True):
         expected = answer(model, encoded(model, sample))
         assert (action.action, action.activations, action.part) == (expected.label, expected.activations, expected.part)
@@ -91,7 +98,7 @@ def test_final_answers_are_those_of_the_model_to_the_sample(preset: Preset) -> N
 @each_preset
 def test_each_frame_from_the_third_on_has_its_estimate(preset: Preset) -> None:
     model = tiny_model(preset)
-    estimates = [action for action in live(SomClassifier(model), scene()) if not action.final]
+    estimates = [action for action in always(preset) if not action.final]
     assert len(estimates) == len(SAMPLES) * (FRAMES - model.min_frames + 1)
     for sample in SAMPLES[:3]:
         frames = encoded(model, sample)
@@ -103,7 +110,7 @@ def test_each_frame_from_the_third_on_has_its_estimate(preset: Preset) -> None:
 
 
 def test_a_segment_is_answered_once_after_its_last_estimate() -> None:
-    actions = live(SomClassifier(tiny_model()), scene())
+    actions = always(TINY)
     for number in range(len(SAMPLES)):
         assert [a.final for a in actions if a.segment_id == str(number)] == [False] * (FRAMES - 2) + [True]
 
@@ -155,9 +162,8 @@ def test_a_new_model_answers_an_open_segment_as_if_it_had_been_there_from_the_st
 ) -> None:
     """To the last bit: the frames remembered are read anew."""
     reload = Reload(at, tiny_model(preset), tiny_model(first) if first else None)
-    always = live(SomClassifier(tiny_model(preset)), scene())
     assert len(reload.after) > len(SAMPLES)
-    assert without_seq([*reload.after]) == without_seq([*always[-len(reload.after) :]])
+    assert without_seq([*reload.after]) == without_seq([*always(preset)[-len(reload.after) :]])
 
 
 def test_until_there_is_a_model_segments_are_refused_and_then_recognised() -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from actum.skeletons import INDEX, JOINTS
@@ -39,7 +39,6 @@ def test_a_mirrored_person_is_the_other_way_round() -> None:
         np.testing.assert_array_equal(image[INDEX[other]], POSTURE[INDEX[name]] * [-1, 1, 1])
 
 
-@settings(deadline=None)
 @given(st.integers(0, 1000))
 def test_the_mirror_image_of_the_mirror_image_is_the_person(seed: int) -> None:
     postures = acting(seed, 3)
@@ -61,7 +60,6 @@ def test_spread_is_the_root_mean_square_distance_to_the_mean_of_elbow_and_hand()
         assert found[limb] == pytest.approx(1000 * np.sqrt((about**2).sum(axis=(1, 2)).mean()))
 
 
-@settings(deadline=None)
 @given(st.permutations(range(12)), st.integers(0, 12))
 def test_moments_add_up_to_the_same_in_any_order_and_in_parts(order: list[int], cut: int) -> None:
     each = np.array([moments(posture) for posture in np.random.default_rng(0).normal(0, 0.3, (12, 15, 3))])
@@ -70,14 +68,12 @@ def test_moments_add_up_to_the_same_in_any_order_and_in_parts(order: list[int], 
     np.testing.assert_array_equal(parts, each.sum(axis=0))
 
 
-@settings(deadline=None)
 @given(st.tuples(*[st.integers(-2000, 2000)] * 3))
 def test_where_the_limbs_are_does_not_matter(shift_mm: tuple[int, int, int]) -> None:
     moved = acting() + np.array(shift_mm) / 1000
     np.testing.assert_allclose(spreads(moved).limbs, spreads(acting()).limbs, rtol=1e-9)
 
 
-@settings(deadline=None)
 @given(st.integers(1, 5))
 def test_spread_grows_with_the_person(factor: int) -> None:
     np.testing.assert_allclose(spreads(factor * acting()).limbs, factor * np.array(spreads(acting()).limbs))

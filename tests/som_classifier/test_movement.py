@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from actum.node import SECOND_NS
@@ -49,7 +49,6 @@ def assert_same(movements: Sequence[Movement], others: Sequence[Movement], joint
         np.testing.assert_array_equal(one.velocity[joints], other.velocity[joints])
 
 
-@settings(deadline=None)
 @given(st.lists(st.integers(1, 2 * GAP_NS), min_size=1, max_size=20))
 def test_joints_that_rest_are_where_they_are_and_go_nowhere(steps_ns: list[int]) -> None:
     movement = MovementFilter()
@@ -131,7 +130,6 @@ def test_half_a_second_is_no_gap_yet() -> None:
 masks = st.lists(st.lists(st.booleans(), min_size=15, max_size=15), min_size=2, max_size=12)
 
 
-@settings(deadline=None)
 @given(masks)
 def test_a_missing_joint_changes_no_other(there: list[list[bool]]) -> None:
     """Those that are always there are as they would be, and there is NaN where one is missing, and nowhere else."""
@@ -146,7 +144,6 @@ def test_a_missing_joint_changes_no_other(there: list[list[bool]]) -> None:
             assert np.isnan(values[~present]).all()
 
 
-@settings(deadline=None)
 @given(st.integers(0, 5), st.integers(1, 10))
 def test_a_joint_that_comes_back_begins_where_it_is(before: int, away: int) -> None:
     joints = wandering(before + away + 10, seed=away)
@@ -177,7 +174,6 @@ def test_inputs_are_left_as_they_were() -> None:
     np.testing.assert_array_equal(joints, before)
 
 
-@settings(deadline=None)
 @given(st.floats(-np.pi, np.pi), st.tuples(*[st.floats(-3, 3)] * 3))
 def test_where_and_which_way_a_person_stands_does_not_matter(heading: float, shift: tuple[float, float, float]) -> None:
     joints = wandering(20)

@@ -236,7 +236,7 @@ def test_metadata_of_later_versions_are_ignored(tmp_path: Path, kind: str) -> No
 
 
 @each_kind
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_a_cut_or_altered_file_is_refused_or_whole(tmp_path: Path, kind: str, data: st.DataObject) -> None:
     path = saved(tmp_path, kind)
