@@ -71,7 +71,6 @@ class Stopwatch:
         self.took_ms: Times = defaultdict(list)
         self._put_ns: dict[tuple[str, object], int] = {}
         self._final_ns: dict[str, int] = {}
-        self._objects_ns: dict[int, int] = {}
         self._lock = threading.Lock()
 
     def put(self, what: str, name: object) -> None:

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-settings.register_profile("ci", derandomize=True)
-if os.environ.get("CI"):
-    settings.load_profile("ci")
+settings.register_profile("patient", deadline=None)
+settings.register_profile("ci", settings.get_profile("patient"), derandomize=True)
+settings.load_profile("ci" if os.environ.get("CI") else "patient")
 
 NEEDS_DATA = "recordings not found: set ACTUM_DATA to the folder that holds msr_action3d/ and utkinect/"
 
@@ -45,6 +45,7 @@ def data_folder() -> Path | None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    items.sort(key=lambda item: item.get_closest_marker("system") is None)  # one worker waits while the other computes
     chosen = config.getoption("-m") or ""
     for marker in ("live", "containers"):
         if marker not in chosen:

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,7 +17,9 @@ from actum.runtime import Client, Listening
 from actum.settings import ServiceSettings
 
 PATIENCE_S = 30.0
-POLL_S = 0.02
+POLL_S = 0.005
+ROUTER = "import sys; from actum.runtime import *; serve_router(sys.argv[1], None, stop_on_signals())"
+"""The embedded router without the command line around it, which takes longer to start."""
 
 
 def free_endpoint() -> str:
@@ -69,12 +71,22 @@ class System:
             "OPENBLAS_NUM_THREADS": "1",
         }
 
-    def start(self, module: str, *arguments: str, environment: Mapping[str, str] | None = None) -> Running:
-        log = self.folder / f"{module}-{len(self.running)}.log"
+    def start(self, module: str, *arguments: str) -> Running:
+        return self._start(module, "-m", module, *arguments)
+
+    def start_script(self, script: Path, *arguments: str) -> Running:
+        """Start a script, which can import what lies beside it."""
+        return self._start(script.stem, str(script), *arguments)
+
+    def start_router(self) -> Running:
+        return self._start("router", "-c", ROUTER, self.settings.connect)
+
+    def _start(self, name: str, *arguments: str) -> Running:
+        log = self.folder / f"{name}-{len(self.running)}.log"
         with log.open("wb") as output:
             process = subprocess.Popen(
-                [sys.executable, "-m", module, *arguments],
-                env={**self.environment, **(environment or {})},
+                [sys.executable, *arguments],
+                env=self.environment,
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
@@ -82,9 +94,6 @@ class System:
         running = Running(process, log)
         self.running.append(running)
         return running
-
-    def start_router(self) -> Running:
-        return self.start("actum_command", "router", "--listen", self.settings.connect)
 
     def actum(self, *arguments: str, timeout_s: float = 60.0) -> subprocess.CompletedProcess[str]:
         """Run a command of ours to its end."""
@@ -98,8 +107,9 @@ class System:
             check=False,
         )
 
-    def client(self) -> Client:
-        return Client(self.settings, wait_s=PATIENCE_S)
+    def client(self, sensor: str | None = None) -> Client:
+        settings = self.settings.model_copy(update={"sensor": sensor or self.settings.sensor})
+        return Client(settings, wait_s=PATIENCE_S)
 
     def wait_for_services(self, client: Client, *names: str) -> None:
         def alive() -> set[str]:

@@ -34,7 +34,7 @@ def direction(displacement_m: Array, moved_m: float, faces: bool = True) -> str 
     """Name the direction in which the object moved most; None where it did not move.
 
     Args:
-        displacement_m: right, up, forward.
+        displacement_m: (3,), right, up, forward.
         moved_m: less is no motion.
         faces: whether forward is the actor's own; if not, all that is level is sideways.
     """

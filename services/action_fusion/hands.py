@@ -105,6 +105,7 @@ def furthest(positions_m: Array, stamps_ns: Array, within_ns: float) -> Indices:
     """Find, for each instant, when in the last `within_ns` the thing was about furthest from where it is now.
 
     That is the last instant with at least four fifths of the greatest distance: a thing that was still has left.
+    Positions are (T, 3), stamps (T,), and so are the indices found.
     """
     if not len(positions_m):
         return np.empty(0, dtype=np.int64)

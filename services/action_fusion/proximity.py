@@ -71,7 +71,10 @@ def actor(postures: Sequence[PostureSample], start_ns: int) -> Actor | None:
 
 
 def smallest_distance(object_ego: Array, hand_ego: Array) -> float:
-    """Compute min over the segment of PM = ||O - hand||_2 in metres; infinite where the hand is never known."""
+    """Compute min over the segment of PM = ||O - hand||_2 in metres; infinite where the hand is never known.
+
+    Both are (T, 3) in the actor's egocentric frame, NaN where unknown.
+    """
     distances = np.linalg.norm(object_ego - hand_ego, axis=1)
     return float(np.nanmin(distances)) if np.isfinite(distances).any() else np.inf
 

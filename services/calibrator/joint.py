@@ -80,7 +80,7 @@ class Adjuster:
         self._scale_px = scale_px
 
     def adjust(self, people_from_markers: Array, markers_from_boards: Sequence[Array]) -> Adjustment:
-        """Adjust from a first guess."""
+        """Adjust from a first guess, poses (6) as in `Adjustment`."""
         state, damping = np.concatenate([people_from_markers, *markers_from_boards]), DAMPING
         cost = self._cost(state)
         for _ in range(ITERATIONS):

@@ -42,7 +42,7 @@ def read_picture(path: Path) -> Pixels:
 
 
 def picture_of(image: Image, name: str) -> Pixels:
-    """Decode a colour image message.
+    """Decode a colour image message to grey levels (height, width).
 
     Raises:
         UnusablePictureError: it is a depth image, broken, huge, or not of the size it names.
@@ -59,7 +59,7 @@ def picture_of(image: Image, name: str) -> Pixels:
 
 
 def decode_picture(data: bytes, name: str) -> Pixels:
-    """Decode an encoded image whose header has been read first; `name` is for the complaint.
+    """Decode an image, its header first, to grey levels (height, width); `name` is for the complaint.
 
     Raises:
         UnusablePictureError: it is no image, broken or huge.

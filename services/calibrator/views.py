@@ -54,7 +54,7 @@ class BoardFinder:
         self._detector = cv2.aruco.CharucoDetector(board.opencv)
 
     def find(self, pixels: Pixels, name: str) -> View:
-        """Find the board.
+        """Find the board in grey levels (height, width).
 
         Raises:
             UnusablePictureError: it is not there, shows too few corners, or is blurred.

@@ -50,7 +50,7 @@ class Marker:
 
     @cached_property
     def centre_px(self) -> Array:
-        """Mean of the corners."""
+        """Mean of the corners: (2,)."""
         centre: Array = self.corners_px.sum(axis=0) / 4
         return centre
 
@@ -71,7 +71,7 @@ class MarkerDetector:
         self._detector = cv2.aruco.ArucoDetector(dictionaries, cv2.aruco.DetectorParameters())
 
     def detect(self, pixels: Pixels) -> list[Marker]:
-        """Find the markers of a grey image."""
+        """Find the markers of a grey image (height, width)."""
         corners, _ids, rejected, families = self._detector.detectMarkersMultiDict(pixels)
         found = _quads(corners)
         numbers = np.zeros(0, dtype=int) if families is None else np.ravel(families)
@@ -89,7 +89,7 @@ class MarkerDetector:
         return not self._open and self._wanted <= {(marker.family, marker.id) for marker in markers}
 
     def read_again(self, pixels: Pixels, markers: Sequence[Marker]) -> list[Marker]:
-        """Find the markers of an image that are still where they were in another: those that moved are left out."""
+        """Find the markers of a grey image (height, width) that are still where they were in another, and no others."""
         if not markers:
             return []
         rough = np.stack([_start_px(marker) for marker in markers])

@@ -22,12 +22,12 @@ class Motion:
 
     @property
     def position_m(self) -> Array:
-        """Where it is."""
+        """Where it is: (3,)."""
         return self.state[:3]
 
     @property
     def velocity_mps(self) -> Array:
-        """How it moves."""
+        """How it moves: (3,)."""
         return self.state[3:]
 
 

@@ -30,7 +30,7 @@ class Watch:
         self._searched_ns = 0
 
     def markers(self, stamp_ns: int, pixels: Pixels) -> list[Marker]:
-        """Find the markers of the next grey image."""
+        """Find the markers of the next grey image (height, width)."""
         in_place = [] if self._is_due(stamp_ns) else self._detector.read_again(pixels, self._last)
         if not in_place or len(in_place) < len(self._last):
             in_place = self._detector.detect(pixels)

@@ -69,15 +69,6 @@ def decode(key: str, payload: bytes, encoding: str = "") -> Message:
     return _validated(key, address, _unpack(key, payload))
 
 
-def sequence_of(attachment: bytes) -> int | None:
-    """Read `seq` from an attachment, or None where it is absent or foreign."""
-    try:
-        _version, seq, _stamp_ns = msgpack.unpackb(attachment)
-    except DEPTH_LIMIT_ERRORS:
-        return None
-    return seq if isinstance(seq, int) else None
-
-
 @lru_cache(KNOWN_ENCODINGS)
 def _check_encoding(encoding: str, expected: type[Message]) -> None:
     """Accept the key's own schema up to our version; any other encoding is a plain client's: version 1."""

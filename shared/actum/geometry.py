@@ -60,7 +60,7 @@ class DegenerateError(ValueError):
 
 
 def invert(b_from_a: Array) -> Array:
-    """Invert a rigid transform."""
+    """Invert a rigid transform (4, 4)."""
     a_from_b = np.eye(4)
     a_from_b[:3, :3] = b_from_a[:3, :3].T
     a_from_b[:3, 3] = -b_from_a[:3, :3].T @ b_from_a[:3, 3]
@@ -75,13 +75,13 @@ def apply(b_from_a: Array, points_a: Array) -> Array:
 
 
 def flat(transform: Array) -> list[float]:
-    """Write a transform as its 16 numbers, row-major."""
+    """Write a transform (4, 4) as its 16 numbers, row-major."""
     numbers: list[float] = transform.ravel().tolist()
     return numbers
 
 
 def from_flat(numbers: list[float]) -> Array:
-    """Read a transform from its 16 numbers, row-major."""
+    """Read a transform (4, 4) from its 16 numbers, row-major."""
     return np.array(numbers, dtype=np.float64).reshape(4, 4)
 
 

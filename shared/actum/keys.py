@@ -86,7 +86,11 @@ def chunk(text: str) -> str:
 
 @lru_cache(CACHED_KEYS)
 def key(topic: Topic, sensor: str, name: str | int | None = None) -> str:
-    """Build the concrete key of a topic, e.g. `actum/kinect0/posture/1`."""
+    """Build the concrete key of a topic, e.g. `actum/kinect0/posture/1`.
+
+    Raises:
+        InvalidKeyError: the name is missing or is not for this topic, or a chunk cannot stand in a key.
+    """
     if ("{}" in topic.leaf) != (name is not None):
         raise InvalidKeyError(f"{topic.leaf!r} does not go with the name {name!r}")
     leaf = topic.leaf if name is None else topic.leaf.format(chunk(str(name)))

@@ -10,12 +10,13 @@ from hypothesis import strategies as st
 
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
-from actum.messages import Event, Message, Posture
+from actum.messages import Event, Message, Objects, Posture
 from actum.skeletons import INDEX, JOINTS
 from scenes import HEAD, NAMES, Scene, acting_on, action, at, moving, still
 
 CUP = (0.1, 0.0, 0.45)
 TOUCH = acting_on(CUP, CUP, others={2: (-0.25, 0.0, 0.5)})
+POSTURES, SIGHTINGS = TOUCH.postures(), TOUCH.sightings()
 ARM = ("right_elbow", "right_hand")
 FUSED = ("head", *ARM, "left_elbow", "left_hand")
 
@@ -26,10 +27,12 @@ def lacking(posture: Posture, *names: str) -> Posture:
     return posture.model_copy(update={"joints_m": joints})
 
 
-def event_of(scene: Scene, postures: Sequence[Posture], label: str, part: str | None = "right_arm") -> Event:
-    """Let fusion hear the scene with these postures, then the action; a null is no bad joint."""
+def event_of(
+    postures: Sequence[Posture], sightings: Sequence[Objects], label: str, part: str | None = "right_arm"
+) -> Event:
+    """Let fusion hear postures and objects, then the action; a null is no bad joint."""
     node = ActionFusion(Settings())
-    messages: list[Message] = [*postures, *scene.sightings(), action(label, part=part)]
+    messages: list[Message] = [*postures, *sightings, action(label, part=part)]
     (event,) = [event for message in messages for event in node.handle(message)]
     assert isinstance(event, Event)
     assert not node.tally.rejects
@@ -39,28 +42,28 @@ def event_of(scene: Scene, postures: Sequence[Posture], label: str, part: str | 
 @pytest.mark.parametrize("label", ["touch", "point"])
 def test_joints_that_fusion_does_not_need_may_be_missing(label: str) -> None:
     others = [name for name in JOINTS if name not in FUSED]
-    partial = [lacking(posture, *others) for posture in TOUCH.postures()]
-    assert event_of(TOUCH, partial, label) == event_of(TOUCH, TOUCH.postures(), label)
+    partial = [lacking(posture, *others) for posture in POSTURES]
+    assert event_of(partial, SIGHTINGS, label) == event_of(POSTURES, SIGHTINGS, label)
 
 
 @given(st.integers(0, 10**6), st.floats(0.0, 1.0), st.sampled_from(["touch", "point"]))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_whatever_is_missing_when_the_event_is_one_of_finite_numbers(seed: int, share: float, label: str) -> None:
     rng = np.random.default_rng(seed)
-    postures = [lacking(p, *[n for n in FUSED if rng.random() < share]) for p in TOUCH.postures()]
-    event = event_of(TOUCH, postures, label, part=None)
+    postures = [lacking(p, *[n for n in FUSED if rng.random() < share]) for p in POSTURES]
+    event = event_of(postures, SIGHTINGS, label, part=None)
     json.dumps(event.model_dump(), allow_nan=False)
     assert event.objects_present == [1, 2]
 
 
 @given(st.integers(0, 10**6), st.floats(0.0, 1.0))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_the_distance_is_the_smallest_of_the_frames_that_show_the_hand(seed: int, share: float) -> None:
     rng = np.random.default_rng(seed)
-    postures = [lacking(p, "right_hand") if rng.random() < share else p for p in TOUCH.postures()]
+    postures = [lacking(p, "right_hand") if rng.random() < share else p for p in POSTURES]
     shown = [p for p in postures if p.joints_m and p.joints_m[INDEX["right_hand"]] and at(0) <= p.stamp_ns <= at(2)]
     hands = np.array([TOUCH.right_hand((p.stamp_ns - at(0)) / 1e9) for p in shown])
-    event = event_of(TOUCH, postures, "touch")
+    event = event_of(postures, SIGHTINGS, "touch")
     if not shown:
         assert (event.object, event.distances_m) == (None, {})
     else:
@@ -88,7 +91,7 @@ def test_a_frame_without_the_whole_ray_tells_nothing_of_where_it_points(name: st
     scene = pointing()
     partial = [lacking(p, name) if p.stamp_ns > at(1.2) else p for p in scene.postures()]
     for postures, expected in ((scene.postures(), 1), (partial, 2)):
-        event = event_of(scene, postures, "point")
+        event = event_of(postures, scene.sightings(), "point")
         assert event.object is not None
         assert (event.object.id, event.object.name) == (expected, NAMES[expected])
 
@@ -96,18 +99,18 @@ def test_a_frame_without_the_whole_ray_tells_nothing_of_where_it_points(name: st
 @pytest.mark.parametrize("name", ["head", *ARM])
 def test_a_ray_that_is_never_whole_points_at_nothing(name: str) -> None:
     scene = pointing()
-    event = event_of(scene, [lacking(posture, name) for posture in scene.postures()], "point")
+    event = event_of([lacking(posture, name) for posture in scene.postures()], scene.sightings(), "point")
     assert event.object is None
 
 
 def test_a_hand_and_an_elbow_known_in_turns_make_no_ray() -> None:
     scene = pointing()
-    event = event_of(scene, [lacking(p, ARM[i % 2]) for i, p in enumerate(scene.postures())], "point")
+    event = event_of([lacking(p, ARM[i % 2]) for i, p in enumerate(scene.postures())], scene.sightings(), "point")
     assert event.object is None
     assert event.distances_m
 
 
 def test_of_two_hands_the_one_that_is_seen_acted() -> None:
-    event = event_of(TOUCH, [lacking(posture, "left_hand") for posture in TOUCH.postures()], "touch", part=None)
+    event = event_of([lacking(posture, "left_hand") for posture in POSTURES], SIGHTINGS, "touch", part=None)
     assert event.object is not None
     assert (event.object.id, event.hand) == (1, "right")

@@ -138,7 +138,7 @@ def test_a_thing_carried_past_another_is_not_applied_to_it() -> None:
     assert names(event_of(scene)) == ("cup", "cup")
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.integers(0, 10**6), st.sampled_from([(0.1, 0.15, 0.45), (0.1, 0.0, 0.65), (-0.1, 0.0, 0.45)]))
 def test_neither_noise_nor_lost_sightings_make_another_object_of_it(seed: int, then: Place) -> None:
     """A centimetre of noise in each joint, three millimetres in each marker, a third of the sightings lost."""

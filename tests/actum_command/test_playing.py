@@ -7,9 +7,10 @@ import pytest
 
 from actum import keys
 from actum.joining import PAUSE_NS
-from actum.messages import Action, Image, Message, Objects, Posture, Segment, Skeleton
+from actum.messages import Image, Message, Objects, Posture, Segment, Skeleton
 from actum.recording import Recorder, Recording
 from actum_command.playing import playable_topics, schedule
+from empty_messages import action, image, mark, skeleton
 
 Record = Callable[..., Recording]
 
@@ -24,31 +25,6 @@ def record(tmp_path: Path) -> Record:
         return Recording(path)
 
     return write
-
-
-def skeleton(stamp_ns: int, seq: int | None = None, session_id: str = "then") -> Skeleton:
-    return Skeleton(stamp_ns=stamp_ns, seq=seq, sensor="kinect0", agents=[], session_id=session_id)
-
-
-def mark(kind: str, stamp_ns: int, segment_id: str = "one", label: str | None = None) -> Segment:
-    return Segment.model_validate(
-        {"stamp_ns": stamp_ns, "sensor": "kinect0", "kind": kind, "segment_id": segment_id, "label": label}
-    )
-
-
-def image(stamp_ns: int) -> Image:
-    return Image(
-        stamp_ns=stamp_ns,
-        sensor="kinect0",
-        format="jpeg",
-        width=1,
-        height=1,
-        data=b"jpeg",
-        K=[1.0] * 9,
-        distortion=[],
-        skeleton_from_image=[1.0] * 16,
-        session_id="then",
-    )
 
 
 def posture(stamp_ns: int) -> Posture:
@@ -66,24 +42,6 @@ def posture(stamp_ns: int) -> Posture:
 
 def objects(stamp_ns: int) -> Objects:
     return Objects(stamp_ns=stamp_ns, sensor="kinect0", objects=[], session_id="then")
-
-
-def action(stamp_ns: int) -> Action:
-    return Action(
-        stamp_ns=stamp_ns,
-        sensor="kinect0",
-        agent=1,
-        segment_id="one",
-        start_ns=0,
-        end_ns=stamp_ns,
-        final=True,
-        action="push",
-        confidence=1.0,
-        activations={},
-        part=None,
-        frames=1,
-        missed=0,
-    )
 
 
 def test_each_recording_is_shifted_whole_and_marks_move_with_their_frames(record: Record) -> None:
@@ -124,7 +82,7 @@ def test_one_session_of_all_streams_is_the_plays_own(record: Record) -> None:
 
 
 def test_no_label_and_no_result_is_played(record: Record) -> None:
-    recording = record("first", mark("start", 1, label="push"), skeleton(1), mark("end", 2), action(2))
+    recording = record("first", mark("start", 1, label="push"), skeleton(1), mark("end", 2), action(0, 2))
     played = list(schedule([recording], "play", start_ns=0))
     assert [type(message) for message in played] == [Segment, Skeleton, Segment]
     assert all(message.label is None for message in played if isinstance(message, Segment))

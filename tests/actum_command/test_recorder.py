@@ -6,52 +6,11 @@ import pytest
 from mcap.reader import make_reader
 
 from actum import keys
-from actum.messages import Action, Image, Message, Segment, Skeleton, Status
+from actum.messages import Image, Message, Segment, Skeleton, Status
 from actum.node import SECOND_NS, Tally
 from actum.recording import Recorder, Recording
 from actum_command.recorder import IMAGES, STREAMS, StreamRecorder
-
-
-def skeleton(stamp_ns: int) -> Skeleton:
-    return Skeleton(stamp_ns=stamp_ns, sensor="kinect0", agents=[])
-
-
-def mark(kind: str, stamp_ns: int | None = None, segment_id: str = "one", label: str | None = None) -> Segment:
-    return Segment.model_validate(
-        {"stamp_ns": stamp_ns, "sensor": "kinect0", "kind": kind, "segment_id": segment_id, "label": label}
-    )
-
-
-def action(start_ns: int, end_ns: int | None, segment_id: str = "one", final: bool = True) -> Action:
-    return Action(
-        stamp_ns=end_ns or start_ns,
-        sensor="kinect0",
-        agent=1,
-        segment_id=segment_id,
-        start_ns=start_ns,
-        end_ns=end_ns,
-        final=final,
-        action="push",
-        confidence=1.0,
-        activations={},
-        part=None,
-        frames=1,
-        missed=0,
-    )
-
-
-def image(stamp_ns: int) -> Image:
-    return Image(
-        stamp_ns=stamp_ns,
-        sensor="kinect0",
-        format="jpeg",
-        width=1,
-        height=1,
-        data=b"jpeg",
-        K=[1.0] * 9,
-        distortion=[],
-        skeleton_from_image=[1.0] * 16,
-    )
+from empty_messages import action, image, mark, skeleton
 
 
 class Take:

@@ -22,7 +22,7 @@ LONG_BEFORE_NS = NOON_NS - 1_000_000_000_000
 every_kind_of_input = pytest.mark.parametrize(
     ("case", "message"), [pytest.param(c, m, id=f"{c}-{m.SCHEMA}") for c in CASES for m in c.one_of_each()]
 )
-thorough = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+thorough = settings(max_examples=25, suppress_health_check=list(HealthCheck))
 
 
 def answers(case: Case, wire: Wire) -> list[bytes]:

@@ -41,7 +41,7 @@ def test_it_puts_on_its_own_keys(case: Case) -> None:
 
 
 @every_node
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(seed=st.integers(), share=st.floats(0.5, 1.0))
 def test_the_same_input_gives_the_same_output_to_the_last_bit(case: Case, seed: int, share: float) -> None:
     """In any order, with ticks between, and with some of it missing."""

@@ -42,7 +42,7 @@ def off_px(found, truth):
     return float(np.linalg.norm(found.corners_px[0] - truth, axis=1).max())
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     st.floats(16, 36), st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(0.45, 1.2),
     st.integers(0, 99),
@@ -96,7 +96,7 @@ def test_a_family_tells_what_its_markers_show(number) -> None:
     assert np.array_equal(FAMILY.shown(number), picture > 0)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 10**6), st.floats(4, 60), st.booleans())
 def test_whatever_an_image_shows_corners_stay_near(seed, side_px, flat) -> None:
     chance = np.random.default_rng(seed)

@@ -113,7 +113,7 @@ def test_a_good_image_right_after_bad_ones_is_handled(image_of, pose_at) -> None
     assert [found.id for found in answer.objects] == [3]
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.binary(max_size=300), st.sampled_from([b"", b"\xff\xd8", b"\xff\xd8\xff\xe1", jpeg_header(64, 48)]))
 def test_random_bytes_are_survived(tail, head) -> None:
     tracker = MarkerTracker(Settings())
@@ -121,7 +121,7 @@ def test_random_bytes_are_survived(tail, head) -> None:
     assert answer.valid == (not tracker.tally.rejects)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.integers(1, 40), st.integers(1, 40), st.randoms())
 def test_tiny_images_of_noise_are_survived(width, height, random) -> None:
     tracker = MarkerTracker(Settings())
@@ -137,7 +137,7 @@ calibrated = st.floats(-100, 100)
 def test_no_calibration_breaks_the_tracker(image_of, pose_at) -> None:
     image = image_of([(3, 0.12, pose_at((0.0, 0.0, 0.8), (0.4, 0.0, 0.0)))])
 
-    @settings(max_examples=100, deadline=None)
+    @settings(max_examples=100)
     @given(
         st.lists(st.one_of(finite, calibrated), min_size=4, max_size=4),
         st.lists(st.one_of(finite, calibrated), max_size=14),

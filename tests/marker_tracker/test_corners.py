@@ -45,7 +45,7 @@ def test_squares_come_out_neither_larger_nor_smaller(side_px) -> None:
     assert abs(np.mean(off)) < 0.03
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.floats(24, 85), st.floats(0, np.pi), st.floats(0.5, 1.0), st.integers(0, 2**32 - 1))
 def test_rough_corners_lead_to_the_same_exact_ones(side_px, angle, squeezed, seed) -> None:
     corners = square(side_px, angle, squeezed)
@@ -54,7 +54,7 @@ def test_rough_corners_lead_to_the_same_exact_ones(side_px, angle, squeezed, see
     assert np.abs(refined - corners).max() < 0.25
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.lists(st.floats(-50, 210), min_size=8, max_size=8), st.integers(0, 2**32 - 1))
 def test_corners_never_run_away_nor_become_nan(numbers, seed) -> None:
     quad = np.reshape(numbers, (1, 4, 2))

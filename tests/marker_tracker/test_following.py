@@ -69,7 +69,7 @@ def test_a_marker_at_the_edge_of_the_image_does_no_harm(image_of, pose_at) -> No
         assert len(answer.objects) <= 1
 
 
-@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.integers(0, 10**6), st.sampled_from([(64, 48), (320, 240), (641, 479), (1280, 40)]))
 def test_any_image_of_any_size_may_come_next(image_of, pose_at, seed, size) -> None:
     width, height = size

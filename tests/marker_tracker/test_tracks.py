@@ -120,7 +120,7 @@ def test_an_object_rejoins_at_once_wherever_it_comes_back() -> None:
     assert tracks.listed(stamp(30))[0].position_m == [0.5, -0.3, 1.2]
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(st.tuples(*[st.floats(-2, 2)] * 3), st.tuples(*[st.floats(-2, 2)] * 3))
 def test_tracks_are_the_same_wherever_the_frame_has_its_origin(start, shift) -> None:
     def path(t: float) -> Any:

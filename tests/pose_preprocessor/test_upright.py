@@ -150,7 +150,7 @@ def test_a_steady_heading_is_believed_wholly(heading_rad: float) -> None:
     assert np.remainder(found - heading_rad + 1, 2 * np.pi) == pytest.approx(1, abs=1e-9)
 
 
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=30)
 @given(st.floats(-1.2, 1.2), st.floats(0.01, 0.3), st.sampled_from([15, 30, 60]))
 def test_a_swaying_heading_is_drawn_towards_the_camera(heading_rad: float, sway_rad: float, rate_hz: int) -> None:
     """From side to side by σ at each frame: the mean follows each by a / (2 - a), and lies off by the rest."""
@@ -175,7 +175,7 @@ def test_the_more_it_sways_the_less_it_is_believed() -> None:
     assert 0 < found[-1] < 0.25
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(AWAY, st.floats(0.0, 0.5))
 def test_beyond_a_quarter_turn_a_swaying_heading_is_itself(heading_rad: float, sway_rad: float) -> None:
     _, found = swaying(30, heading_rad - sway_rad, heading_rad + sway_rad)

@@ -14,6 +14,7 @@ from live import PATIENCE_S, System, collect, wait_until
 from people import FRAME_NS, reaches
 
 pytestmark = pytest.mark.system
+QUICK_DEMO = Path(__file__).parents[1] / "quick_demo.py"
 SERVICES = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
 
 
@@ -59,25 +60,30 @@ def test_marks_from_the_command_line_are_answered(running: System, scene_model: 
         assert (final.segment_id, final.valid, final.frames, final.missed) == ("a", True, 30, 0)
 
 
-def test_up_runs_everything_restarts_what_dies_and_leaves_nothing(running: System, scene_model: Path) -> None:
+def test_up_runs_everything_that_watch_shows_restarts_what_dies_and_leaves_nothing(
+    running: System, scene_model: Path
+) -> None:
     up = running.start("actum_command", "up", "--model", str(scene_model))
     with running.client() as client:
         running.wait_for_services(client, *SERVICES)
         events = client.listen(keys.pattern(keys.EVENT, client.sensor))
         assert collect(events, Event, bool)[0].valid
+        watch = running.start("actum_command", "watch")
         examined = running.actum("doctor")
         assert examined.returncode == 0, examined.stdout
         assert "all services are there" in examined.stdout
         subprocess.run(["pkill", "-KILL", "-P", str(up.process.pid), "-f", "action_fusion"], check=True)
         wait_until(lambda: "action_fusion ended with code -9: restart" in up.said(), "the supervisor notices")
         assert collect(events, Event, bool)[0].valid
+        wait_until(lambda: re.search(r"(push|pull|put|lift|point)", watch.said()) is not None, "watch prints an event")
+    watch.terminate()
     up.process.send_signal(signal.SIGINT)
     assert up.process.wait(timeout=PATIENCE_S) == 0
     wait_until(lambda: pids_of(running) == set(), "no process is left")
 
 
-def test_up_refuses_a_taken_endpoint(running: System) -> None:
-    running.start_router()
+def test_up_refuses_an_endpoint_that_a_router_has(running: System) -> None:
+    running.start("actum_command", "router", "--listen", running.settings.connect)
     with running.client():
         refused = running.actum("up")
     assert refused.returncode == 1
@@ -120,21 +126,6 @@ def test_what_is_recorded_holds_the_streams_and_the_resolved_marks(
     ]
 
 
-def test_watch_prints_events_as_they_come(running: System, scene_model: Path) -> None:
-    running.start_router()
-    for name in ("pose_preprocessor", "marker_tracker", "action_fusion"):
-        running.start(name)
-    running.start("som_classifier", "--model", str(scene_model))
-    running.start("actum_command", "scene")
-    watching = running.start("actum_command", "watch")
-    with running.client() as client:
-        running.wait_for_services(client, "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
-        assert client.wait_for_subscriber(keys.TRUTH, PATIENCE_S)
-        assert client.wait_for_subscriber(keys.SEGMENT, PATIENCE_S)
-        running.start("sensor_gateway", "--source", "simulator")
-        wait_until(lambda: re.search(r"(push|pull|put|lift|point)", watching.said()) is not None, "an event's line")
-
-
 @pytest.mark.timeout(240)
 def test_the_demo_runs_to_its_table_and_leaves_nothing(running: System) -> None:
     demo = running.actum("demo", "--people", "1", timeout_s=200)
@@ -145,7 +136,7 @@ def test_the_demo_runs_to_its_table_and_leaves_nothing(running: System) -> None:
 
 
 def test_a_demo_that_is_terminated_takes_its_processes_along(running: System) -> None:
-    demo = running.start("actum_command", "demo", "--people", "1")
+    demo = running.start_script(QUICK_DEMO, "demo", "--people", "1")
     wait_until(lambda: "run as processes of their own" in demo.said(), "the processes run", patience_s=90)
     demo.process.terminate()
     assert demo.process.wait(timeout=PATIENCE_S) == 143

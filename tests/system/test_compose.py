@@ -7,40 +7,21 @@ import sys
 import time
 import tomllib
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 import msgpack
 import pytest
-import yaml
 import zenoh
 
 from actum_command.processes import SERVICES, simulated_objects
+from compose_files import DEPLOY, MAIN, ROOT, services_of
 from live import System, wait_until
 
-ROOT = Path(__file__).parents[2]
-MAIN = ROOT / "docker-compose.yml"
-DEPLOY = ROOT / "deploy"
 ROUTER_CONFIG = DEPLOY / "zenoh" / "router.json5"
 FIVE = {"sensor_gateway", *SERVICES}
 UNCHECKED = {"trainer", "scene"}
 ACTIONS = {"push", "pull", "put", "lift", "point"}
 STOPPED_WITHIN_S = 10.0
-
-
-class ComposeLoader(yaml.SafeLoader):
-    """YAML with Compose's own tags, `!reset` and `!override`, which replace instead of merging."""
-
-
-def _untagged(loader: yaml.SafeLoader, _tag: str, node: yaml.Node) -> Any:
-    return loader.construct_sequence(node) if isinstance(node, yaml.SequenceNode) else None
-
-
-ComposeLoader.add_multi_constructor("!", _untagged)
-
-
-def services_of(file: Path) -> dict[str, dict[str, Any]]:
-    return yaml.load(file.read_text(), ComposeLoader)["services"]
 
 
 @pytest.fixture(scope="module")

@@ -9,21 +9,18 @@ from typing import Any
 
 import msgpack
 import pytest
-import yaml
 import zenoh
 
+from compose_files import DEPLOY, services_of
 from live import wait_until
 
-ROOT = Path(__file__).parents[2]
-FILE = ROOT / "deploy" / "compose.camera-host.yml"
+FILE = DEPLOY / "compose.camera-host.yml"
 SERVICES = ("router", "sensor_gateway", "marker_tracker")
 
 
 @pytest.fixture(scope="module")
 def services() -> dict[str, dict[str, Any]]:
-    loader = type("ComposeLoader", (yaml.SafeLoader,), {})
-    loader.add_multi_constructor("!", lambda made, _tag, node: made.construct_sequence(node))
-    return yaml.load(FILE.read_text(), loader)["services"]
+    return services_of(FILE)
 
 
 def test_the_host_runs_router_gateway_and_tracker(services):

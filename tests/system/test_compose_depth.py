@@ -1,22 +1,19 @@
 """The files laid over the camera host's for depth cameras: what they say of the gateway."""
 
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 
-ROOT = Path(__file__).parents[2]
+from compose_files import DEPLOY, ROOT, services_of
+
 SOURCES = {"realsense": "libusb-1.0-0", "openni2": "libopenni2-0"}
 
 
 def gateway(source: str) -> dict[str, Any]:
-    loader = type("ComposeLoader", (yaml.SafeLoader,), {})
-    loader.add_multi_constructor("!", lambda made, _tag, node: made.construct_sequence(node))
-    content = yaml.load((ROOT / "deploy" / f"compose.{source}.yml").read_text(), loader)
-    assert list(content["services"]) == ["sensor_gateway"]
-    return content["services"]["sensor_gateway"]
+    services = services_of(DEPLOY / f"compose.{source}.yml")
+    assert list(services) == ["sensor_gateway"]
+    return services["sensor_gateway"]
 
 
 @pytest.mark.parametrize("source", SOURCES)

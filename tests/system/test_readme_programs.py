@@ -28,10 +28,11 @@ def example(name: str) -> str:
 def plain_python(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An environment that holds eclipse-zenoh and msgpack only."""
     folder = tmp_path_factory.mktemp("plain")
-    subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
-    pip = [str(folder / "bin" / "pip"), "install", "--quiet", "--disable-pip-version-check"]
-    subprocess.run([*pip, "eclipse-zenoh>=1.10,<2", "msgpack"], check=True)
-    return folder / "bin" / "python"
+    python = folder / "bin" / "python"
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder)], check=True)
+    pip = [sys.executable, "-m", "pip", "--python", str(python), "install", "--quiet", "--disable-pip-version-check"]
+    subprocess.run([*pip, "--no-compile", "eclipse-zenoh>=1.10,<2", "msgpack"], check=True)
+    return python
 
 
 @pytest.fixture

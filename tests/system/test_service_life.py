@@ -9,36 +9,45 @@ from actum import codec, keys
 from actum.messages import Posture, Status
 from actum.runtime import Client
 from actum.runtime.outbox import MOST_PUBLISHERS
-from live import System, collect, wait_until
+from live import Running, System, collect, wait_until
 from people import STANDING, reaches, skeleton
 
 SERVICES = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
 pytestmark = pytest.mark.system
 
 
-@pytest.mark.parametrize("name", SERVICES)
-def test_a_service_started_before_the_router_waits_for_it_serves_and_leaves(running: System, name: str) -> None:
-    service = running.start(name)
-    wait_until(lambda: "waiting for it" in service.said(), "it says that it waits")
+@pytest.fixture
+def waiting(running: System) -> dict[str, Running]:
+    """Every service, started without a router, each with a sensor of its own."""
+    services = {name: running.start(name, "--sensor", name) for name in SERVICES}
+    wait_until(lambda: all("waiting for it" in it.said() for it in services.values()), "each says that it waits")
+    return services
+
+
+def assert_leave_cleanly(services: dict[str, Running]) -> None:
+    for name, service in services.items():
+        assert service.terminate() < 2.0, name
+        assert service.process.returncode == 0, name
+
+
+def test_services_started_before_the_router_wait_for_it_serve_and_leave(
+    running: System, waiting: dict[str, Running]
+) -> None:
     running.start_router()
-    with running.client() as client:
-        running.wait_for_services(client, name)
-        status = collect(client.listen(keys.pattern(keys.STATUS, client.sensor)), Status, bool)[0]
-        assert (status.service, status.valid, status.rejects) == (name, True, {})
-        [info] = client.infos()
-        assert "actum.skeleton/1" in info.schemas
-        assert info.joint_names[0] == "head"
-    assert service.terminate() < 2.0
-    assert service.process.returncode == 0
-    assert service.said().count("waiting for it") == 1, "it says so once"
+    for name in SERVICES:
+        with running.client(sensor=name) as client:
+            running.wait_for_services(client, name)
+            status = collect(client.listen(keys.pattern(keys.STATUS, client.sensor)), Status, bool)[0]
+            assert (status.service, status.valid, status.rejects) == (name, True, {})
+            [info] = client.infos()
+            assert "actum.skeleton/1" in info.schemas
+            assert info.joint_names[0] == "head"
+    assert_leave_cleanly(waiting)
+    assert {name: it.said().count("waiting for it") for name, it in waiting.items()} == dict.fromkeys(SERVICES, 1)
 
 
-@pytest.mark.parametrize("name", SERVICES)
-def test_a_service_that_never_found_its_router_leaves_cleanly_too(running: System, name: str) -> None:
-    service = running.start(name)
-    wait_until(lambda: "waiting for it" in service.said(), "it says that it waits")
-    assert service.terminate() < 2.0
-    assert service.process.returncode == 0
+def test_services_that_never_found_their_router_leave_cleanly_too(waiting: dict[str, Running]) -> None:
+    assert_leave_cleanly(waiting)
 
 
 def test_a_service_survives_its_routers_death(running: System) -> None:

@@ -7,7 +7,7 @@ Array = NDArray[np.float64]
 
 
 def phase(time_s: Array, start_s: float, duration_s: float) -> Array:
-    """Tell how much of a movement's time has passed: 0 before it, 1 after it."""
+    """Tell how much of a movement's time has passed at each time (T,): 0 before it, 1 after it."""
     return np.clip((time_s - start_s) / duration_s, 0.0, 1.0)
 
 
@@ -17,7 +17,7 @@ def minimum_jerk(share: Array) -> Array:
 
 
 def arc(share: Array) -> Array:
-    """A bump of height 1 at the middle, with zero velocity and acceleration at both ends."""
+    """A bump of height 1 at the middle, 64s^3 (1 - s)^3, with zero velocity and acceleration at both ends."""
     return 64 * share**3 * (1 - share) ** 3
 
 

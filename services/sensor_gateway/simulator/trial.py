@@ -126,7 +126,7 @@ def _draw_rest(parameters: Parameters, middle_x_m: float, side: int, rng: np.ran
 
 
 def draw_bulge(parameters: TrialParameters, actor: Actor, rng: np.random.Generator) -> Array:
-    """Draw how the reach is bent: upward, and a little to a side."""
+    """Draw how the reach is bent, (3,) metres in the camera frame: upward, and a little to a side."""
     up = actor.arc_scale * uniform(rng, parameters.arc_height_range_m)
     return np.array([normal(rng, (0.0, parameters.arc_side_sd_m)), -up, 0.0])
 
@@ -154,7 +154,7 @@ def _draw_aim(parameters: Parameters, actor: Actor, layout: Layout, target: int,
 def draw_displacement(
     parameters: Parameters, action: str, layout: Layout, item: ObjectItem, rng: np.random.Generator
 ) -> Array:
-    """Draw what the action does to its object, camera frame; the directions are the person's."""
+    """Draw how far the action moves its object, (3,) metres in the camera frame; the directions are the person's."""
     trial = parameters.trial
     angle = layout.heading_rad + np.deg2rad(normal(rng, (0.0, trial.effect_direction_sd_deg)))
     away = np.array([-np.sin(angle), 0.0, -np.cos(angle)])

@@ -7,7 +7,7 @@ import zenoh
 from zenoh import ext
 
 from actum import keys
-from actum.codec import Frame, encode
+from actum.codec import encode
 from actum.messages import Action, Message
 from actum.node import Numbering
 
@@ -40,13 +40,6 @@ class Outbox:
         with self._lock:
             frame = encode(self._numbering.numbered(message))
             self._publisher(frame.key, _is_cached(message)).put(
-                frame.payload, encoding=frame.encoding, attachment=frame.attachment
-            )
-
-    def put_frame(self, frame: Frame) -> None:
-        """Put what is already packed, as it is."""
-        with self._lock:
-            self._publisher(frame.key, keys.parse(frame.key).topic.cached).put(
                 frame.payload, encoding=frame.encoding, attachment=frame.attachment
             )
 

@@ -53,7 +53,7 @@ def row_product(left: Floats, right: Floats) -> Floats:
 
 
 def producted(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return left @ right."""
+    """Return left @ right, (n, m) times (m, k)."""
     out = np.empty((left.shape[0], right.shape[1]))
     product(left, right, out)
     return out

@@ -80,7 +80,7 @@ class Codebook:
         return self.weights.reshape(self.rows, self.cols, self.dim)
 
     def bmu(self, x: Array) -> int:
-        """Find the best matching unit, argmin ‖x − w‖, in one BLAS call; the first of equals.
+        """Find the best matching unit of x (dim,), argmin ‖x − w‖, in one BLAS call; the first of equals.
 
         Raises:
             ValueError: x has another length, an infinite component or no known one.
@@ -203,7 +203,7 @@ def stored_map(file: Mapping[str, Array], kind: type[Map]) -> Map:
 
 
 def some_rows(vectors: ArrayLike) -> Array:
-    """Return the vectors as an array.
+    """Return the vectors (n, dim) as an array.
 
     Raises:
         ValueError: there is none.
@@ -220,7 +220,7 @@ def float_type(values: ArrayLike) -> np.dtype[np.floating]:
 
 
 def training_vectors(vectors: ArrayLike, dim: int, dtype: np.dtype[np.floating]) -> Array:
-    """Return the rows to learn from, in a map's precision.
+    """Return the rows to learn from, (n, dim) in a map's precision.
 
     Raises:
         ValueError: there is none, its length is another, or one is infinite or has no known component.

@@ -101,7 +101,7 @@ class Lookup:
 
 
 def is_complete(vectors: Array) -> bool:
-    """Tell whether no component is missing.
+    """Tell whether no component of the rows (n, dim) is missing.
 
     Raises:
         ValueError: a component is infinite, or every component of a row is missing.

@@ -62,12 +62,12 @@ class Steps:
 
 
 def falling(first: float, last: float, steps: int) -> Array:
-    """Return `steps` values that fall exponentially from first to last."""
+    """Return values (steps,) that fall exponentially from first to last."""
     return np.geomspace(first, last, steps)
 
 
 def checked_radii(radii: ArrayLike) -> Array:
-    """Return the radii as an array.
+    """Return the radii as an array (n,).
 
     Raises:
         ValueError: one is not finite and above 0.

@@ -62,7 +62,11 @@ class SequentialTraining(Generic[Map]):
     def drawn(
         cls, som: Map, vectors: ArrayLike, steps: int, decay: Decay, rng: np.random.Generator
     ) -> "SequentialTraining[Map]":
-        """Prepare `steps` steps on rows drawn at random, with replacement."""
+        """Prepare `steps` steps on rows of (n, dim) drawn at random, with replacement.
+
+        Raises:
+            ValueError: the vectors do not fit the map.
+        """
         inputs = training_vectors(vectors, som.dim, som.dtype)
         return cls(som, inputs, rng.integers(len(inputs), size=steps), decay)
 

@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from actum.som import Schedule, SequentialTraining, Som, adapt_in_numpy
@@ -25,7 +25,6 @@ def trained(som: Som, vectors: np.ndarray, kernel: Kernel) -> np.ndarray:
 @needs_numba
 @pytest.mark.parametrize("topology", ["rectangular", "hexagonal"])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-@settings(deadline=None)
 @given(
     rows=st.integers(1, 9),
     cols=st.integers(1, 9),

@@ -1,0 +1,49 @@
+"""Messages that hold next to nothing, for tests of what carries them."""
+
+from typing import Any
+
+from actum.messages import Action, Image, Segment, Skeleton
+
+
+def skeleton(stamp_ns: int, seq: int | None = None, session_id: str = "then") -> Skeleton:
+    return Skeleton(stamp_ns=stamp_ns, seq=seq, sensor="kinect0", agents=[], session_id=session_id)
+
+
+def mark(kind: str, stamp_ns: int | None = None, segment_id: str = "one", label: str | None = None) -> Segment:
+    return Segment.model_validate(
+        {"stamp_ns": stamp_ns, "sensor": "kinect0", "kind": kind, "segment_id": segment_id, "label": label}
+    )
+
+
+def image(stamp_ns: int, seq: int | None = None) -> Image:
+    return Image(
+        stamp_ns=stamp_ns,
+        seq=seq,
+        sensor="kinect0",
+        format="jpeg",
+        width=1,
+        height=1,
+        data=b"jpeg",
+        K=[1.0] * 9,
+        distortion=[],
+        skeleton_from_image=[1.0] * 16,
+        session_id="then",
+    )
+
+
+def action(start_ns: int, end_ns: int | None, segment_id: str = "one", **fields: Any) -> Action:
+    return Action(
+        stamp_ns=end_ns or start_ns,
+        sensor="kinect0",
+        agent=1,
+        segment_id=segment_id,
+        start_ns=start_ns,
+        end_ns=end_ns,
+        action="push",
+        confidence=1.0,
+        activations={},
+        part=None,
+        frames=1,
+        missed=0,
+        **({"final": True} | fields),
+    )
