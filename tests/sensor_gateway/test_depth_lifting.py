@@ -73,7 +73,7 @@ def test_colour_alone_is_twenty_centimetres_off_where_the_model_takes_the_person
     assert worst_cm(body, lifted(marks, LENS, depth(body))) < 2.2
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(seed=st.integers(0, 1000))
 def test_what_the_model_has_wrong_in_relative_distance_does_not_matter(seed: int) -> None:
     body = person()

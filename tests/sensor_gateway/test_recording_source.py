@@ -7,30 +7,11 @@ import pytest
 from mcap.writer import Writer
 
 from actum.joining import PAUSE_NS
-from actum.messages import Image, Message, Objects, Segment, Skeleton
+from actum.messages import Message, Objects, Segment
 from actum.recording import Recorder, RecordingError
+from empty_messages import image, skeleton
 from sensor_gateway.recording_source import RecordingSource
 from sensor_gateway.takes import DatasetError
-
-
-def skeleton(stamp_ns: int, seq: int) -> Skeleton:
-    return Skeleton(stamp_ns=stamp_ns, seq=seq, sensor="kinect0", agents=[], session_id="then")
-
-
-def image(stamp_ns: int, seq: int) -> Image:
-    return Image(
-        stamp_ns=stamp_ns,
-        seq=seq,
-        sensor="kinect0",
-        format="jpeg",
-        width=1,
-        height=1,
-        data=b"jpeg",
-        K=[1.0] * 9,
-        distortion=[],
-        skeleton_from_image=[1.0] * 16,
-        session_id="then",
-    )
 
 
 def record(path: Path, *messages: Message) -> Path:
