@@ -151,7 +151,7 @@ CASES = (
     ),
     Case(
         "som_classifier",
-        lambda: SomClassifier(tiny_model(), publish_trace=True),
+        lambda: SomClassifier(tiny_model(), publish_maps=True),
         partial(_classified, slice(WARM_UP)),
         _marked,
         _of_segment,

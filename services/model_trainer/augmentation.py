@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from actum.geometry import BONES
 from actum.skeletons import JOINTS
-from model_trainer.hands import acting_hand
+from model_trainer.hands import acting_hands
 from model_trainer.samples import SegmentSample
 from som_classifier.handedness import mirrored
 from som_classifier.presets import PyramidPreset
@@ -25,20 +25,28 @@ class View:
     postures: Array
     velocities: Array
 
+    @property
+    def mirrored(self) -> "View":
+        """The same in a mirror."""
+        return View(mirrored(self.postures), mirrored(self.velocities))
+
+    def until(self, frames: int) -> "View":
+        """Return the first frames alone."""
+        return View(self.postures[:frames], self.velocities[:frames])
+
 
 def views(sample: SegmentSample, preset: PyramidPreset, mirrors: bool, rng: np.random.Generator) -> Iterator[View]:
     """Yield the sample itself, then turned, then as other people; where `mirrors`, the left arm's in a mirror."""
-    postures, velocities = sample.postures, sample.velocities
-    if mirrors and acting_hand(sample) == "left":
-        postures, velocities = mirrored(postures), mirrored(velocities)
-    yield View(postures, velocities)
+    seen = View(sample.postures, sample.velocities)
+    own = seen.mirrored if mirrors and acting_hands(sample)[-1] == "left" else seen
+    yield own
     for turn_deg in preset.turns_deg:
         turn = turned(np.radians(turn_deg))
-        yield View(postures @ turn, velocities @ turn)
+        yield View(own.postures @ turn, own.velocities @ turn)
     for _ in range(preset.others.count):
         factors = np.exp(rng.normal(0.0, preset.others.build_sd, len(_BONE_NAMES)))
         build = rebuilt(dict(zip(_BONE_NAMES, factors, strict=True)))
-        yield View(_applied(build, postures), preset.others.tempo * _applied(build, velocities))
+        yield View(_applied(build, own.postures), preset.others.tempo * _applied(build, own.velocities))
 
 
 def turned(radians: float) -> Array:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from actum.som import Som
 from model_trainer.augmentation import View, views
 from model_trainer.description import labels_of, provenance
 from model_trainer.discriminants import discriminant_axes, folds_of
-from model_trainer.hands import keep_to_one_hand
+from model_trainer.hands import acting_hands, keep_to_one_hand
 from model_trainer.progress import Progress
 from model_trainer.samples import SegmentSample
 from model_trainer.upper_layers import Scored, UpperLayers, held_out_gains, train_upper
@@ -47,7 +48,7 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
     first = _first_maps([view for own in shown for view in own], preset, rng, progress)
     targets = np.array([labels.index(sample.label) for sample in samples])
     folds = folds_of(samples)
-    vectors = _Pooling(first, Pyramid(preset.levels, preset.overlap), samples, shown)
+    vectors = _Pooling(first, Pyramid(preset.levels, preset.overlap), samples, shown, mirrors)
     fitted = []
     for done, fractions in enumerate(preset.stages):
         progress("discriminant axes", done, len(preset.stages))
@@ -115,25 +116,29 @@ class _Pooling:
         pyramid: Pyramid,
         samples: Sequence[SegmentSample],
         shown: Sequence[Sequence[View]],
+        mirrors: bool,
     ) -> None:
         self._first, self._pyramid, self._samples, self._shown = first, pyramid, samples, shown
+        self._left_handed = [[mirrors and hand == "left" for hand in acting_hands(sample)] for sample in samples]
 
     def vectors(self, fractions: Sequence[float]) -> tuple[NDArray[np.float32], Indices]:
-        """Return one row per view and fraction, and whose sample each row is."""
-        copies = max(1, MOST_VECTORS // (len(self._samples) * len(fractions)))
+        """Return one row per view and fraction, evenly thinned to no more than needed, and whose sample each row is."""
+        each = len(self._shown[0]) * len(fractions)
+        step = min(-(-len(self._samples) * each // MOST_VECTORS), each)
         rows, owners = [], []
         for owner, (sample, shown) in enumerate(zip(self._samples, self._shown, strict=True)):
-            for view in shown[:copies]:
-                trail = self._trail(view, sample)
-                for fraction in fractions:
-                    rows.append(self._pyramid.vector(trail.until(_frames(len(trail), fraction))))
-                    owners.append(owner)
+            for fraction, view in list(product(fractions, shown))[owner % step :: step]:
+                rows.append(self._pyramid.vector(self._trail(owner, view, _frames(len(sample.stamps_ns), fraction))))
+                owners.append(owner)
         return np.stack(rows), np.array(owners)
 
-    def _trail(self, view: View, sample: SegmentSample) -> Trail:
-        activities = self._first.activities(view.postures, view.velocities)
-        steps_um = np.rint(sample.motion.sum(axis=1) * _UM_PER_M).astype(np.int64)
-        sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
+    def _trail(self, owner: int, view: View, frames: int) -> Trail:
+        """Return the first frames of a view as they would be read live, when it is not known which arm will act."""
+        as_whole = self._left_handed[owner][frames - 1] == self._left_handed[owner][-1]
+        begun = (view if as_whole else view.mirrored).until(frames)
+        activities = self._first.activities(begun.postures, begun.velocities)
+        steps_um = np.rint(self._samples[owner].motion[:frames].sum(axis=1) * _UM_PER_M).astype(np.int64)
+        sums = np.zeros((frames + 1, activities.shape[1]), np.uint32)
         np.cumsum(quantised(activities), axis=0, out=sums[1:])
         travelled_um = [0, *np.cumsum(steps_um).tolist()]
         return Trail([Instant([own], so_far_um) for own, so_far_um in zip(sums, travelled_um, strict=True)])

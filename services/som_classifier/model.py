@@ -95,6 +95,10 @@ class Model(ABC):
     def trace(self, frames: Sequence[Frame]) -> NDArray[np.float64]:
         """Return the way over the first map: row and column of its winners, repeats removed, shape (n, 2)."""
 
+    @abstractmethod
+    def maps(self, frames: Sequence[Frame]) -> Arrays:
+        """Return the activity of each map over a whole segment, by name, each (rows, cols) within [0, 1]."""
+
     @property
     def labels(self) -> list[str]:
         """The actions it tells apart."""

@@ -1,7 +1,7 @@
 """The classifier's pure step: postures and marks become partial and final actions."""
 
 from collections.abc import Iterable, Iterator
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,7 +35,7 @@ class SomClassifier:
     inputs = (keys.POSTURE, keys.SEGMENT)
 
     def __init__(
-        self, model: Model | None = None, source: ModelSource | None = None, publish_trace: bool = False
+        self, model: Model | None = None, source: ModelSource | None = None, publish_maps: bool = False
     ) -> None:
         self.tally = Tally(state="running" if model else "no model")
         self._segmenter = Segmenter(self.tally)
@@ -43,14 +43,14 @@ class SomClassifier:
         if model is not None:
             self._use(model)
         self._source = source
-        self._publish_trace = publish_trace
+        self._publish_maps = publish_maps
         self._ticks = 0
         self._sensor = "unknown"
 
     @classmethod
     def configured(cls, settings: Settings) -> "SomClassifier":
         """Build the node as the settings say; the model file need not exist yet."""
-        node = cls(source=ModelFile(settings.model) if settings.model else None, publish_trace=settings.publish_maps)
+        node = cls(source=ModelFile(settings.model) if settings.model else None, publish_maps=settings.publish_maps)
         node._reload()
         return node
 
@@ -145,11 +145,15 @@ class SomClassifier:
             unknown=recognition.unknown if recognition else False,
             familiarity=recognition.familiarity if recognition else None,
             missing_joints=_missing(closed.frames),
-            trace=self._trace(closed.frames) if recognition and self._publish_trace else None,
+            **(self._pictures(closed.frames) if recognition and self._publish_maps else {}),
         )
 
-    def _trace(self, frames: list[Frame]) -> Tensor | None:
-        return _tensor(self._model.trace([frame for frame in frames if frame.valid])) if self._model else None
+    def _pictures(self, frames: list[Frame]) -> dict[str, Any]:
+        """Return the fields that show why: each map's activity, and the way over the first."""
+        assert self._model is not None
+        usable = [frame for frame in frames if frame.valid]
+        maps = {name: _tensor(activity) for name, activity in self._model.maps(usable).items()}
+        return {"maps": maps, "trace": _tensor(self._model.trace(usable))}
 
     def _why_not(self, closed: Closed) -> str:
         if self._model is None:
@@ -163,6 +167,6 @@ def _missing(frames: list[Frame]) -> list[str]:
     return [JOINTS[joint] for joint in sorted({joint for frame in frames for joint in frame.missing})]
 
 
-def _tensor(array: NDArray[np.float64]) -> Tensor:
+def _tensor(array: NDArray[Any]) -> Tensor:
     little = np.ascontiguousarray(array, dtype="<f4")
     return Tensor(dtype="<f4", shape=list(little.shape), data=little.tobytes())

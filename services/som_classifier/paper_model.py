@@ -124,6 +124,11 @@ class PaperModel(Model):
         """Return the trace of what `classify` takes, shape (n, 2)."""
         return self._way(cells[:, self._part(cells, motion)])
 
+    def maps(self, frames: Sequence[Frame]) -> Arrays:
+        """Return the activity of the second map."""
+        excess2 = self.layer2.excess2(ordered_vector(self.trace(frames), self.description.points))
+        return {"actions": activity(excess2, self.description.contrast).reshape(self.layer2.rows, self.layer2.cols)}
+
     def _part(self, cells: NDArray[np.intp], motion: Array) -> int:
         return attended(motion, self.description.part, (cells != UNSEEN).any(axis=0))
 

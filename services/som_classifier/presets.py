@@ -129,7 +129,7 @@ PYRAMID = PyramidPreset(
     turns_deg=(-15.0, 15.0),
     others=Others(2, build_sd=0.1, tempo=1.0),
     others_of_one=Others(8, build_sd=0.2, tempo=0.5),
-    stages=((0.2, 0.3, 0.4), (0.5, 0.6), (0.7, 0.8), (1.0,)),
+    stages=((0.1, 0.2, 0.3, 0.4, 0.5), (0.3, 0.4, 0.5, 0.6, 0.7, 0.8), (1.0,)),
     shrinkage=0.15,
     held_out_share=0.5,
     concepts=(25, 25),

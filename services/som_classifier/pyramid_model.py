@@ -19,7 +19,7 @@ from som_classifier.pyramid import Pyramid, Trail
 from som_classifier.recognition import Recognition
 from som_classifier.stages import Stages, familiarity_of
 from som_classifier.streams import Frame
-from som_classifier.supervised import SupervisedLayer
+from som_classifier.supervised import SupervisedLayer, activity
 from som_classifier.trace import without_repeats
 
 Floats = NDArray[Any]
@@ -162,6 +162,19 @@ class PyramidModel(Model):
         """Return row and column of the posture map's winners, repeats removed, shape (n, 2)."""
         coordinates: NDArray[np.float64] = self.first.postures.coordinates
         return coordinates[without_repeats(np.array([frame.code.winner for frame in frames]))]
+
+    def maps(self, frames: Sequence[Frame]) -> Arrays:
+        """Return the mean activity of the first maps, relative to the most active unit's, and that of actions."""
+        codes: list[Code] = [frame.code for frame in frames]
+        scores = self.scores(codes, self.stages.weights(0.0, complete=True))
+        seen = self.trail(codes)
+        sums = (seen.instants[-1].sums[seen.side] - seen.instants[0].sums[seen.side]).reshape(len(self.first.maps), -1)
+        heard = activity(self.concepts.layout.excess2(scores), self.concepts.contrast)
+        layers = zip(
+            ("postures", "velocities", "arms"), self.first.maps, sums / sums.max(axis=1, keepdims=True), strict=True
+        )
+        first = {name: own.reshape(som.rows, som.cols) for name, som, own in layers}
+        return first | {"actions": heard.reshape(self.concepts.layout.rows, self.concepts.layout.cols)}
 
     def _is_strange(self, familiarity: float) -> bool:
         return self.description.familiar is not None and familiarity < self.description.familiar

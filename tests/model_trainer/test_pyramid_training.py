@@ -10,7 +10,7 @@ from actum.skeletons import INDEX, PARTS
 from actum.som import Som
 from model_trainer.answering import answer, encoded
 from model_trainer.discriminants import discriminant_axes, folds_of
-from model_trainer.hands import acting_hand, keep_to_one_hand
+from model_trainer.hands import acting_hands, keep_to_one_hand
 from model_trainer.pyramid_training import typical_distance2
 from model_trainer.samples import SegmentSample
 from model_trainer.training import train
@@ -97,6 +97,26 @@ def test_each_stage_is_fitted_to_that_share_of_the_action(samples: list[SegmentS
     np.testing.assert_allclose(vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.own, atol=0.05)
 
 
+def changing_arms(sample: SegmentSample) -> SegmentSample:
+    """The left arm begins, the right one acts twice as far."""
+    begun, on = in_a_mirror(sample), sample
+    names = ("postures", "velocities", "motion", "joints")
+    both = {name: np.concatenate([getattr(begun, name)[:8], getattr(on, name)]) for name in names}
+    return replace(sample, stamps_ns=np.arange(8 + len(sample.stamps_ns)) * 33_000_000, **both)
+
+
+def test_what_was_seen_so_far_is_read_by_the_arm_that_acts_so_far(samples: list[SegmentSample]) -> None:
+    """As live: nobody knows yet that the other arm will act."""
+    changing = [changing_arms(sample) for sample in right_handed(samples)]
+    early, late = ({acting_hands(sample)[k] for sample in changing} for k in (7, -1))
+    assert ("left" in early, late) == (True, {"right"})
+    model = trained(changing, replace(PLAIN, stages=((0.2, 0.3), (1.0,))))
+    vectors = np.stack([pooled(model, sample, fraction) for sample in changing for fraction in (0.2, 0.3)])
+    twice = [sample for sample in changing for _ in range(2)]
+    axes = discriminant_axes(vectors, wanted(model, twice), folds_of(twice), PLAIN.shrinkage)
+    np.testing.assert_allclose(vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.own, atol=0.05)
+
+
 def test_durations_are_those_of_the_samples(samples: list[SegmentSample]) -> None:
     slower = [replace(s, stamps_ns=s.stamps_ns * (1 + i % 4)) for i, s in enumerate(samples)]
     durations_s = np.array([np.ptp(sample.stamps_ns) / SECOND_NS for sample in slower])
@@ -116,7 +136,7 @@ def with_a_left_hander(samples: list[SegmentSample]) -> list[SegmentSample]:
 
 
 def test_where_people_change_hands_the_hand_belongs_to_the_action(samples: list[SegmentSample]) -> None:
-    assert {acting_hand(sample) for sample in samples if sample.label == "swing"} == {"left"}
+    assert {acting_hands(sample)[-1] for sample in samples if sample.label == "swing"} == {"left"}
     assert not keep_to_one_hand(samples)
     assert not trained(samples).description.mirrors
     for others in (right_handed(samples), with_a_left_hander(samples), [replace(s, person=s.label) for s in samples]):
@@ -166,9 +186,9 @@ def test_where_no_arm_was_ever_seen_from_its_shoulder_its_map_says_nothing(sampl
     assert [answer(model, encoded(model, sample)).label for sample in armless] == [s.label for s in armless]
 
 
-def test_mirror_images_teach_the_same(samples: list[SegmentSample]) -> None:
-    mixed = with_a_left_hander(samples)
-    one, other = trained(mixed), trained([in_a_mirror(sample) for sample in mixed])
+def test_mirror_images_teach_the_same_about_whole_actions(samples: list[SegmentSample]) -> None:
+    mixed, whole = with_a_left_hander(samples), replace(TINY, stages=((1.0,),))
+    one, other = trained(mixed, whole), trained([in_a_mirror(sample) for sample in mixed], whole)
     for name, array in one.arrays.items():
         np.testing.assert_array_equal(array, other.arrays[name])
 

@@ -12,6 +12,7 @@ from som_classifier.attention import UNSEEN
 from som_classifier.paper_model import PaperModel
 from som_classifier.streams import Frame
 from som_classifier.supervised import SupervisedLayer
+from som_classifier.trace import ordered_vector
 
 LEFT_ARM = list(PARTS).index("left_arm")
 
@@ -110,3 +111,15 @@ def test_frames_are_read_through_the_codes_of_the_encoder() -> None:
         assert (answer.familiarity, answer.unknown) == (None, False)
     with pytest.raises(ValueError, match="no frame"):
         model.recognise([], True)
+
+
+def test_the_map_of_actions_is_most_active_where_the_way_is_nearest() -> None:
+    model, (cells, motion) = paper_model(), walk(0, 3, 6)
+    frames = [
+        Frame(i, None, (), 0, 0.0, STANDING, moved, code=code)
+        for i, (code, moved) in enumerate(zip(cells, motion, strict=True))
+    ]
+    (activities,) = model.maps(frames).values()
+    nearest = model.layer2.bmu(ordered_vector(model.way(cells, motion), model.description.points))
+    assert activities.shape == (model.layer2.rows, model.layer2.cols)
+    assert activities.max() == activities.ravel()[nearest] == 1

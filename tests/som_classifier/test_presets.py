@@ -31,7 +31,8 @@ def test_every_radius_of_the_defaults_falls_from_a_third_of_the_grid_to_the_near
 
 
 def test_the_defaults_stages_go_on_to_the_complete_action() -> None:
-    fractions = [fraction for stage in PYRAMID.stages for fraction in stage]
-    assert fractions == sorted(set(fractions))
+    for stage in PYRAMID.stages:
+        assert list(stage) == sorted(set(stage))
+    assert list(PYRAMID.stages) == sorted(PYRAMID.stages)
+    assert PYRAMID.stages[0][0] > 0
     assert PYRAMID.stages[-1] == (1.0,)
-    assert fractions[0] > 0

@@ -16,7 +16,7 @@ from recognisers import tiny_model, tiny_samples
 from som_classifier.attention import PART_NAMES, attended
 from som_classifier.codes import Code, seen_share
 from som_classifier.handedness import mirrored
-from som_classifier.pyramid import SCALE
+from som_classifier.pyramid import SCALE, Pyramid
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.recognition import Recognition
 from som_classifier.stages import familiarity_of
@@ -247,3 +247,19 @@ def test_the_trace_is_where_the_postures_won() -> None:
     winners = model().first.postures.bmus(sample.postures.reshape(8, -1))
     kept = [winner for i, winner in enumerate(winners) if i == 0 or winner != winners[i - 1]]
     np.testing.assert_array_equal(model().trace(encoded(model(), sample)), model().first.postures.coordinates[kept])
+
+
+def test_the_maps_show_where_a_segment_was_active() -> None:
+    """Each map's most active unit is 1, whatever was summed before."""
+    frames = encoded(model(), one_after_the_other(SAMPLES[1], SAMPLES[0]))[len(SAMPLES[1].stamps_ns) :]
+    shown = model().maps(frames)
+    assert {name: activities.shape for name, activities in shown.items()} == {
+        "postures": (6, 6),
+        "velocities": (6, 6),
+        "arms": (6, 6),
+        "actions": (8, 8),
+    }
+    assert all(activities.min() >= 0 and activities.max() == 1 for activities in shown.values())
+    pooled = Pyramid((1,), 0.0).vector(model().trail([frame.code for frame in frames])) ** 4
+    postures = pooled[:36].reshape(6, 6)
+    np.testing.assert_allclose(shown["postures"], postures / postures.max(), rtol=1e-4)
