@@ -69,7 +69,7 @@ def _frame_times_us(fitted: FittedMaps, example: Example) -> Iterator[float]:
         yield _timed_us(movement.step, frame.stamp_ns, posture)[0] + _timed_us(encoder.encode, frame)[0]
 
 
-def _decision_us(fitted: FittedMaps, example: Example, complete: bool = True) -> Sequence[float]:
+def _decision_us(fitted: FittedMaps, example: Example, complete: bool) -> Sequence[float]:
     frames = encoded(fitted.model, example.sample)
     seen = frames if complete else frames[: max(fitted.model.min_frames, len(frames) // 2)]
     return [_timed_us(fitted.model.recognise, seen, complete)[0] for _ in range(2)]

@@ -24,6 +24,7 @@ _LIMBS = np.array(
         )
     ]
 )
+_COMPONENTS = (3 * _LIMBS[..., None] + np.arange(3)).reshape(LIMBS, -1)
 _RIGHT_ARM, _LEFT_ARM = 0, 1
 _UNITS_PER_M = 1000
 _JITTER = 20.0
@@ -48,13 +49,15 @@ def moments(posture: NDArray[np.float64]) -> Integers:
     Six coordinates of its two joints, the sum of their squares, and 1; all 0 where a joint is missing. Being integers
     they add up to the same sums in any order.
     """
-    limbs = (posture[_LIMBS] * _UNITS_PER_M).reshape(LIMBS, 6)
-    known = np.isfinite(limbs).all(axis=1)
-    result = np.zeros((LIMBS, MOMENTS), np.int64)
-    result[:, :6] = np.rint(np.where(known[:, None], limbs, 0.0))
-    result[:, 6] = (result[:, :6] ** 2).sum(axis=1)
-    result[:, 7] = known
-    return result
+    result = np.empty((LIMBS, MOMENTS))
+    limbs = result[:, :6]
+    np.rint(posture.ravel()[_COMPONENTS] * _UNITS_PER_M, out=limbs)
+    np.einsum("ij,ij->i", limbs, limbs, out=result[:, 6])
+    result[:, 7] = 1.0
+    missing = np.isnan(result[:, 6])
+    if missing.any():
+        result[missing] = 0.0
+    return result.astype(np.int64)
 
 
 @dataclass(frozen=True)
