@@ -35,14 +35,8 @@ once more; the peers' begins with the joints of all its frames. Medians over {AS
 def _maps_row(maps: Maps, training: Sequence[Example], asked: Sequence[Example]) -> list[str]:
     training_s, fitted = _trained(maps, training)
     frame_us = [time_us for example in asked for time_us in _frame_times_us(fitted, example)]
-    half = _asked_twice_us(partial(_decision_us, fitted, complete=False), asked)
-    return [
-        maps.name,
-        f"{training_s:.1f}",
-        _us(frame_us),
-        *half,
-        *_asked_twice_us(partial(_decision_us, fitted), asked),
-    ]
+    half, whole = (_asked_twice_us(partial(_decision_us, fitted, complete=each), asked) for each in (False, True))
+    return [maps.name, f"{training_s:.1f}", _us(frame_us), *half, *whole]
 
 
 def _rocket_row(rocket: Rocket, training: Sequence[Example], asked: Sequence[Example]) -> list[str]:
