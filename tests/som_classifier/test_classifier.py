@@ -115,6 +115,21 @@ def test_a_segment_is_answered_once_after_its_last_estimate() -> None:
         assert [a.final for a in actions if a.segment_id == str(number)] == [False] * (FRAMES - 2) + [True]
 
 
+@each_preset
+def test_maps_and_trace_come_with_final_answers_where_asked_for(preset: Preset) -> None:
+    model = tiny_model(preset)
+    for action in live(SomClassifier(model, publish_maps=True), scene()):
+        assert (action.maps is not None, action.trace is not None) == (action.final, action.final)
+        for tensor in (action.maps or {}).values():
+            assert len(tensor.data) == 4 * np.prod(tensor.shape)
+    expected = model.maps(encoded(model, SAMPLES[-1]))
+    assert action.maps is not None
+    for name, activities in expected.items():
+        put = np.frombuffer(action.maps[name].data, action.maps[name].dtype).reshape(action.maps[name].shape)
+        np.testing.assert_array_equal(put, activities.astype(np.float32))
+    assert all(action.maps is action.trace is None for action in always(preset))
+
+
 def frames_of(model: Model, postures: Iterable[Posture]) -> list[Frame]:
     stream = Stream(model.encoder().encode)
     return [frame for posture in postures if (frame := stream.add(posture)[1]) is not None]
