@@ -4,7 +4,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-latency bench-maps bench-recognition bench-objects picture schemas clean
+.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-latency bench-maps bench-recognition bench-objects bench-tracker picture schemas clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -71,6 +71,9 @@ bench-recognition: $(STAMP)  ## the recogniser beside its peers on public record
 
 bench-objects: $(STAMP)  ## the right object in simulated scenes that are hard to see, about ten minutes
 	$(BIN)/python -m benchmarks.objects
+
+bench-tracker: $(STAMP)  ## what the marker tracker costs for a frame, beside bare OpenCV
+	$(BIN)/python benchmarks/tracker.py
 
 picture: $(STAMP)  ## the README's pictures
 	$(BIN)/python docs/picture.py docs/scene.png

@@ -1,7 +1,7 @@
 """What the marker tracker costs for a frame, on one core, beside OpenCV's bare detection in the same run.
 
 Eight markers that go slowly over a cluttered 640x480 colour image, 60 times a second: all that the scene file names, or
-all but one. `python benchmarks/tracker.py` prints a Markdown table.
+all but one. `make bench-tracker` prints a Markdown table.
 """
 
 import statistics

@@ -25,8 +25,8 @@ for preset in (full_size, TINY_PAPER):
 
 
 def output(threads: int) -> list[str]:
-    tests = str(Path(__file__).parents[1])
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": str(threads), "PYTHONPATH": tests}
+    path = os.pathsep.join([str(Path(__file__).parents[1]), os.environ.get("PYTHONPATH", "")])
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": str(threads), "PYTHONPATH": path}
     done = subprocess.run([sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True, check=True)
     return done.stdout.splitlines()
 

@@ -49,7 +49,8 @@ def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
 def _configured(settings_type: type[S], build: Callable[[S], N]) -> tuple[S, N]:
     """Read the settings and build what they describe; what cannot be used ends the process with a line, code 2."""
     try:
-        settings = settings_type(_cli_parse_args=True)
+        service = settings_type.__module__.partition(".")[0]
+        settings = settings_type(_cli_parse_args=True, _cli_prog_name=f"python -m {service}")
         return settings, build(settings)
     except ValidationError as error:
         problems = [f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors(include_url=False)]
