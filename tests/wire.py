@@ -18,7 +18,7 @@ def without_seq(messages: list[Message]) -> list[bytes]:
 
 SMOOTHED: dict[type[Message], dict[str, object]] = {
     Posture: {"motion": None, "upright": None},
-    Action: {"confidence": 0.0, "activations": {}, "familiarity": None, "trace": None},
+    Action: {"confidence": 0.0, "activations": {}, "familiarity": None, "maps": None, "trace": None},
 }
 """What hangs on how long a stream has gone on, since motion, heading and posture are low-passed, left blank."""
 
