@@ -6,11 +6,15 @@ from functools import cache
 from pathlib import Path
 
 from actum.recording import Recorder, Recording
+from actum.skeletons import PARTS
 from model_trainer.samples import SegmentSample, samples_from
 from model_trainer.training import train
 from performers import HAND_PATHS, TINY, performance
+from som_classifier.handedness import mirrored
 from som_classifier.model import Model
 from som_classifier.presets import Preset
+
+OTHER_SIDE = [list(PARTS).index(name) for name in ("left_arm", "right_arm", "left_leg", "right_leg", "body")]
 
 
 @cache
@@ -29,3 +33,13 @@ def tiny_samples() -> tuple[SegmentSample, ...]:
                 recorder.write(message)
         samples = samples_from([Recording(path)]).usable
     return tuple(replace(sample, person="left-handed" if sample.label == "swing" else "1") for sample in samples)
+
+
+def in_a_mirror(sample: SegmentSample) -> SegmentSample:
+    """Return what the sample's mirror image would have done."""
+    return replace(
+        sample,
+        postures=mirrored(sample.postures),
+        velocities=mirrored(sample.velocities),
+        motion=sample.motion[:, OTHER_SIDE],
+    )

@@ -3,15 +3,13 @@
 python -m benchmarks.objects [--only PART]
 """
 
-import argparse
 import platform
-import sys
-import time
 from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
 
 import cv2
+from benchmarks.page import measure_page, part_asked_for
 
 from .parts import CONTACT_PEOPLE, EMPTY_PEOPLE, FIRST_PERSON, IMAGE_HZ, PARTS, POINTING_PEOPLE, STILL_IMAGE_HZ
 
@@ -52,18 +50,9 @@ def section(part: str) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(prog="benchmarks.objects", description=__doc__)
-    parser.add_argument("--only", choices=PARTS, help="measure this part and leave the page as it is")
-    only = parser.parse_args().only
+    only = part_asked_for("benchmarks.objects", __doc__, PARTS)
     cv2.setNumThreads(1)
-    began_s, written = time.perf_counter(), ["\n\n".join(header())]
-    print(written[0], flush=True)
-    for part in [only] if only else PARTS:
-        written.append(section(part))
-        print(f"\n{written[-1]}", flush=True)
-        print(f"{part}: {time.perf_counter() - began_s:.0f} s since the start", file=sys.stderr, flush=True)
-    if not only:
-        PAGE.write_text("\n\n".join(written) + "\n")
+    measure_page(PAGE, only, header(), PARTS, section)
 
 
 if __name__ == "__main__":

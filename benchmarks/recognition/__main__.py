@@ -3,14 +3,14 @@
 ACTUM_DATA=… python -m benchmarks.recognition [--only PART]
 """
 
-import argparse
 import platform
-import sys
 import tempfile
-import time
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
+
+from benchmarks.page import measure_page, part_asked_for
 
 from .accuracy import action_sets, authors, cross_subject, random_halves, utkinect
 from .bench import Bench
@@ -74,19 +74,10 @@ def section(bench: Bench, part: str) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(prog="benchmarks.recognition", description=__doc__)
-    parser.add_argument("--only", choices=PARTS, help="measure this part and leave the page as it is")
-    only = parser.parse_args().only
-    began_s, written = time.perf_counter(), ["\n\n".join(header())]
-    print(written[0], flush=True)
+    only = part_asked_for("benchmarks.recognition", __doc__, PARTS)
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(Datasets.from_environment(Path(folder)))
-        for part in [only] if only else PARTS:
-            written.append(section(bench, part))
-            print(f"\n{written[-1]}", flush=True)
-            print(f"{part}: {time.perf_counter() - began_s:.0f} s since the start", file=sys.stderr, flush=True)
-    if not only:
-        PAGE.write_text("\n\n".join(written) + "\n")
+        measure_page(PAGE, only, header(), PARTS, partial(section, bench))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from actum.node import SECOND_NS
-from actum.skeletons import INDEX, PARTS
+from actum.skeletons import INDEX
 from actum.som import Som
 from model_trainer.answering import answer, encoded
 from model_trainer.discriminants import discriminant_axes, folds_of
@@ -15,7 +15,7 @@ from model_trainer.pyramid_training import typical_distance2
 from model_trainer.samples import SegmentSample
 from model_trainer.training import train
 from performers import TINY
-from som_classifier.handedness import mirrored
+from recognisers import in_a_mirror
 from som_classifier.layers import arm_inputs, frame_inputs
 from som_classifier.presets import Others, PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
@@ -23,7 +23,6 @@ from som_classifier.stages import familiarity_of
 
 NOBODY = Others(0, build_sd=0.0, tempo=1.0)
 PLAIN = replace(TINY, turns_deg=(), others=NOBODY, stages=((1.0,),))
-OTHER_SIDE = [list(PARTS).index(name) for name in ("left_arm", "right_arm", "left_leg", "right_leg", "body")]
 
 
 def trained(samples: list[SegmentSample], preset: PyramidPreset = TINY, seed: int = 0) -> PyramidModel:
@@ -39,15 +38,6 @@ def pooled(model: PyramidModel, sample: SegmentSample, fraction: float = 1.0) ->
 
 def wanted(model: PyramidModel, samples: list[SegmentSample]) -> np.ndarray:
     return np.eye(len(model.labels))[[model.labels.index(sample.label) for sample in samples]]
-
-
-def in_a_mirror(sample: SegmentSample) -> SegmentSample:
-    return replace(
-        sample,
-        postures=mirrored(sample.postures),
-        velocities=mirrored(sample.velocities),
-        motion=sample.motion[:, OTHER_SIDE],
-    )
 
 
 def without_arms(sample: SegmentSample) -> SegmentSample:

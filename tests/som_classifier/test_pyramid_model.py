@@ -9,13 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actum.node import SECOND_NS
-from actum.skeletons import INDEX, PARTS
+from actum.skeletons import INDEX
 from model_trainer.answering import answer, encoded
 from model_trainer.samples import SegmentSample
-from recognisers import tiny_model, tiny_samples
+from recognisers import in_a_mirror, tiny_model, tiny_samples
 from som_classifier.attention import PART_NAMES, attended
 from som_classifier.codes import Code, seen_share
-from som_classifier.handedness import mirrored
 from som_classifier.pyramid import SCALE, Pyramid
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.recognition import Recognition
@@ -23,7 +22,6 @@ from som_classifier.stages import familiarity_of
 from som_classifier.streams import Frame
 
 SAMPLES = tiny_samples()
-OTHER_SIDE = [list(PARTS).index(name) for name in ("left_arm", "right_arm", "left_leg", "right_leg", "body")]
 each_sample = pytest.mark.parametrize("sample", SAMPLES[:3], ids=lambda sample: sample.label)
 
 
@@ -50,15 +48,6 @@ def lacking(sample: SegmentSample, *names: str) -> SegmentSample:
     gone = np.isin(np.arange(15), [INDEX[name] for name in names])[:, None]
     hidden = {name: np.where(gone, np.nan, getattr(sample, name)) for name in ("joints", "postures", "velocities")}
     return replace(sample, **hidden)
-
-
-def in_a_mirror(sample: SegmentSample) -> SegmentSample:
-    return replace(
-        sample,
-        postures=mirrored(sample.postures),
-        velocities=mirrored(sample.velocities),
-        motion=sample.motion[:, OTHER_SIDE],
-    )
 
 
 def test_every_training_sample_is_learned() -> None:
