@@ -78,6 +78,7 @@ def test_frames_before_the_segment_do_not_matter(other: int, before: int, which:
     alone = encoded(model(), SAMPLES[which])
     for complete in (False, True):
         assert model().recognise(joined, complete) == model().recognise(alone, complete)
+    np.testing.assert_array_equal(model().trace(joined), model().trace(alone))
 
 
 @settings(deadline=None)
@@ -86,6 +87,7 @@ def test_a_window_is_answered_as_if_the_reading_began_there(which: int, first: i
     whole = encoded(model(), SAMPLES[which])[first:]
     alone = encoded(model(), part_of(SAMPLES[which], slice(first, None)))
     assert model().recognise(whole, True) == model().recognise(alone, True)
+    np.testing.assert_array_equal(model().trace(whole), model().trace(alone))
 
 
 def test_the_running_sums_may_wrap_around() -> None:
@@ -114,7 +116,9 @@ def test_left_handed_segments_are_read_in_the_mirror() -> None:
     for sample in SAMPLES[:3]:
         codes = [frame.code for frame in encoded(model(), sample)]
         side = 1 if sample.label == "swing" else 0
-        assert model().trail(codes).side == side
+        trail = model().trail(codes)
+        read = np.stack([instant.sums[trail.side] for instant in trail.instants[1:]])
+        np.testing.assert_array_equal(read, np.stack([code.after.sums[side] for code in codes]))
 
 
 @settings(deadline=None)

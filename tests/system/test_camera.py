@@ -30,9 +30,9 @@ PLAYED = "GestureRecording_Id1actor1idAction1category1.mp4"
 
 @pytest.fixture(scope="module")
 def clips(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Three actions of people 2 to 4, once each."""
+    """Three actions of people 2 to 6, once each."""
     folder = tmp_path_factory.mktemp("clips")
-    for person in range(2, 5):
+    for person in range(2, 7):
         for action in (1, 6, 9):
             for clip in sorted((data / "florence3d_rgb").glob(f"*actor{person}id*category{action}.mp4"))[:1]:
                 shutil.copy(clip, folder)
