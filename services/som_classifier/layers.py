@@ -1,5 +1,6 @@
 """The two layers of maps of the default recogniser, each answering with a soft activity."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -8,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.skeletons import INDEX, JOINTS
-from actum.som import Som
+from actum.som import Som, Together
 from som_classifier.handedness import ACROSS, OPPOSITE
 from som_classifier.supervised import activity
 
@@ -75,13 +76,19 @@ class FirstMaps:
     def sides(self, posture: Floats, velocity: Floats) -> Floats:
         """Return the same for one frame (15, 3) as seen and in a mirror, shape (2, units).
 
-        By products of one row, so that it never depends on other frames.
+        By a product of always the same shape, so that it never depends on other frames.
         """
         row = np.concatenate([posture, velocity]).ravel()
-        inputs = _of_maps(np.array([row, row[_MIRROR] * _SIGNS]))
-        excess2 = _excess2 if np.isnan(inputs[-1]).any() else Som.excess2
-        excess2s = [excess2(som, rows[side]) for side in (0, 1) for som, rows in zip(self.maps, inputs, strict=True)]
-        return self._shared(np.concatenate(excess2s).reshape(2, -1))
+        rows = np.array([row, row[_MIRROR] * _SIGNS])
+        if math.isnan(row.sum()):
+            return self._shared(self._partly_known(rows))
+        inputs = np.concatenate([rows, arm_inputs(rows)], axis=1)
+        return self._shared(self._together.excess2s(inputs).reshape(2, -1))
+
+    def _partly_known(self, rows: Floats) -> Floats:
+        inputs = _of_maps(rows)
+        excess2s = [_excess2(som, own[side]) for side in (0, 1) for som, own in zip(self.maps, inputs, strict=True)]
+        return np.concatenate(excess2s).reshape(2, -1)
 
     def _shared(self, excess2s: Floats) -> Floats:
         """Make activities of d² − d²_min (n, units)."""
@@ -90,6 +97,10 @@ class FirstMaps:
         np.exp(activities, out=activities)
         activities *= self._shares / activities.sum(axis=2, keepdims=True)
         return activities.reshape(excess2s.shape)
+
+    @cached_property
+    def _together(self) -> Together:
+        return Together(self.maps)
 
     @cached_property
     def _slopes(self) -> NDArray[np.float32]:

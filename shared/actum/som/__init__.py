@@ -24,6 +24,7 @@ from actum.som.map import Som
 from actum.som.schedule import Decay, Report, Schedule, Steps
 from actum.som.sequential import SequentialTraining
 from actum.som.storage import SomError
+from actum.som.together import Together
 
 __all__ = [
     "BatchTraining",
@@ -36,6 +37,7 @@ __all__ = [
     "Som",
     "SomError",
     "Steps",
+    "Together",
     "Topology",
     "adapt_in_numpy",
 ]

@@ -52,6 +52,14 @@ def row_product(left: Floats, right: Floats) -> Floats:
     return out
 
 
+def rows_product(left: Floats, right: Floats) -> Floats:
+    """Return left @ right of a few rows, (n, m) times (m, width)."""
+    if len(left) * right.size <= _LARGEST:
+        direct: Floats = left.dot(right)
+        return direct
+    return np.stack([row_product(row, right) for row in left])
+
+
 def producted(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return left @ right, (n, m) times (m, k)."""
     out = np.empty((left.shape[0], right.shape[1]))

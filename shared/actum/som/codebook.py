@@ -85,14 +85,14 @@ class Codebook:
         Raises:
             ValueError: x has another length, an infinite component or no known one.
         """
-        return int(self._lookup.score(x).argmin())
+        return int(self.lookup.score(x).argmin())
 
     def bmus(self, vectors: ArrayLike) -> Indices:
         """Find the best matching unit of each row of (n, dim). Shape (n,).
 
         The same for any number of BLAS threads. Where two runs must agree on ties to the bit, n must agree too.
         """
-        return self._lookup.winners(np.asarray(vectors))
+        return self.lookup.winners(np.asarray(vectors))
 
     def best_two(self, vectors: ArrayLike) -> Indices:
         """Find the best and the second-best matching unit of each row of (n, dim). Shape (n, 2).
@@ -104,7 +104,7 @@ class Codebook:
             raise ValueError("a map of one unit has no second-best one")
         rows = np.asarray(vectors)
         found = np.empty((len(rows), 2), np.intp)
-        for chunk, scores in self._lookup.scores(rows):
+        for chunk, scores in self.lookup.scores(rows):
             best = scores.argmin(axis=1)
             np.put_along_axis(scores, best[:, None], np.inf, axis=1)
             found[chunk] = np.stack([best, scores.argmin(axis=1)], axis=1)
@@ -115,7 +115,7 @@ class Codebook:
 
         |x|² cancels, so that the differences stay exact however far x lies from the map.
         """
-        scores = self._lookup.score(x)[: len(self.weights)]
+        scores = self.lookup.score(x)[: len(self.weights)]
         scores -= scores[scores.argmin()]
         scores *= 2
         return scores
@@ -124,7 +124,7 @@ class Codebook:
         """Return d² − d²_min of each row of (n, dim) to each unit, shape (n, rows * cols)."""
         rows = np.asarray(vectors)
         excess2 = np.empty((len(rows), self.grid.nodes), self.dtype)
-        for chunk, scores in self._lookup.scores(rows):
+        for chunk, scores in self.lookup.scores(rows):
             np.subtract(scores[:, : self.grid.nodes], scores.min(axis=1, keepdims=True), out=excess2[chunk])
         excess2 *= 2
         return excess2
@@ -184,7 +184,8 @@ class Codebook:
             return stored_map(file, cls)
 
     @cached_property
-    def _lookup(self) -> Lookup:
+    def lookup(self) -> Lookup:
+        """The weights laid out for comparing."""
         return Lookup(self.weights)
 
 

@@ -20,6 +20,9 @@ class Lookup:
     squared distances. Both x and w are taken relative to a point amid the weights; far from zero the two terms would
     cancel, in float32 down to nothing. Where components of x are missing (NaN), a score counts the others only and is
     scaled up by dim / known.
+
+    Attributes:
+        centre: (dim,), the point amid the weights.
     """
 
     def __init__(self, weights: Array) -> None:
@@ -34,6 +37,18 @@ class Lookup:
         self._towards[-1] = np.finfo(self.dtype).max / 2
         self._towards[-1, : self.nodes] = 0.5 * np.square(centred).sum(axis=0)
         self._slopes, self._half_norms2 = self._towards[:-1], self._towards[-1]
+
+    @property
+    def slopes(self) -> Array:
+        """What a vector from the centre is multiplied with, shape (dim, nodes)."""
+        slopes: Array = self._slopes[:, : self.nodes]
+        return slopes
+
+    @property
+    def half_norms2(self) -> Array:
+        """What is added to that, ½|w|² from the centre, shape (nodes,)."""
+        half_norms2: Array = self._half_norms2[: self.nodes]
+        return half_norms2
 
     def score(self, x: Array) -> Array:
         """Score one vector against all units, shape (stride,) with large values after the last unit.

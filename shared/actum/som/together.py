@@ -1,0 +1,48 @@
+"""Maps that are always asked at the same time, looked up by one product instead of one each."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.som import blas
+from actum.som.codebook import Codebook
+
+Array = NDArray[Any]
+
+
+class Together:
+    """Maps of as many units each, their weights laid out as blocks of one matrix.
+
+    Scores are those of `Lookup`. All inputs must be known: with NaN one map could not be told from the others.
+    """
+
+    def __init__(self, maps: Sequence[Codebook]) -> None:
+        if len({(som.grid.nodes, som.dtype) for som in maps}) != 1:
+            raise ValueError(f"maps of {[(som.grid.nodes, str(som.dtype)) for som in maps]} units are not alike")
+        self._shape = (-1, len(maps), maps[0].grid.nodes)
+        self._dtype = maps[0].dtype
+        lookups = [som.lookup for som in maps]
+        self._centre = np.concatenate([lookup.centre for lookup in lookups])
+        self._half_norms2 = np.concatenate([lookup.half_norms2 for lookup in lookups])
+        self._slopes = _blocks([lookup.slopes for lookup in lookups])
+
+    def excess2s(self, rows: Array) -> Array:
+        """Return d² − d²_min of each unit for rows (n, inputs of all maps one after the other), (n, maps, units)."""
+        centred = (rows - self._centre).astype(self._dtype, copy=False)
+        scores = blas.rows_product(centred, self._slopes)
+        scores += self._half_norms2
+        excess2s: Array = scores.reshape(self._shape)
+        excess2s -= excess2s.min(axis=2, keepdims=True)
+        excess2s *= 2
+        return excess2s
+
+
+def _blocks(parts: Sequence[Array]) -> Array:
+    """Lay matrices out along the diagonal of one, zeros elsewhere."""
+    heights, widths = zip(*(part.shape for part in parts), strict=True)
+    blocks = np.zeros((sum(heights), sum(widths)), parts[0].dtype)
+    for part, bottom, right in zip(parts, np.cumsum(heights), np.cumsum(widths), strict=True):
+        blocks[bottom - len(part) : bottom, right - part.shape[1] : right] = part
+    return blocks
