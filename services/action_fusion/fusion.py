@@ -136,7 +136,7 @@ def _became(action: Action, choice: Choice, postures: Sequence[PostureSample], s
     known = [(sample.stamp_ns, sample.body) for sample in postures if sample.body is not None]
     first_ns, first = known[0]
     ahead = [body.ego_from_camera[2, :3] for stamp_ns, body in known if stamp_ns <= first_ns + FACING_NS]
-    level_from_camera = displacement.level_from_camera(np.mean(ahead, axis=0), np.array(settings.up_in_camera))
+    level_from_camera = displacement.level_from_camera(np.mean(ahead, axis=0), np.array(first.up_in_camera))
     if level_from_camera is None:
         return nothing
     shift = level_from_camera @ choice.evidence.track.shift()

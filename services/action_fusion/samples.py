@@ -17,6 +17,7 @@ Indices = NDArray[np.int64]
 FURTHEST_M = 100.0
 RIGID_TOLERANCE = 1e-3
 MISSING = [math.nan] * 3
+LEVEL = (0.0, -1.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -24,13 +25,14 @@ class Body:
     """A valid posture's frame, and its joints (15, 3), metric egocentric, NaN where one is missing.
 
     `faces` is false where the frame is no body's, so that its forward is nobody's. `depth_std_m` is 0 where the
-    distance along the line of sight was measured.
+    distance along the line of sight was measured, `up_in_camera` points against gravity.
     """
 
     ego_from_camera: Array
     joints_m: Array
     faces: bool = True
     depth_std_m: float = 0.0
+    up_in_camera: tuple[float, ...] = LEVEL
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,9 @@ def _body(posture: Posture, tally: Tally) -> Body | None:
     known = np.isfinite(joints_m).all(axis=1)
     if np.count_nonzero(~known) > posture.joints_m.count(None):
         tally.reject("bad_joint", f"agent {posture.agent} at {posture.stamp_ns}: a joint not finite or absurdly far")
-    return Body(ego_from_camera, joints_m, posture.frame != "world", min(posture.depth_std_m or 0.0, FURTHEST_M))
+    depth_std_m = min(posture.depth_std_m or 0.0, FURTHEST_M)
+    up_in_camera = LEVEL if posture.up_in_camera is None else tuple(posture.up_in_camera)
+    return Body(ego_from_camera, joints_m, posture.frame != "world", depth_std_m, up_in_camera)
 
 
 def _joints(joints: list[Joint]) -> Array:

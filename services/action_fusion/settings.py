@@ -1,13 +1,10 @@
 """Settings of the fusion."""
 
-import math
 from typing import Literal
 
-from pydantic import Field, FiniteFloat, field_validator
+from pydantic import Field
 
 from actum.settings import ServiceSettings
-
-Direction = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 
 
 class Settings(ServiceSettings):
@@ -44,11 +41,3 @@ class Settings(ServiceSettings):
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description="what an action is to do to its object; it applies no held thing to another",
     )
-    up_in_camera: Direction = Field((0.0, -1.0, 0.0), description="against gravity, in the camera's frame")
-
-    @field_validator("up_in_camera")
-    @classmethod
-    def _is_direction(cls, up: Direction) -> Direction:
-        if math.hypot(*up) < 1e-3:
-            raise ValueError("up_in_camera has no direction: [0, -1, 0] is up for a level camera")
-        return up

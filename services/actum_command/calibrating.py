@@ -1,4 +1,4 @@
-"""`actum calibrate`: a camera's intrinsics, and where one camera is seen from another."""
+"""`actum calibrate`: a camera's intrinsics, where one camera is seen from another, and how one is tilted."""
 
 import datetime
 from collections.abc import Sequence
@@ -11,6 +11,7 @@ from rich.markup import escape
 from actum.calibration import Calibration, CalibrationError
 from actum.keys import CHUNK
 from actum_command.context import console, fail
+from actum_command.finding_up import up
 from actum_command.live_views import live_pairs, live_views
 from calibrator.board import Board, PatternError
 from calibrator.coverage_picture import coverage_picture
@@ -20,7 +21,8 @@ from calibrator.pairs import Pair, PairingError, pair_files, pictures_in
 from calibrator.pictures import UnusablePictureError, complaints, read_picture
 from calibrator.views import BoardFinder, View
 
-app = typer.Typer(no_args_is_help=True, help="Calibrate cameras with the board that actum markers --board prints.")
+app = typer.Typer(no_args_is_help=True, help="Calibrate cameras; most need the board of actum markers --board.")
+app.command("up")(up)
 
 Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration to write (YAML)")]
 Squares = Annotated[str, typer.Option("--board", help="the board's squares, across x down")]

@@ -48,7 +48,7 @@ class HeadingFilter:
 
         Args:
             stamp_ns: rising from call to call.
-            joints: (15, 3), camera frame, metres; NaN where unknown.
+            joints: (15, 3), frame of a level camera, metres; NaN where unknown.
         """
         before_ns, self._stamp_ns = self._stamp_ns, stamp_ns
         left = _horizontal_left(joints)

@@ -100,10 +100,11 @@ class PosePreprocessor:
             agent=agent.agent,
             joints_m=_listed(metric_ego),
             joints=_listed(scaled_ego),
-            upright=_listed(geometry.upright(both[1], *person.heading.step(frame.stamp_ns, joints))),
+            upright=_listed(person.upright(frame.stamp_ns, *_untilted(both, frame.up_in_camera))),
             ego_from_camera=geometry.flat(egos[0]),
             motion=person.motion.step(frame.stamp_ns, joints),
             depth_std_m=agent.depth_std_m,
+            up_in_camera=frame.up_in_camera,
             agents=present,
             previous_ns=self._previous_ns,
             missed=missed,
@@ -133,6 +134,10 @@ class PosePreprocessor:
             missed=missed,
             session_id=frame.session_id,
         )
+
+
+def _untilted(joints: NDArray[np.float64], up_in_camera: list[float] | None) -> NDArray[np.float64]:
+    return joints if up_in_camera is None else joints @ geometry.untilted_from_camera(up_in_camera).T
 
 
 def _listed(joints: NDArray[np.float64]) -> list[Joint]:

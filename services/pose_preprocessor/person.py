@@ -2,9 +2,15 @@
 
 from dataclasses import dataclass, field
 
+import numpy as np
+from numpy.typing import NDArray
+
+from actum import geometry
 from actum.messages import Joint
 from pose_preprocessor.heading import HeadingFilter
 from pose_preprocessor.motion import MotionFilter
+
+Array = NDArray[np.float64]
 
 
 @dataclass
@@ -14,3 +20,7 @@ class Person:
     joints: list[Joint] | None = None
     motion: MotionFilter = field(default_factory=MotionFilter)
     heading: HeadingFilter = field(default_factory=HeadingFilter)
+
+    def upright(self, stamp_ns: int, joints: Array, scaled: Array) -> Array:
+        """Express scaled joints (15, 3) along gravity and the smoothed heading of the measured ones, level camera."""
+        return geometry.upright(scaled, *self.heading.step(stamp_ns, joints))

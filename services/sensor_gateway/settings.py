@@ -5,6 +5,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from actum.messages import Direction
 from actum.settings import ServiceSettings
 from sensor_gateway.camera.model_file import default_model
 
@@ -24,6 +25,9 @@ class Settings(ServiceSettings):
     image_hz: Literal[0, 5, 10, 15, 30] = Field(15, description="simulator: colour images a second; 0 for none")
     calibration: Path | None = Field(
         None, description="a file of `actum calibrate`: where given, its camera is put with each colour image"
+    )
+    up_in_camera: Direction | None = Field(
+        None, description="against gravity in the camera's frame, where it is tilted; see calibrate up"
     )
     camera: str = Field("0", description="camera: a device's number or path, a URL, or a video file")
     camera_size: str | None = Field(

@@ -13,6 +13,7 @@ from sensor_gateway.msr_action3d import MsrAction3dSource
 from sensor_gateway.recording_source import RecordingSource
 from sensor_gateway.settings import Settings
 from sensor_gateway.simulator import Simulator, balanced_programme
+from sensor_gateway.tilted import TiltedSource
 from sensor_gateway.utkinect import UtKinectSource
 
 ROUND = 4
@@ -44,10 +45,14 @@ def source_of(settings: Settings, start_ns: int) -> Source:
         PoseModelError: a camera's pose model is missing.
         DepthSourceError, RealSenseError, OpenNiError: a depth camera's library or recording is missing.
     """
-    source = _named(settings, start_ns)
-    if settings.calibration is None or isinstance(source, CameraSource):
+    source = _calibrated(_named(settings, start_ns), settings.calibration)
+    return source if settings.up_in_camera is None else TiltedSource(source, settings.up_in_camera)
+
+
+def _calibrated(source: Source, calibration: Path | None) -> Source:
+    if calibration is None or isinstance(source, CameraSource):
         return source
-    return CalibratedSource(source, Calibration.load(settings.calibration))
+    return CalibratedSource(source, Calibration.load(calibration))
 
 
 def _named(settings: Settings, start_ns: int) -> Source:

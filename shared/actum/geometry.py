@@ -5,6 +5,7 @@ too, with y up along gravity and z horizontal. An unknown joint is NaN, and stay
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,7 @@ _PARENTS = np.array([parent for parent, _, _ in BONES])
 _CHILDREN = np.array([child for _, child, _ in BONES])
 _LENGTHS_M = np.array([length for _, _, length in BONES])
 SMALLEST_M = 1e-3
+_UPSIDE_DOWN = 1e-9
 """What is shorter has no direction."""
 
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]
@@ -139,13 +141,26 @@ def upright(joints: Array, left_x: float, left_z: float) -> Array:
     """Express joints (15, 3) relative to the torso, along the actor's left, up (camera -y) and forward = left x up.
 
     Args:
-        joints: in the camera frame.
+        joints: in the frame of a level camera.
         left_x: of the horizontal unit vector to the actor's left, along camera x.
         left_z: of the same, along camera z.
     """
     upright_from_camera = np.array([[left_x, 0.0, left_z], [0.0, -1.0, 0.0], [left_z, 0.0, -left_x]])
     result: Array = (joints - joints[INDEX["torso"]]) @ upright_from_camera.T
     return result
+
+
+def untilted_from_camera(up_in_camera: Sequence[float]) -> Array:
+    """Return the smallest rotation (3, 3) after which up (3,), of any length, is -y, as for a level camera.
+
+    A camera that hangs upside down is turned about its line of sight.
+    """
+    x, y, z = np.asarray(up_in_camera) / math.hypot(*up_in_camera)
+    if y > 1 - _UPSIDE_DOWN:
+        return np.diag([-1.0, -1.0, 1.0])
+    turn = np.array([[0.0, x, 0.0], [-x, 0.0, -z], [0.0, z, 0.0]])
+    untilted: Array = np.eye(3) + turn + turn @ turn / (1 - y)
+    return untilted
 
 
 def _walked_where_known(bones: Array) -> Array:

@@ -4,9 +4,10 @@ Units are SI and named in the field where not obvious. Positions are in the sens
 x right, y down, z forward) unless the field says otherwise. Transforms are 4x4, row-major, 16 numbers.
 """
 
+import math
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat
 
 Stamp = Annotated[int, Field(ge=0, lt=2**62)]
 Seq = Annotated[int, Field(ge=0, lt=2**40)]
@@ -16,6 +17,16 @@ Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 Joint = Point | None
 Joints = Annotated[list[Joint], Field(min_length=15, max_length=15)]
 FinitePoint = Annotated[list[FiniteFloat], Field(min_length=3, max_length=3)]
+
+
+def _nonzero(direction: list[float]) -> list[float]:
+    if not SHORTEST < math.hypot(*direction) < 1 / SHORTEST:
+        raise ValueError(f"{direction} has no direction: [0, -1, 0] is up for a level camera")
+    return direction
+
+
+SHORTEST = 1e-3
+Direction = Annotated[FinitePoint, AfterValidator(_nonzero)]
 Quaternion = Annotated[list[FiniteFloat], Field(min_length=4, max_length=4)]
 Transform = Annotated[list[FiniteFloat], Field(min_length=16, max_length=16)]
 Intrinsics = Annotated[list[FiniteFloat], Field(min_length=9, max_length=9)]
@@ -74,10 +85,14 @@ class Agent(Model):
 
 
 class Skeleton(Message):
-    """All agents of one captured frame, camera frame; `agents` is empty when nobody is there."""
+    """All agents of one captured frame, camera frame; `agents` is empty when nobody is there.
+
+    `up_in_camera` points against gravity; null where the camera is taken for level, [0, -1, 0].
+    """
 
     SCHEMA = "actum.skeleton"
     agents: Annotated[list[Agent], Field(max_length=MOST_AGENTS)]
+    up_in_camera: Direction | None = None
     session_id: Name = ""
 
 
@@ -107,7 +122,7 @@ class Posture(Message):
     gravity, z horizontal, and the actor's heading smoothed over a second.
     `motion` is the mean displacement (m) of each part of `skeletons.PARTS` since the last valid frame, of joints
     relative to the torso and low-passed; 0 for a part of which no joint is known.
-    `depth_std_m` is the agent's of the skeleton.
+    `depth_std_m` is the agent's, `up_in_camera` the camera's of the skeleton.
     `agents` names every agent of the captured frame, `previous_ns` is the stamp of the captured frame before it
     (its postures may be on other agents' keys), `missed` counts the frames lost just before this one.
     """
@@ -121,6 +136,7 @@ class Posture(Message):
     motion: Annotated[list[FiniteFloat], Field(min_length=5, max_length=5)] | None
     frame: Name = "egocentric"
     depth_std_m: Deviation | None = None
+    up_in_camera: Direction | None = None
     agents: Annotated[list[AgentId], Field(max_length=MOST_AGENTS)] = []
     previous_ns: Stamp | None = None
     missed: Seq = 0

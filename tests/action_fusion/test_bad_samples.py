@@ -83,8 +83,3 @@ def test_a_crowd_takes_no_more_than_so_many_streams(node) -> None:
         told(node, TOUCH.posture(agent / 100, agent=agent))
     told(node, *TOUCH.postures(start_s=0.0), *TOUCH.sightings())
     assert len(told(node, action("touch"))) == 1
-
-
-def test_up_must_have_a_direction() -> None:
-    with pytest.raises(ValueError, match="up_in_camera has no direction"):
-        Settings(up_in_camera=(0.0, 0.0, 0.0))

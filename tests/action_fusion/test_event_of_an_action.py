@@ -170,12 +170,15 @@ def test_a_leaning_torso_moves_no_object() -> None:
 
 
 def test_up_is_against_gravity_where_the_camera_is_not_level() -> None:
-    lifted = acting_on(CUP, (0.1, 0.2, 0.45))
-    tilt = np.radians(20)
-    camera_up = (0.0, -np.cos(tilt), np.sin(tilt))
-    event = event_of(lifted, action("lift"), up_in_camera=camera_up)
+    lifted, tilt = acting_on(CUP, (0.1, 0.2, 0.45)), np.radians(20)
+    up = [0.0, -float(np.cos(tilt)), float(np.sin(tilt))]
+    told = [posture.model_copy(update={"up_in_camera": up}) for posture in lifted.postures()]
+    node = ActionFusion(Settings())
+    messages: list[Message] = [*told, *lifted.sightings(), action("lift")]
+    (event,) = [event for message in messages for event in node.handle(message)]
+    assert isinstance(event, Event)
     assert event.motion is not None
-    # The true rise, seen by a camera that believes to look 20 degrees downwards at an actor who faces it.
+    # The true rise, seen by a camera that believes to look 20 degrees upwards at an actor who faces it.
     assert np.allclose(event.motion.displacement_m, [0.0, 0.2 * np.cos(tilt), 0.2 * np.sin(tilt)], atol=1e-9)
 
 

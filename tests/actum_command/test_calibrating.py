@@ -1,5 +1,6 @@
 """`actum markers` and `actum calibrate` as a person uses them."""
 
+import json
 from pathlib import Path
 
 import cv2
@@ -9,9 +10,12 @@ import pytest
 from typer.testing import CliRunner
 
 from actum.calibration import Calibration
+from actum.recording import Recorder
 from actum_command.__main__ import app
 from boards import Lens, facing, good_poses, photograph
 from calibrator.board import Board
+from calibrator.standing import FRAMES
+from people import FRAME_NS, STANDING, reaches, skeleton
 
 BOARD, LENS = Board(), Lens()
 TRUE = np.eye(4)
@@ -113,3 +117,22 @@ def test_the_board_is_printed_to_a_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize("ids", ["", "a", "5-1", "1,,2", "0-99999999999"])
 def test_ids_that_are_none_are_refused(tmp_path: Path, ids: str) -> None:
     assert "--ids" in run("markers", "-o", tmp_path / "m.pdf", "--ids", ids, code=1)
+
+
+def test_how_a_camera_is_tilted_is_found_in_a_recording(tmp_path: Path) -> None:
+    standing, acting = tmp_path / "standing.mcap", tmp_path / "acting.mcap"
+    looking_up = cv2.Rodrigues(np.radians([-12.0, 0.0, 0.0]))[0]
+    with Recorder(standing, person="1", source="test") as recorder:
+        for k in range(FRAMES):
+            recorder.write(skeleton(k * FRAME_NS, STANDING @ looking_up.T))
+    with Recorder(acting, person="1", source="test") as recorder:
+        for message in reaches(FRAMES // 2):
+            recorder.write(message)
+
+    said = run("calibrate", "up", standing)
+    pitch_deg = float(said.split("looks up by ")[1].split()[0])
+    up = json.loads(said.split("ACTUM_UP_IN_CAMERA='")[1].rstrip("'"))
+    assert pitch_deg == pytest.approx(12.0, abs=3.0)
+    assert up == pytest.approx([0.0, -np.cos(np.radians(pitch_deg)), np.sin(np.radians(pitch_deg))], abs=0.01)
+    assert "nobody stood upright and still for long enough" in run("calibrate", "up", acting, code=1)
+    assert "no MCAP file" in run("calibrate", "up", Path(__file__), code=1)

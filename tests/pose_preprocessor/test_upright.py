@@ -282,3 +282,39 @@ def test_each_person_has_a_heading_of_their_own() -> None:
         frame = skeleton(i * FRAME_NS, turned(person, 0.5) + drift, turned(person, -1.5) - drift)
         first, second = (posture for posture in node.handle(frame) if isinstance(posture, Posture))
     np.testing.assert_allclose(np.array(first.upright), np.array(second.upright), atol=1e-9)
+
+
+@given(st.floats(-75, 75), st.floats(-75, 75))
+@settings(deadline=None, max_examples=20)
+def test_a_camera_that_says_how_it_is_tilted_sees_the_postures_of_a_level_one(
+    pitch_deg: float, roll_deg: float
+) -> None:
+    """But for how the person is turned from it: a tilted camera's line of sight is another."""
+    camera_from_level = tilted(pitch_deg, roll_deg)
+    up_in_camera = (camera_from_level @ [0.0, -1.0, 0.0]).tolist()
+    frames = [skeleton(k * FRAME_NS, joints @ camera_from_level.T) for k, joints in enumerate(steady())]
+    node = PosePreprocessor()
+    made = [
+        posture
+        for frame in frames
+        for posture in node.handle(frame.model_copy(update={"up_in_camera": up_in_camera}))
+        if isinstance(posture, Posture)
+    ]
+    assert all(posture.up_in_camera == up_in_camera for posture in made)
+    np.testing.assert_allclose(np.array([posture.upright for posture in made]), upright(steady()), atol=1e-6)
+
+
+@pytest.mark.parametrize("roll_deg", [180.0, 179.9, -90.0])
+def test_a_camera_may_hang_upside_down_or_lie_on_its_side(roll_deg: float) -> None:
+    camera_from_level = tilted(0.0, roll_deg)
+    level_from_camera = geometry.untilted_from_camera((camera_from_level @ [0.0, -1.0, 0.0]).tolist())
+    np.testing.assert_allclose(level_from_camera @ camera_from_level, np.eye(3), atol=1e-6)
+
+
+def tilted(pitch_deg: float, roll_deg: float) -> Array:
+    """What a camera sees that looks up by an angle and is turned clockwise, (3, 3), of what a level one does."""
+    pitch, roll = np.radians(pitch_deg), np.radians(roll_deg)
+    looking_up = np.array([[1, 0, 0], [0, np.cos(pitch), np.sin(pitch)], [0, -np.sin(pitch), np.cos(pitch)]])
+    clockwise = np.array([[np.cos(roll), np.sin(roll), 0], [-np.sin(roll), np.cos(roll), 0], [0, 0, 1]])
+    turned_camera: Array = clockwise @ looking_up
+    return turned_camera

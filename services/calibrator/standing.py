@@ -1,0 +1,108 @@
+"""Which way is up for a camera, from one person who stands upright before it."""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.messages import Joint, Skeleton
+from actum.skeletons import INDEX
+
+Array = NDArray[Any]
+
+FRAMES = 60
+MOST_SWAY_DEG = 1.5
+MOST_BEND_DEG = 20.0
+_LEGS = ("left_hip", "right_hip", "left_knee", "right_knee", "left_foot", "right_foot")
+
+
+@dataclass(frozen=True)
+class Up:
+    """Up as a unit vector in the camera's frame, and by how much the body swayed about it."""
+
+    in_camera: tuple[float, float, float]
+    sway_deg: float
+
+    @property
+    def pitch_deg(self) -> float:
+        """By how much the camera looks up."""
+        return math.degrees(math.asin(self.in_camera[2]))
+
+    @property
+    def roll_deg(self) -> float:
+        """By how much the camera is turned clockwise about its line of sight."""
+        return math.degrees(math.atan2(-self.in_camera[0], -self.in_camera[1]))
+
+
+class UpFinder:
+    """Takes skeletons until one person has stood straight and still for `FRAMES` of them.
+
+    Attributes:
+        wish: what is still to be done, until then.
+        found: which way is up, then.
+    """
+
+    def __init__(self) -> None:
+        self.wish = "stand upright, arms down, the whole body in view"
+        self.found: Up | None = None
+        self._axes: deque[Array] = deque(maxlen=FRAMES)
+
+    def offer(self, frame: Skeleton) -> None:
+        """Take the next frame."""
+        problem, axis = _axis(frame)
+        if axis is None:
+            self.wish = problem
+            self._axes.clear()
+            return
+        self._axes.append(axis)
+        if len(self._axes) == FRAMES:
+            self._judge()
+
+    def _judge(self) -> None:
+        mean = np.mean(self._axes, axis=0)
+        up = mean / np.linalg.norm(mean)
+        sway_deg = math.degrees(float(np.sqrt(np.square(np.array(self._axes) - up).sum(axis=1).mean())))
+        if sway_deg > MOST_SWAY_DEG:
+            self.wish = f"stand still: the body sways by more than {MOST_SWAY_DEG:g} degrees"
+        else:
+            self.found = Up((float(up[0]), float(up[1]), float(up[2])), sway_deg)
+
+
+def _axis(frame: Skeleton) -> tuple[str, Array | None]:
+    """Return the direction from the feet to the neck (3,), or why there is none."""
+    if not frame.valid or not frame.agents:
+        return f"nobody is seen{f': {frame.reason}' if frame.reason else ''}", None
+    if len(frame.agents) > 1:
+        return f"{len(frame.agents)} people are seen: one must be alone", None
+    joints = frame.agents[0].joints
+    known = {name: _point(joints[INDEX[name]]) for name in ("neck", *_LEGS)}
+    unseen = [name for name, point in known.items() if point is None]
+    if unseen:
+        return f"not seen: {', '.join(unseen)}; step back, or tilt the camera", None
+    return _straight({name: point for name, point in known.items() if point is not None})
+
+
+def _straight(points: dict[str, Array]) -> tuple[str, Array | None]:
+    hips, knees, feet = ((points[f"left_{name}"] + points[f"right_{name}"]) / 2 for name in ("hip", "knee", "foot"))
+    parts = [_unit(to - start) for start, to in ((feet, knees), (knees, hips), (hips, points["neck"]))]
+    bend_deg = max(_angle_deg(parts[0], parts[1]), _angle_deg(parts[1], parts[2]))
+    if not bend_deg <= MOST_BEND_DEG:
+        return f"stand straight: the body is bent by more than {MOST_BEND_DEG:g} degrees", None
+    return "", _unit(points["neck"] - feet)
+
+
+def _point(joint: Joint) -> Array | None:
+    return None if joint is None or not all(map(math.isfinite, joint)) else np.array(joint)
+
+
+def _unit(vector: Array) -> Array:
+    """Return the direction, or NaN where there is none."""
+    length = float(np.linalg.norm(vector))
+    return vector / length if length else np.full(3, math.nan)
+
+
+def _angle_deg(one: Array, other: Array) -> float:
+    return math.degrees(math.acos(float(np.clip(one @ other, -1.0, 1.0))))
