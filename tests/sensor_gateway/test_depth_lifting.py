@@ -76,11 +76,12 @@ def test_colour_alone_is_twenty_centimetres_off_where_the_model_takes_the_person
 @settings(max_examples=10)
 @given(seed=st.integers(0, 1000))
 def test_what_the_model_has_wrong_in_relative_distance_does_not_matter(seed: int) -> None:
+    """As long as it is less than a joint's reach."""
     body = person()
-    wrong_m = np.random.default_rng(seed).normal(0, 0.04, 33)
+    wrong_m = np.random.default_rng(seed).normal(0, 0.04, 33).clip(-0.08, 0.08)
     marks = landmarks_of(body, LENS, wrong_m=wrong_m)
 
-    assert worst_cm(body, lifted(marks, LENS, PLAIN)) < 2.2
+    assert worst_cm(body, lifted(marks, LENS, PLAIN)) < 2.0
 
 
 def test_people_thicker_or_thinner_than_the_table_are_missed_by_little_more_than_that() -> None:
