@@ -21,6 +21,7 @@ TINY = PyramidPreset(
     levels=(1, 2, 4),
     overlap=0.25,
     turns_deg=(-15.0, 15.0),
+    leans_deg=(-10.0, 10.0),
     others=Others(1, build_sd=0.1, tempo=1.0),
     others_of_one=Others(2, build_sd=0.1, tempo=0.5),
     stages=((0.3, 0.5), (0.7,), (1.0,)),

@@ -40,8 +40,8 @@ def views(sample: SegmentSample, preset: PyramidPreset, mirrors: bool, rng: np.r
     seen = View(sample.postures, sample.velocities)
     own = seen.mirrored if mirrors and acting_hands(sample)[-1] == "left" else seen
     yield own
-    for turn_deg in preset.turns_deg:
-        turn = turned(np.radians(turn_deg))
+    for turn_deg, lean_deg in zip(preset.turns_deg, preset.leans_deg, strict=True):
+        turn = turned(np.radians(turn_deg)) @ leant(np.radians(lean_deg if sample.depth_inferred else 0.0))
         yield View(own.postures @ turn, own.velocities @ turn)
     for _ in range(preset.others.count):
         factors = np.exp(rng.normal(0.0, preset.others.build_sd, len(_BONE_NAMES)))
@@ -53,6 +53,12 @@ def turned(radians: float) -> Array:
     """Return what turns row vectors (left, up, forward) about the vertical, shape (3, 3)."""
     cos, sin = np.cos(radians), np.sin(radians)
     return np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
+
+
+def leant(radians: float) -> Array:
+    """Return what tilts row vectors (left, up, forward) back about the line from left to right, shape (3, 3)."""
+    cos, sin = np.cos(radians), np.sin(radians)
+    return np.array([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]])
 
 
 def rebuilt(factors: dict[str, float]) -> Array:

@@ -31,6 +31,7 @@ class SegmentSample:
         motion: (n, 5), metres since the frame before.
         postures: (n, 15, 3), scaled, upright, low-passed.
         velocities: (n, 15, 3), of the same.
+        depth_inferred: whether distances follow from a picture and a body's usual size.
     """
 
     label: str
@@ -42,6 +43,7 @@ class SegmentSample:
     person: str
     file: str
     segment_id: str
+    depth_inferred: bool = False
 
 
 @dataclass(frozen=True)
@@ -169,4 +171,5 @@ def _sample(label: str, frames: Sequence[Frame], person: str, file: str, segment
         person,
         file,
         segment_id,
+        any(frame.depth_inferred for frame in frames),
     )

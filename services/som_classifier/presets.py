@@ -64,6 +64,8 @@ class PyramidPreset:
         levels: the pyramid's cells on each level.
         overlap: how far each reaches over its borders, in parts of its length.
         turns_deg: the turns about the vertical in which each sample is also shown.
+        leans_deg: by how much it is also tilted back with each, where depth was inferred from a picture: there how far
+            a body leans is guesswork.
         others: the other people as whom each sample is also shown.
         others_of_one: those where all samples are one person's, from whom it cannot be learnt how people differ.
         stages: the shares of an action that each set of discriminant axes is trained on; the last is the whole.
@@ -86,6 +88,7 @@ class PyramidPreset:
     levels: tuple[int, ...]
     overlap: float
     turns_deg: tuple[float, ...]
+    leans_deg: tuple[float, ...]
     others: Others
     others_of_one: Others
     stages: tuple[tuple[float, ...], ...]
@@ -127,6 +130,7 @@ PYRAMID = PyramidPreset(
     levels=(1, 2, 4),
     overlap=0.25,
     turns_deg=(-15.0, 15.0),
+    leans_deg=(-10.0, 10.0),
     others=Others(2, build_sd=0.1, tempo=1.0),
     others_of_one=Others(8, build_sd=0.2, tempo=0.5),
     stages=((0.1, 0.2, 0.3, 0.4, 0.5), (0.3, 0.4, 0.5, 0.6, 0.7, 0.8), (1.0,)),

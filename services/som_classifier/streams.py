@@ -34,7 +34,8 @@ class Frame:
 
     `joints` (15, 3) scaled egocentric, `motion` (5,) and `movement` are None where the frame is not valid, joints NaN
     where the source lacks them, which `missing` counts out; `previous_ns` is the captured frame before it, of whatever
-    agents; `missed` counts the frames lost just before it; `code` is what the model in use makes of it.
+    agents; `missed` counts the frames lost just before it; `depth_inferred` tells that distances follow from a picture
+    and a body's usual size; `code` is what the model in use makes of it.
     """
 
     stamp_ns: int
@@ -46,6 +47,7 @@ class Frame:
     motion: NDArray[np.float64] | None
     movement: Movement | None = None
     missing: tuple[int, ...] = ()
+    depth_inferred: bool = False
     code: Any = None
 
     @property
@@ -69,6 +71,7 @@ def frame_of(posture: Posture, lost: int, movement: MovementFilter) -> Frame:
     if measured is not None:
         frame.joints, frame.motion, upright = measured
         frame.movement = movement.step(posture.stamp_ns, upright)
+        frame.depth_inferred = posture.depth_std_m is not None
         frame.missing = tuple(np.flatnonzero(np.isnan(upright[:, 0])).tolist())
     return frame
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS
-from model_trainer.augmentation import View, rebuilt, turned, views
+from model_trainer.augmentation import View, leant, rebuilt, turned, views
 from model_trainer.samples import SegmentSample
 from performers import TINY
 from recognisers import tiny_samples
@@ -45,12 +45,12 @@ def without(sample: SegmentSample, *names: str) -> SegmentSample:
 
 
 def test_there_is_the_sample_itself_and_one_view_of_each_turn_and_build() -> None:
-    found = shown(RIGHT_HANDED, turns_deg=(-20.0, 10.0, 20.0), others=others(4))
+    found = shown(RIGHT_HANDED, turns_deg=(-20.0, 10.0, 20.0), leans_deg=(0.0, 5.0, 0.0), others=others(4))
     assert len(found) == 1 + 3 + 4
     np.testing.assert_array_equal(found[0].postures, RIGHT_HANDED.postures)
     np.testing.assert_array_equal(found[0].velocities, RIGHT_HANDED.velocities)
     assert {view.postures.shape for view in found} == {RIGHT_HANDED.postures.shape}
-    assert len(shown(RIGHT_HANDED, turns_deg=(), others=others(0))) == 1
+    assert len(shown(RIGHT_HANDED, turns_deg=(), leans_deg=(), others=others(0))) == 1
 
 
 def test_left_handed_samples_are_shown_in_a_mirror() -> None:
@@ -66,7 +66,7 @@ def test_left_handed_samples_are_shown_in_a_mirror() -> None:
 @settings(deadline=None)
 @given(st.floats(-180, 180))
 def test_a_turn_keeps_every_length_and_the_vertical(degrees: float) -> None:
-    _, view = shown(RIGHT_HANDED, turns_deg=(degrees,), others=others(0))
+    _, view = shown(RIGHT_HANDED, turns_deg=(degrees,), leans_deg=(10.0,), others=others(0))
     for seen, original in ((view.postures, RIGHT_HANDED.postures), (view.velocities, RIGHT_HANDED.velocities)):
         np.testing.assert_allclose(seen[..., 1], original[..., 1], atol=1e-12)
         np.testing.assert_allclose(np.linalg.norm(seen, axis=-1), np.linalg.norm(original, axis=-1), atol=1e-12)
@@ -79,6 +79,22 @@ def test_turns_add_up(one: float, other: float) -> None:
     np.testing.assert_allclose(turned(one) @ turned(other), turned(one + other), atol=1e-12)
     np.testing.assert_allclose(turned(one) @ turned(-one), np.eye(3), atol=1e-12)
     assert np.linalg.det(turned(one)) == pytest.approx(1.0)
+
+
+@settings(deadline=None)
+@given(st.floats(-180, 180))
+def test_where_depth_is_inferred_a_turned_sample_leans_too(degrees: float) -> None:
+    """A lean keeps every length and the line from left to right, and tilts what is up back."""
+    inferred = replace(RIGHT_HANDED, depth_inferred=True)
+    _, view = shown(inferred, turns_deg=(0.0,), leans_deg=(degrees,), others=others(0))
+    np.testing.assert_allclose(view.postures[..., 0], RIGHT_HANDED.postures[..., 0], atol=1e-12)
+    np.testing.assert_allclose(lengths(view.postures), lengths(RIGHT_HANDED.postures), atol=1e-12)
+    up = np.array([0.0, 1.0, 0.0]) @ leant(np.radians(degrees))
+    np.testing.assert_allclose(up, [0.0, np.cos(np.radians(degrees)), -np.sin(np.radians(degrees))], atol=1e-12)
+    both = shown(inferred, turns_deg=(15.0,), leans_deg=(degrees,), others=others(0))[1]
+    np.testing.assert_allclose(
+        both.velocities, RIGHT_HANDED.velocities @ turned(np.radians(15.0)) @ leant(np.radians(degrees)), atol=1e-12
+    )
 
 
 def test_a_quarter_turn_brings_left_to_a_side_of_forward() -> None:
@@ -105,7 +121,7 @@ def test_a_build_of_ones_is_the_same_person() -> None:
 
 
 def test_builds_differ_as_much_as_they_should_and_are_alike_on_both_sides() -> None:
-    _, *built = shown(RIGHT_HANDED, turns_deg=(), others=others(400))
+    _, *built = shown(RIGHT_HANDED, turns_deg=(), leans_deg=(), others=others(400))
     factors = np.array([lengths(view.postures[0]) for view in built]) / lengths(RIGHT_HANDED.postures[0])
     assert np.log(factors).std(axis=0) == pytest.approx(np.full(len(CHILDREN), 0.1), rel=0.15)
     for joint in BONE_NAMES:
@@ -121,7 +137,9 @@ def test_postures_and_velocities_are_built_alike() -> None:
 
 
 def test_other_people_move_as_fast_as_they_should_along_the_same_way() -> None:
-    slower, alike = (shown(RIGHT_HANDED, turns_deg=(), others=others(2, tempo))[1:] for tempo in (0.5, 1.0))
+    slower, alike = (
+        shown(RIGHT_HANDED, turns_deg=(), leans_deg=(), others=others(2, tempo))[1:] for tempo in (0.5, 1.0)
+    )
     for slow, quick in zip(slower, alike, strict=True):
         np.testing.assert_array_equal(slow.postures, quick.postures)
         np.testing.assert_array_equal(slow.velocities, 0.5 * quick.velocities)

@@ -22,7 +22,7 @@ from som_classifier.pyramid_model import PyramidModel
 from som_classifier.stages import familiarity_of
 
 NOBODY = Others(0, build_sd=0.0, tempo=1.0)
-PLAIN = replace(TINY, turns_deg=(), others=NOBODY, stages=((1.0,),))
+PLAIN = replace(TINY, turns_deg=(), leans_deg=(), others=NOBODY, stages=((1.0,),))
 
 
 def trained(samples: list[SegmentSample], preset: PyramidPreset = TINY, seed: int = 0) -> PyramidModel:

@@ -40,6 +40,16 @@ def test_a_samples_frames_are_the_preprocessors(record: Record) -> None:
     assert sample.motion.tolist() == [posture.motion for posture in expected]
 
 
+def test_a_sample_says_whether_its_distances_are_inferred(record: Record) -> None:
+    skeletons, marks = performance(["lift"])
+    inferred = [
+        frame.model_copy(update={"agents": [one.model_copy(update={"depth_std_m": 0.1}) for one in frame.agents]})
+        for frame in skeletons
+    ]
+    both = [record("measured", *skeletons, *marks), record("inferred", *inferred, *marks)]
+    assert [sample.depth_inferred for sample in samples_from(both).usable] == [False, True]
+
+
 def test_segments_without_a_label_are_no_samples(record: Record) -> None:
     skeletons, marks = performance(["lift"])
     unlabelled = [m.model_copy(update={"label": None}) for m in marks]
