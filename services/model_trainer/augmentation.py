@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from actum.geometry import BONES
 from actum.skeletons import JOINTS
-from model_trainer.hands import acting_hands
 from model_trainer.samples import SegmentSample
 from som_classifier.handedness import mirrored
 from som_classifier.presets import PyramidPreset
@@ -38,7 +37,7 @@ class View:
 def views(sample: SegmentSample, preset: PyramidPreset, mirrors: bool, rng: np.random.Generator) -> Iterator[View]:
     """Yield the sample itself, then turned, then as other people; where `mirrors`, the left arm's in a mirror."""
     seen = View(sample.postures, sample.velocities)
-    own = seen.mirrored if mirrors and acting_hands(sample)[-1] == "left" else seen
+    own = seen.mirrored if mirrors and sample.acting_hands[-1] == "left" else seen
     yield own
     for turn_deg, lean_deg in zip(preset.turns_deg, preset.leans_deg, strict=True):
         turn = turned(np.radians(turn_deg)) @ leant(np.radians(lean_deg if sample.depth_inferred else 0.0))

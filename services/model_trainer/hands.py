@@ -3,11 +3,8 @@
 from collections import Counter
 from collections.abc import Sequence
 
-import numpy as np
-
 from actum.messages import Hand
 from model_trainer.samples import SegmentSample
-from som_classifier.handedness import Spreads, moments
 
 MOST_OF_THE_OTHER = 0.1
 
@@ -20,13 +17,7 @@ def keep_to_one_hand(samples: Sequence[SegmentSample]) -> bool:
     """
     by_person: dict[str, Counter[Hand]] = {}
     for sample in samples:
-        if (hand := acting_hands(sample)[-1]) is not None:
+        if (hand := sample.acting_hands[-1]) is not None:
             by_person.setdefault(sample.person, Counter())[hand] += 1
     others = sum(min(counts["left"], counts["right"]) for counts in by_person.values())
     return others <= MOST_OF_THE_OTHER * sum(counts.total() for counts in by_person.values())
-
-
-def acting_hands(sample: SegmentSample) -> list[Hand | None]:
-    """Return after each frame which arm a sample is done with so far, None for both or another limb."""
-    summed = np.cumsum([moments(posture) for posture in sample.postures], axis=0)
-    return [Spreads.of(so_far).acting_hand for so_far in summed]

@@ -14,7 +14,7 @@ from actum.som import Som
 from model_trainer.augmentation import View, views
 from model_trainer.description import labels_of, provenance
 from model_trainer.discriminants import discriminant_axes, folds_of
-from model_trainer.hands import acting_hands, keep_to_one_hand
+from model_trainer.hands import keep_to_one_hand
 from model_trainer.progress import Progress
 from model_trainer.samples import SegmentSample
 from model_trainer.upper_layers import Scored, UpperLayers, held_out_gains, train_upper
@@ -119,7 +119,7 @@ class _Pooling:
         mirrors: bool,
     ) -> None:
         self._first, self._pyramid, self._samples, self._shown = first, pyramid, samples, shown
-        self._left_handed = [[mirrors and hand == "left" for hand in acting_hands(sample)] for sample in samples]
+        self._left_handed = [[mirrors and hand == "left" for hand in sample.acting_hands] for sample in samples]
 
     def vectors(self, fractions: Sequence[float]) -> tuple[NDArray[np.float32], Indices]:
         """Return one row per view and fraction, evenly thinned to no more than needed, and whose sample each row is."""

@@ -2,17 +2,19 @@
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from actum import keys
-from actum.messages import Message, Posture, Segment, Skeleton
+from actum.messages import Hand, Message, Posture, Segment, Skeleton
 from actum.node import Numbering, Tally, Tick, replay
 from actum.recording import Recording
 from model_trainer.progress import Progress, silent
 from pose_preprocessor.node import PosePreprocessor
+from som_classifier.handedness import Spreads, moments
 from som_classifier.model import Model
 from som_classifier.segments import Closed, Segmenter
 from som_classifier.streams import Frame
@@ -44,6 +46,12 @@ class SegmentSample:
     file: str
     segment_id: str
     depth_inferred: bool = False
+
+    @cached_property
+    def acting_hands(self) -> list[Hand | None]:
+        """Which arm it is done with, so far after each frame; None for both or another limb."""
+        summed = np.cumsum([moments(posture) for posture in self.postures], axis=0)
+        return [Spreads.of(so_far).acting_hand for so_far in summed]
 
 
 @dataclass(frozen=True)

@@ -17,16 +17,6 @@ Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 Joint = Point | None
 Joints = Annotated[list[Joint], Field(min_length=15, max_length=15)]
 FinitePoint = Annotated[list[FiniteFloat], Field(min_length=3, max_length=3)]
-
-
-def _nonzero(direction: list[float]) -> list[float]:
-    if not SHORTEST < math.hypot(*direction) < 1 / SHORTEST:
-        raise ValueError(f"{direction} has no direction: [0, -1, 0] is up for a level camera")
-    return direction
-
-
-SHORTEST = 1e-3
-Direction = Annotated[FinitePoint, AfterValidator(_nonzero)]
 Quaternion = Annotated[list[FiniteFloat], Field(min_length=4, max_length=4)]
 Transform = Annotated[list[FiniteFloat], Field(min_length=16, max_length=16)]
 Intrinsics = Annotated[list[FiniteFloat], Field(min_length=9, max_length=9)]
@@ -38,6 +28,16 @@ Hand = Literal["left", "right"]
 
 MOST_AGENTS = 64
 MOST_OBJECTS = 1024
+_SHORTEST = 1e-3
+
+
+def _nonzero(direction: list[float]) -> list[float]:
+    if not _SHORTEST < math.hypot(*direction) < 1 / _SHORTEST:
+        raise ValueError(f"{direction} has no direction: [0, -1, 0] is up for a level camera")
+    return direction
+
+
+Direction = Annotated[FinitePoint, AfterValidator(_nonzero)]
 
 
 class Message(BaseModel):

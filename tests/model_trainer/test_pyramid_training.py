@@ -10,7 +10,7 @@ from actum.skeletons import INDEX
 from actum.som import Som
 from model_trainer.answering import answer, encoded
 from model_trainer.discriminants import discriminant_axes, folds_of
-from model_trainer.hands import acting_hands, keep_to_one_hand
+from model_trainer.hands import keep_to_one_hand
 from model_trainer.pyramid_training import typical_distance2
 from model_trainer.samples import SegmentSample
 from model_trainer.training import train
@@ -98,7 +98,7 @@ def changing_arms(sample: SegmentSample) -> SegmentSample:
 def test_what_was_seen_so_far_is_read_by_the_arm_that_acts_so_far(samples: list[SegmentSample]) -> None:
     """As live: nobody knows yet that the other arm will act."""
     changing = [changing_arms(sample) for sample in right_handed(samples)]
-    early, late = ({acting_hands(sample)[k] for sample in changing} for k in (7, -1))
+    early, late = ({sample.acting_hands[k] for sample in changing} for k in (7, -1))
     assert ("left" in early, late) == (True, {"right"})
     model = trained(changing, replace(PLAIN, stages=((0.2, 0.3), (1.0,))))
     vectors = np.stack([pooled(model, sample, fraction) for sample in changing for fraction in (0.2, 0.3)])
@@ -126,7 +126,7 @@ def with_a_left_hander(samples: list[SegmentSample]) -> list[SegmentSample]:
 
 
 def test_where_people_change_hands_the_hand_belongs_to_the_action(samples: list[SegmentSample]) -> None:
-    assert {acting_hands(sample)[-1] for sample in samples if sample.label == "swing"} == {"left"}
+    assert {sample.acting_hands[-1] for sample in samples if sample.label == "swing"} == {"left"}
     assert not keep_to_one_hand(samples)
     assert not trained(samples).description.mirrors
     for others in (right_handed(samples), with_a_left_hander(samples), [replace(s, person=s.label) for s in samples]):
