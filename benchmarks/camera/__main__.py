@@ -75,8 +75,9 @@ is seen by the camera source: MediaPipe's pose landmarker, placed in metres by a
 given; {frames / imported_s:.0f} frames/s with decoding. The whole clip is one segment. Every model has seed {SEED}."""
     yield """Each person is tested by what learnt from the others; answers pooled. The peers get the same 15 joints,
 with bones of standard length, from the middle of the hips in camera axes, or our upright postures. These people
-are not wholly unseen: how landmarks become joints was chosen on them, and that left-handed actions are mirrored only
-where people keep to one hand came from their mistakes. The rest of the preset was chosen on other data."""
+are not wholly unseen: how landmarks become joints was chosen on them, and how far samples are shown leaning, and
+that left-handed actions are mirrored only where people keep to one hand came from their mistakes. The rest of the
+preset was chosen on other data."""
 
 
 def _listed(numbers: Sequence[int]) -> str:
