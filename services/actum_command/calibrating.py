@@ -180,7 +180,7 @@ def _report_extrinsics(found: Extrinsics, pairs: Sequence[Pair]) -> None:
 
 
 def _refuse(reasons: Sequence[str], output: Path) -> NoReturn:
-    fail("\n  ".join([f"not calibrated, {output} is not written:", *map(escape, reasons)]))
+    fail("\n  ".join([f"not calibrated, {output} is not written:", *reasons]))
 
 
 def _today() -> datetime.date:

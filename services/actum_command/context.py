@@ -5,6 +5,7 @@ from typing import NoReturn
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 
 from actum.runtime import Client, RouterUnreachableError
 from actum.settings import ServiceSettings
@@ -20,9 +21,14 @@ def settings() -> ServiceSettings:
     return ServiceSettings()
 
 
+def say(message: str) -> None:
+    """Print a line as it is: what looks like markup in a path or a label is not."""
+    console.print(message, markup=False, soft_wrap=True)
+
+
 def fail(message: str) -> NoReturn:
     """Say what went wrong and end with code 1."""
-    errors.print(f"[red]actum:[/red] {message}", soft_wrap=True)
+    errors.print(f"[red]actum:[/red] {escape(message)}", soft_wrap=True)
     raise typer.Exit(1)
 
 

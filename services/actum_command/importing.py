@@ -10,7 +10,7 @@ from actum.recording import Recorder
 from sensor_gateway import bimacs, msr_action3d, utkinect
 from sensor_gateway.bimacs import HandsTake
 from sensor_gateway.camera.bodies import Estimator
-from sensor_gateway.camera.clips import Naming, clip_files, read_clip
+from sensor_gateway.camera.clips import Naming, check_names, clip_files, read_clip
 from sensor_gateway.camera.perceiving import Optics
 from sensor_gateway.takes import Take
 
@@ -40,7 +40,7 @@ class ImportReport:
         """Count one written take."""
         self.files += 1
         self.frames += len(take.frames)
-        self.invalid_frames += sum(not frame.valid for frame in take.frames)
+        self.invalid_frames += sum(not frame.valid or not frame.agents for frame in take.frames)
         self.segments += sum(mark.kind == "start" for mark in take.marks)
         self.excluded += "excluded" in take.fields
         self.skipped += take.skipped
@@ -57,7 +57,7 @@ class ImportReport:
         """Say it for people."""
         said = [
             f"{self.files} recordings, {self.frames} frames, {self.segments} labelled segments",
-            f"{self.invalid_frames} frames without a skeleton, kept as invalid",
+            f"{self.invalid_frames} frames without a skeleton, kept as such",
         ]
         if self.excluded:
             said.append(f"{self.excluded} recordings marked excluded: training skips them unless told otherwise")
@@ -122,9 +122,10 @@ def import_video(
     """Write one recording per clip, the whole of it one segment labelled as its name tells; no image is kept.
 
     Raises:
-        DatasetError: there is no clip, or one's name or content is not of that form.
+        DatasetError: there is no clip, one's name or content is not of that form, or two have the same name.
     """
     files = clip_files(src)
+    check_names(files)
     for file in files:
         naming.read(file)
     takes = (read_clip(file, naming, SENSOR, optics, opened) for file in files)

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.markup import escape
 
 from actum.recording import Recording, RecordingError
 from actum_command.context import console, fail
@@ -33,7 +32,7 @@ def inspect_command(
     if picture_format not in FORMATS:
         fail(f"--format is {picture_format!r}: use one of {', '.join(FORMATS)}")
     if find_spec("matplotlib") is None:
-        fail(escape("matplotlib draws the pictures and is not installed: pip install 'actum[model-inspector]'"))
+        fail("matplotlib draws the pictures and is not installed: pip install 'actum[model-inspector]'")
     try:
         model = load_model(model_file)
         output.mkdir(parents=True, exist_ok=True)

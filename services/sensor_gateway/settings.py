@@ -1,13 +1,17 @@
 """Settings of the sensor gateway."""
 
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from actum.messages import Direction
 from actum.settings import ServiceSettings
 from sensor_gateway.camera.model_file import default_model
+
+
+def _number(text: object) -> object:
+    return int(text) if isinstance(text, str) and text.isdecimal() else text
 
 
 class Settings(ServiceSettings):
@@ -22,7 +26,9 @@ class Settings(ServiceSettings):
     actor: int = Field(0, ge=0, description="simulator: who acts")
     seed: int = Field(1, ge=0, description="simulator: which repetitions")
     repetitions: int = Field(0, ge=0, description="simulator: how often each action is done; 0 goes on for ever")
-    image_hz: Literal[0, 5, 10, 15, 30] = Field(15, description="simulator: colour images a second; 0 for none")
+    image_hz: Annotated[Literal[0, 5, 10, 15, 30], BeforeValidator(_number)] = Field(
+        15, description="simulator: colour images a second; 0 for none"
+    )
     calibration: Path | None = Field(
         None, description="a file of `actum calibrate`: where given, its camera is put with each colour image"
     )

@@ -49,7 +49,7 @@ def test_utkinect_recordings_keep_their_segments(tmp_path: Path) -> None:
     assert calls == [(1, 1)]
     assert report.lines() == [
         "1 recordings, 3 frames, 2 labelled segments",
-        "0 frames without a skeleton, kept as invalid",
+        "0 frames without a skeleton, kept as such",
         "1 segments without bounds skipped: s03_e02 carry",
         "1 duplicate rows dropped",
         "1 pairs of segments that overlap, kept",

@@ -12,7 +12,7 @@ from actum.recording import Recording
 from actum_command.importing import ImportReport, import_video
 from camera_bodies import as_seen, standing_at
 from camera_videos import write_video
-from sensor_gateway.camera.clips import DEFAULT_PATTERN, Naming, clip_files
+from sensor_gateway.camera.clips import DEFAULT_PATTERN, Naming, check_names, clip_files, recording_name
 from sensor_gateway.camera.landmarks import Landmarks
 from sensor_gateway.camera.perceiving import Optics
 from sensor_gateway.takes import DatasetError
@@ -109,3 +109,23 @@ def test_a_broken_clip_and_an_empty_folder_are_named(tmp_path: Path) -> None:
     (tmp_path / "wave_anna.mp4").write_text("no video")
     with pytest.raises(DatasetError, match=r"wave_anna\.mp4: no video"):
         imported(tmp_path, tmp_path / "out")
+
+
+def test_names_in_any_script_stay_apart() -> None:
+    named = [recording_name(Path(f"{name}.mp4")) for name in ("挥手_张三", "喝水_李四", "marché_ó", "a b/c")]
+    assert named == ["挥手_张三", "喝水_李四", "marché_ó", "c"]
+
+
+@pytest.mark.parametrize(
+    "other", ["day2/wave_anna.mp4", "day1/wave_anna.avi", "day1/Wave_Anna.mp4", "day1/wave_an na.mp4"]
+)
+def test_two_clips_of_one_name_are_refused_before_anything_is_written(other: str) -> None:
+    one = Path("day1/wave_an_na.mp4" if " " in other else "day1/wave_anna.mp4")
+    check_names([one, Path("day1/drink_anna.mp4")])
+    with pytest.raises(DatasetError, match="would both be"):
+        check_names([one, Path(other)])
+
+
+def test_an_action_that_is_not_told_is_refused() -> None:
+    with pytest.raises(DatasetError, match="does not tell the action"):
+        Naming.of(r"(?P<action>[a-z]+)?_.*", "").read(Path("_anna.mp4"))

@@ -1,7 +1,7 @@
 """Video clips named with a class and a person, as labelled takes: the whole clip is one segment."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +16,7 @@ from sensor_gateway.takes import DatasetError, Take
 DEFAULT_PATTERN = r"(?P<action>[^_]+)_(?P<person>[^_]+)(_.*)?"
 """`wave_anna.mp4`, `wave_anna_2.mp4`: the action, the person, anything."""
 
-NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.-]+")
+NOT_IN_NAMES = re.compile(r"[^\w.-]+")
 
 
 @dataclass(frozen=True)
@@ -55,12 +55,12 @@ class Naming:
             DatasetError: the name does not match.
         """
         match = self.pattern.fullmatch(path.stem)
-        if match is None:
+        action = "" if match is None else (match["action"] or "").strip()
+        if match is None or not action:
             raise DatasetError(
                 f"{path.name}: the name does not tell the action; it is to match {self.pattern.pattern!r}, "
                 "or give --pattern (a regular expression with the groups action and person)"
             )
-        action = match["action"].strip()
         person = match["person"] if "person" in self.pattern.groupindex else ""
         return self.actions.get(action, action), (person or "").strip()
 
@@ -77,6 +77,24 @@ def clip_files(folder: Path) -> list[Path]:
     return files
 
 
+def recording_name(path: Path) -> str:
+    """Name a clip's recording: as the clip, but for what not every file system takes."""
+    return NOT_IN_NAMES.sub("_", path.stem)
+
+
+def check_names(files: Sequence[Path]) -> None:
+    """Pass clips each of which gets a recording of its own.
+
+    Raises:
+        DatasetError: two would get the same one.
+    """
+    taken: dict[str, Path] = {}
+    for file in files:
+        other = taken.setdefault(recording_name(file).casefold(), file)
+        if other is not file:
+            raise DatasetError(f"{other} and {file} would both be {recording_name(file)}.mcap: rename one of them")
+
+
 def read_clip(
     path: Path, naming: Naming, sensor: str, optics: Optics, opened: Callable[[], AbstractContextManager[Estimator]]
 ) -> Take:
@@ -86,7 +104,7 @@ def read_clip(
         DatasetError: the name does not tell the action, or the file is no video.
     """
     action, person = naming.read(path)
-    name = NOT_IN_NAMES.sub("_", path.stem)
+    name = recording_name(path)
     try:
         with opened() as estimator:
             perceiver = Perceiver(estimator, optics, sensor, name, Tally())
