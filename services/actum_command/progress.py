@@ -25,6 +25,6 @@ class Bars:
 @contextmanager
 def bars() -> Iterator[Bars]:
     """Show progress on the error stream while the work lasts."""
-    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
+    columns = TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
     with Progress(*columns, console=errors, transient=True) as progress:
         yield Bars(progress)

@@ -46,7 +46,7 @@ def digest_of(samples: Sequence[SegmentSample]) -> str:
     """Return the SHA-256 over what a training sees of its samples, in their order."""
     digest = hashlib.sha256()
     for sample in samples:
-        digest.update(f"{sample.label}\0{sample.person}\0{sample.joints.shape}".encode())
+        digest.update(f"{sample.label}\0{sample.person}\0{sample.joints.shape}\0{sample.depth_inferred}".encode())
         for values in (sample.stamps_ns, sample.joints, sample.motion, sample.postures, sample.velocities):
             digest.update(np.ascontiguousarray(values).tobytes())
     return digest.hexdigest()

@@ -1,5 +1,6 @@
 """Linear discriminant axes by ridge regression, and the scores they give to people they were not trained on."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -36,16 +37,26 @@ class Axes:
 
 
 def folds_of(samples: Sequence[SegmentSample]) -> Indices:
-    """Divide samples into folds: by person, or where there is only one, evenly within each action. Shape (n,)."""
+    """Divide samples into folds: by person, or evenly those of an action that only one person did. Shape (n,).
+
+    Were its only person left out, nothing could be learnt of the action.
+    """
     people = sorted({sample.person for sample in samples})
-    if len(people) > 1:
-        return np.array([people.index(sample.person) % MOST_FOLDS for sample in samples])
-    counts: dict[str, int] = {}
+    shared = {label for label, own in _people_by_label(samples).items() if len(own) > 1}
+    counts: Counter[str] = Counter()
     folds = []
     for sample in samples:
-        counts[sample.label] = counts.get(sample.label, -1) + 1
-        folds.append(counts[sample.label] % FOLDS_WITHOUT_PEOPLE)
+        by_person = sample.label in shared
+        folds.append(people.index(sample.person) % MOST_FOLDS if by_person else counts[sample.label])
+        counts[sample.label] = (counts[sample.label] + 1) % FOLDS_WITHOUT_PEOPLE
     return np.array(folds)
+
+
+def _people_by_label(samples: Sequence[SegmentSample]) -> dict[str, set[str]]:
+    people: dict[str, set[str]] = {}
+    for sample in samples:
+        people.setdefault(sample.label, set()).add(sample.person)
+    return people
 
 
 def discriminant_axes(vectors: NDArray[np.float32], wanted: Doubles, folds: Indices, shrinkage: float) -> Axes:

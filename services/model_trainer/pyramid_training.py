@@ -39,7 +39,7 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
     """Train all layers; the same samples, preset and seed make the same model.
 
     Raises:
-        TrainingError: fewer than two actions among the samples.
+        TrainingError: fewer than two actions among the samples, or all samples move alike.
     """
     labels = labels_of(samples)
     rng = np.random.default_rng(seed)
@@ -91,11 +91,15 @@ def _first_map(inputs: Floats, preset: PyramidPreset, report: Callable[[int, int
 
 
 def _some(vectors: Floats, rng: np.random.Generator) -> NDArray[np.float32]:
-    """Return no more rows than a map needs, each flat and in single precision, none of them wholly missing."""
+    """Return no more rows than a map needs, each flat and in single precision, none of them wholly missing.
+
+    What is missing in every row is 0, the same for all units, so that it tells none from another.
+    """
     flat = vectors.reshape(len(vectors), -1).astype(np.float32)
     flat = flat[~np.isnan(flat).all(axis=1)]
     if not len(flat):
         return np.zeros((1, vectors[0].size), np.float32)
+    flat = np.where(np.isnan(flat).all(axis=0), np.float32(0), flat)
     return flat if len(flat) <= MOST_INPUTS else flat[rng.choice(len(flat), MOST_INPUTS, replace=False)]
 
 

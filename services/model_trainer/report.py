@@ -29,7 +29,7 @@ def per_class(evaluation: Evaluation) -> Table:
         table.add_column(heading, justify="right")
     for label, score in evaluation.per_class.items():
         accuracy = f"{score.accuracy:.1%}" if score.n else "-"
-        table.add_row(label, str(score.n), str(score.correct), str(score.rejected), accuracy)
+        table.add_row(Text(label), str(score.n), str(score.correct), str(score.rejected), accuracy)
     return table
 
 
@@ -44,5 +44,5 @@ def confusion(evaluation: Evaluation) -> Table:
     rows = zip(evaluation.labels, evaluation.confusion, evaluation.per_class.values(), strict=True)
     for number, (label, counts, score) in enumerate(rows, start=1):
         cells = [str(count) if count else "·" for count in counts]
-        table.add_row(str(number), label, *cells, str(score.rejected) if score.rejected else "·")
+        table.add_row(str(number), Text(label), *cells, str(score.rejected) if score.rejected else "·")
     return table

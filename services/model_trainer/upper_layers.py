@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from actum.som import Som
 from model_trainer.calibration import fitted_gain
+from model_trainer.description import TrainingError
 from model_trainer.discriminants import Axes
 from model_trainer.progress import Progress, silent
 from som_classifier.layers import Concepts
@@ -55,6 +56,9 @@ def train_upper(
     """Train both on the complete actions, on scores partly of the final axes, partly of axes without the person.
 
     The first alone are too clean, the second too poor: the final axes know more people than any of theirs.
+
+    Raises:
+        TrainingError: the scores of all samples are the same.
     """
     share = preset.held_out_share
     scores = (share * stage.axes.held_out + (1 - share) * stage.axes.own).astype(np.float32)
@@ -80,11 +84,11 @@ def held_out_gains(
 
 
 def _without(stage: Scored, fold: int) -> Scored:
-    """Return the first view of each sample outside a fold, of all samples where there is no other fold."""
+    """Return the first view of each sample outside a fold, of all samples where those are of one action at most."""
     first = np.zeros(len(stage.owners), dtype=bool)
     first[np.unique(stage.owners, return_index=True)[1]] = True
     others = first & (stage.folds != fold)
-    rows = others if others.any() else first
+    rows = others if len(np.unique(stage.targets[others])) > 1 else first
     axes = Axes(stage.axes.axes, stage.axes.offsets, stage.axes.own[rows], stage.axes.held_out[rows])
     return Scored(axes, stage.owners[rows], stage.targets[rows], stage.folds[rows])
 
@@ -105,6 +109,8 @@ def _trained(
     unit = activities / np.sqrt(np.square(activities).sum(axis=1, keepdims=True))
     concepts = Concepts(layout, contrast, unit.mean(axis=0, dtype=np.float64).astype(np.float32))
     inputs = concepts.centred(activities).astype(np.float64)
+    if not inputs.any():
+        raise TrainingError("all samples move alike: their actions cannot be told apart")
     layer3 = SupervisedLayer.of_means(inputs, targets, actions).train(
         inputs, targets, preset.beta, preset.epochs, rng, partial(progress, "neurons")
     )

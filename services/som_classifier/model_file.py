@@ -20,6 +20,9 @@ class ModelFile:
             stat = self._path.stat()
         except FileNotFoundError:
             return None
+        except OSError as error:
+            tally.reject("bad_model", str(error))
+            return None
         version = (stat.st_mtime_ns, stat.st_size)
         if version == self._seen:
             return None

@@ -189,6 +189,8 @@ class PyramidModel(Model):
         actions, stages, inputs = len(about.labels), len(about.fractions), self.pyramid.cells * first.units
         if about.joint_order != list(JOINTS):
             return "its joint order is not this version's"
+        if len({som.dtype for som in first.maps}) > 1:
+            return "its maps are not of the same precision"
         if len(set(about.labels)) < actions or len(about.gains) != stages:
             return "its labels or its stages do not fit together"
         loose = (self.stages.axes, self.stages.offsets, self.concepts.mean)

@@ -108,3 +108,11 @@ def test_samples_of_one_person_are_divided_within_each_action() -> None:
     samples = [replace(tiny_samples()[0], label=label) for label in "aabaabaab"]
     assert folds_of(samples).tolist() == [0, 1, 0, 2, 3, 1, 4, 0, 2]
     assert FOLDS_WITHOUT_PEOPLE == 5
+
+
+def test_an_action_that_only_one_person_did_is_divided_within() -> None:
+    """Without its only person nothing would be known of it."""
+    samples = [
+        replace(tiny_samples()[0], person=person, label=label) for person, label in ("mx", "my", "mx", "fx", "my")
+    ]
+    assert folds_of(samples).tolist() == [1, 0, 1, 0, 1]

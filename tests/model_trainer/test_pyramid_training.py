@@ -9,6 +9,7 @@ from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from actum.som import Som
 from model_trainer.answering import answer, encoded
+from model_trainer.description import TrainingError
 from model_trainer.discriminants import discriminant_axes, folds_of
 from model_trainer.hands import keep_to_one_hand
 from model_trainer.pyramid_training import typical_distance2
@@ -238,3 +239,41 @@ def test_typical_distance_scales_up_what_is_missing() -> None:
 
 def test_a_typical_distance_is_never_zero() -> None:
     assert typical_distance2(Som(1, 1, np.ones((1, 3))), np.ones((4, 3))) > 0
+
+
+@pytest.mark.parametrize("friends", [1, 2])
+def test_a_friends_few_samples_of_one_action_make_nobody_unsure(samples: list[SegmentSample], friends: int) -> None:
+    """Whom the other actions are known from cannot be left out."""
+    alone = [replace(sample, person="me") for sample in samples]
+    lifts = [replace(sample, person="friend") for sample in samples if sample.label == "lift"][:friends]
+    model = trained([*alone, *lifts])
+    answers = [answer(model, encoded(model, sample)) for sample in samples]
+    assert [found.label for found in answers] == [sample.label for sample in samples]
+    assert np.mean([found.confidence for found in answers]) > 0.6
+    assert sum(found.unknown for found in answers) <= 0.1 * len(answers)
+
+
+@pytest.mark.parametrize("counts", [(1, 2), (2, 1), (1, 1)])
+def test_a_handful_of_samples_is_enough(samples: list[SegmentSample], counts: tuple[int, int]) -> None:
+    named = [[sample for sample in samples if sample.label == label] for label in ("lift", "push")]
+    few = [sample for own, count in zip(named, counts, strict=True) for sample in own[:count]]
+    for people in (["1"] * len(few), [str(k) for k in range(len(few))]):
+        model = trained([replace(sample, person=person) for sample, person in zip(few, people, strict=True)])
+        assert [answer(model, encoded(model, sample)).label for sample in few] == [sample.label for sample in few]
+
+
+def test_a_source_without_legs_teaches_what_it_sees(samples: list[SegmentSample]) -> None:
+    legs = np.isin(np.arange(15), [INDEX[name] for name in INDEX if name.endswith(("knee", "foot"))])[:, None]
+    legless = [
+        replace(sample, **{name: np.where(legs, np.nan, getattr(sample, name)) for name in ("postures", "velocities")})
+        for sample in samples
+    ]
+    model = trained(legless)
+    for tests in (legless, samples):
+        assert [answer(model, encoded(model, sample)).label for sample in tests] == [s.label for s in samples]
+
+
+def test_samples_that_all_move_alike_are_refused(samples: list[SegmentSample]) -> None:
+    alike = [replace(samples[0], label=label, person=person) for label in "ab" for person in "xy"]
+    with pytest.raises(TrainingError, match="cannot be told apart"):
+        trained(alike, PLAIN)
