@@ -12,8 +12,11 @@ from actum.messages import Action, Event, Message, Objects, Posture
 from actum.node import SECOND_NS, Tally, Tick
 from actum.stamps import Order
 
-WAIT_NS = 22 * SECOND_NS // 10
-"""Two seconds of skew, and two ticks' grace for the tick that starts the count."""
+SKEW_NS = 2 * SECOND_NS
+"""How far one stream may lag behind another."""
+
+WAIT_NS = SKEW_NS + SECOND_NS // 5
+"""The skew, and two ticks' grace for the tick that starts the count."""
 
 REMEMBERED = 10_000
 AGENTS = 16
@@ -26,6 +29,10 @@ class Pending:
     action: Action
     end_ns: int
     since_ns: int | None = None
+
+    def is_before(self, restart_ns: int) -> bool:
+        """Tell whether it is of the time before a restart, which began anew with this stamp."""
+        return self.action.start_ns < restart_ns or self.end_ns > restart_ns + SKEW_NS
 
 
 class ActionFusion:
@@ -51,7 +58,7 @@ class ActionFusion:
             case Posture():
                 return self._posture(message)
             case Objects():
-                return self._take(self._objects, objects_sample(message, self.tally), self._pending, "objects")
+                return self._take(self._objects, objects_sample(message, self.tally), "objects")
             case Action(final=True):
                 return self._action(message)
             case Tick():
@@ -59,25 +66,33 @@ class ActionFusion:
         return []
 
     def _posture(self, posture: Posture) -> list[Event]:
-        concerned = [pending for pending in self._pending if pending.action.agent == posture.agent]
         sample = posture_sample(posture, self.tally)
-        return self._take(self._buffer(posture.agent), sample, concerned, f"posture of agent {posture.agent}")
+        return self._take(self._buffer(posture.agent), sample, f"posture of agent {posture.agent}")
 
-    def _take(self, buffer: Buffer[S], sample: S, concerned: list[Pending], what: str) -> list[Event]:
-        """Add a sample to its stream and answer what waited for it."""
+    def _take(self, buffer: Buffer[S], sample: S, what: str) -> list[Event]:
+        """Add a sample to its stream and answer what waited for it; where time has gone back, all of the old time."""
         order = buffer.judge(sample)
         if order is Order.STALE:
             self.tally.reject("stale_stamp", f"{what} at {sample.stamp_ns} after {buffer.newest_ns}")
             return []
         events = []
         if order is Order.RESTART:
-            events = [self._answer(pending) for pending in list(concerned)]
+            events = [self._answer(pending) for pending in list(self._pending) if pending.is_before(sample.stamp_ns)]
             buffer.clear()
+            self._forget_later(sample.stamp_ns + SKEW_NS)
             self._answered.clear()
         if buffer.too_late(sample.stamp_ns):
             self.tally.reject("late", f"{what} at {sample.stamp_ns}, after its segment was answered")
         buffer.append(sample)
         return events + self._complete()
+
+    def _forget_later(self, stamp_ns: int) -> None:
+        """Forget streams that are further than one whose time has gone back: theirs is the old time."""
+        if self._objects.newest_ns > stamp_ns:
+            self._objects.clear()
+        for postures in self._postures.values():
+            if postures.newest_ns > stamp_ns:
+                postures.clear()
 
     def _action(self, action: Action) -> list[Event]:
         segment = (action.segment_id, action.start_ns, action.end_ns, action.reason)

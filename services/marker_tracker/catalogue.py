@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum import geometry
-from marker_tracker.families import canonical
+from marker_tracker.families import UnknownMarkerError, canonical
+from marker_tracker.families import family as family_of
 from marker_tracker.settings import Settings
 
 Array = NDArray[np.float64]
@@ -79,10 +80,18 @@ class Catalogue:
 
 
 def plain(settings: Settings) -> Catalogue:
-    """Describe the settings' objects: each carries the marker of its own id, in its centre."""
+    """Describe the settings' objects: each carries the marker of its own id, in its centre.
+
+    Raises:
+        UnknownMarkerError: the dictionary has no such marker.
+    """
     family = canonical(settings.dictionary)
     if not settings.objects:
         return Catalogue((family,), {}, {}, settings.marker_size_m)
+    ids = len(family_of(family).codes)
+    for number in settings.objects:
+        if not 0 <= number < ids:
+            raise UnknownMarkerError(f"objects: {family} has no marker {number}: use 0 to {ids - 1}")
     markers = {
         (family, number): Carried(number, spec.size_m or settings.marker_size_m)
         for number, spec in settings.objects.items()

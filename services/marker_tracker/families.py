@@ -21,6 +21,10 @@ class UnknownFamilyError(ValueError):
     """A name that is no family of markers."""
 
 
+class UnknownMarkerError(ValueError):
+    """A family has no marker of that id."""
+
+
 @dataclass(frozen=True)
 class Match:
     """The marker that shows some cells: how many quarter turns its top left is on clockwise, and the wrong cells."""

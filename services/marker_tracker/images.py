@@ -24,6 +24,7 @@ SAME_ASPECT = 0.01
 DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
 JPEG_START = b"\xff\xd8"
 RIGID_TOLERANCE = 1e-3
+FURTHEST_M = 100.0
 
 
 class UnusableImageError(ValueError):
@@ -150,7 +151,11 @@ def _distortion(coefficients: list[float]) -> Array:
 
 def _is_rigid(transform: Array) -> bool:
     rotation = transform[:3, :3]
-    if np.abs(rotation).max() > 2 or not np.array_equal(transform[3], (0, 0, 0, 1)):
+    if (
+        np.abs(rotation).max() > 2
+        or np.abs(transform[:3, 3]).max() > FURTHEST_M
+        or not np.array_equal(transform[3], (0, 0, 0, 1))
+    ):
         return False
     orthogonal = np.allclose(rotation @ rotation.T, np.eye(3), atol=RIGID_TOLERANCE)
     return bool(orthogonal and np.linalg.det(rotation) > 0)

@@ -80,7 +80,7 @@ def load(path: Path) -> Catalogue:
         content = yaml.SafeLoader("").construct_document(root) if root is not None else None
     except (OSError, UnicodeDecodeError) as error:
         raise SceneFileError(f"{path} cannot be read as text: {error}") from None
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, ValueError, AttributeError, RecursionError) as error:
         raise SceneFileError(f"{path} is no YAML: {' '.join(str(error).split())}") from None
     if root is None or not isinstance(content, dict):
         raise SceneFileError(f"{path} holds no scene: it needs `objects:` with an id and a name for each")

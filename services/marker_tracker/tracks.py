@@ -46,7 +46,7 @@ class Track:
         self._motion: kalman.Motion | None = None
         self._rotation: Array | None = None
         self._facing = Facing()
-        self._doubted = False
+        self._doubted: tuple[int, kalman.Motion] | None = None
         self._sightings = 0
         self._confidence = 0.0
         self.seen_ns = 0
@@ -61,8 +61,8 @@ class Track:
         position_m = pose.image_from_object[:3, 3]
         motion, surprise = kalman.corrected(kalman.predicted(self._motion, seconds), position_m, sighting.noise)
         if surprise > GATE:
-            if not self._doubted:
-                self._doubted = True
+            if not self._agrees_with_doubted(stamp_ns, position_m, sighting.noise):
+                self._doubted = stamp_ns, kalman.started(position_m, sighting.noise)
                 return False
             self._begin(stamp_ns, sighting)
             return True
@@ -70,6 +70,13 @@ class Track:
         self._turn(pose)
         self._believed(stamp_ns, sighting)
         return True
+
+    def _agrees_with_doubted(self, stamp_ns: int, position_m: Array, noise: Array) -> bool:
+        if self._doubted is None:
+            return False
+        doubted_ns, motion = self._doubted
+        seconds = (stamp_ns - doubted_ns) / SECOND_NS
+        return kalman.corrected(kalman.predicted(motion, seconds), position_m, noise)[1] <= GATE
 
     def now(self) -> TrackedObject:
         """Describe the object as it was just seen."""
@@ -96,7 +103,7 @@ class Track:
         self._believed(stamp_ns, sighting)
 
     def _believed(self, stamp_ns: int, sighting: Sighting) -> None:
-        self._doubted = False
+        self._doubted = None
         self._sightings += 1
         self._confidence = sighting.confidence
         self.seen_ns = stamp_ns

@@ -7,7 +7,7 @@ from actum import keys
 from actum.joining import joined
 from actum.messages import Message
 from actum.node import Tally
-from actum.recording import Recording
+from actum.recording import Recording, RecordingError
 from sensor_gateway.takes import files_of, instants
 
 TOPICS = (keys.SKELETON, keys.COLOR, keys.DEPTH)
@@ -15,6 +15,8 @@ TOPICS = (keys.SKELETON, keys.COLOR, keys.DEPTH)
 
 class RecordingSource:
     """Plays the skeletons and images of one recording, or of a folder's in order of name, as the given sensor's.
+
+    One that is damaged is played up to there.
 
     Stamps, numbers and session ids are the recorded ones; from a folder's second recording on, stamps and numbers are
     shifted so that they go on rising.
@@ -37,8 +39,11 @@ class RecordingSource:
         return instants(joined(self._messages(recording) for recording in self._recordings))
 
     def _messages(self, recording: Recording) -> Iterator[Message]:
-        for message in recording.messages(TOPICS):
-            yield message.model_copy(update={"sensor": self._sensor})
+        try:
+            for message in recording.messages(TOPICS):
+                yield message.model_copy(update={"sensor": self._sensor})
+        except RecordingError as error:
+            self.tally.reject("damaged_recording", str(error))
         self.tally.rejects.update(recording.skipped)
         if recording.truncated:
             self.tally.reject("truncated_recording", str(recording.path))

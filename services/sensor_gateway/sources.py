@@ -6,6 +6,7 @@ from pathlib import Path
 from actum.calibration import Calibration
 from actum.messages import Message
 from actum.node import SECOND_NS, Source, Tally
+from sensor_gateway.amended import AmendedSource, played_anew, tilted
 from sensor_gateway.calibrated import CalibratedSource
 from sensor_gateway.camera.source import CameraSource, camera_of
 from sensor_gateway.depth.source import openni2_of, realsense_of
@@ -13,7 +14,6 @@ from sensor_gateway.msr_action3d import MsrAction3dSource
 from sensor_gateway.recording_source import RecordingSource
 from sensor_gateway.settings import Settings
 from sensor_gateway.simulator import Simulator, balanced_programme
-from sensor_gateway.tilted import TiltedSource
 from sensor_gateway.utkinect import UtKinectSource
 
 ROUND = 4
@@ -46,7 +46,7 @@ def source_of(settings: Settings, start_ns: int) -> Source:
         DepthSourceError, RealSenseError, OpenNiError: a depth camera's library or recording is missing.
     """
     source = _calibrated(_named(settings, start_ns), settings.calibration)
-    return source if settings.up_in_camera is None else TiltedSource(source, settings.up_in_camera)
+    return source if settings.up_in_camera is None else AmendedSource(source, tilted(settings.up_in_camera))
 
 
 def _calibrated(source: Source, calibration: Path | None) -> Source:
@@ -62,7 +62,7 @@ def _named(settings: Settings, start_ns: int) -> Source:
         return CAMERAS[settings.source](settings, start_ns)
     if settings.path is None:
         raise SourceError(f"source {settings.source} needs --path (ACTUM_PATH): the file or folder to play")
-    return FROM_FILES[settings.source](settings.path, settings.sensor)
+    return AmendedSource(FROM_FILES[settings.source](settings.path, settings.sensor), played_anew(f"{start_ns:x}"))
 
 
 class EndlessSimulator:

@@ -59,6 +59,10 @@ CASES = {
     "three coefficients": (small(distortion=[0.1, 0.1, 0.1]), "bad_calibration"),
     "absurd coefficient": (small(distortion=[2.0**31, 0.0, 0.0, 0.0]), "bad_calibration"),
     "extrinsics zero": (small(skeleton_from_image=[0.0] * 16), "bad_calibration"),
+    "extrinsics out of the world": (
+        small(skeleton_from_image=[*IDENTITY[:3], 1.7e308, *IDENTITY[4:]]),
+        "bad_calibration",
+    ),
     "extrinsics mirrored": (small(skeleton_from_image=[-1.0, *IDENTITY[1:]]), "bad_calibration"),
 }
 

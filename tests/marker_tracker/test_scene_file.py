@@ -59,6 +59,9 @@ BAD = {
     "": "holds no scene: it needs `objects:`",
     "[1, 2]": "holds no scene: it needs `objects:`",
     "a: [1": "is no YAML",
+    "a: !!int foo": "is no YAML",
+    "a: 2026-13-45": "is no YAML",
+    "[" * 3000: "is no YAML",
 }
 
 
@@ -86,3 +89,9 @@ def test_the_scene_comes_from_the_environment(monkeypatch, image_of, pose_at) ->
 def test_a_scene_and_plain_objects_exclude_each_other() -> None:
     with pytest.raises(SceneFileError, match="set only one of them"):
         MarkerTracker(Settings(scene=EXAMPLE, objects={1: ObjectSpec(name="cup")}))
+
+
+@pytest.mark.parametrize("number", [60, 2**31, -3])
+def test_plain_objects_must_be_in_the_dictionary_too(number: int) -> None:
+    with pytest.raises(ValueError, match=f"DICT_4X4_50 has no marker {number}: use 0 to 49"):
+        MarkerTracker(Settings(dictionary="DICT_4X4_50", objects={number: ObjectSpec(name="cup")}))

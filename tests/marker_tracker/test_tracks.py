@@ -113,6 +113,16 @@ def test_one_sighting_far_off_is_not_believed_but_two_are() -> None:
     assert tracks.listed(stamp(11))[0].position_m[0] == pytest.approx(0.6)
 
 
+def test_two_that_contradict_each_other_are_not_believed_either() -> None:
+    tracks = Tracks(MEMORY_NS)
+    for i in range(10):
+        tracks.see(stamp(i), 1, "cup", sighting(pose([0.0, 0.0, 1.5])))
+    assert not tracks.see(stamp(10), 1, "cup", sighting(pose([0.6, 0.0, 1.5])))
+    assert not tracks.see(stamp(11), 1, "cup", sighting(pose([-0.6, 0.3, 1.5])))
+    assert tracks.see(stamp(12), 1, "cup", sighting(pose([0.0, 0.0, 1.5])))
+    assert tracks.listed(stamp(12))[0].position_m[0] == pytest.approx(0.0, abs=0.001)
+
+
 def test_an_object_rejoins_at_once_wherever_it_comes_back() -> None:
     tracks = Tracks(MEMORY_NS)
     tracks.see(stamp(0), 1, "cup", sighting(pose([0.0, 0.0, 1.5])))

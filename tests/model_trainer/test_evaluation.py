@@ -156,3 +156,11 @@ def test_the_report_shows_accuracy_interval_classes_and_confusion() -> None:
     assert f"60.0% (3 of 5, 95 % interval {low:.1%} to {high:.1%})" in text
     assert "33.3%" in text
     assert "confusion" in text
+
+
+@pytest.mark.parametrize("labels", [["reach [left]", "reach [right]"], ["reach [/left]", "b"]])
+def test_the_report_shows_labels_as_they_are(labels: list[str]) -> None:
+    console = Console(record=True, width=120)
+    predictions = tuple(Prediction("a.mcap", str(k), labels[k % 2], labels[0]) for k in range(4))
+    console.print(report(Evaluation(predictions), seconds=1.0))
+    assert all(console.export_text(clear=False).count(label) == 2 for label in labels)

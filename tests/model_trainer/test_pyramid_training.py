@@ -242,15 +242,18 @@ def test_a_typical_distance_is_never_zero() -> None:
 
 
 @pytest.mark.parametrize("friends", [1, 2])
-def test_a_friends_few_samples_of_one_action_make_nobody_unsure(samples: list[SegmentSample], friends: int) -> None:
-    """Whom the other actions are known from cannot be left out."""
-    alone = [replace(sample, person="me") for sample in samples]
-    lifts = [replace(sample, person="friend") for sample in samples if sample.label == "lift"][:friends]
-    model = trained([*alone, *lifts])
+def test_an_action_that_one_person_alone_did_is_judged_by_samples_left_out(
+    samples: list[SegmentSample], friends: int
+) -> None:
+    """That person cannot be left out; scores of samples that were learnt from would take most for unknown."""
+    mine = [replace(sample, person="me") for sample in samples if sample.person != "3"]
+    lifts = [replace(sample, person="friend") for sample in samples if sample.person == "3" and sample.label == "lift"]
+    model = trained(mine + lifts[:friends])
+    assert model.description.familiar is not None
+    assert model.description.familiar < 0.7
     answers = [answer(model, encoded(model, sample)) for sample in samples]
     assert [found.label for found in answers] == [sample.label for sample in samples]
-    assert np.mean([found.confidence for found in answers]) > 0.6
-    assert sum(found.unknown for found in answers) <= 0.1 * len(answers)
+    assert np.mean([found.confidence for found in answers]) > 0.9
 
 
 @pytest.mark.parametrize("counts", [(1, 2), (2, 1), (1, 1)])

@@ -63,6 +63,7 @@ def test_the_digest_tells_samples_apart(samples: list[SegmentSample]) -> None:
     fields = ("stamps_ns", "joints", "motion", "postures", "velocities")
     altered = [replace(one, **{name: np.nextafter(getattr(one, name), 99)}) for name in fields[1:]]
     altered += [replace(one, stamps_ns=one.stamps_ns + 1), replace(one, label="other"), replace(one, person="other")]
+    altered += [replace(one, depth_inferred=True)]
     digests = [digest_of([each, *rest]) for each in altered]
     assert len({*digests, digest_of(samples), digest_of(samples[::-1]), digest_of(rest)}) == len(altered) + 3
 

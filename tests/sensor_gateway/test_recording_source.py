@@ -74,3 +74,16 @@ def test_what_is_no_recording_is_refused_at_once(tmp_path: Path) -> None:
 def test_a_folder_without_recordings_is_refused(tmp_path: Path) -> None:
     with pytest.raises(DatasetError, match=r"no \*\.mcap there"):
         RecordingSource(tmp_path, "kinect0")
+
+
+def test_a_damaged_file_is_played_up_to_there_and_counted(tmp_path: Path) -> None:
+    record(tmp_path / "a.mcap", *[skeleton(stamp, stamp) for stamp in range(1, 400)])
+    whole = bytearray((tmp_path / "a.mcap").read_bytes())
+    middle = len(whole) // 3
+    whole[middle : middle + 200] = bytes(byte ^ 0x55 for byte in whole[middle : middle + 200])
+    (tmp_path / "a.mcap").write_bytes(whole)
+    record(tmp_path / "b.mcap", skeleton(7, 0), skeleton(12, 1))
+    source = RecordingSource(tmp_path, "kinect0")
+    *_, [first], [second] = source.frames()
+    assert second.stamp_ns - first.stamp_ns == 5
+    assert source.tally.rejects == {"damaged_recording": 1}

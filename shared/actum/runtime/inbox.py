@@ -12,6 +12,8 @@ Subscriber = zenoh.Subscriber[zenoh.Handler[zenoh.Sample]] | ext.AdvancedSubscri
 
 RECOVERED = (keys.SEGMENT, keys.ACTION, keys.EVENT)
 HISTORY_DEPTH = 16
+HISTORY_S = 4.0
+"""What is older was answered by whoever was there: two seconds of skew, two of waiting."""
 
 
 def subscribe(session: zenoh.Session, key_expr: str, ring: int, recovered: bool) -> Subscriber:
@@ -23,7 +25,7 @@ def subscribe(session: zenoh.Session, key_expr: str, ring: int, recovered: bool)
         session,
         key_expr,
         channel,
-        history=ext.HistoryConfig(detect_late_publishers=True, max_samples=HISTORY_DEPTH),
+        history=ext.HistoryConfig(detect_late_publishers=True, max_samples=HISTORY_DEPTH, max_age=HISTORY_S),
         recovery=ext.RecoveryConfig(heartbeat=True, periodic_queries=None),
     )
 

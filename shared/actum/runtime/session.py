@@ -3,11 +3,12 @@
 import json
 import logging
 import threading
+from pathlib import Path
 from typing import Any
 
 import zenoh
 
-from actum.settings import ServiceSettings
+from actum.settings import ServiceSettings, SettingsError
 
 log = logging.getLogger("actum")
 
@@ -34,11 +35,23 @@ class RouterUnreachableError(RuntimeError):
 
 
 def client_config(settings: ServiceSettings) -> zenoh.Config:
-    """Build a client's configuration: one router, and no discovery, which does not cross container networks."""
-    config = zenoh.Config.from_file(settings.zenoh_config) if settings.zenoh_config else zenoh.Config()
+    """Build a client's configuration: one router, and no discovery, which does not cross container networks.
+
+    Raises:
+        SettingsError: the file that is to be laid under it cannot be used.
+    """
+    config = _laid_under(settings.zenoh_config) if settings.zenoh_config else zenoh.Config()
     for path, value in _client_values(settings.connect).items():
         config.insert_json5(path, json.dumps(value))
     return config
+
+
+def _laid_under(file: Path) -> zenoh.Config:
+    try:
+        return zenoh.Config.from_file(file)
+    except zenoh.ZError as error:
+        reason = " ".join(str(error).partition(" at /")[0].split())
+        raise SettingsError(f"zenoh-config: {file} is no Zenoh configuration: {reason}") from None
 
 
 def _client_values(endpoint: str) -> dict[str, Any]:
@@ -50,6 +63,7 @@ def _client_values(endpoint: str) -> dict[str, Any]:
         "listen/endpoints": [],
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
+        "timestamping/enabled": True,  # how old a message is, for those who ask for the last seconds' again
         **TRANSPORT,
     }
 
