@@ -74,14 +74,15 @@ class Samples:
 def select(
     paths: Iterable[Path], people: Collection[str] | None = None, with_excluded: bool = False
 ) -> list[Recording]:
-    """Open the recordings of some people, or of all, folders searched for `*.mcap`.
+    """Open the recordings of some people, or of all, each once; folders are searched for `*.mcap`.
 
     Recordings whose metadata say `excluded: true` are left out unless asked for.
 
     Raises:
         RecordingError: a file is no recording.
     """
-    recordings = [Recording(file) for path in paths for file in _files(path)]
+    files = {file.resolve(): file for path in paths for file in _files(path)}
+    recordings = [Recording(file) for file in files.values()]
     return [
         recording
         for recording in recordings

@@ -102,3 +102,9 @@ def test_recordings_are_selected_by_person_and_exclusion(tmp_path: Path) -> None
     assert names(select([tmp_path], people={"1"})) == ["a"]
     assert names(select([tmp_path], people={"1"}, with_excluded=True)) == ["a", "c"]
     assert names(select([tmp_path / "deep" / "b.mcap"])) == ["b"]
+
+
+def test_a_recording_that_is_named_twice_counts_once(record: Record, tmp_path: Path) -> None:
+    skeletons, marks = performance(["lift"])
+    path = record("one", *skeletons, *marks).path
+    assert [recording.path for recording in select([path, tmp_path, path])] == [path]
