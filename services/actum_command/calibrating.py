@@ -6,18 +6,17 @@ from pathlib import Path
 from typing import Annotated, NoReturn
 
 import typer
-from rich.markup import escape
 
 from actum.calibration import Calibration, CalibrationError
 from actum.keys import CHUNK
-from actum_command.context import console, fail
+from actum_command.context import console, fail, say
 from actum_command.finding_up import up
 from actum_command.live_views import live_pairs, live_views
 from calibrator.board import Board, PatternError
 from calibrator.coverage_picture import coverage_picture
 from calibrator.extrinsics import Extrinsics, find_extrinsics, with_extrinsics
 from calibrator.intrinsics import GOOD_COVERAGE, Intrinsics, PoorSetError, calibration_of, find_intrinsics
-from calibrator.pairs import Pair, PairingError, pair_files, pictures_in
+from calibrator.pairs import PICTURES, Pair, PairingError, pair_files, pictures_in
 from calibrator.pictures import UnusablePictureError, complaints, read_picture
 from calibrator.views import BoardFinder, View
 
@@ -45,21 +44,22 @@ def intrinsics(
     """Find a camera's focal lengths, centre and distortion from 15 to 20 pictures of the board."""
     if live == bool(images):
         fail("name pictures of the board, or use --live")
+    files = _files(images or [])
+    picture = _coverage_picture_of(output, files)
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
-    views, unusable = (live_views(finder), []) if live else _views(finder, images or [])
+    views, unusable = (live_views(finder), []) if live else _views(finder, files)
     try:
         found = find_intrinsics(views)
     except PoorSetError as error:
         _refuse([*error.reasons, *complaints(unusable)], output)
     calibration = calibration_of(found, _today())
-    picture = output.with_suffix(".png")
     try:
         calibration.save(output)
         picture.write_bytes(coverage_picture(found, views))
     except OSError as error:
         fail(str(error))
     _report_intrinsics(found)
-    console.print(f"written to {output} (calibration {calibration.id}); look at {picture}", soft_wrap=True)
+    say(f"written to {output} (calibration {calibration.id}); look at {picture}")
 
 
 @app.command("extrinsics")
@@ -83,6 +83,7 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     """
     if (live is not None) == bool(pairs):
         fail("name pairs of pictures, or use --live MARKERS,PEOPLE")
+    _check_output(output)
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
     try:
         cameras = Calibration.load(markers_camera), Calibration.load(people_camera)
@@ -93,7 +94,7 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     except (CalibrationError, PairingError, OSError) as error:
         fail(str(error))
     _report_extrinsics(found, seen)
-    console.print(f"written to {output} (calibration {calibration.id})", soft_wrap=True)
+    say(f"written to {output} (calibration {calibration.id})")
 
 
 def _extrinsics(
@@ -118,6 +119,26 @@ def _board(squares: str, square_mm: float, marker_mm: float, family: str) -> Boa
         fail(str(error))
 
 
+def _files(paths: Sequence[Path]) -> list[Path]:
+    return [file for path in paths for file in (pictures_in(path) if path.is_dir() else [path])]
+
+
+def _check_output(output: Path) -> None:
+    if output.suffix.lower() in PICTURES:
+        fail(f"-o {output}: the calibration is YAML, no picture; name it {output.stem}.yaml")
+
+
+def _coverage_picture_of(output: Path, pictures: Sequence[Path]) -> Path:
+    """Name the picture of the coverage that is written beside the calibration, over none of those it is made from."""
+    _check_output(output)
+    picture = output.with_name(f"{output.stem}-coverage.png")
+    inputs = {file.resolve() for file in pictures}
+    for written in (output, picture):
+        if written.resolve() in inputs:
+            fail(f"{written} is among the pictures and would be overwritten: write to another place or name with -o")
+    return picture
+
+
 def _sensors(text: str) -> tuple[str, str]:
     markers, _, people = text.partition(",")
     if not CHUNK.fullmatch(markers) or not CHUNK.fullmatch(people) or markers == people:
@@ -125,17 +146,16 @@ def _sensors(text: str) -> tuple[str, str]:
     return markers, people
 
 
-def _views(finder: BoardFinder, paths: Sequence[Path]) -> tuple[list[View], list[UnusablePictureError]]:
+def _views(finder: BoardFinder, files: Sequence[Path]) -> tuple[list[View], list[UnusablePictureError]]:
     """Look for the board in every picture; name those that cannot be used."""
     views: list[View] = []
     unusable: list[UnusablePictureError] = []
-    files = [file for path in paths for file in (pictures_in(path) if path.is_dir() else [path])]
     for file in files:
         try:
             views.append(finder.find(read_picture(file), file.name))
         except UnusablePictureError as error:
             unusable.append(error)
-            console.print(f"[yellow]{escape(str(error))}[/yellow]", soft_wrap=True)
+            say(str(error), style="yellow")
     return views, unusable
 
 
@@ -171,7 +191,7 @@ def _report_extrinsics(found: Extrinsics, pairs: Sequence[Pair]) -> None:
     x, y, z = found.skeleton_from_image[:3, 3]
     console.print(f"RMS {found.rms_px:.3f} px over {len(pairs)} pairs")
     for pair, error in zip(pairs, found.rms_of_pairs_px, strict=True):
-        console.print(f"  {pair.name}: {error:.3f} px", markup=False)
+        say(f"  {pair.name}: {error:.3f} px")
     console.print(
         f"the camera that sees markers is at x {x:+.3f}, y {y:+.3f}, z {z:+.3f} m of the one that sees people "
         f"(right, down, forward), ± {found.position_deviation_mm:.1f} mm and ± {found.rotation_deviation_deg:.2f} deg",

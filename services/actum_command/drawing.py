@@ -7,8 +7,9 @@ import cv2
 import numpy as np
 import typer
 
+from actum.messages import Skeleton
 from actum.node import SECOND_NS, Tally
-from actum_command.context import console, fail
+from actum_command.context import fail, say
 from sensor_gateway.camera.drawing import Pixels, drawn, sheet
 from sensor_gateway.camera.perceiving import Optics, Perceiver
 from sensor_gateway.camera.source import estimator_of, optics_of
@@ -31,24 +32,35 @@ def draw_command(
     """
     try:
         settings = Settings(people=people)
-        pictures = _drawn(video, settings, optics_of(settings))
-        chosen = [pictures[i] for i in np.linspace(0, len(pictures) - 1, min(count, len(pictures))).round().astype(int)]
+        chosen, frames = _drawn(video, settings, optics_of(settings), count)
         if not cv2.imwrite(str(output), sheet(chosen, COLUMNS)):
             fail(f"{output}: cannot be written; does the folder exist?")
     except (ValueError, OSError, cv2.error) as error:
         fail(str(error))
-    console.print(f"{len(chosen)} of {len(pictures)} pictures, the actor's left blue: {output}", soft_wrap=True)
+    say(f"{len(chosen)} of {frames} pictures, the actor's left blue: {output}")
 
 
-def _drawn(video: Path, settings: Settings, optics: Optics) -> list[Pixels]:
-    """See a video as the camera source does."""
+def _evenly(count: int, frames: int) -> set[int]:
+    """Choose so many frames of a video, from its first to its last; all where it has fewer."""
+    return {int(frame) for frame in np.linspace(0, frames - 1, min(count, frames)).round()}
+
+
+def _drawn(video: Path, settings: Settings, optics: Optics, count: int) -> tuple[list[Pixels], int]:
+    """See a video as the camera source does, every frame of it, and draw so many; return them, and how many it has.
+
+    It is decoded once to count its frames, so that only those are kept which are drawn.
+    """
     with estimator_of(settings) as estimator:
+        frames = sum(1 for _ in pictures_of(video))
+        chosen = _evenly(count, frames)
         perceiver = Perceiver(estimator, optics, settings.sensor, video.stem, Tally())
-        return [_with_joints(picture, perceiver, optics) for picture in pictures_of(video)]
+        seen = ((picture, perceiver.skeleton(picture)) for picture in pictures_of(video))
+        pictures = [_with_joints(*frame, optics) for i, frame in enumerate(seen) if i in chosen]
+    return pictures, frames
 
 
-def _with_joints(picture: Picture, perceiver: Perceiver, optics: Optics) -> Pixels:
-    skeleton, lens = perceiver.skeleton(picture), optics.lens_of(picture)
+def _with_joints(picture: Picture, skeleton: Skeleton, optics: Optics) -> Pixels:
+    lens = optics.lens_of(picture)
     if lens is None:
         raise ValueError(skeleton.reason)
     distances = ", ".join(f"{_distance_m(agent.joints):.2f} m" for agent in skeleton.agents) or "nobody"

@@ -9,6 +9,7 @@ import typer
 
 from actum import keys
 from actum.messages import Skeleton
+from actum.node import SECOND_NS
 from actum.recording import Recording, RecordingError
 from actum.runtime import stop_on_signals
 from actum_command.context import connect, console, fail
@@ -16,6 +17,8 @@ from calibrator.standing import Up, UpFinder
 
 SILENCE_S = 10.0
 POLL_S = 0.01
+PAUSE_NS = SECOND_NS // 2
+"""How long one wish is left to be read before the next."""
 
 
 def up(
@@ -25,14 +28,14 @@ def up(
 ) -> None:
     """Find how a tilted camera is tilted: one person stands upright and still before it, arms down, for two seconds."""
     frames = _live() if recording is None else _recorded(recording)
-    finder, wished = UpFinder(), ""
+    finder, wished, said_ns = UpFinder(), "", -PAUSE_NS
     for frame in frames:
         finder.offer(frame)
         if finder.found is not None:
             _report(finder.found)
             return
-        if recording is None and finder.wish != wished:
-            wished = finder.wish
+        if recording is None and finder.wish != wished and abs(frame.stamp_ns - said_ns) >= PAUSE_NS:
+            wished, said_ns = finder.wish, frame.stamp_ns
             console.print(f"  {wished}", markup=False)
     fail(f"nobody stood upright and still for long enough: {finder.wish}")
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from actum import keys
 from actum.messages import Image
-from actum.runtime import Client, Listening, stop_on_signals
+from actum.runtime import Client, stop_on_signals
 from actum_command.context import connect, console, fail
 from calibrator.collecting import PairCollector, ViewCollector
 from calibrator.pairs import Pair
@@ -14,6 +14,7 @@ from calibrator.views import BoardFinder, View
 
 SILENCE_S = 10.0
 POLL_S = 0.01
+REMEDY = "A gateway whose ACTUM_CALIBRATION is for another image size gives none that can be used: start it without"
 
 
 def live_views(finder: BoardFinder) -> list[View]:
@@ -47,25 +48,42 @@ def live_pairs(sensors: tuple[str, str], finder: BoardFinder) -> list[Pair]:
 def _views(client: Client, sensors: list[str], finder: BoardFinder) -> Iterator[tuple[int, View | None]]:
     """Yield which sensor's picture came and the board in it, None where it is not found, until Ctrl-C."""
     stop = stop_on_signals()
-    streams = [client.listen(keys.key(keys.COLOR, sensor), ring=1) for sensor in sensors]
-    console.print(f"watching {', '.join(keys.key(keys.COLOR, sensor) for sensor in sensors)}; Ctrl-C ends")
-    heard_s = [time.monotonic()] * len(sensors)
+    streams = [_Stream(client, keys.key(keys.COLOR, sensor)) for sensor in sensors]
+    console.print(f"watching {', '.join(stream.key for stream in streams)}; Ctrl-C ends")
     while not stop.is_set():
         for camera, stream in enumerate(streams):
-            image = _newest(stream)
+            image = stream.newest()
             if image is not None:
-                heard_s[camera] = time.monotonic()
                 yield camera, _view(finder, image)
-            elif time.monotonic() - heard_s[camera] > SILENCE_S:
-                silent = keys.key(keys.COLOR, sensors[camera])
-                fail(f"no image on {silent} for {SILENCE_S:g} s: does its gateway send any?")
         stop.wait(POLL_S)
 
 
-def _newest(stream: Listening) -> Image | None:
-    received = stream.take()
-    message = None if received is None else received.message
-    return message if isinstance(message, Image) and message.valid else None
+class _Stream:
+    """One sensor's colour images; the command fails where none that can be used comes for too long."""
+
+    def __init__(self, client: Client, key: str) -> None:
+        self.key = key
+        self._listening = client.listen(key, ring=1)
+        self._heard_s = time.monotonic()
+        self._invalid: str | None = None
+
+    def newest(self) -> Image | None:
+        """Return the newest image, if it came since the last and is valid."""
+        received = self._listening.take()
+        image = None if received is None else received.message
+        if isinstance(image, Image) and image.valid:
+            self._heard_s, self._invalid = time.monotonic(), None
+            return image
+        if isinstance(image, Image):
+            self._invalid = image.reason or "it does not say why"
+        if time.monotonic() - self._heard_s > SILENCE_S:
+            fail(self._complaint())
+        return None
+
+    def _complaint(self) -> str:
+        if self._invalid is not None:
+            return f"no valid image on {self.key} for {SILENCE_S:g} s: {self._invalid}. {REMEDY}"
+        return f"no image on {self.key} for {SILENCE_S:g} s: does its gateway send any? {REMEDY}"
 
 
 def _view(finder: BoardFinder, image: Image) -> View | None:

@@ -4,6 +4,7 @@ import io
 import struct
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import cv2
 import imagesize
@@ -72,11 +73,18 @@ def decode_picture(data: bytes, name: str) -> Pixels:
         raise UnusablePictureError(name, "is no image")
     if width * height > LARGEST_PIXELS:
         raise UnusablePictureError(name, f"is too large ({width}x{height})")
-    flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION
-    pixels = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), flags)
+    pixels = _decoded(data)
     if pixels is None:
         raise UnusablePictureError(name, "is damaged")
     return pixels.astype(np.uint8, copy=False)
+
+
+def _decoded(data: bytes) -> NDArray[Any] | None:
+    flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION
+    try:
+        return cv2.imdecode(np.frombuffer(data, dtype=np.uint8), flags)
+    except cv2.error:  # a header of measures that OpenCV takes for impossible
+        return None
 
 
 def complaints(unusable: Sequence[UnusablePictureError]) -> list[str]:

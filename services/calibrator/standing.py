@@ -9,13 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.messages import Joint, Skeleton
+from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 
 Array = NDArray[Any]
 
-FRAMES = 60
+SPAN_S = 2
+"""How long one stands …"""
+
+FEWEST_FRAMES = 10
+"""… and in how many frames at least."""
+
+SPAN_NS, LONGEST_GAP_NS = SPAN_S * SECOND_NS, SECOND_NS // 2
 MOST_SWAY_DEG = 1.5
 MOST_BEND_DEG = 20.0
+STAY = f"stay like that for {SPAN_S} seconds"
 _LEGS = ("left_hip", "right_hip", "left_knee", "right_knee", "left_foot", "right_foot")
 
 
@@ -38,7 +46,7 @@ class Up:
 
 
 class UpFinder:
-    """Takes skeletons until one person has stood straight and still for `FRAMES` of them.
+    """Takes skeletons until one person has stood straight and still for `SPAN_S`, by their stamps, without a gap.
 
     Attributes:
         wish: what is still to be done, until then.
@@ -48,7 +56,8 @@ class UpFinder:
     def __init__(self) -> None:
         self.wish = "stand upright, arms down, the whole body in view"
         self.found: Up | None = None
-        self._axes: deque[Array] = deque(maxlen=FRAMES)
+        self._axes: deque[tuple[int, Array]] = deque()
+        self._who: tuple[str, int] | None = None
 
     def offer(self, frame: Skeleton) -> None:
         """Take the next frame."""
@@ -57,14 +66,25 @@ class UpFinder:
             self.wish = problem
             self._axes.clear()
             return
-        self._axes.append(axis)
-        if len(self._axes) == FRAMES:
+        self._keep(frame.stamp_ns, (frame.session_id, frame.agents[0].agent), axis)
+        self.wish = STAY
+        if len(self._axes) >= FEWEST_FRAMES and self._axes[-1][0] - self._axes[0][0] >= SPAN_NS:
             self._judge()
 
+    def _keep(self, stamp_ns: int, who: tuple[str, int], axis: Array) -> None:
+        """Add an axis, after a gap or of somebody else as the first; let go of those that are not needed any more."""
+        if self._axes and not (who == self._who and 0 < stamp_ns - self._axes[-1][0] <= LONGEST_GAP_NS):
+            self._axes.clear()
+        self._who = who
+        self._axes.append((stamp_ns, axis))
+        while len(self._axes) > FEWEST_FRAMES and stamp_ns - self._axes[1][0] >= SPAN_NS:
+            self._axes.popleft()
+
     def _judge(self) -> None:
-        mean = np.mean(self._axes, axis=0)
+        axes = np.array([axis for _, axis in self._axes])
+        mean = axes.mean(axis=0)
         up = mean / np.linalg.norm(mean)
-        sway_deg = math.degrees(float(np.sqrt(np.square(np.array(self._axes) - up).sum(axis=1).mean())))
+        sway_deg = math.degrees(float(np.sqrt(np.square(axes - up).sum(axis=1).mean())))
         if sway_deg > MOST_SWAY_DEG:
             self.wish = f"stand still: the body sways by more than {MOST_SWAY_DEG:g} degrees"
         else:

@@ -26,6 +26,9 @@ MATRICES = {"K": 3, "skeleton_from_image": 4}
 WIDTH = 120
 REMEDY = "make one with 'actum calibrate intrinsics'"
 
+NO_YAML = (yaml.YAMLError, ValueError, LookupError, ArithmeticError, AttributeError, TypeError, RecursionError)
+"""What PyYAML raises at a file: not all that its constructors stumble over becomes a YAMLError."""
+
 Pixels = Annotated[int, Field(gt=0, le=100_000)]
 Measure = Annotated[FiniteFloat, Field(ge=0)]
 
@@ -125,20 +128,25 @@ class Calibration(_Part):
         Raises:
             CalibrationError: it cannot be read, or is no calibration.
         """
+        content = _content(path)
         try:
-            with path.open("rb") as file:
-                content = yaml.safe_load(file.read(LARGEST_BYTES))
             return cls.model_validate(content)
-        except OSError as error:
-            raise CalibrationError(f"{path}: {error.strerror}; {REMEDY}") from None
-        except (yaml.YAMLError, UnicodeDecodeError, RecursionError):
-            raise CalibrationError(f"{path}: no YAML; {REMEDY}") from None
         except ValidationError as error:
             raise CalibrationError(f"{path}: no calibration: {_first(error)}; {REMEDY}") from None
 
     def save(self, path: Path) -> None:
         """Write the file, replacing what is there."""
         path.write_text(HEADER + _yaml(self.model_dump(exclude_none=True)), encoding="utf-8")
+
+
+def _content(path: Path) -> object:
+    try:
+        with path.open("rb") as file:
+            return yaml.safe_load(file.read(LARGEST_BYTES))
+    except OSError as error:
+        raise CalibrationError(f"{path}: {error.strerror}; {REMEDY}") from None
+    except NO_YAML:
+        raise CalibrationError(f"{path}: no YAML; {REMEDY}") from None
 
 
 class _Dumper(yaml.SafeDumper):

@@ -39,7 +39,6 @@ _PARENTS = np.array([parent for parent, _, _ in BONES])
 _CHILDREN = np.array([child for _, child, _ in BONES])
 _LENGTHS_M = np.array([length for _, _, length in BONES])
 SMALLEST_M = 1e-3
-_UPSIDE_DOWN = 1e-9
 """What is shorter has no direction."""
 
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]
@@ -151,15 +150,17 @@ def upright(joints: Array, left_x: float, left_z: float) -> Array:
 
 
 def untilted_from_camera(up_in_camera: Sequence[float]) -> Array:
-    """Return the smallest rotation (3, 3) after which up (3,), of any length, is -y, as for a level camera.
+    """Return the rotation (3, 3) after which up (3,), of any length, is -y, as for a level camera.
 
-    A camera that hangs upside down is turned about its line of sight.
+    It undoes the roll about the line of sight, then the pitch about x: the line of sight stays forward, x = 0 and
+    z > 0, however the camera hangs. One that looks straight up or down has no roll; none is undone.
     """
     x, y, z = np.asarray(up_in_camera) / math.hypot(*up_in_camera)
-    if y > 1 - _UPSIDE_DOWN:
-        return np.diag([-1.0, -1.0, 1.0])
-    turn = np.array([[0.0, x, 0.0], [-x, 0.0, -z], [0.0, z, 0.0]])
-    untilted: Array = np.eye(3) + turn + turn @ turn / (1 - y)
+    across = math.hypot(x, y)
+    sin_roll, cos_roll = (-x / across, -y / across) if across > 0 else (0.0, 1.0)
+    unrolled = np.array([[cos_roll, -sin_roll, 0.0], [sin_roll, cos_roll, 0.0], [0.0, 0.0, 1.0]])
+    unpitched = np.array([[1.0, 0.0, 0.0], [0.0, across, -z], [0.0, z, across]])
+    untilted: Array = unpitched @ unrolled
     return untilted
 
 

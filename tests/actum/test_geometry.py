@@ -176,3 +176,37 @@ def test_flat_transforms_are_row_major() -> None:
     transform = np.arange(16.0).reshape(4, 4)
     assert geometry.flat(transform) == [float(i) for i in range(16)]
     np.testing.assert_array_equal(geometry.from_flat(geometry.flat(transform)), transform)
+
+
+def camera_tilted(pitch_deg: float, roll_deg: float) -> np.ndarray:
+    """Axes (3, 3) of a level camera as one sees them that looks up by an angle and is turned clockwise."""
+    pitch, roll = np.radians(pitch_deg), np.radians(roll_deg)
+    looking_up = [[1, 0, 0], [0, np.cos(pitch), np.sin(pitch)], [0, -np.sin(pitch), np.cos(pitch)]]
+    clockwise = [[np.cos(roll), np.sin(roll), 0], [-np.sin(roll), np.cos(roll), 0], [0, 0, 1]]
+    return np.array(clockwise) @ looking_up
+
+
+@given(st.floats(-80, 80), st.one_of(st.floats(-180, 180), st.sampled_from([-180.0, -90.0, 90.0, 180.0])), SIZES)
+def test_however_a_camera_hangs_its_line_of_sight_stays_forward(pitch_deg: float, roll_deg: float, size: float) -> None:
+    """Untilting undoes roll and pitch, and nothing else; upside down, too, left stays left of who faces the camera."""
+    camera_from_level = camera_tilted(pitch_deg, roll_deg)
+    level_from_camera = geometry.untilted_from_camera(size * camera_from_level @ [0, -1, 0])
+    x, _, z = level_from_camera @ [0, 0, 1]
+    assert x == 0
+    assert z > 0
+    np.testing.assert_allclose(level_from_camera @ camera_from_level, np.eye(3), atol=1e-9)
+
+
+@given(AXES)
+def test_untilting_is_a_rotation_that_brings_up_to_where_a_level_camera_has_it(up: tuple[float, float, float]) -> None:
+    level_from_camera = geometry.untilted_from_camera(up)
+    np.testing.assert_allclose(level_from_camera @ up, [0, -np.linalg.norm(up), 0], atol=1e-12)
+    np.testing.assert_allclose(level_from_camera @ level_from_camera.T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(level_from_camera) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("up", [(0.0, 0.0, 1.0), (-0.0, -0.0, -1.0)])
+def test_a_camera_that_looks_straight_up_or_down_is_only_pitched(up: tuple[float, float, float]) -> None:
+    level_from_camera = geometry.untilted_from_camera(up)
+    np.testing.assert_array_equal(level_from_camera @ up, [0, -1, 0])
+    np.testing.assert_array_equal(level_from_camera @ [1, 0, 0], [1, 0, 0])

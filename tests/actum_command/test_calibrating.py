@@ -11,11 +11,11 @@ from typer.testing import CliRunner
 
 from actum.calibration import Calibration
 from actum.recording import Recorder
+from actum_command import finding_up
 from actum_command.__main__ import app
 from boards import Lens, facing, good_poses, photograph
 from calibrator.board import Board
-from calibrator.standing import FRAMES
-from people import FRAME_NS, STANDING, reaches, skeleton
+from people import FRAME_NS, STANDING, lacking, reaches, skeleton
 
 BOARD, LENS = Board(), Lens()
 TRUE = np.eye(4)
@@ -47,7 +47,8 @@ def test_from_pictures_to_a_calibration_of_two_cameras(folder: Path, tmp_path: P
     assert "RMS 0." in said
     assert "coverage" in said
     assert found.id in said
-    assert (tmp_path / "camera.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "camera-coverage.png").read_bytes().startswith(b"\x89PNG")
+    assert str(tmp_path / "camera-coverage.png") in said
 
     for n, (place, turn) in enumerate(PLACES):
         pose = facing(BOARD, place, turn)
@@ -60,6 +61,38 @@ def test_from_pictures_to_a_calibration_of_two_cameras(folder: Path, tmp_path: P
     assert np.reshape(made.skeleton_from_image, (4, 4))[:3, 3] == pytest.approx(TRUE[:3, 3], abs=0.003)
     assert made.K == found.K
     assert made.id in said
+
+
+def test_neither_the_calibration_nor_its_picture_overwrites_a_photograph(folder: Path, tmp_path: Path) -> None:
+    photographs = {tmp_path / file.name: file.read_bytes() for file in folder.iterdir()}
+    photographs[tmp_path / "cam.png"] = photographs.pop(tmp_path / "0.png")
+    for file, data in photographs.items():
+        file.write_bytes(data)
+    run("calibrate", "intrinsics", tmp_path, "-o", tmp_path / "cam.yaml")
+    assert all(file.read_bytes() == data for file, data in photographs.items())
+    assert set(tmp_path.iterdir()) == {*photographs, tmp_path / "cam.yaml", tmp_path / "cam-coverage.png"}
+
+
+def test_a_picture_that_would_be_overwritten_is_named_before_anything_is_looked_at(
+    folder: Path, tmp_path: Path
+) -> None:
+    photograph_file = tmp_path / "cam-coverage.png"
+    photograph_file.write_bytes(b"a photograph")
+    said = run("calibrate", "intrinsics", folder, photograph_file, "-o", tmp_path / "x" / ".." / "cam.yaml", code=1)
+    assert "cam-coverage.png is among the pictures and would be overwritten" in said
+    assert "is no image" not in said
+    assert [file.read_bytes() for file in tmp_path.iterdir()] == [b"a photograph"]
+
+
+@pytest.mark.parametrize("command", ["intrinsics", "extrinsics"])
+@pytest.mark.parametrize("name", ["result.png", "result.JPG", "result.tiff"])
+def test_a_calibration_named_as_a_picture_is_refused(folder: Path, tmp_path: Path, command: str, name: str) -> None:
+    any_file = tmp_path / "c.yaml"
+    any_file.write_text("")
+    cameras = ["--markers-camera", any_file, "--people-camera", any_file] if command == "extrinsics" else []
+    said = run("calibrate", command, *cameras, folder, "-o", tmp_path / name, code=1)
+    assert "the calibration is YAML, no picture; name it result.yaml" in said
+    assert not (tmp_path / name).exists()
 
 
 def test_blurred_pictures_are_refused_and_nothing_is_written(folder: Path, tmp_path: Path) -> None:
@@ -123,10 +156,10 @@ def test_how_a_camera_is_tilted_is_found_in_a_recording(tmp_path: Path) -> None:
     standing, acting = tmp_path / "standing.mcap", tmp_path / "acting.mcap"
     looking_up = cv2.Rodrigues(np.radians([-12.0, 0.0, 0.0]))[0]
     with Recorder(standing, person="1", source="test") as recorder:
-        for k in range(FRAMES):
+        for k in range(70):
             recorder.write(skeleton(k * FRAME_NS, STANDING @ looking_up.T))
     with Recorder(acting, person="1", source="test") as recorder:
-        for message in reaches(FRAMES // 2):
+        for message in reaches(30):
             recorder.write(message)
 
     said = run("calibrate", "up", standing)
@@ -136,3 +169,16 @@ def test_how_a_camera_is_tilted_is_found_in_a_recording(tmp_path: Path) -> None:
     assert up == pytest.approx([0.0, -np.cos(np.radians(pitch_deg)), np.sin(np.radians(pitch_deg))], abs=0.01)
     assert "nobody stood upright and still for long enough" in run("calibrate", "up", acting, code=1)
     assert "no MCAP file" in run("calibrate", "up", Path(__file__), code=1)
+
+
+def test_who_flickers_in_and_out_of_view_is_told_what_to_do_no_more_than_twice_a_second(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    footless = lacking(STANDING, "left_foot", "right_foot")
+    frames = [skeleton(k * FRAME_NS, STANDING if k % 2 else footless) for k in range(150)]
+    monkeypatch.setattr(finding_up, "_live", lambda: iter(frames))
+    done = CliRunner().invoke(app, ["calibrate", "up"])
+    told = [line for line in done.stdout.splitlines() if line.strip()]
+    assert "not seen: left_foot" in told[0]
+    assert "stay like that" in told[1]
+    assert 5 < len(told) <= 10

@@ -1,5 +1,7 @@
 """Joints are drawn where they are, the actor's left in one colour and their right in another."""
 
+from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
 
 import cv2
@@ -9,11 +11,13 @@ from typer.testing import CliRunner
 
 from actum.messages import Agent
 from actum.skeletons import INDEX
+from actum_command import drawing
 from actum_command.__main__ import app
-from camera_bodies import K, projected
+from camera_bodies import K, as_seen, projected, standing_at
 from camera_videos import write_video
 from people import STANDING, lacking, listed
 from sensor_gateway.camera.drawing import LEFT, MIDDLE, RIGHT, drawn, sheet
+from sensor_gateway.camera.landmarks import Landmarks
 from sensor_gateway.camera.lens import Lens
 
 LENS = Lens(K, np.zeros(5), assumed=False)
@@ -54,6 +58,53 @@ def test_without_a_model_the_command_says_how_to_get_one(tmp_path: Path, monkeyp
     imported = CliRunner().invoke(app, ["import", "video", str(tmp_path), str(tmp_path / "out")])
     assert imported.exit_code == 1
     assert "actum models fetch" in " ".join(imported.stderr.split())
+
+
+class Counting:
+    """A model that sees one person, always at the same place, and counts the pictures it is shown."""
+
+    def __init__(self) -> None:
+        self.asked = 0
+
+    def people(self, image_bgr: np.ndarray, stamp_ns: int) -> list[Landmarks]:
+        self.asked += 1
+        return [as_seen(standing_at(0.0, 2.5))]
+
+
+def brightening(path: Path, frames: int) -> Path:
+    """Write a video whose picture n has level n."""
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 30, (64, 48))
+    for level in range(frames):
+        writer.write(np.full((48, 64, 3), level, np.uint8))
+    writer.release()
+    return path
+
+
+@pytest.mark.parametrize(("count", "levels"), [(6, [0, 40, 80, 119, 159, 199]), (1, [0]), (2, [0, 199])])
+def test_every_frame_is_seen_but_only_those_asked_for_are_drawn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, count: int, levels: list[int]
+) -> None:
+    model, captions, backgrounds = Counting(), [], []
+
+    def counted(image_bgr: np.ndarray, agents: Sequence[Agent], lens: Lens, caption: str) -> np.ndarray:
+        captions.append(caption)
+        backgrounds.append(image_bgr.mean())
+        return drawn(image_bgr, agents, lens, caption)
+
+    monkeypatch.setattr(drawing, "estimator_of", lambda _: nullcontext(model))
+    monkeypatch.setattr(drawing, "drawn", counted)
+    video, output = brightening(tmp_path / "a.avi", 200), tmp_path / "a.png"
+
+    done = CliRunner().invoke(app, ["draw", str(video), "-o", str(output), "--pictures", str(count)])
+
+    assert done.exit_code == 0, done.output
+    assert f"{count} of 200 pictures" in done.output
+    assert model.asked == 200
+    assert len(captions) == count
+    assert backgrounds == pytest.approx(levels, abs=3)
+    assert [caption.partition(":")[0] for caption in captions] == [f"{level / 30:.2f} s" for level in levels]
+    assert not any("nobody" in caption for caption in captions)
+    assert cv2.imread(str(output)).shape == (-(-count // 3) * 48, min(count, 3) * 64, 3)
 
 
 @pytest.mark.data

@@ -22,6 +22,12 @@ def huge_png() -> bytes:
     return b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + header + struct.pack(">I", zlib.crc32(header))
 
 
+def long_bmp() -> bytes:
+    """A header that claims 2,000,000 x 10 pixels."""
+    sizes = struct.pack("<IiiHHIIiiII", 40, 2_000_000, 10, 1, 24, 0, 0, 0, 0, 0, 0)
+    return b"BM" + struct.pack("<IHHI", 54, 0, 0, 54) + sizes
+
+
 def message(**fields) -> Image:
     known = {"stamp_ns": 0, "sensor": "k", "format": "jpeg", "width": 64, "height": 48, "data": encoded(".jpg")}
     return Image.model_validate(known | {"K": [1.0] * 9, "distortion": [], "skeleton_from_image": EYE} | fields)
@@ -39,7 +45,7 @@ def test_both_formats_of_a_message_are_read() -> None:
     assert picture_of(message(), "a").shape == GREY.shape
 
 
-@pytest.mark.parametrize("data", [b"", b"text", encoded(".png")[:60], huge_png()])
+@pytest.mark.parametrize("data", [b"", b"text", encoded(".png")[:60], huge_png(), long_bmp()])
 def test_what_is_no_picture_is_named(data: bytes) -> None:
     with pytest.raises(UnusablePictureError, match=r"a\.png: is "):
         decode_picture(data, "a.png")

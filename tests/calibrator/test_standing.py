@@ -7,11 +7,15 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from actum.messages import Skeleton
+from actum.node import SECOND_NS
 from actum.skeletons import INDEX
-from calibrator.standing import FRAMES, MOST_BEND_DEG, MOST_SWAY_DEG, UpFinder
+from calibrator.standing import FEWEST_FRAMES, MOST_BEND_DEG, MOST_SWAY_DEG, UpFinder
 from people import FRAME_NS, STANDING, lacking, skeleton
 
 Array = NDArray[np.float64]
+
+FRAMES = 62
+"""As many as it takes at FRAME_NS, which is a little less than a thirtieth of a second."""
 
 
 def asked(*people: Array, frames: int = FRAMES, noise_m: float = 0.0) -> UpFinder:
@@ -68,11 +72,69 @@ def test_a_trackers_noise_averages_out() -> None:
     assert 0 < found.sway_deg < MOST_SWAY_DEG
 
 
+def seconds_until_found(rate_hz: float, joints: Array, longest_s: float = 20.0) -> float | None:
+    """Offer the same person at a rate; return when it is found."""
+    finder = UpFinder()
+    for k in range(round(longest_s * rate_hz)):
+        stamp_ns = round(k * SECOND_NS / rate_hz)
+        finder.offer(skeleton(stamp_ns, joints))
+        if finder.found is not None:
+            return stamp_ns / SECOND_NS
+    return None
+
+
+@pytest.mark.parametrize("rate_hz", [30, 15, 5])
+def test_it_takes_two_seconds_at_any_rate(rate_hz: int) -> None:
+    found_s = seconds_until_found(rate_hz, plumb())
+    assert found_s is not None
+    assert 2.0 <= found_s <= 2.3
+
+
+def test_of_a_slow_stream_it_takes_enough_frames() -> None:
+    assert seconds_until_found(2.5, plumb()) == pytest.approx((FEWEST_FRAMES - 1) / 2.5)
+
+
+def test_frames_with_gaps_between_them_are_nobody_who_stands_still() -> None:
+    assert seconds_until_found(1.9, plumb(), 100.0) is None
+    assert seconds_until_found(1 / 60, plumb(), 6000.0) is None
+
+
+def test_who_comes_to_rest_is_judged_by_the_last_two_seconds_alone() -> None:
+    finder = UpFinder()
+    for k in range(1000):
+        moving = k < 900
+        finder.offer(skeleton(k * FRAME_NS, plumb() @ rotation(2, 20 * np.sin(k / 5) if moving else 0).T))
+        if finder.found is not None:
+            break
+    assert finder.found is not None
+    assert 900 + 45 < k <= 900 + FRAMES
+    assert finder.found.in_camera == pytest.approx([0, -1, 0], abs=0.03)
+
+
+@pytest.mark.parametrize("change", ["session_id", "agent", "gap", "clock set back"])
+def test_what_went_before_a_change_does_not_count(change: str) -> None:
+    finder = asked(plumb(), frames=FRAMES - 1)
+    first_ns = {"gap": FRAMES * FRAME_NS + SECOND_NS // 2, "clock set back": 0}.get(change, FRAMES * FRAME_NS)
+    for k in range(FRAMES):
+        assert finder.found is None
+        frame = skeleton(first_ns + k * FRAME_NS, plumb(), session_id="other" if change == "session_id" else "test")
+        agents = [agent.model_copy(update={"agent": 2}) for agent in frame.agents]
+        finder.offer(frame.model_copy(update={"agents": agents}) if change == "agent" else frame)
+    assert finder.found is not None
+
+
 def test_it_takes_its_time() -> None:
     finder = asked(plumb(), frames=FRAMES - 1)
     assert finder.found is None
     finder.offer(skeleton(FRAMES * FRAME_NS, plumb()))
     assert finder.found is not None
+
+
+def test_who_stands_right_is_told_to_stay_whatever_was_wrong_before() -> None:
+    finder = asked(bent(MOST_BEND_DEG + 20), frames=3)
+    assert "stand straight" in finder.wish
+    finder.offer(skeleton(3 * FRAME_NS, plumb()))
+    assert finder.wish.startswith("stay like that")
 
 
 def bent(degrees: float) -> Array:

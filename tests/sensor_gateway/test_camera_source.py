@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
 
-from actum.calibration import Calibration
+from actum.calibration import Calibration, CalibrationError
 from actum.messages import Image, Message, Skeleton
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
@@ -15,8 +16,9 @@ from camera_bodies import K, as_seen, standing_at
 from sensor_gateway.camera.capture import CameraLostError, CaptureEndedError
 from sensor_gateway.camera.landmarks import Landmarks
 from sensor_gateway.camera.perceiving import Optics
-from sensor_gateway.camera.source import CameraSource
+from sensor_gateway.camera.source import CameraSource, optics_of
 from sensor_gateway.camera.video import Picture
+from sensor_gateway.settings import Settings
 
 FRAME_NS = SECOND_NS // 20
 Step = str | int | None
@@ -141,6 +143,21 @@ def test_images_of_another_size_than_was_calibrated_show_nothing() -> None:
     assert source.tally.rejects == {"image_size_mismatch": 1}
 
 
+def test_a_calibration_of_a_camera_beside_this_one_is_refused(tmp_path: Path) -> None:
+    beside = np.eye(4)
+    beside[0, 3] = 0.12
+    known = {"image_size": (640, 480), "K": K.ravel().tolist(), "distortion": [0.0] * 5}
+    for name, transform in (("own", None), ("same", np.eye(4)), ("beside", beside)):
+        listed = None if transform is None else transform.ravel().tolist()
+        Calibration.model_validate({**known, "skeleton_from_image": listed}).save(tmp_path / name)
+        settings = Settings(source="camera", calibration=tmp_path / name)
+        if name == "beside":
+            with pytest.raises(CalibrationError, match="this camera sees the people itself: use its own file"):
+                optics_of(settings)
+        else:
+            assert optics_of(settings).calibration == Calibration.load(tmp_path / name)
+
+
 def test_info_tells_how_well_the_camera_is_known() -> None:
     assert "assumed: 60 degrees" in World().source().tally.details["calibration"]
     calibration = Calibration(image_size=(640, 480), K=K.ravel().tolist(), distortion=[0.0] * 5)
@@ -189,6 +206,24 @@ def test_a_covered_lens_is_told_without_opening_anew_and_is_over_when_it_is_unco
     assert blind[0].reason.startswith("camera lost: black")
     assert found[-1].valid
     assert len(world.opened) == 1
+
+
+def test_a_camera_that_stays_black_is_opened_again_until_it_is_not_and_told_once_all_the_while() -> None:
+    black = ["black"] * 200
+    world = World([0, *black], black, black, [*["black"] * 20, 0, 0])
+    source = world.source()
+    found = skeletons([message for listed in source.frames() for message in listed])
+    valid = [message.valid for message in found]
+    first, last = valid.index(False), len(valid) - valid[::-1].index(False)
+    assert not any(valid[first:last]), "it does not come and go"
+    assert valid[last:] == [True, True]
+    assert {message.reason for message in found[first:last]} == {
+        "camera lost: black: nothing can be seen; is the lens covered?"
+    }
+    assert source.tally.rejects == {"camera_lost": 1}
+    assert source.tally.state == "running"
+    assert world.closed == len(world.opened) == 4
+    assert (np.diff(world.opened) / SECOND_NS).tolist() == pytest.approx([5.55, 6.05, 7.05], abs=0.15)
 
 
 def test_a_file_may_stand_still_and_be_black_and_its_end_is_the_sources() -> None:

@@ -1,6 +1,7 @@
 """A camera that shows nothing is noticed: frozen, black; and it is tried again ever later."""
 
 import numpy as np
+import pytest
 
 from actum.node import SECOND_NS
 from sensor_gateway.camera.video import Picture
@@ -38,6 +39,35 @@ def test_darkness_is_noticed_after_half_a_second_though_its_noise_lives_on() -> 
     dark = pictures(0, 20, level=2)
     assert complaints(dark) == [""] * 10 + ["black"] * 10
     assert complaints([*dark, *pictures(1, 2, first=20)])[-2:] == ["", ""]
+
+
+def lost(watch: Watch, stream: list[Picture]) -> list[bool]:
+    return [watch.complaint(picture) is not None and watch.lost for picture in stream]
+
+
+def test_a_frozen_camera_is_lost_at_once() -> None:
+    frozen = [Picture(pictures(0, 1)[0].image_bgr, i * FRAME_NS) for i in range(30)]
+    assert lost(Watch(), frozen) == [False] * 20 + [True] * 10
+
+
+@pytest.mark.parametrize("noisy", [True, False])
+def test_a_black_camera_is_lost_after_five_seconds(noisy: bool) -> None:
+    nothing = np.zeros((48, 64, 3), np.uint8)
+    dark = pictures(0, 120, level=2) if noisy else [Picture(nothing, i * FRAME_NS) for i in range(120)]
+    watch = Watch()
+    assert lost(watch, dark) == [False] * 100 + [True] * 20
+    watch.complaint(pictures(1, 1, first=120)[0])
+    assert not watch.lost
+
+
+def test_a_black_camera_that_is_opened_again_is_still_black_but_has_its_time() -> None:
+    watch = Watch()
+    for picture in pictures(0, 120, level=2):
+        watch.complaint(picture)
+    watch.opened()
+    told = [(watch.complaint(picture) or "", watch.lost) for picture in pictures(1, 110, level=2, first=200)]
+    assert all(complaint.startswith("black") for complaint, _ in told)
+    assert [lost for _, lost in told] == [False] * 100 + [True] * 10
 
 
 def test_a_dim_room_is_not_black() -> None:

@@ -1,19 +1,27 @@
 """People as NiTE 2 hands them over, in its bindings' own structures; NiTE itself was never at hand."""
 
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from actum.calibration import Calibration
 from actum.messages import Image, Skeleton
 from actum.node import Tally
 from actum.skeletons import INDEX, JOINTS
+from sensor_gateway.camera.capture import CameraLostError
 from sensor_gateway.camera.lens import Lens
-from sensor_gateway.depth.nite import Nobody, Users, UsersPerceiver, UsersPicture, nite
-from sensor_gateway.depth.picture import DepthOptics
+from sensor_gateway.camera.video import Picture
+from sensor_gateway.depth.nite import NiteCapture, Nobody, Users, UsersPerceiver, UsersPicture, nite
+from sensor_gateway.depth.openni2 import OpenNi2Capture
+from sensor_gateway.depth.picture import DepthOptics, DepthPicture
 
 openni = pytest.importorskip("openni", reason="the source openni2 needs OpenNI 2 (its bindings)")
 from openni import _nite2, nite2  # noqa: E402 - only where they are installed
+from openni.utils import NiteError  # noqa: E402
 
 VISIBLE, NEW, LOST = 1, 3, 4
 TRACKED = 2
@@ -93,6 +101,91 @@ def test_its_people_are_put_with_the_image_they_came_with() -> None:
     assert [type(message) for message in sent] == [Image, Skeleton]
     assert {message.stamp_ns for message in sent} == {5}
     assert sent[1].agents == list(agents)
+
+
+def test_images_of_another_size_than_was_calibrated_show_nobody_and_that_is_said_and_counted() -> None:
+    agents = tuple(Users(lambda _: None).agents([user(1)]))
+    image, depth = np.zeros((48, 64, 3), np.uint8), np.zeros((48, 64), np.float32)
+    calibration = Calibration(image_size=(640, 480), K=[500, 0, 320, 0, 500, 240, 0, 0, 1], distortion=[])
+    tally = Tally()
+    perceiver = UsersPerceiver(Nobody(), DepthOptics(calibration=calibration), "kinect0", "test", tally)
+
+    [sent] = perceiver.messages(UsersPicture(image, 5, depth, Lens.of_field_of_view(64, 48, 58.0), agents))
+
+    assert isinstance(sent, Skeleton)
+    assert (sent.valid, sent.agents) == (False, [])
+    assert sent.reason == "image_size_mismatch: 64x48, calibrated for 640x480"
+    assert tally.rejects == {"image_size_mismatch": 1}
+
+
+class Tracker:
+    """A tracker that sees one person, all of whose calls succeed but those named."""
+
+    def __init__(self, *failing: str) -> None:
+        self.failing = failing
+        self.frames_open = 0
+
+    def __call__(self, device: object) -> "Tracker":
+        return self
+
+    def read_frame(self) -> AbstractContextManager[object]:
+        self._call("read_frame")
+        return self._frame()
+
+    def start_skeleton_tracking(self, number: int) -> None:
+        self._call("start_skeleton_tracking")
+
+    def close(self) -> None:
+        self._call("close")
+
+    def _call(self, name: str) -> None:
+        if name in self.failing:
+            raise NiteError(_nite2.NiteStatus.NITE_STATUS_ERROR)
+
+    @contextmanager
+    def _frame(self) -> Iterator[object]:
+        self.frames_open += 1
+        try:
+            yield SimpleNamespace(users=[user(1)])
+        finally:
+            self.frames_open -= 1
+
+
+@pytest.fixture
+def capture_with(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[Tracker], NiteCapture]:
+    """Give a camera that always has a picture, with a tracker."""
+    picture = DepthPicture(
+        np.zeros((48, 64, 3), np.uint8), 5, np.zeros((48, 64), np.float32), Lens.of_field_of_view(64, 48, 58.0)
+    )
+
+    def has_a_picture(capture: NiteCapture, patience_s: float) -> Picture:
+        capture._opened()
+        return picture
+
+    monkeypatch.setattr("sensor_gateway.depth.openni2.library", lambda: None)
+    monkeypatch.setattr(OpenNi2Capture, "_opened", lambda _: SimpleNamespace(device=None, close=lambda: None))
+    monkeypatch.setattr(OpenNi2Capture, "next", has_a_picture)
+    return lambda tracker: NiteCapture(SimpleNamespace(loaded_dll_directory=tmp_path, UserTracker=tracker))
+
+
+def test_a_camera_gives_its_picture_with_the_people_in_it(capture_with: Callable[[Tracker], NiteCapture]) -> None:
+    tracker = Tracker()
+    seen = capture_with(tracker).next(0.1)
+    assert isinstance(seen, UsersPicture)
+    assert [agent.agent for agent in seen.agents] == [1]
+    assert tracker.frames_open == 0
+
+
+@pytest.mark.parametrize("failing", ["read_frame", "start_skeleton_tracking"])
+def test_where_nite_fails_the_camera_is_lost_and_can_be_let_go_of(
+    capture_with: Callable[[Tracker], NiteCapture], failing: str
+) -> None:
+    tracker = Tracker(failing, "close")
+    capture = capture_with(tracker)
+    with pytest.raises(CameraLostError, match=r"NiTE says: .*NITE_STATUS_ERROR"):
+        capture.next(0.1)
+    capture.close()
+    assert tracker.frames_open == 0
 
 
 def test_where_no_installer_has_named_its_folder_there_is_no_nite(monkeypatch: pytest.MonkeyPatch) -> None:

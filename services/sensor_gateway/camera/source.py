@@ -4,16 +4,17 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import replace
+from pathlib import Path
 
-from actum.calibration import Calibration
+from actum.calibration import Calibration, CalibrationError
 from actum.messages import Message
 from actum.node import SECOND_NS, Tally
 from sensor_gateway.camera.bodies import Estimator
 from sensor_gateway.camera.capture import CameraLostError, Capture, CaptureEndedError, capture_of
-from sensor_gateway.camera.perceiving import Optics, Perceiver
+from sensor_gateway.camera.perceiving import SAME_CAMERA, Optics, Perceiver
 from sensor_gateway.camera.pose import PoseEstimator
 from sensor_gateway.camera.video import Picture
-from sensor_gateway.camera.watch import FROZEN, BackOff, Watch
+from sensor_gateway.camera.watch import BackOff, Watch
 from sensor_gateway.settings import Settings
 
 PATIENCE_S = 0.1
@@ -30,10 +31,20 @@ def optics_of(settings: Settings) -> Optics:
     """Say what the settings tell of the camera.
 
     Raises:
-        CalibrationError: the calibration file is missing or no calibration.
+        CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
     """
-    calibration = None if settings.calibration is None else Calibration.load(settings.calibration)
+    calibration = None if settings.calibration is None else _own_calibration(settings.calibration)
     return Optics(settings.field_of_view_deg, calibration, settings.person_height_m, settings.mirrored)
+
+
+def _own_calibration(path: Path) -> Calibration:
+    calibration = Calibration.load(path)
+    if calibration.skeleton_from_image not in (None, SAME_CAMERA):
+        raise CalibrationError(
+            f"{path}: it has a skeleton_from_image, so it is for a camera beside the one that sees people, and this "
+            "camera sees the people itself: use its own file of 'actum calibrate intrinsics'"
+        )
+    return calibration
 
 
 def estimator_of(settings: Settings) -> PoseEstimator:
@@ -50,7 +61,7 @@ def camera_of(settings: Settings, start_ns: int) -> "CameraSource":
 
     Raises:
         PoseModelError: MediaPipe is not installed, or the file is missing or no pose model.
-        CalibrationError: the calibration file is missing or no calibration.
+        CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
     """
     with estimator_of(settings):
         pass  # what is wrong with the model is said before anything is served
@@ -77,7 +88,7 @@ class CameraSource:
     """Images and skeletons of a camera; while it is lost, skeletons that say so, and attempts to get it back.
 
     A device, a stream or a file that cannot be read is opened again and again, later and later; one whose pictures
-    have frozen too. A file that is over ends the source.
+    have frozen or stay black too. A file that is over ends the source.
     """
 
     name = "sensor_gateway"
@@ -129,11 +140,12 @@ class CameraSource:
             yield from self._waiting(back_off.failed())
 
     def _watched(self, capture: Capture) -> Iterator[Seen]:
-        """Yield what a capture gives, until it is lost or its pictures stand still; a file's may, and may be black."""
+        """Yield what a capture gives, until it is lost, frozen or stays black; a file's pictures may be both."""
+        self._watch.opened()
         while True:
             picture = capture.next(PATIENCE_S)
             complaint = self._watch.complaint(picture) if picture is not None and capture.live else None
-            if complaint is not None and complaint.startswith(FROZEN):
+            if complaint is not None and self._watch.lost:
                 raise CameraLostError(complaint)
             yield picture if complaint is None else complaint
 

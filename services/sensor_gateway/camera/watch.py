@@ -10,33 +10,49 @@ FROZEN_NS = SECOND_NS
 """How long the same picture, bit for bit, may stay: a sensor's noise never repeats."""
 
 BLACK_NS = SECOND_NS // 2
+BLACK_LOST_NS = 5 * SECOND_NS
+"""How long a camera that was opened may show nothing: a lens may be covered, but the driver may have failed, too."""
+
 BLACK_LEVEL = 10
 """The 99th percentile of a picture in which nothing can be seen, of 255."""
 
 STEP_PX = 8
-FROZEN, BLACK = "frozen", "black"
 
 
 class Watch:
-    """Tells what is wrong with a live stream of pictures."""
+    """Tells what is wrong with a live stream of pictures, also where its camera is opened again meanwhile.
+
+    Attributes:
+        lost: whether what was complained of last may be mended by opening the camera again.
+    """
 
     def __init__(self) -> None:
+        self.lost = False
         self._sample: NDArray[np.uint8] | None = None
         self._changed_ns = 0
         self._lit_ns: int | None = None
+        self._hopeful_ns: int | None = None
+
+    def opened(self) -> None:
+        """Note that the camera was opened: it has time again to show something, but what was black stays so."""
+        self._hopeful_ns = None
 
     def complaint(self, picture: Picture) -> str | None:
         """Take the next picture; return why it cannot be used, or None. Stamps rise."""
         sample = np.ascontiguousarray(picture.image_bgr[::STEP_PX, ::STEP_PX])
         if self._sample is None or not np.array_equal(sample, self._sample):
             self._sample, self._changed_ns = sample, picture.stamp_ns
-        if self._lit_ns is None or np.percentile(sample, 99) > BLACK_LEVEL:
-            self._lit_ns = picture.stamp_ns
-        if picture.stamp_ns - self._lit_ns >= BLACK_NS:
-            return f"{BLACK}: nothing can be seen; is the lens covered?"
-        if picture.stamp_ns - self._changed_ns >= FROZEN_NS:
-            return f"{FROZEN}: the picture has not changed for {FROZEN_NS / SECOND_NS:g} s"
-        return None
+        lit = bool(np.percentile(sample, 99) > BLACK_LEVEL)
+        self._lit_ns = picture.stamp_ns if lit or self._lit_ns is None else self._lit_ns
+        self._hopeful_ns = picture.stamp_ns if lit or self._hopeful_ns is None else self._hopeful_ns
+        return self._judged(picture.stamp_ns, self._lit_ns, self._hopeful_ns)
+
+    def _judged(self, stamp_ns: int, lit_ns: int, hopeful_ns: int) -> str | None:
+        if stamp_ns - lit_ns >= BLACK_NS:
+            self.lost = stamp_ns - hopeful_ns >= BLACK_LOST_NS
+            return "black: nothing can be seen; is the lens covered?"
+        self.lost = stamp_ns - self._changed_ns >= FROZEN_NS
+        return f"frozen: the picture has not changed for {FROZEN_NS / SECOND_NS:g} s" if self.lost else None
 
 
 class BackOff:

@@ -2,8 +2,8 @@
 
 import logging
 import os
-from collections.abc import Callable, Sequence
-from contextlib import chdir
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import chdir, contextmanager, suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -60,6 +60,8 @@ class UsersPerceiver(Perceiver):
 
     def _skeleton(self, picture: Picture, lens: Lens | None) -> Skeleton:
         assert isinstance(picture, UsersPicture)
+        if lens is None:
+            return self._of_another_size(picture)
         agents = list(picture.agents)
         return Skeleton(stamp_ns=picture.stamp_ns, sensor=self._sensor, agents=agents, session_id=self._session_id)
 
@@ -100,21 +102,22 @@ class NiteCapture(OpenNi2Capture):
         """Return a picture newer than the last, with its people, or None.
 
         Raises:
-            CameraLostError: there is no camera, it cannot be used, was unplugged, or has been silent for too long.
+            CameraLostError: there is no camera, it cannot be used, was unplugged, has been silent for too long, or NiTE
+                fails.
         """
         picture = super().next(patience_s)
         if not isinstance(picture, DepthPicture):
             return None
-        frame = self._tracker.read_frame()
-        agents = self._users.agents(frame.users)
-        frame.close()
+        with _lost_where_nite_fails(), self._tracker.read_frame() as frame:
+            agents = self._users.agents(frame.users)
         return UsersPicture(picture.image_bgr, picture.stamp_ns, picture.depth_m, picture.lens, tuple(agents))
 
     def close(self) -> None:
         """Let go of the camera."""
         tracker, self._tracker = self._tracker, None
         if tracker is not None:
-            tracker.close()
+            with suppress(CameraLostError), _lost_where_nite_fails():
+                tracker.close()
         super().close()
 
     def _opened(self) -> Streams:
@@ -131,6 +134,16 @@ class NiteCapture(OpenNi2Capture):
 
     def _follow(self, user: int) -> None:
         self._tracker.start_skeleton_tracking(user)
+
+
+@contextmanager
+def _lost_where_nite_fails() -> Iterator[None]:
+    from openni.utils import NiteError
+
+    try:
+        yield
+    except NiteError as error:
+        raise CameraLostError(f"NiTE says: {error}") from None
 
 
 class Users:

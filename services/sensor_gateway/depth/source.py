@@ -25,7 +25,7 @@ def realsense_of(settings: Settings, start_ns: int) -> CameraSource:
         RealSenseError: pyrealsense2 is not installed.
         DepthSourceError: there is no such recording.
         PoseModelError: MediaPipe is not installed, or the pose model is missing or none.
-        CalibrationError: the calibration file is missing or no calibration.
+        CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
     """
     realsense.library()
     live = partial(realsense.RealSenseCapture, size_of(settings))
@@ -41,7 +41,7 @@ def openni2_of(settings: Settings, start_ns: int) -> CameraSource:
         OpenNiError: OpenNI 2 or its bindings are not installed.
         DepthSourceError: there is no such recording.
         PoseModelError: MediaPipe is not installed, or the pose model is missing or none.
-        CalibrationError: the calibration file is missing or no calibration.
+        CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
     """
     openni2_library.library()
     nite2 = nite.nite() if settings.path is None else None
