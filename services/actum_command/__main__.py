@@ -21,7 +21,7 @@ from actum_command import (
     system,
     watching,
 )
-from actum_command.context import connect, console, fail
+from actum_command.context import connect, console, fail, say
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -74,7 +74,7 @@ def diagnose() -> None:
     console.print(doctor.table(findings))
     problems = [problem for finding in findings for problem in finding.problems]
     for problem in problems:
-        console.print(f"[red]{problem}[/red]")
+        say(problem, style="red")
     if problems:
         raise typer.Exit(1)
     console.print("[green]all services are there, alive and of one version[/green]")

@@ -1,6 +1,8 @@
 """What every command needs: the console, the settings, and a clear way to fail."""
 
 import sys
+from pathlib import Path
+from tempfile import TemporaryFile
 from typing import NoReturn
 
 import typer
@@ -8,22 +10,25 @@ from rich.console import Console
 from rich.markup import escape
 
 from actum.runtime import Client, RouterUnreachableError
-from actum.settings import ServiceSettings
+from actum.settings import ServiceSettings, SettingsError, complaint
 
 UNATTENDED_WIDTH = 110
 
-console = Console(highlight=False, width=None if sys.stdout.isatty() else UNATTENDED_WIDTH)
-errors = Console(stderr=True, highlight=False)
+console = Console(highlight=False, emoji=False, width=None if sys.stdout.isatty() else UNATTENDED_WIDTH)
+errors = Console(stderr=True, highlight=False, emoji=False)
 
 
 def settings() -> ServiceSettings:
-    """Read the connection from the environment or the configuration file."""
-    return ServiceSettings()
+    """Read the connection from the environment or the configuration file, or fail saying what cannot be used."""
+    try:
+        return ServiceSettings()
+    except ValueError as error:
+        fail(complaint(error))
 
 
-def say(message: str) -> None:
+def say(message: str, style: str | None = None) -> None:
     """Print a line as it is: what looks like markup in a path or a label is not."""
-    console.print(message, markup=False, soft_wrap=True)
+    console.print(message, markup=False, soft_wrap=True, style=style)
 
 
 def fail(message: str) -> NoReturn:
@@ -36,5 +41,16 @@ def connect(wait_s: float = 5.0) -> Client:
     """Open a session with the router, or fail saying how to get one."""
     try:
         return Client(settings(), wait_s)
-    except RouterUnreachableError as error:
+    except (RouterUnreachableError, SettingsError) as error:
         fail(str(error))
+
+
+def refuse_unwritable(file: Path) -> None:
+    """Fail now where a file could not be written after long work; folders that are missing will be made."""
+    try:
+        if file.is_dir():
+            fail(f"{file} is a folder: name the file to write")
+        with TemporaryFile(dir=next(folder for folder in file.absolute().parents if folder.exists())):
+            pass
+    except OSError as error:
+        fail(f"{file} cannot be written ({error.strerror}): name another place")

@@ -1,5 +1,6 @@
 """`actum demo`: the paper's experiment with simulated people, through live processes."""
 
+import signal
 import sys
 import tempfile
 import threading
@@ -16,11 +17,11 @@ from actum.recording import Recording
 from actum.runtime import Client, Listening, stop_on_signals
 from actum.settings import ServiceSettings
 from actum_command import processes
-from actum_command.context import connect, console, fail, settings
+from actum_command.context import connect, console, fail, say, settings
 from actum_command.demo_score import Score, line, summary, table
 from actum_command.progress import bars
 from actum_command.scene import write_examples
-from actum_command.supervising import Supervisor
+from actum_command.supervising import Supervisor, UnusableError
 from actum_command.system import log_file, refuse_taken
 from model_trainer.baseline import nearest_neighbour
 from model_trainer.evaluation import Evaluation, evaluate
@@ -47,12 +48,13 @@ def demo(
     """Train on one simulated person, then recognise people it has never seen, live, beside the paper's own results."""
     here = settings()
     refuse_taken(here.connect)
-    stop = stop_on_signals()  # looked at only where no process is being started: those that run end with this one
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))  # as Ctrl-C does: the training ends where it is
     actors = list(range(ACTOR + 1, ACTOR + 1 + people)) or [ACTOR]
     with tempfile.TemporaryDirectory(prefix="actum-demo-") as folder:
         training, model = Path(folder) / "training.mcap", Path(folder) / "model.npz"
         learned = _train(training, model)
         baseline = _baseline(training, Path(folder), actors, repetitions)
+        stop = stop_on_signals()  # looked at only where no process is being started: those that run end with this one
         score = _run_live(here, model, actors, repetitions, stop)
     console.print(table(score))
     console.print(summary(score, learned, baseline, people), soft_wrap=True)
@@ -129,13 +131,21 @@ def _collect(listening: Listening, score: Score, until: int, supervisor: Supervi
         received = listening.take()
         if received is None:
             time.sleep(0.01)
-            for ended in supervisor.check():
-                console.print(f"[yellow]{ended}[/yellow]")
+            _restart(supervisor)
         elif isinstance(received.message, Truth):
             score.truths[received.message.segment_id] = received.message
         elif isinstance(received.message, Event):
             score.events[received.message.segment_id] = received.message
             console.print(line(score, received.message), soft_wrap=True)
+
+
+def _restart(supervisor: Supervisor) -> None:
+    try:
+        ended = supervisor.check()
+    except UnusableError as error:
+        fail(str(error))
+    for report in ended:
+        say(report, style="yellow")
 
 
 def _end_if(stop: threading.Event) -> None:

@@ -1,8 +1,11 @@
 """`actum doctor`: is everything there, alive, and of one version?"""
 
 import time
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from operator import attrgetter
 
+from rich.markup import escape
 from rich.table import Table
 
 from actum import __version__, keys
@@ -12,6 +15,7 @@ from actum.runtime import Client
 
 EXPECTED = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
 STATUS_S = 2.5
+ENDED = "source ended"
 
 
 @dataclass(frozen=True)
@@ -24,6 +28,7 @@ class Finding:
     state: str
     rates: str
     rejects: str
+    drops: str
     latency: str
     problems: tuple[str, ...]
 
@@ -38,14 +43,22 @@ def examine(client: Client) -> list[Finding]:
 
 
 def table(findings: list[Finding]) -> Table:
-    """Lay the findings out, one service a row."""
-    result = Table("service", "alive", "version", "state", "rates (Hz)", "rejected", "latency p50/p99 (ms)")
+    """Lay the findings out, one service a row; drops are shown where there are any."""
+    columns: dict[str, Callable[[Finding], str]] = {
+        "version": attrgetter("version"),
+        "state": attrgetter("state"),
+        "rates (Hz)": attrgetter("rates"),
+        "rejected": attrgetter("rejects"),
+        "dropped": attrgetter("drops"),
+        "latency p50/p99 (ms)": attrgetter("latency"),
+    }
+    if not any(finding.drops for finding in findings):
+        del columns["dropped"]
+    result = Table("service", "alive", *columns)
     for finding in findings:
         colour = "red" if finding.problems else "green"
         alive = f"[{colour}]{finding.instances or 'no'}[/{colour}]"
-        result.add_row(
-            finding.service, alive, finding.version, finding.state, finding.rates, finding.rejects, finding.latency
-        )
+        result.add_row(escape(finding.service), alive, *(escape(cell(finding)) for cell in columns.values()))
     return result
 
 
@@ -71,16 +84,25 @@ def _finding(name: str, instances: int, info: Info | None, status: Status | None
         state=status.state if status else "",
         rates=_rates(status) if status else "",
         rejects=", ".join(f"{kind} {n}" for kind, n in status.rejects.items()) if status else "",
-        latency=f"{status.latency_ms['p50']:.2f} / {status.latency_ms['p99']:.2f}"
-        if status and status.latency_ms
-        else "",
+        drops=", ".join(f"{_short(key, status)} {n}" for key, n in status.drops.items()) if status else "",
+        latency=_latency(status.latency_ms) if status else "",
         problems=tuple(_problems(name, instances, info, status)),
     )
 
 
 def _rates(status: Status) -> str:
-    prefix = f"{keys.BASE}/{status.sensor}/"
-    return ", ".join(f"{key.removeprefix(prefix)} {rate:g}" for key, rate in status.rates.items())
+    return ", ".join(f"{_short(key, status)} {rate:g}" for key, rate in status.rates.items())
+
+
+def _short(key: str, status: Status) -> str:
+    return key.removeprefix(f"{keys.BASE}/{status.sensor}/")
+
+
+def _latency(latency_ms: Mapping[str, float]) -> str:
+    """Write both percentiles, a dash for one that a foreign service does not tell."""
+    if not latency_ms:
+        return ""
+    return " / ".join(f"{latency_ms[name]:.2f}" if name in latency_ms else "-" for name in ("p50", "p99"))
 
 
 def _problems(name: str, instances: int, info: Info | None, status: Status | None) -> list[str]:
@@ -91,10 +113,18 @@ def _problems(name: str, instances: int, info: Info | None, status: Status | Non
         problems.append(f"{name} is alive but sent no status in {STATUS_S:g} s")
     elif status.state.startswith("camera lost"):
         problems.append(f"{name}: {status.state}; it tries again by itself")
+    elif status.state == ENDED:
+        problems.append(f"{name}: {status.state}; start it again for more")
     if info is None:
         problems.append(f"{name} does not answer on its info key")
-    elif missing := {schema_name(message) for message in MESSAGES} - set(info.schemas):
-        problems.append(
-            f"{name} is version {info.version}, this is {__version__}: it lacks {', '.join(sorted(missing))}"
-        )
+    else:
+        problems += _versions(info)
     return problems
+
+
+def _versions(info: Info) -> list[str]:
+    missing = {schema_name(message) for message in MESSAGES} - set(info.schemas)
+    if info.version == __version__ and not missing:
+        return []
+    lack = f"; it lacks {', '.join(sorted(missing))}" if missing else ""
+    return [f"{info.service} is version {info.version}, this is {__version__}: install the same everywhere{lack}"]

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from actum_command.context import console, fail
+from actum_command.context import fail, say
 from actum_command.importing import (
     ImportReport,
     Progress,
@@ -77,5 +77,5 @@ def _run(importer: Callable[[Path, Path, Progress], ImportReport], source: Path,
             report = importer(source, out, lambda done, total: progress("importing", done, total))
     except (DatasetError, OSError) as error:
         fail(str(error))
-    console.print(str(report))
-    console.print(f"written to {out}")
+    say(str(report))
+    say(f"written to {out}")

@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from actum.recording import Recording, RecordingError
-from actum_command.context import console, fail
-from actum_command.learning import AllOption, PersonOption, chosen
+from actum_command.context import fail, say
+from actum_command.learning import AllOption, PersonOption, chosen, tell_unread
 from actum_command.progress import bars
 from som_classifier.model import Model
 from som_classifier.storage import ModelError, load_model
@@ -40,9 +40,8 @@ def inspect_command(
         count = _inspect(model, recordings, output, picture_format)
     except (ModelError, RecordingError, OSError) as error:
         fail(str(error))
-    console.print(
-        f"{count} pictures in {time.monotonic() - began_s:.1f} s: open {output / 'index.html'}", soft_wrap=True
-    )
+    tell_unread(recordings)
+    say(f"{count} pictures in {time.monotonic() - began_s:.1f} s: open {output / 'index.html'}")
 
 
 def _inspect(model: Model, recordings: list[Recording], folder: Path, ending: str) -> int:

@@ -2,13 +2,14 @@
 
 import json
 import time
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from actum.recording import Recording, RecordingError
-from actum_command.context import console, fail
+from actum_command.context import console, fail, refuse_unwritable, say
 from actum_command.progress import bars
 from model_trainer.evaluation import Evaluation, evaluate, leave_one_person_out
 from model_trainer.report import report
@@ -34,6 +35,7 @@ def train_command(
 ) -> None:
     """Train a model on labelled recordings."""
     began_s = time.monotonic()
+    _refuse_place(output)
     recordings = chosen(files, person, with_excluded)
     try:
         with bars() as progress:
@@ -43,8 +45,9 @@ def train_command(
     except (RecordingError, TrainingError, OSError) as error:
         fail(str(error))
     for unusable in samples.unusable:
-        console.print(f"left out {unusable.segment_id} of {unusable.file}: {unusable.reason}")
-    console.print(
+        say(f"left out {unusable.segment_id} of {unusable.file}: {unusable.reason}")
+    tell_unread(recordings)
+    say(
         f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
         f"{time.monotonic() - began_s:.1f} s, written to {output}"
     )
@@ -63,17 +66,22 @@ def evaluate_command(
 ) -> None:
     """Test a model on labelled recordings, or a preset on each person with all others as training."""
     began_s = time.monotonic()
+    if json_file is not None:
+        _refuse_place(json_file)
     try:
+        model = None if by_person else load_model(files[0])
+        recordings = chosen(files if by_person else files[1:], person, with_excluded)
         with bars() as progress:
-            if by_person:
-                recordings = chosen(files, person, with_excluded)
+            if model is None:
                 result = leave_one_person_out(recordings, preset_named(preset), seed, progress)
             else:
-                model = load_model(files[0])
-                result = evaluate(model, chosen(files[1:], person, with_excluded), progress)
+                result = evaluate(model, recordings, progress)
     except (RecordingError, TrainingError, ModelError) as error:
         fail(str(error))
-    _show(result, time.monotonic() - began_s, json_file)
+    tell_unread(recordings)
+    _show(result, time.monotonic() - began_s)
+    if json_file is not None:
+        _write_json(result, json_file)
 
 
 def preset_named(name: str) -> Preset:
@@ -95,9 +103,31 @@ def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[R
     return recordings
 
 
-def _show(result: Evaluation, seconds: float, json_file: Path | None) -> None:
+def tell_unread(recordings: Iterable[Recording]) -> None:
+    """Say of recordings that have been read which break off, and what was passed over in them."""
+    for recording in recordings:
+        if recording.truncated:
+            say(f"{recording.path} breaks off: only what lies before the break was read", style="yellow")
+        if recording.skipped:
+            kinds = ", ".join(f"{kind} {count}" for kind, count in sorted(recording.skipped.items()))
+            say(f"{recording.path}: skipped {kinds}", style="yellow")
+
+
+def _show(result: Evaluation, seconds: float) -> None:
     if result.n == 0:
         fail("no labelled segment in these recordings: a label stands in a start mark, see actum record --label")
     console.print(report(result, seconds))
-    if json_file is not None:
-        json_file.write_text(json.dumps(result.as_json(), indent=1))
+
+
+def _refuse_place(file: Path) -> None:
+    """Fail now where what takes long to make could not be written."""
+    if not file.parent.is_dir():
+        fail(f"{file} cannot be written: there is no folder {file.parent}")
+    refuse_unwritable(file)
+
+
+def _write_json(result: Evaluation, file: Path) -> None:
+    try:
+        file.write_text(json.dumps(result.as_json(), indent=1), encoding="utf-8")
+    except OSError as error:
+        fail(f"{file} cannot be written ({error.strerror})")

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from actum_command.context import console, fail
+from actum_command.context import fail, say
 from calibrator.board import Board, Paper, PatternError
 
 MOST_IDS = 1000
@@ -28,11 +28,9 @@ def markers(
         output.write_bytes(pdf)
     except (PatternError, OSError) as error:
         fail(str(error))
-    console.print(
-        f"written to {output}: print it at 100 % ('actual size'), then measure the ruler: 100 mm", soft_wrap=True
-    )
+    say(f"written to {output}: print it at 100 % ('actual size'), then measure the ruler: 100 mm")
     if board:
-        console.print(f"the board has {Board()}; glue it to something flat and stiff", soft_wrap=True)
+        say(f"the board has {Board()}; glue it to something flat and stiff")
 
 
 def _numbers(text: str) -> list[int]:

@@ -3,11 +3,12 @@
 from typing import Annotated, Literal
 
 import typer
+from pydantic import ValidationError
 
 from actum import keys
 from actum.messages import Segment
 from actum.runtime import Client
-from actum_command.context import connect, console, fail
+from actum_command.context import connect, fail, say, settings
 
 WAIT_S = 5.0
 
@@ -29,15 +30,17 @@ def start(
     stamp_ns: StampOption = None,
 ) -> None:
     """Mark the start of an action."""
+    mark = _mark("start", segment_id, agent, hand, label, stamp_ns)
     with connect() as client:
-        _put(client, _mark(client, "start", segment_id, agent, hand, label, stamp_ns))
+        _put(client, mark)
 
 
 @app.command()
 def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
     """Mark the end of an action."""
+    mark = _mark("end", segment_id, stamp_ns=stamp_ns)
     with connect() as client:
-        _put(client, _mark(client, "end", segment_id, stamp_ns=stamp_ns))
+        _put(client, mark)
 
 
 @app.command()
@@ -48,15 +51,14 @@ def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOptio
         while _waits_for_enter(f"Enter starts action {number + 1}, Ctrl-D leaves "):
             number += 1
             segment_id = f"toggle-{client.run}-{number}"
-            _put(client, _mark(client, "start", segment_id, agent, hand, label))
+            _put(client, _mark("start", segment_id, agent, hand, label))
             ended = _waits_for_enter("Enter ends it ")
-            _put(client, _mark(client, "end", segment_id))
+            _put(client, _mark("end", segment_id))
             if not ended:
                 return
 
 
 def _mark(
-    client: Client,
     kind: Literal["start", "end"],
     segment_id: str,
     agent: int | None = None,
@@ -66,24 +68,26 @@ def _mark(
 ) -> Segment:
     if hand not in (None, "left", "right"):
         fail(f"--hand is {hand!r}: use left or right")
-    return Segment.model_validate(
-        {
-            "sensor": client.sensor,
-            "kind": kind,
-            "segment_id": segment_id,
-            "agent": agent,
-            "hand": hand,
-            "label": label,
-            "stamp_ns": stamp_ns,
-        }
-    )
+    fields = {
+        "sensor": settings().sensor,
+        "kind": kind,
+        "segment_id": segment_id,
+        "agent": agent,
+        "hand": hand,
+        "label": label,
+        "stamp_ns": stamp_ns,
+    }
+    try:
+        return Segment.model_validate(fields)
+    except ValidationError as error:
+        fail("; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors(include_url=False)))
 
 
 def _put(client: Client, mark: Segment) -> None:
     if not client.wait_for_subscriber(keys.SEGMENT, WAIT_S):
         fail(f"nobody listens on {keys.key_of(mark)} within {WAIT_S:g} s: is the classifier running? See actum doctor")
     client.put(mark)
-    console.print(f"{mark.kind} {mark.segment_id}")
+    say(f"{mark.kind} {mark.segment_id}")
 
 
 def _waits_for_enter(prompt: str) -> bool:

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TransferSpeedColumn
 
-from actum_command.context import console, errors, fail
+from actum_command.context import errors, fail, say
 from actum_command.model_download import FetchError, Published, fetch
 from sensor_gateway.camera.model_file import default_model
 
@@ -38,15 +38,15 @@ def fetch_command(
     path = output or default_model()
     published = replace(POSE, url=url)
     if published.is_at(path):
-        console.print(f"the pose model is already at {path}", soft_wrap=True)
+        say(f"the pose model is already at {path}")
         return
     try:
         _fetch(published, path)
     except (FetchError, OSError) as error:
         fail(str(error))
-    console.print(f"fetched and checked: {path}", soft_wrap=True)
+    say(f"fetched and checked: {path}")
     if output is not None:
-        console.print(f"the gateway reads it with ACTUM_POSE_MODEL={path}", soft_wrap=True)
+        say(f"the gateway reads it with ACTUM_POSE_MODEL={path}")
 
 
 def _fetch(published: Published, path: Path) -> None:

@@ -1,9 +1,11 @@
 """What `actum record` does with each message: store it, and give every mark the stamp it was resolved to."""
 
+from collections import Counter
 from collections.abc import Collection
 from dataclasses import dataclass
 
 from actum import keys
+from actum.codec import DecodeError
 from actum.messages import Action, Message, Posture, Segment, Skeleton
 from actum.node import SECOND_NS, Tally
 from actum.recording import Recorder
@@ -25,35 +27,54 @@ class _Held:
     received_ns: int
 
 
+@dataclass(frozen=True)
+class _Answer:
+    """A segment's bounds, as its final action told them, and when it did."""
+
+    start_ns: int
+    end_ns: int | None
+    received_ns: int
+
+
 class StreamRecorder:
     """Stores the messages of the given topics.
 
     A mark without a stamp waits for its segment's final action, which says where the classifier put it; at the end
     those left get the stamp of the frame that was newest when they came. `label` is given to start marks without one.
+
+    Attributes:
+        stored: how many messages are in the file.
+        undecodable: payloads that are no message, by kind.
+        tally: marks that were thrown away.
     """
 
     def __init__(self, recorder: Recorder, topics: Collection[keys.Topic] = STREAMS, label: str | None = None) -> None:
+        self.stored = 0
+        self.undecodable: Counter[str] = Counter()
         self.tally = Tally()
         self._recorder = recorder
         self._topics = topics
         self._label = label
         self._newest_ns: int | None = None
         self._held: list[_Held] = []
-        self._finals: dict[str, tuple[Action, int]] = {}
+        self._answers: dict[str, _Answer] = {}
 
     def take(self, message: Message, received_ns: int) -> None:
         """Take one message and the time it was received at (ns)."""
         if isinstance(message, Skeleton | Posture):
             self._newest_ns = message.stamp_ns
         if isinstance(message, Action) and message.final:
-            self._finals[message.segment_id] = message, received_ns
-            self._resolve(message)
+            self._answer(message, received_ns)
         if keys.address_of(message).topic not in self._topics:
             return
         if isinstance(message, Segment):
             self._mark(message, received_ns)
         else:
-            self._recorder.write(message, received_ns)
+            self._store(message, received_ns)
+
+    def reject(self, error: DecodeError) -> None:
+        """Count a payload that is no message."""
+        self.undecodable[error.kind] += 1
 
     def close(self) -> None:
         """Store the marks that no final action has resolved; one that came before any frame is counted and lost."""
@@ -65,23 +86,40 @@ class StreamRecorder:
         if mark.kind == "start" and mark.label is None:
             mark = mark.model_copy(update={"label": self._label})
         if mark.stamp_ns is not None:
-            self._recorder.write(mark, received_ns)
+            self._store(mark, received_ns)
             return
         self._held.append(_Held(mark, self._newest_ns, received_ns))
-        final, answered_ns = self._finals.get(mark.segment_id, (None, 0))
-        if final is not None and received_ns - answered_ns <= SKEW_NS:
-            self._resolve(final)
+        self._forget(received_ns)
+        self._resolve(mark.segment_id)
 
-    def _resolve(self, final: Action) -> None:
-        """Store the waiting marks of an answered segment."""
-        answered = [held for held in self._held if held.mark.segment_id == final.segment_id]
-        self._held = [held for held in self._held if held.mark.segment_id != final.segment_id]
+    def _answer(self, final: Action, received_ns: int) -> None:
+        self._forget(received_ns)
+        self._answers[final.segment_id] = _Answer(final.start_ns, final.end_ns, received_ns)
+        self._resolve(final.segment_id)
+
+    def _forget(self, now_ns: int) -> None:
+        """Drop the answers that no mark can be waiting for any more: segments without end may be recorded."""
+        self._answers = {
+            name: answer for name, answer in self._answers.items() if now_ns - answer.received_ns <= SKEW_NS
+        }
+
+    def _resolve(self, segment_id: str) -> None:
+        """Store the waiting marks of a segment if it is answered."""
+        answer = self._answers.get(segment_id)
+        if answer is None:
+            return
+        answered = [held for held in self._held if held.mark.segment_id == segment_id]
+        self._held = [held for held in self._held if held.mark.segment_id != segment_id]
         for held in answered:
-            resolved_ns = final.start_ns if held.mark.kind == "start" else final.end_ns
+            resolved_ns = answer.start_ns if held.mark.kind == "start" else answer.end_ns
             self._place(held, held.newest_ns if resolved_ns is None else resolved_ns)
 
     def _place(self, held: _Held, stamp_ns: int | None) -> None:
         if stamp_ns is None:
             self.tally.reject("mark_without_stamp", f"{held.mark.segment_id}: it came before any frame")
             return
-        self._recorder.write(held.mark.model_copy(update={"stamp_ns": stamp_ns}), held.received_ns)
+        self._store(held.mark.model_copy(update={"stamp_ns": stamp_ns}), held.received_ns)
+
+    def _store(self, message: Message, received_ns: int) -> None:
+        self._recorder.write(message, received_ns)
+        self.stored += 1

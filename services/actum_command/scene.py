@@ -10,7 +10,7 @@ from actum import keys
 from actum.messages import Segment, Truth
 from actum.recording import Recorder
 from actum.runtime import Client, stop_on_signals
-from actum_command.context import connect, console
+from actum_command.context import connect, fail, refuse_unwritable, say
 from sensor_gateway.simulator import Simulator, balanced_programme, labelled_stream
 
 POLL_S = 0.005
@@ -23,8 +23,12 @@ def simulate(
     seed: Annotated[int, typer.Option(min=0, help="which repetitions")] = 0,
 ) -> None:
     """Write labelled examples of the simulated scene, without images."""
-    write_examples(output, repetitions, actor, seed)
-    console.print(f"{repetitions} x 5 actions of simulated actor {actor}, written to {output}")
+    refuse_unwritable(output)
+    try:
+        write_examples(output, repetitions, actor, seed)
+    except OSError as error:
+        fail(f"{output} cannot be written ({error.strerror})")
+    say(f"{repetitions} x 5 actions of simulated actor {actor}, written to {output}")
 
 
 def write_examples(output: Path, repetitions: int, actor: int, seed: int) -> None:

@@ -2,6 +2,7 @@
 
 import threading
 import time
+from collections import Counter
 from pathlib import Path
 from typing import Annotated
 
@@ -12,13 +13,14 @@ from actum.messages import Message, Skeleton
 from actum.node import SECOND_NS
 from actum.recording import Recorder, Recording, RecordingError
 from actum.runtime import Client, Pace, stop_on_signals
-from actum_command.context import connect, console, fail
+from actum_command.context import connect, fail, refuse_unwritable, say
+from actum_command.learning import AllOption, PersonOption, chosen, tell_unread
 from actum_command.playing import schedule
 from actum_command.recorder import IMAGES, STREAMS, StreamRecorder
-from model_trainer.samples import select
 
 LEAD_IN_S = 0.3
 WAIT_S = 5.0
+POLL_S = 0.005
 
 
 def record(
@@ -29,44 +31,66 @@ def record(
     seconds: Annotated[float | None, typer.Option(min=0, help="stop by itself; default: at Ctrl-C")] = None,
 ) -> None:
     """Record a sensor's streams and marks to a file."""
+    refuse_unwritable(output)
     stop = stop_on_signals()
     deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
-    counts = 0
-    with connect() as client, Recorder(output, person=person, source=client.sensor) as recorder:
-        stream = StreamRecorder(recorder, STREAMS | IMAGES if images else STREAMS, label)
-        listening = client.listen(keys.everything(client.sensor))
-        console.print(f"recording actum/{client.sensor}/** to {output}; Ctrl-C ends")
-        while not stop.is_set() and time.monotonic() < deadline_s:
-            received = listening.take()
-            if received is None:
-                stop.wait(0.005)
-            elif received.message is not None:
-                counts += 1
-                stream.take(received.message, time.time_ns())
-        stream.close()
-    console.print(f"{counts} messages, written to {output}")
+    try:
+        with connect() as client, Recorder(output, person=person, source=client.sensor) as recorder:
+            stream = StreamRecorder(recorder, STREAMS | IMAGES if images else STREAMS, label)
+            _store_all(client, stream, output, stop, deadline_s)
+    except OSError as error:
+        fail(f"{output} cannot be written ({error.strerror}); what there is lies in {output}.part")
+    _report(stream, output)
+
+
+def _store_all(client: Client, stream: StreamRecorder, output: Path, stop: threading.Event, deadline_s: float) -> None:
+    """Store what comes until stopped or until the deadline (monotonic)."""
+    listening = client.listen(keys.everything(client.sensor))
+    say(f"recording actum/{client.sensor}/** to {output}; Ctrl-C ends")
+    while not stop.is_set() and time.monotonic() < deadline_s:
+        received = listening.take()
+        if received is None:
+            stop.wait(POLL_S)
+        elif received.message is not None:
+            stream.take(received.message, time.time_ns())
+        elif received.error is not None:
+            stream.reject(received.error)
+    stream.close()
+
+
+def _report(stream: StreamRecorder, output: Path) -> None:
+    """Say what the file holds and what it lacks."""
+    say(f"{stream.stored} messages, written to {output}")
+    if stream.tally.rejects:
+        say(f"not stored: {_listed(stream.tally.rejects)} (the last: {stream.tally.last_error})", style="yellow")
+    if stream.undecodable:
+        say(f"not decodable: {stream.undecodable.total()} ({_listed(stream.undecodable)})", style="yellow")
+    if not stream.stored:
+        say("nothing was stored: does the sensor's gateway run, on this sensor? See actum doctor", style="yellow")
+
+
+def _listed(counts: Counter[str]) -> str:
+    return ", ".join(f"{kind} {count}" for kind, count in sorted(counts.items()))
 
 
 def play(
     files: Annotated[list[Path], typer.Argument(help="recordings, or folders of them, played one after another")],
     speed: Annotated[float, typer.Option(min=0.01, help="1 is the pace at which it was captured")] = 1.0,
-    person: Annotated[str | None, typer.Option(help="only these persons, e.g. 2,4")] = None,
-    with_excluded: Annotated[bool, typer.Option("--all", help="also recordings marked as excluded")] = False,
+    person: PersonOption = None,
+    with_excluded: AllOption = False,
 ) -> None:
     """Put recordings on their keys as a live sensor would, with their marks but without their labels."""
-    people = None if person is None else person.split(",")
-    try:
-        recordings = select(files, people, with_excluded)
-    except RecordingError as error:
-        fail(str(error))
-    if not recordings:
-        fail(f"no recordings to play in {', '.join(map(str, files))}")
+    recordings = chosen(files, person, with_excluded)
     stop = stop_on_signals()
     with connect() as client:
         if not client.wait_for_subscriber(keys.SKELETON, WAIT_S):
             fail(f"nobody listens on {keys.key(keys.SKELETON, client.sensor)}: is the preprocessor running?")
-        counts = put_all(client, recordings, speed, stop)
-    console.print(f"played {len(recordings)} recordings: {counts} messages")
+        try:
+            counts = put_all(client, recordings, speed, stop)
+        except RecordingError as error:
+            fail(str(error))
+    tell_unread(recordings)
+    say(f"played {len(recordings)} recordings: {counts} messages")
 
 
 def put_all(client: Client, recordings: list[Recording], speed: float, stop: threading.Event) -> int:

@@ -11,9 +11,15 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Self
 
+from actum.runtime.serving import UNUSABLE
+
 RESTART_S = (0.5, 1.0, 2.0, 4.0, 8.0)
 STEADY_S = 30.0
 TERM_S = 5.0
+
+
+class UnusableError(RuntimeError):
+    """A program that cannot be used as it is set: which, and what it said."""
 
 
 @dataclass(frozen=True)
@@ -56,22 +62,30 @@ class Supervisor:
         self._children.append(_Child(program, self._spawn(program), time.monotonic()))
 
     def check(self) -> list[str]:
-        """Restart what has ended, with back-off; return a line for each program that did."""
+        """Restart what has ended, with back-off; return a line for each program that did.
+
+        Raises:
+            UnusableError: a program's settings or arguments cannot be used.
+        """
         lines = []
         now_s = time.monotonic()
         for child in self._children:
             if child.due_s is None and child.process.poll() is not None:
-                steady = now_s - child.started_s > STEADY_S
-                child.restarts = 0 if steady else child.restarts
-                delay_s = RESTART_S[min(child.restarts, len(RESTART_S) - 1)]
-                child.due_s = now_s + delay_s
-                lines.append(
-                    f"{child.program.name} ended with code {child.process.returncode}: restart in {delay_s:g} s"
-                )
+                lines.append(self._ended(child, now_s))
             elif child.due_s is not None and now_s >= child.due_s:
                 child.process, child.started_s, child.due_s = self._spawn(child.program), now_s, None
                 child.restarts += 1
         return lines
+
+    def _ended(self, child: _Child, now_s: float) -> str:
+        if child.process.returncode == UNUSABLE:  # started again, it would end so again
+            where = f"in {self._log.name}" if self._log else "above"
+            raise UnusableError(f"{child.program.name} cannot run as it is set: it says why {where}")
+        steady = now_s - child.started_s > STEADY_S
+        child.restarts = 0 if steady else child.restarts
+        delay_s = RESTART_S[min(child.restarts, len(RESTART_S) - 1)]
+        child.due_s = now_s + delay_s
+        return f"{child.program.name} ended with code {child.process.returncode}: restart in {delay_s:g} s"
 
     def end(self, program: Program) -> None:
         """Stop one program for good."""

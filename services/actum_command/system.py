@@ -10,15 +10,15 @@ from typing import Annotated
 import typer
 
 from actum.runtime import serve_router, stop_on_signals
-from actum.settings import DEFAULT_ENDPOINT, ServiceSettings
+from actum.settings import DEFAULT_ENDPOINT, ServiceSettings, SettingsError, host_and_port
 from actum_command import processes
-from actum_command.context import console, fail, settings
-from actum_command.supervising import Program, Supervisor
+from actum_command.context import fail, say, settings
+from actum_command.supervising import Program, Supervisor, UnusableError
 
 CHECK_S = 0.2
 NO_MODEL = (
-    "[yellow]no --model: every action is answered with 'no model'. For the simulated scene: "
-    "actum simulate examples.mcap; actum train examples.mcap -o model.npz; actum up --model model.npz[/yellow]"
+    "no --model: every action is answered with 'no model'. For the simulated scene: "
+    "actum simulate examples.mcap; actum train examples.mcap -o model.npz; actum up --model model.npz"
 )
 
 
@@ -52,33 +52,46 @@ def up(
     programs = [processes.router(here), *processes.services(here, model, objects), processes.gateway(here, arguments)]
     if source == "simulator":
         programs.append(processes.scene(here))
-    console.print(f"actum is up on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
+    say(f"actum starts on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
     if model is None:
-        console.print(NO_MODEL, soft_wrap=True)
+        say(NO_MODEL, style="yellow")
     supervise(programs, stop_on_signals())
 
 
 def supervise(programs: list[Program], stop: threading.Event) -> None:
-    """Keep programs running until stopped."""
+    """Keep programs running until stopped; fail when one says that it cannot be used as it is set."""
     with Supervisor() as supervisor:
         for program in programs:
             supervisor.start(program)
         while not stop.wait(CHECK_S):
-            for line in supervisor.check():
-                console.print(f"[yellow]{line}[/yellow]")
+            try:
+                ended = supervisor.check()
+            except UnusableError as error:
+                fail(str(error))
+            for line in ended:
+                say(line, style="yellow")
 
 
 def refuse_taken(endpoint: str) -> None:
-    """Fail if something already listens where the router is to listen."""
-    host, _, port = endpoint.removeprefix("tcp/").rpartition(":")
-    if not endpoint.startswith("tcp/") or not port.isdigit():
-        return
-    with socket.socket() as probe:
+    """Fail if nothing can listen where the router is to listen, or something already does."""
+    try:
+        address = host_and_port(endpoint)
+        if address is not None and endpoint.startswith("tcp/"):
+            _bind(*address)
+    except SettingsError as error:
+        fail(str(error))
+    except OSError as error:
+        fail(f"{endpoint} cannot be listened on ({error.strerror}): stop what runs there or set ACTUM_CONNECT")
+
+
+def _bind(host: str, port: int) -> None:
+    """Take an address for a moment, of whichever family it is."""
+    family, kind, protocol, _, place = socket.getaddrinfo(
+        host or "0.0.0.0", port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+    )[0]
+    with socket.socket(family, kind, protocol) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((host.strip("[]") or "0.0.0.0", int(port)))
-        except OSError as error:
-            fail(f"{endpoint} cannot be listened on ({error.strerror}): stop what runs there or set ACTUM_CONNECT")
+        probe.bind(place)
 
 
 def log_file(name: str, here: ServiceSettings) -> Path:

@@ -40,7 +40,8 @@ def _describe_action(action: Action) -> str:
     if not action.valid:
         return f"[yellow]{escape(action.segment_id)} rejected: {escape(action.reason or '')}[/yellow]"
     kind = "final" if action.final else "so far"
-    return f"{escape(action.segment_id)} {kind}: {action.action} {action.confidence:.2f}, {action.frames} frames"
+    answer = f"{escape(str(action.action))} {action.confidence:.2f}, {action.frames} frames"
+    return f"{escape(action.segment_id)} {kind}: {answer}"
 
 
 def _describe_stream(message: Message) -> str:
@@ -52,7 +53,7 @@ def _describe_stream(message: Message) -> str:
         case Segment():
             gist = f"{message.kind} {escape(message.segment_id)}"
         case Status():
-            return f"{message.state}, {sum(message.rates.values()):.0f} messages/s"
+            return f"{escape(message.state)}, {sum(message.rates.values()):.0f} messages/s"
         case _:
             gist = message.SCHEMA
     stamp = "" if message.stamp_ns is None else f" at {message.stamp_ns / 1e9:.3f} s"

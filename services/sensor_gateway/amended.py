@@ -5,7 +5,8 @@ from collections.abc import Callable, Iterator
 from actum.messages import Image, Message, Skeleton
 from actum.node import Source
 
-Amend = Callable[[Message], Message]
+Amend = Callable[[Message], Message | None]
+"""What is put in place of a message; None for nothing."""
 LONGEST_SESSION = 150
 """Characters kept of a recorded session's name: with the run's it has to fit its field."""
 
@@ -20,13 +21,18 @@ class AmendedSource:
     def frames(self) -> Iterator[list[Message]]:
         """Yield the source's frames."""
         for messages in self._source.frames():
-            yield [self._amend(message) for message in messages]
+            yield [amended for message in messages if (amended := self._amend(message)) is not None]
 
 
 def tilted(up_in_camera: list[float]) -> Amend:
     """Let skeletons say which way is up (3,), in the camera's frame."""
     up = {"up_in_camera": up_in_camera}
     return lambda message: message.model_copy(update=up) if isinstance(message, Skeleton) else message
+
+
+def without_image(message: Message) -> Message | None:
+    """Drop images."""
+    return None if isinstance(message, Image) else message
 
 
 def played_anew(run: str) -> Amend:

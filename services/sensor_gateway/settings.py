@@ -9,6 +9,10 @@ from actum.messages import Direction
 from actum.settings import ServiceSettings
 from sensor_gateway.camera.model_file import default_model
 
+SourceName = Literal[
+    "simulator", "recording", "msr-action3d", "utkinect", "camera", "marker-camera", "realsense", "openni2"
+]
+
 
 def _number(text: object) -> object:
     return int(text) if isinstance(text, str) and text.isdecimal() else text
@@ -17,9 +21,7 @@ def _number(text: object) -> object:
 class Settings(ServiceSettings):
     """What the gateway can be told beside what every service can."""
 
-    source: Literal["simulator", "recording", "msr-action3d", "utkinect", "camera", "realsense", "openni2"] = Field(
-        "simulator", description="where the frames come from"
-    )
+    source: SourceName = Field("simulator", description="where the frames come from")
     path: Path | None = Field(
         None, description="the recording or data set: a file, or a folder played in order; a depth camera's recording"
     )
@@ -54,4 +56,5 @@ class Settings(ServiceSettings):
     person_height_m: float | None = Field(
         None, gt=0.5, lt=2.5, description="any camera: how tall the person is; where given, distances rest on it"
     )
+    images: bool = Field(True, description="put images; --no-images where a marker-camera beside this one does")
     people: int = Field(2, ge=1, le=4, description="any camera: how many people are looked for")

@@ -6,8 +6,9 @@ from pathlib import Path
 from actum.calibration import Calibration
 from actum.messages import Message
 from actum.node import SECOND_NS, Source, Tally
-from sensor_gateway.amended import AmendedSource, played_anew, tilted
+from sensor_gateway.amended import AmendedSource, played_anew, tilted, without_image
 from sensor_gateway.calibrated import CalibratedSource
+from sensor_gateway.camera.beside import markers_camera_of
 from sensor_gateway.camera.source import CameraSource, camera_of
 from sensor_gateway.depth.source import openni2_of, realsense_of
 from sensor_gateway.msr_action3d import MsrAction3dSource
@@ -27,6 +28,7 @@ FROM_FILES: Mapping[str, Callable[[Path, str], Source]] = {
 
 CAMERAS: Mapping[str, Callable[[Settings, int], CameraSource]] = {
     "camera": camera_of,
+    "marker-camera": markers_camera_of,
     "realsense": realsense_of,
     "openni2": openni2_of,
 }
@@ -46,6 +48,8 @@ def source_of(settings: Settings, start_ns: int) -> Source:
         DepthSourceError, RealSenseError, OpenNiError: a depth camera's library or recording is missing.
     """
     source = _calibrated(_named(settings, start_ns), settings.calibration)
+    if not settings.images:
+        source = AmendedSource(source, without_image)
     return source if settings.up_in_camera is None else AmendedSource(source, tilted(settings.up_in_camera))
 
 

@@ -23,7 +23,7 @@ def is_healthy(path: Path) -> bool:
     """Whether the service has said so within the last seconds."""
     try:
         return time.time() - path.stat().st_mtime < FRESH_S
-    except FileNotFoundError:
+    except OSError:
         return False
 
 

@@ -1,15 +1,56 @@
 """Settings of a service: flags, `ACTUM_…` environment variables, or a TOML file named by `ACTUM_CONFIG`."""
 
 import os
+import re
 import socket
+import tomllib
 from pathlib import Path
+from typing import Annotated
 
-from pydantic import Field
+from pydantic import AfterValidator, Field, ValidationError
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict, TomlConfigSettingsSource
 
 from actum.keys import CHUNK
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+WITH_PORT = ("tcp", "udp", "tls", "quic", "ws")
+OTHER_TRANSPORTS = ("unixsock-stream", "unixpipe", "serial", "vsock")
+HIGHEST_PORT = 65535
+
+
+class SettingsError(ValueError):
+    """Settings that cannot be used: which, why, what to do."""
+
+
+def host_and_port(endpoint: str) -> tuple[str, int] | None:
+    """Take an endpoint's address apart; None where its transport has no ports.
+
+    Raises:
+        SettingsError: it is none that Zenoh takes.
+    """
+    transport, _, address = re.split("[?#]", endpoint, maxsplit=1)[0].partition("/")
+    if transport in OTHER_TRANSPORTS and address:
+        return None
+    host, colon, port = address.rpartition(":")
+    if transport not in WITH_PORT or not colon or not port.isdecimal() or int(port) > HIGHEST_PORT:
+        raise SettingsError(f"{endpoint!r} is no endpoint: use tcp/host:port, as {DEFAULT_ENDPOINT}")
+    return host.strip("[]"), int(port)
+
+
+def complaint(error: ValueError) -> str:
+    """Say in one line what cannot be used in settings, whoever found it."""
+    if not isinstance(error, ValidationError):
+        return str(error)
+    problems = [
+        f"{'.'.join(map(str, e['loc']))}: {e['msg'].removeprefix('Value error, ')}"
+        for e in error.errors(include_url=False)
+    ]
+    return f"settings: {'; '.join(problems)}"
+
+
+def _endpoint(text: str) -> str:
+    host_and_port(text)
+    return text
 
 
 def default_instance() -> str:
@@ -31,7 +72,7 @@ class ServiceSettings(BaseSettings):
         extra="ignore",
     )
 
-    connect: str = Field(DEFAULT_ENDPOINT, description="the router's endpoint")
+    connect: Annotated[str, AfterValidator(_endpoint)] = Field(DEFAULT_ENDPOINT, description="the router's endpoint")
     sensor: str = Field(
         "kinect0", pattern=f"^{CHUNK.pattern}$", description="the viewpoint: the chunk after actum/ in every key"
     )
@@ -52,6 +93,18 @@ class ServiceSettings(BaseSettings):
         dotenv_settings: PydanticBaseSettingsSource,
         file_secret_settings: PydanticBaseSettingsSource,
     ) -> tuple[PydanticBaseSettingsSource, ...]:
-        """Flags first, then the environment, then the file that `ACTUM_CONFIG` names."""
-        file = TomlConfigSettingsSource(settings_cls, toml_file=os.environ.get("ACTUM_CONFIG"))
-        return init_settings, env_settings, file
+        """Flags first, then the environment, then the file that `ACTUM_CONFIG` names.
+
+        Raises:
+            SettingsError: that file is not there, or no TOML.
+        """
+        return init_settings, env_settings, _file_source(settings_cls, os.environ.get("ACTUM_CONFIG"))
+
+
+def _file_source(settings_cls: type[BaseSettings], name: str | None) -> TomlConfigSettingsSource:
+    if name and not Path(name).is_file():
+        raise SettingsError(f"ACTUM_CONFIG names {name}, which is no file: correct or unset it")
+    try:
+        return TomlConfigSettingsSource(settings_cls, toml_file=name or None)
+    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise SettingsError(f"ACTUM_CONFIG names {name}, which cannot be read as TOML: {error}") from None

@@ -27,6 +27,11 @@ def test_what_was_said_long_ago_does_not_count(tmp_path):
     assert not is_healthy(file)
 
 
+def test_where_no_file_can_be_nobody_is_healthy(tmp_path):
+    (tmp_path / "file").touch()
+    assert not is_healthy(tmp_path / "file" / "health")
+
+
 @pytest.mark.parametrize("healthy", [True, False])
 def test_the_check_exits_0_only_when_healthy(tmp_path, healthy):
     write_health(tmp_path / "health", healthy)

@@ -1,8 +1,13 @@
+import signal
+import socket
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
+from actum_command import demo, learning, system
 from actum_command.__main__ import app
 
 COMMANDS = (
@@ -22,6 +27,7 @@ def test_every_command_explains_itself(command: str) -> None:
 def refusal(*arguments: str) -> str:
     refused = CliRunner().invoke(app, list(arguments))
     assert refused.exit_code == 1, refused.output
+    assert isinstance(refused.exception, SystemExit), refused.exception
     return " ".join(refused.stderr.split())
 
 
@@ -59,3 +65,123 @@ def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
 
 def test_an_unknown_topic_to_watch_is_refused_with_the_known_ones() -> None:
     assert "event" in refusal("watch", "everything")
+
+
+@pytest.fixture(scope="module")
+def examples(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("examples") / "a.mcap"
+    assert CliRunner().invoke(app, ["simulate", str(path), "--repetitions", "2"]).exit_code == 0
+    return path
+
+
+@pytest.fixture(scope="module")
+def broken_off(examples: Path) -> Path:
+    """The same examples, without the last of what stands behind the messages."""
+    path = examples.with_name("broken.mcap")
+    path.write_bytes(examples.read_bytes()[:-1])
+    return path
+
+
+def test_training_and_evaluating_name_the_recording_that_breaks_off(broken_off: Path, tmp_path: Path) -> None:
+    model = str(tmp_path / "m.npz")
+    for command in (["train", str(broken_off), "-o", model], ["evaluate", model, str(broken_off)]):
+        done = CliRunner().invoke(app, command)
+        assert done.exit_code == 0
+        assert f"{broken_off} breaks off" in done.stdout
+
+
+@pytest.mark.parametrize("place", ["nowhere/x.json", "folder", "file/x.json"])
+def test_where_nothing_can_be_written_nothing_is_trained_or_evaluated(
+    place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "file").touch()
+    monkeypatch.setattr(learning, "load_model", lambda _: pytest.fail("the model was loaded"))
+    monkeypatch.setattr(learning, "select", lambda *_: pytest.fail("the recordings were opened"))
+    assert place in refusal("evaluate", "m.npz", "a.mcap", "--json", str(tmp_path / place))
+    assert place in refusal("train", "a.mcap", "-o", str(tmp_path / place))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "complaint"),
+    [
+        ("ACTUM_SENSOR", "Kinect0", "settings: sensor: "),
+        ("ACTUM_CONNECT", "127.0.0.1:7551", "'127.0.0.1:7551' is no endpoint: use tcp/host:port"),
+        ("ACTUM_CONNECT", "foo", "'foo' is no endpoint: use tcp/host:port"),
+        ("ACTUM_ZENOH_CONFIG", "/nowhere.json5", "/nowhere.json5 is no Zenoh configuration"),
+        ("ACTUM_CONFIG", "/nowhere.toml", "/nowhere.toml, which is no file"),
+    ],
+)
+@pytest.mark.parametrize("command", ["doctor", "watch", "scene", "segment end a"])
+def test_settings_that_cannot_be_used_end_a_command_with_one_line(
+    name: str, value: str, complaint: str, command: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(name, value)
+    refused = CliRunner().invoke(app, command.split())
+    assert isinstance(refused.exception, SystemExit), refused.exception
+    assert (refused.exit_code, refused.stderr.count("\n")) == (1, 1)
+    assert complaint in refused.stderr
+
+
+@pytest.fixture
+def served(monkeypatch: pytest.MonkeyPatch) -> list[str | None]:
+    """The endpoints that a router was to listen on, without any router."""
+    endpoints: list[str | None] = []
+    monkeypatch.setattr(system, "serve_router", lambda endpoint, *_: endpoints.append(endpoint))
+    monkeypatch.setattr(system, "stop_on_signals", lambda: None)
+    return endpoints
+
+
+@pytest.mark.parametrize("endpoint", ["udp7551", "tcp/127.0.0.1:99999", "7552", "tcp/127.0.0.1"])
+def test_a_router_refuses_what_is_no_endpoint(endpoint: str, served: list[str | None]) -> None:
+    assert f"'{endpoint}' is no endpoint: use tcp/host:port" in refusal("router", "--listen", endpoint)
+    assert served == []
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "[::]", "[::1]", "localhost"])
+def test_a_router_listens_on_either_family(host: str, served: list[str | None]) -> None:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family) as probe:
+        try:
+            probe.bind((host.strip("[]"), 0))
+        except OSError:
+            pytest.skip("this machine has no IPv6")
+        port = probe.getsockname()[1]
+        probe.listen()
+        taken = refusal("router", "--listen", f"tcp/{host}:{port}")
+    assert "cannot be listened on" in taken
+    assert CliRunner().invoke(app, ["router", "--listen", f"tcp/{host}:{port}"]).exit_code == 0
+    assert served == [f"tcp/{host}:{port}"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [([""], "segment_id: "), (["x" * 1000], "segment_id: "), (["a", "--agent", "9999999999"], "agent: ")],
+)
+def test_a_mark_that_is_none_is_refused_without_a_router(arguments: list[str], complaint: str) -> None:
+    refused = CliRunner().invoke(app, ["segment", "start", *arguments])
+    assert (refused.exit_code, refused.stderr.count("\n")) == (1, 1)
+    assert complaint in refused.stderr
+
+
+@pytest.fixture
+def _handlers() -> Iterator[None]:
+    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+@pytest.mark.usefixtures("_handlers")
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_demo_ends_where_it_is_while_it_learns_and_leaves_no_files(
+    number: signal.Signals, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(demo, "refuse_taken", lambda _: None)
+    monkeypatch.setattr(demo, "_train", lambda *_: signal.raise_signal(number))
+    monkeypatch.setattr(demo, "_baseline", lambda *_: pytest.fail("it went on"))
+    interrupted = CliRunner().invoke(app, ["demo"])
+    assert isinstance(interrupted.exception, SystemExit), interrupted.exception
+    assert interrupted.exit_code == 128 + number
+    assert list(tmp_path.iterdir()) == []

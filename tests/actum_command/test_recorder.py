@@ -9,7 +9,7 @@ from actum import keys
 from actum.messages import Image, Message, Segment, Skeleton, Status
 from actum.node import SECOND_NS, Tally
 from actum.recording import Recorder, Recording
-from actum_command.recorder import IMAGES, STREAMS, StreamRecorder
+from actum_command.recorder import IMAGES, SKEW_NS, STREAMS, StreamRecorder
 from empty_messages import action, image, mark, skeleton
 
 
@@ -126,6 +126,15 @@ def test_what_services_say_about_themselves_is_not_stored(take: Take) -> None:
         state="running",
     )
     assert take.record(status) == []
+
+
+def test_answers_are_kept_only_as_long_as_a_mark_may_be_late(tmp_path: Path) -> None:
+    with Recorder(tmp_path / "a.mcap", person="1", source="live") as recorder:
+        stream = StreamRecorder(recorder)
+        for i in range(100):
+            stream.take(action(i, i + 1, f"segment{i}"), received_ns=i * SECOND_NS)
+        assert len(stream._answers) == 1 + SKEW_NS // SECOND_NS
+    assert stream.stored == 100
 
 
 def test_the_time_of_receipt_is_kept(tmp_path: Path) -> None:

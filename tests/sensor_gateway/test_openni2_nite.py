@@ -12,10 +12,11 @@ from actum.calibration import Calibration
 from actum.messages import Image, Skeleton
 from actum.node import Tally
 from actum.skeletons import INDEX, JOINTS
+from sensor_gateway.camera.bodies import Nobody
 from sensor_gateway.camera.capture import CameraLostError
 from sensor_gateway.camera.lens import Lens
 from sensor_gateway.camera.video import Picture
-from sensor_gateway.depth.nite import NiteCapture, Nobody, Users, UsersPerceiver, UsersPicture, nite
+from sensor_gateway.depth.nite import NiteCapture, Users, UsersPerceiver, UsersPicture, nite
 from sensor_gateway.depth.openni2 import OpenNi2Capture
 from sensor_gateway.depth.picture import DepthOptics, DepthPicture
 

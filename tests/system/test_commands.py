@@ -90,6 +90,15 @@ def test_up_refuses_an_endpoint_that_a_router_has(running: System) -> None:
     assert "cannot be listened on" in refused.stderr
 
 
+def test_up_ends_with_the_complaint_of_a_service_that_cannot_be_used_as_it_is_set(running: System) -> None:
+    refused = running.actum("up", "--source", "foo")
+    assert refused.returncode == 1
+    assert "settings: source: Input should be 'simulator'" in refused.stderr
+    assert "sensor_gateway cannot run as it is set" in refused.stderr
+    assert "actum is up" not in refused.stdout
+    assert pids_of(running) == set()
+
+
 def test_what_is_recorded_holds_the_streams_and_the_resolved_marks(
     running: System, scene_model: Path, tmp_path: Path
 ) -> None:

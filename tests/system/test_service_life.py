@@ -143,10 +143,32 @@ def test_tokens_go_with_their_process(running: System) -> None:
         (["sensor_gateway", "--source", "camera", "--pose-model", "/nowhere"], "'actum models fetch'"),
         (["marker_tracker", "--dictionary", "DICT_NONE"], "dictionary: "),
         (["pose_preprocessor", "--sensor", "Kinect 0"], "sensor: "),
+        (["pose_preprocessor", "--connect", "127.0.0.1:7551"], "'127.0.0.1:7551' is no endpoint: use tcp/host:port"),
+        (["sensor_gateway", "--connect", "foo"], "'foo' is no endpoint: use tcp/host:port"),
+        (["action_fusion", "--zenoh-config", "/nowhere.json5"], "/nowhere.json5 is no Zenoh configuration"),
+        (["action_fusion", "--zenoh-config", __file__], f"{__file__} is no Zenoh configuration"),
     ],
 )
 def test_settings_that_cannot_be_used_end_with_one_line(running: System, arguments: list[str], complaint: str) -> None:
     service = running.start(*arguments)
     assert service.process.wait(timeout=30) == 2
     assert complaint in service.said()
-    assert "Traceback" not in service.said()
+    assert service.said().count("\n") == 1
+
+
+def test_a_configuration_file_that_is_not_there_is_no_defaults(
+    running: System, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ACTUM_CONFIG", "/nowhere.toml")
+    service = running.start("pose_preprocessor")
+    assert service.process.wait(timeout=30) == 2
+    assert service.said() == "ACTUM_CONFIG names /nowhere.toml, which is no file: correct or unset it\n"
+
+
+def test_a_service_goes_on_where_its_health_file_cannot_be_written(running: System) -> None:
+    running.start_router()
+    service = running.start("pose_preprocessor", "--health-file", "/nowhere/health")
+    with running.client() as client:
+        statuses = client.listen(keys.pattern(keys.STATUS, client.sensor))
+        assert len(collect(statuses, Status, lambda found: len(found) == 3)) == 3
+    assert service.said().count("the health file cannot be written") == 1

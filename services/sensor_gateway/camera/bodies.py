@@ -27,6 +27,14 @@ class Estimator(Protocol):
         ...
 
 
+class Nobody:
+    """An estimator where people come from elsewhere."""
+
+    def people(self, image_bgr: Image, stamp_ns: int) -> list[Landmarks]:
+        """Return nobody."""
+        return []
+
+
 class Bodies:
     """Turns images into agents; `place` puts one person's landmarks into the camera frame."""
 

@@ -37,6 +37,12 @@ class Optics:
             return Lens.of_field_of_view(width, height, self.field_of_view_deg)
         return Lens.of_calibration(self.calibration) if (width, height) == self.calibration.image_size else None
 
+    @property
+    def skeleton_from_image(self) -> list[float]:
+        """Where the camera that sees the people sees this one; itself where nothing else is known."""
+        told = None if self.calibration is None else self.calibration.skeleton_from_image
+        return SAME_CAMERA if told is None else told
+
     def seen(self, picture: Picture) -> Picture:
         """Return a picture as it would be seen without a mirror."""
         return unmirrored(picture) if self.mirrored else picture
@@ -82,6 +88,10 @@ class Perceiver:
         """Return everybody in a picture; stamps rise."""
         return self._skeleton(self._optics.seen(picture), self._optics.lens_of(picture))
 
+    def lost(self, stamp_ns: int, reason: str) -> list[Message]:
+        """Say that the camera is lost."""
+        return [self.nobody(stamp_ns, reason)]
+
     def nobody(self, stamp_ns: int, reason: str) -> Skeleton:
         """Return a frame in which nothing can be seen, and why."""
         return Skeleton(
@@ -121,7 +131,7 @@ class Perceiver:
             data=data.tobytes(),
             K=lens.matrix.ravel().tolist(),
             distortion=lens.distortion.tolist(),
-            skeleton_from_image=SAME_CAMERA,
+            skeleton_from_image=self._optics.skeleton_from_image,
             intrinsics_assumed=lens.assumed,
             session_id=self._session_id,
         )

@@ -42,7 +42,8 @@ def _own_calibration(path: Path) -> Calibration:
     if calibration.skeleton_from_image not in (None, SAME_CAMERA):
         raise CalibrationError(
             f"{path}: it has a skeleton_from_image, so it is for a camera beside the one that sees people, and this "
-            "camera sees the people itself: use its own file of 'actum calibrate intrinsics'"
+            "camera sees the people itself: use its own file of 'actum calibrate intrinsics'; the other is --source "
+            "marker-camera"
         )
     return calibration
 
@@ -177,7 +178,7 @@ class CameraSource:
         elif now_ns - self._said[1] < REMINDER_NS:
             return []
         self._said = reason, now_ns
-        return [perceiver.nobody(self._rising(now_ns), f"camera lost: {reason}")]
+        return perceiver.lost(self._rising(now_ns), f"camera lost: {reason}")
 
     def _found(self) -> None:
         if self._said is not None:

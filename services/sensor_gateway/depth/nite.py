@@ -7,14 +7,10 @@ from contextlib import chdir, contextmanager, suppress
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from actum.messages import Agent, Joint, Skeleton
 from actum.skeletons import INDEX, JOINTS, to_actum
 from sensor_gateway.camera.bodies import LEAST_CONFIDENCE, TRUNK
 from sensor_gateway.camera.capture import CameraLostError
-from sensor_gateway.camera.landmarks import Landmarks
 from sensor_gateway.camera.lens import Lens
 from sensor_gateway.camera.perceiving import Perceiver
 from sensor_gateway.camera.video import Picture
@@ -45,14 +41,6 @@ class UsersPicture(DepthPicture):
     """A picture with the people that NiTE tracks at its time."""
 
     agents: tuple[Agent, ...]
-
-
-class Nobody:
-    """An estimator that is not asked: people come with the picture."""
-
-    def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
-        """Return nobody."""
-        return []
 
 
 class UsersPerceiver(Perceiver):

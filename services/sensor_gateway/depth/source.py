@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from sensor_gateway.camera.bodies import Nobody
 from sensor_gateway.camera.capture import Capture, FileCapture
 from sensor_gateway.camera.source import CameraSource, estimator_of, optics_of, size_of
 from sensor_gateway.camera.video import Picture
@@ -55,7 +56,7 @@ def openni2_of(settings: Settings, start_ns: int) -> CameraSource:
 def _nite_source(settings: Settings, session_id: str, nite2: Any) -> CameraSource:
     told = optics_of(settings)
     return CameraSource(
-        lambda: nullcontext(nite.Nobody()),
+        lambda: nullcontext(Nobody()),
         DepthOptics(told.field_of_view_deg, told.calibration, told.person_height_m),
         open_capture=lambda: nite.NiteCapture(nite2, size_of(settings), settings.field_of_view_deg),
         sensor=settings.sensor,

@@ -23,8 +23,8 @@ from actum.node import TICK_NS, Node, Source, Tally, Tick
 from actum.runtime.inbox import Inbox
 from actum.runtime.meter import Meter
 from actum.runtime.outbox import Outbox
-from actum.runtime.session import connected, open_session
-from actum.settings import ServiceSettings
+from actum.runtime.session import client_config, connected, open_session
+from actum.settings import ServiceSettings, complaint
 
 log = logging.getLogger("actum")
 S = TypeVar("S", bound=ServiceSettings)
@@ -51,10 +51,10 @@ def _configured(settings_type: type[S], build: Callable[[S], N]) -> tuple[S, N]:
     try:
         service = settings_type.__module__.partition(".")[0]
         settings = settings_type(_cli_parse_args=True, _cli_prog_name=f"python -m {service}")
+        client_config(settings)  # refused now, not after what takes long to build
         return settings, build(settings)
     except ValidationError as error:
-        problems = [f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors(include_url=False)]
-        print(f"settings: {'; '.join(problems)} (see --help)", file=sys.stderr)
+        print(f"{complaint(error)} (see --help)", file=sys.stderr)
     except ValueError as error:
         print(str(error), file=sys.stderr)
     sys.exit(UNUSABLE)
@@ -103,6 +103,7 @@ class Service(ABC):
 
     def __init__(self, name: str, tally: Tally, settings: ServiceSettings) -> None:
         self.failed = False
+        self._health_unwritable = False
         self._settings = settings
         self._meter = Meter(name, tally, settings)
         self._lock = threading.Lock()
@@ -140,8 +141,18 @@ class Service(ABC):
             with self._lock:
                 status = self._meter.status()
             outbox.put(status)
-            if self._settings.health_file is not None:
-                write_health(self._settings.health_file, self._healthy() and connected(session))
+            self._tell_health(self._healthy() and connected(session))
+
+    def _tell_health(self, healthy: bool) -> None:
+        """Write the health file if there is to be one; where it cannot be written, say so once and go on."""
+        if self._settings.health_file is None:
+            return
+        try:
+            write_health(self._settings.health_file, healthy)
+        except OSError as error:
+            if not self._health_unwritable:
+                log.warning("the health file cannot be written: %s", error)
+            self._health_unwritable = True
 
 
 class NodeService(Service):

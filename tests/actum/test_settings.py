@@ -1,0 +1,62 @@
+"""Settings that cannot be used are refused, naming what is wrong."""
+
+from pathlib import Path
+
+import pytest
+from pydantic import ValidationError
+
+from actum.runtime.session import client_config
+from actum.settings import ServiceSettings, SettingsError, complaint, host_and_port
+
+
+@pytest.mark.parametrize(
+    ("endpoint", "address"),
+    [
+        ("tcp/127.0.0.1:7447", ("127.0.0.1", 7447)),
+        ("tcp/router:0", ("router", 0)),
+        ("tcp/[::]:7552", ("::", 7552)),
+        ("tls/[::1]:65535", ("::1", 65535)),
+        ("udp/10.0.0.1:7447?rel=0#iface=eth0", ("10.0.0.1", 7447)),
+        ("unixsock-stream//tmp/actum.sock", None),
+    ],
+)
+def test_an_endpoint_is_a_transport_and_where_to(endpoint: str, address: tuple[str, int] | None) -> None:
+    assert host_and_port(endpoint) == address
+
+
+@pytest.mark.parametrize(
+    "endpoint", ["", "foo", "tcp/", "tcp/host", "127.0.0.1:7551", "udp7551", "tcp/h:65536", "tcp/h:-1", "tpc/h:1"]
+)
+def test_what_is_no_endpoint_is_refused_by_name_with_the_form(endpoint: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ACTUM_CONNECT", endpoint)
+    with pytest.raises(ValidationError) as refused:
+        ServiceSettings()
+    assert complaint(refused.value).startswith(f"settings: connect: {endpoint!r} is no endpoint: use tcp/host:port")
+
+
+def test_the_file_that_is_named_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "actum.toml").write_text('sensor = "door"')
+    monkeypatch.setenv("ACTUM_CONFIG", str(tmp_path / "actum.toml"))
+    assert ServiceSettings().sensor == "door"
+
+
+@pytest.mark.parametrize("content", [None, b"sensor: door", b"sensor = '\xff'"])
+def test_a_file_that_is_named_and_cannot_be_read_is_refused_by_name(
+    content: bytes | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "actum.toml"
+    if content is not None:
+        file.write_bytes(content)
+    monkeypatch.setenv("ACTUM_CONFIG", str(file))
+    with pytest.raises(SettingsError, match=f"ACTUM_CONFIG names {file}"):
+        ServiceSettings()
+
+
+@pytest.mark.parametrize("content", [None, "{ mode: ", "{ moode: 3 }"])
+def test_a_zenoh_configuration_that_cannot_be_used_is_refused_by_name(content: str | None, tmp_path: Path) -> None:
+    file = tmp_path / "zenoh.json5"
+    if content is not None:
+        file.write_text(content)
+    with pytest.raises(SettingsError, match=r"zenoh\.json5 is no Zenoh configuration") as refused:
+        client_config(ServiceSettings(zenoh_config=file))
+    assert "\n" not in str(refused.value)

@@ -1,0 +1,128 @@
+"""What `actum doctor` takes for wrong, and that it shows what services say whatever they say."""
+
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from actum import __version__
+from actum.codec import schema_name
+from actum.messages import MESSAGES, Info, Message, Status
+from actum.runtime import Received
+from actum_command import __main__, doctor
+from actum_command.doctor import EXPECTED, Finding, examine
+
+
+def status(service: str, **fields: Any) -> Status:
+    said: dict[str, Any] = {
+        "rates": {},
+        "handled": {},
+        "drops": {},
+        "rejects": {},
+        "latency_ms": {"p50": 1.0, "p99": 2.0},
+        "state": "running",
+    }
+    return Status(
+        stamp_ns=1, sensor="kinect0", service=service, instance="a", uptime_s=1.0, last_error=None, **(said | fields)
+    )
+
+
+def info(service: str, version: str = __version__) -> Info:
+    return Info(
+        stamp_ns=1,
+        sensor="kinect0",
+        service=service,
+        instance="a",
+        version=version,
+        schemas=[schema_name(message) for message in MESSAGES],
+        joint_names=[],
+    )
+
+
+class Listened:
+    def __init__(self, messages: list[Message]) -> None:
+        self._messages = messages
+
+    def take(self) -> Received | None:
+        return Received("", self._messages.pop(0), None, 0) if self._messages else None
+
+
+class System:
+    """All services, alive and well but for what a test changes about one."""
+
+    sensor = "kinect0"
+
+    def __init__(self, changed: Status, version: str = __version__) -> None:
+        self._statuses: list[Message] = [status(name) for name in EXPECTED if name != changed.service]
+        self._statuses.append(changed)
+        self._versions = dict.fromkeys(EXPECTED, __version__) | {changed.service: version}
+
+    def __enter__(self) -> "System":
+        return self
+
+    def __exit__(self, *_: object) -> None: ...
+
+    def listen(self, _pattern: str) -> Listened:
+        return Listened(self._statuses)
+
+    def alive(self) -> list[str]:
+        return [f"actum/kinect0/alive/{name}/a" for name in EXPECTED]
+
+    def infos(self) -> list[Info]:
+        return [info(name, version) for name, version in self._versions.items()]
+
+
+@pytest.fixture(autouse=True)
+def _brief(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doctor, "STATUS_S", 0.05)
+
+
+def examined(**fields: Any) -> Finding:
+    [found] = [f for f in examine(System(status("som_classifier", **fields))) if f.service == "som_classifier"]  # type: ignore[arg-type]
+    return found
+
+
+def diagnosed(monkeypatch: pytest.MonkeyPatch, system: System) -> tuple[int, str]:
+    monkeypatch.setattr(__main__, "connect", lambda: system)
+    ended = CliRunner().invoke(__main__.app, ["doctor"])
+    return ended.exit_code, ended.output
+
+
+def test_a_system_that_is_well_is_said_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    code, output = diagnosed(monkeypatch, System(status("som_classifier")))
+    assert code == 0
+    assert "all services are there, alive and of one version" in output
+    assert "dropped" not in output
+
+
+def test_another_version_is_a_problem_though_it_has_the_same_schemas(monkeypatch: pytest.MonkeyPatch) -> None:
+    code, output = diagnosed(monkeypatch, System(status("som_classifier"), version="0.0.1"))
+    assert code == 1
+    assert f"som_classifier is version 0.0.1, this is {__version__}" in output
+    assert "of one version" not in output
+
+
+@pytest.mark.parametrize("state", ["source ended", "camera lost: it does not answer"])
+def test_a_source_that_gives_nothing_is_a_problem(state: str) -> None:
+    assert any(state in problem for problem in examined(state=state).problems)
+
+
+@pytest.mark.parametrize(
+    ("latency_ms", "shown"),
+    [({}, ""), ({"p50": 1.5}, "1.50 / -"), ({"mean": 3.0}, "- / -"), ({"p50": 1.5, "p99": 2.0}, "1.50 / 2.00")],
+)
+def test_a_latency_that_is_not_told_is_a_dash(latency_ms: dict[str, float], shown: str) -> None:
+    assert examined(latency_ms=latency_ms).latency == shown
+
+
+def test_drops_are_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    drops = {"actum/kinect0/skeleton": 3}
+    assert examined(drops=drops).drops == "skeleton 3"
+    _, output = diagnosed(monkeypatch, System(status("som_classifier", drops=drops)))
+    assert "dropped" in output
+
+
+def test_a_state_that_looks_like_markup_is_shown_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    code, output = diagnosed(monkeypatch, System(status("som_classifier", state="camera lost [/x]")))
+    assert code == 1
+    assert "som_classifier: camera lost [/x]" in output

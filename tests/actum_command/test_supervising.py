@@ -1,0 +1,52 @@
+"""Programs that end are started again, unless they say that they cannot be used as they are set."""
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import typer
+
+from actum.runtime.serving import UNUSABLE
+from actum_command.supervising import Program, Supervisor, UnusableError
+from actum_command.system import supervise
+from live import wait_until
+
+
+@pytest.fixture
+def ending(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[type[Program]]:
+    (tmp_path / "ending.py").write_text("import sys; print('mode: no such thing'); sys.exit(int(sys.argv[1]))")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    return Program
+
+
+def outcome(supervisor: Supervisor) -> list[str]:
+    lines: list[str] = []
+    wait_until(lambda: bool(lines) or bool(lines.extend(supervisor.check())), "the supervisor notices")
+    return lines
+
+
+def test_what_ends_is_announced_and_started_again(ending: type[Program], tmp_path: Path) -> None:
+    with Supervisor(tmp_path / "log") as supervisor:
+        supervisor.start(ending("worker", "ending", ["1"]))
+        assert outcome(supervisor) == ["worker ended with code 1: restart in 0.5 s"]
+
+
+def test_what_cannot_be_used_as_it_is_set_is_not_started_again(ending: type[Program], tmp_path: Path) -> None:
+    with Supervisor(tmp_path / "log") as supervisor:
+        supervisor.start(ending("worker", "ending", [str(UNUSABLE)]))
+        with pytest.raises(UnusableError, match=f"worker cannot run as it is set: it says why in {tmp_path / 'log'}"):
+            outcome(supervisor)
+    assert (tmp_path / "log").read_text() == "mode: no such thing\n"
+
+
+@pytest.mark.timeout(30)
+def test_a_system_ends_with_the_line_of_the_program_that_cannot_be_used(
+    ending: type[Program], capfd: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(typer.Exit) as ended:
+        supervise([ending("worker", "ending", [str(UNUSABLE)])], threading.Event())
+    told = capfd.readouterr()
+    assert ended.value.exit_code == 1
+    assert told.out == "mode: no such thing\n"
+    assert "worker cannot run as it is set" in told.err
