@@ -31,7 +31,10 @@ def router(
     endpoint = listen or (None if config else settings().connect)
     if endpoint is not None:
         refuse_taken(endpoint)
-    serve_router(endpoint, config, stop_on_signals())
+    try:
+        serve_router(endpoint, config, stop_on_signals())
+    except SettingsError as error:
+        fail(str(error))
 
 
 def up(

@@ -185,3 +185,8 @@ def test_a_demo_ends_where_it_is_while_it_learns_and_leaves_no_files(
     assert isinstance(interrupted.exception, SystemExit), interrupted.exception
     assert interrupted.exit_code == 128 + number
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_router_refuses_a_configuration_that_zenoh_refuses(tmp_path: Path) -> None:
+    (tmp_path / "router.json5").write_text("{nonsense")
+    assert "no router can be started on " in refusal("router", "--config", str(tmp_path / "router.json5"))

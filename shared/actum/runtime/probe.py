@@ -4,16 +4,16 @@ import sys
 
 from actum.runtime.client import Client
 from actum.runtime.session import RouterUnreachableError
-from actum.settings import ServiceSettings
+from actum.settings import ServiceSettings, complaint
 
 
 def main() -> None:
-    """End with code 1 and the reason if no router answers."""
+    """End with code 1 and the reason if no router answers, or settings cannot be used."""
     try:
         with Client(ServiceSettings(), wait_s=0):
             pass
-    except RouterUnreachableError as error:
-        sys.exit(str(error))
+    except (RouterUnreachableError, ValueError) as error:
+        sys.exit(complaint(error) if isinstance(error, ValueError) else str(error))
 
 
 if __name__ == "__main__":

@@ -9,12 +9,17 @@ import zenoh
 
 from actum.runtime.serving import wait_for
 from actum.runtime.session import TRANSPORT
+from actum.settings import SettingsError
 
 log = logging.getLogger("actum")
 
 
 def router_config(listen: str | None, config_file: Path | None) -> zenoh.Config:
-    """Build the router's configuration from a JSON5 file or the defaults, with the endpoint to listen on."""
+    """Build the router's configuration from a JSON5 file or the defaults, with the endpoint to listen on.
+
+    Raises:
+        zenoh.ZError: the file or the endpoint is refused.
+    """
     config = zenoh.Config.from_file(config_file) if config_file else _default_config()
     if listen is not None:
         config.insert_json5("listen/endpoints", json.dumps([listen]))
@@ -25,9 +30,13 @@ def serve_router(listen: str | None, config_file: Path | None, stop: threading.E
     """Route until stopped.
 
     Raises:
-        zenoh.ZError: the endpoint is taken, or the configuration is refused.
+        SettingsError: the endpoint is taken, or the configuration is refused.
     """
-    session = zenoh.open(router_config(listen, config_file))
+    try:
+        session = zenoh.open(router_config(listen, config_file))
+    except zenoh.ZError as error:
+        reason = " ".join(str(error).partition(" at /")[0].split())
+        raise SettingsError(f"no router can be started on {listen or config_file}: {reason}") from None
     log.info("router %s listens on %s", session.zid(), listen or config_file)
     try:
         wait_for(stop)
