@@ -40,13 +40,14 @@ def train_command(
     try:
         with bars() as progress:
             samples = samples_from(recordings, progress)
+        for unusable in samples.unusable:
+            say(f"left out {unusable.segment_id} of {unusable.file}: {unusable.reason}")
+        tell_unread(recordings)
+        with bars() as progress:
             model = train(samples.usable, preset_named(preset), seed, progress)
         model.save(output)
     except (RecordingError, TrainingError, OSError) as error:
         fail(str(error))
-    for unusable in samples.unusable:
-        say(f"left out {unusable.segment_id} of {unusable.file}: {unusable.reason}")
-    tell_unread(recordings)
     say(
         f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
         f"{time.monotonic() - began_s:.1f} s, written to {output}"

@@ -7,13 +7,16 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from actum.recording import Recorder
 from actum_command import demo, learning, system
 from actum_command.__main__ import app
+from people import FRAME_NS
+from performers import mark, performance
 
 COMMANDS = (
     "demo", "up", "router", "watch", "doctor", "segment start", "segment end", "segment toggle", "record", "play",
     "import msr-action3d", "import utkinect", "train", "evaluate", "inspect", "simulate", "scene", "markers",
-    "calibrate intrinsics", "calibrate extrinsics", "import video", "models fetch", "draw",
+    "calibrate intrinsics", "calibrate extrinsics", "calibrate up", "import video", "models fetch", "draw",
 )  # fmt: skip
 
 
@@ -190,3 +193,15 @@ def test_a_demo_ends_where_it_is_while_it_learns_and_leaves_no_files(
 def test_a_router_refuses_a_configuration_that_zenoh_refuses(tmp_path: Path) -> None:
     (tmp_path / "router.json5").write_text("{nonsense")
     assert "no router can be started on " in refusal("router", "--config", str(tmp_path / "router.json5"))
+
+
+def test_why_nothing_could_be_learnt_is_said_before_that_it_could_not(tmp_path: Path) -> None:
+    skeletons, _ = performance(["lift"])
+    with Recorder(tmp_path / "short.mcap", person="1", source="test") as recorder:
+        for message in [*skeletons, mark("start", 2 * FRAME_NS, "s1", "lift"), mark("end", 3 * FRAME_NS, "s1")]:
+            recorder.write(message)
+    done = CliRunner().invoke(app, ["train", str(tmp_path), "-o", str(tmp_path / "model.npz")])
+    assert done.exit_code == 1
+    assert "left out s1 of " in done.stdout
+    assert "2 usable frames, at least 3 are needed" in done.stdout
+    assert "samples of at least two actions are needed" in done.stderr
