@@ -12,7 +12,7 @@ from actum.messages import Skeleton
 from actum.node import SECOND_NS
 from actum.recording import Recording, RecordingError
 from actum.runtime import stop_on_signals
-from actum_command.context import connect, console, fail
+from actum_command.context import connect, fail, say
 from calibrator.standing import Up, UpFinder
 
 SILENCE_S = 10.0
@@ -36,17 +36,17 @@ def up(
             return
         if recording is None and finder.wish != wished and abs(frame.stamp_ns - said_ns) >= PAUSE_NS:
             wished, said_ns = finder.wish, frame.stamp_ns
-            console.print(f"  {wished}", markup=False)
+            say(f"  {wished}")
     fail(f"nobody stood upright and still for long enough: {finder.wish}")
 
 
 def _report(found: Up) -> None:
-    console.print(
+    say(
         f"the camera looks {_way(found.pitch_deg, 'up', 'down')} and is turned "
         f"{_way(found.roll_deg, 'clockwise', 'counterclockwise')} (the body swayed by {found.sway_deg:.1f} degrees)"
     )
     numbers = ", ".join(f"{component:.3f}" for component in found.in_camera)
-    console.print(f"tell its sensor gateway: ACTUM_UP_IN_CAMERA='[{numbers}]'", markup=False, soft_wrap=True)
+    say(f"tell its sensor gateway: ACTUM_UP_IN_CAMERA='[{numbers}]'")
 
 
 def _way(angle_deg: float, positive: str, negative: str) -> str:
@@ -68,7 +68,7 @@ def _live() -> Iterator[Skeleton]:
     with connect() as client:
         key = keys.key(keys.SKELETON, client.sensor)
         stream, heard_s = client.listen(key), time.monotonic()
-        console.print(f"watching {key}; Ctrl-C ends")
+        say(f"watching {key}; Ctrl-C ends")
         while not stop.wait(POLL_S):
             while (received := stream.take()) is not None:
                 heard_s = time.monotonic()
