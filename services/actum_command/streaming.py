@@ -12,7 +12,7 @@ from actum import keys
 from actum.messages import Message, Skeleton
 from actum.node import SECOND_NS
 from actum.recording import Recorder, Recording, RecordingError
-from actum.runtime import Client, Pace, stop_on_signals
+from actum.runtime import Client, Listening, Pace, stop_on_signals
 from actum_command.context import connect, fail, refuse_unwritable, say
 from actum_command.learning import AllOption, PersonOption, chosen, tell_unread
 from actum_command.playing import schedule
@@ -21,6 +21,8 @@ from actum_command.recorder import IMAGES, STREAMS, StreamRecorder
 LEAD_IN_S = 0.3
 WAIT_S = 5.0
 POLL_S = 0.005
+ON_ITS_WAY_S = 0.3
+"""How long a message may take to come that was put before the recording was stopped."""
 
 
 def record(
@@ -44,18 +46,28 @@ def record(
 
 
 def _store_all(client: Client, stream: StreamRecorder, output: Path, stop: threading.Event, deadline_s: float) -> None:
-    """Store what comes until stopped or until the deadline (monotonic)."""
+    """Store what comes until stopped or until the deadline (monotonic), and what was on its way then."""
     listening = client.listen(keys.everything(client.sensor))
     say(f"recording actum/{client.sensor}/** to {output}; Ctrl-C ends")
     while not stop.is_set() and time.monotonic() < deadline_s:
-        received = listening.take()
-        if received is None:
+        if not _store(listening, stream):
             stop.wait(POLL_S)
-        elif received.message is not None:
-            stream.take(received.message, time.time_ns())
-        elif received.error is not None:
-            stream.reject(received.error)
+    time.sleep(ON_ITS_WAY_S)
+    while _store(listening, stream):
+        pass
     stream.close()
+
+
+def _store(listening: Listening, stream: StreamRecorder) -> bool:
+    """Store one message, if one has come."""
+    received = listening.take()
+    if received is None:
+        return False
+    if received.message is not None:
+        stream.take(received.message, time.time_ns())
+    elif received.error is not None:
+        stream.reject(received.error)
+    return True
 
 
 def _report(stream: StreamRecorder, output: Path) -> None:

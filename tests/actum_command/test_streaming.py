@@ -62,6 +62,9 @@ class Live:
     def comes_garbage(self) -> None:
         self._coming.append(Received("actum/kinect0/skeleton", None, codec.DecodeError("not_msgpack", "no"), 1))
 
+    def stop_at_once(self) -> None:
+        self._stop.set()
+
     def put(self, message: Message) -> None:
         self.heard.append(message)
 
@@ -79,6 +82,7 @@ def live(monkeypatch: pytest.MonkeyPatch) -> Live:
     monkeypatch.setattr(streaming, "connect", lambda: client)
     monkeypatch.setattr(streaming, "stop_on_signals", lambda: stop)
     monkeypatch.setattr(streaming, "LEAD_IN_S", 0.0)
+    monkeypatch.setattr(streaming, "ON_ITS_WAY_S", 0.0)
     return client
 
 
@@ -101,6 +105,12 @@ def test_only_what_is_stored_is_counted(live: Live, tmp_path: Path) -> None:
     assert len(list(Recording(tmp_path / "a.mcap").messages())) == 3
     assert "not stored" not in recorded.stdout
     assert "not decodable" not in recorded.stdout
+
+
+def test_what_came_before_the_stop_is_stored(live: Live, tmp_path: Path) -> None:
+    live.comes(skeleton(1), skeleton(2), mark("end", 2))
+    live.stop_at_once()
+    assert "3 messages" in actum("record", tmp_path / "a.mcap").stdout
 
 
 def test_marks_and_payloads_that_are_lost_are_told(live: Live, tmp_path: Path) -> None:
