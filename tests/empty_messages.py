@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from actum.messages import Action, Image, Segment, Skeleton
+from actum.messages import Action, Image, Segment, Skeleton, Status
 
 
 def skeleton(stamp_ns: int, seq: int | None = None, session_id: str = "then") -> Skeleton:
@@ -46,4 +46,21 @@ def action(start_ns: int, end_ns: int | None, segment_id: str = "one", **fields:
         frames=1,
         missed=0,
         **({"final": True} | fields),
+    )
+
+
+def status(state: str = "running") -> Status:
+    return Status(
+        stamp_ns=1,
+        sensor="kinect0",
+        service="som_classifier",
+        instance="a",
+        uptime_s=1.0,
+        rates={},
+        handled={},
+        drops={},
+        rejects={},
+        last_error=None,
+        latency_ms={},
+        state=state,
     )

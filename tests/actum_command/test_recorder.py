@@ -6,11 +6,11 @@ import pytest
 from mcap.reader import make_reader
 
 from actum import keys
-from actum.messages import Image, Message, Segment, Skeleton, Status
+from actum.messages import Image, Message, Segment, Skeleton
 from actum.node import SECOND_NS, Tally
 from actum.recording import Recorder, Recording
 from actum_command.recorder import IMAGES, SKEW_NS, STREAMS, StreamRecorder
-from empty_messages import action, image, mark, skeleton
+from empty_messages import action, image, mark, skeleton, status
 
 
 class Take:
@@ -111,21 +111,7 @@ def test_marks_are_resolved_by_streams_that_are_not_stored(take: Take) -> None:
 
 
 def test_what_services_say_about_themselves_is_not_stored(take: Take) -> None:
-    status = Status(
-        stamp_ns=1,
-        sensor="kinect0",
-        service="som_classifier",
-        instance="a",
-        uptime_s=1.0,
-        rates={},
-        handled={},
-        drops={},
-        rejects={},
-        last_error=None,
-        latency_ms={},
-        state="running",
-    )
-    assert take.record(status) == []
+    assert take.record(status()) == []
 
 
 def test_answers_are_kept_only_as_long_as_a_mark_may_be_late(tmp_path: Path) -> None:

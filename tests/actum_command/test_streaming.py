@@ -10,29 +10,12 @@ from mcap.writer import Writer
 from typer.testing import CliRunner
 
 from actum import codec, keys
-from actum.messages import Message, Status
+from actum.messages import Message
 from actum.recording import Recorder, Recording
 from actum.runtime import Received
 from actum_command import streaming
 from actum_command.__main__ import app
-from empty_messages import image, mark, skeleton
-
-
-def status() -> Status:
-    return Status(
-        stamp_ns=1,
-        sensor="kinect0",
-        service="som_classifier",
-        instance="a",
-        uptime_s=1.0,
-        rates={},
-        handled={},
-        drops={},
-        rejects={},
-        last_error=None,
-        latency_ms={},
-        state="running",
-    )
+from empty_messages import image, mark, skeleton, status
 
 
 class Live:

@@ -8,31 +8,14 @@ import typer
 from rich.console import Console, RenderableType
 
 from actum import keys
-from actum.messages import ActedObject, Action, Event, Segment, Status
+from actum.messages import ActedObject, Action, Event, Segment
 from actum.runtime import Received
 from actum_command import context
 from actum_command.doctor import Finding, table
 from actum_command.watching import describe, line
-from empty_messages import action, mark
+from empty_messages import action, mark, status
 
 MARKUP = ("[b]", "[/b]", "[a]", "wave[/b]", "a\\")
-
-
-def status(state: str) -> Status:
-    return Status(
-        stamp_ns=1,
-        sensor="kinect0",
-        service="som_classifier",
-        instance="a",
-        uptime_s=1.0,
-        rates={},
-        handled={},
-        drops={},
-        rejects={},
-        last_error=None,
-        latency_ms={},
-        state=state,
-    )
 
 
 def event(text: str) -> Event:
