@@ -155,6 +155,9 @@ def euclidean(asked: Floats, known: Floats) -> Floats:
 MINIROCKET = Rocket("MiniRocket + ridge", MiniRocket, camera_axes)
 MINIROCKET_UPRIGHT = Rocket("MiniRocket + ridge, our upright postures", MiniRocket, upright)
 MINIROCKET_PREFIXES = Rocket("MiniRocket + ridge, trained on prefixes", MiniRocket, camera_axes, PREFIXES)
+MINIROCKET_UPRIGHT_PREFIXES = Rocket(
+    "MiniRocket + ridge, trained on prefixes of our upright postures", MiniRocket, upright, PREFIXES
+)
 MULTIROCKET = Rocket("MultiRocket + ridge", MultiRocket, camera_axes)
 DTW = Nearest("DTW, 1-NN", DTW_INSTANTS, warped)
 NEAREST = Nearest("Euclidean, 1-NN", INSTANTS, euclidean)
