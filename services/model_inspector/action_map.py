@@ -13,8 +13,9 @@ from actum.som import Som
 from model_inspector.anatomy import Anatomy, Floats
 from model_inspector.answered import Answered
 from model_inspector.labels import Room, text_size
+from model_inspector.lettering import lines_of
 from model_inspector.regions import Regions, centre, largest_patch, regions
-from model_inspector.style import HALO, INK, PAPER, action_colours, bare, canvas, in_house_style, lines_of, paler, tiles
+from model_inspector.style import HALO, INK, PAPER, action_colours, bare, canvas, in_house_style, paler, tiles
 
 SIDE_IN = 10.0
 PALEST = 0.15

@@ -45,6 +45,10 @@ class Anatomy(ABC):
     def winners(self, frames: Sequence[Frame]) -> Indices:
         """Return the first map's winner at each encoded frame in which it has one."""
 
+    def in_mirror(self, frames: Sequence[Frame]) -> bool:
+        """Tell whether a segment of encoded frames is read as its mirror image."""
+        return False
+
     @abstractmethod
     def place(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a complete segment of encoded frames."""
@@ -69,7 +73,11 @@ class PyramidAnatomy(Anatomy):
 
     def winners(self, frames: Sequence[Frame]) -> Indices:
         """Return the first map's winner at each encoded frame."""
-        return np.array([frame.code.winner for frame in frames], dtype=np.intp)
+        return self.model.winners(frames)
+
+    def in_mirror(self, frames: Sequence[Frame]) -> bool:
+        """Tell whether a segment of encoded frames is read as its mirror image."""
+        return self.model.reads_in_mirror([frame.code for frame in frames])
 
     def place(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a complete segment of encoded frames."""

@@ -1,15 +1,20 @@
 """Who was taken for whom."""
 
+from collections.abc import Sequence
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from model_inspector.style import FAINT, INK, PAPER, bare, canvas, explain, in_house_style, lines_of, tiles
+from model_inspector.lettering import columns, lines_of
+from model_inspector.style import FAINT, INK, PAPER, bare, canvas, explain, in_house_style, tiles
 from model_trainer.evaluation import Evaluation, wilson_interval
 
 CELL_IN = 0.42
+NAME_COLUMNS = 24
+_COLUMN_IN = 0.08
 SHADES = mpl.colormaps["Blues"]
 _DARKEST = 0.85
 _LIGHT_FROM = 0.55
@@ -34,7 +39,7 @@ def confusion_picture(evaluation: Evaluation) -> Figure:
     explain(
         axes,
         "row: what was done; column: what it was taken for; diagonal: right; shade: share of the row",
-        width_in - 2,
+        width_in - _widest_in(evaluation.labels) - 0.5,
     )
     return figure
 
@@ -48,6 +53,10 @@ def _counts(evaluation: Evaluation) -> tuple[NDArray[np.intp], list[str]]:
     return np.column_stack([counts, rejected]), [*evaluation.labels, "(rejected)"]
 
 
+def _widest_in(labels: Sequence[str]) -> float:
+    return _COLUMN_IN * max(columns(line) for label in labels for line in lines_of(label, NAME_COLUMNS).split("\n"))
+
+
 def _write_counts(axes: Axes, counts: NDArray[np.intp], shares: NDArray[np.float64]) -> None:
     for (row, col), count in np.ndenumerate(counts):
         if count:
@@ -59,9 +68,13 @@ def _name_rows_and_columns(axes: Axes, evaluation: Evaluation, names: list[str])
     bare(axes)
     rows = range(len(evaluation.labels))
     axes.set_xticks(
-        range(len(names)), [lines_of(name, 24) for name in names], rotation=50, ha="right", rotation_mode="anchor"
+        range(len(names)),
+        [lines_of(name, NAME_COLUMNS) for name in names],
+        rotation=50,
+        ha="right",
+        rotation_mode="anchor",
     )
-    axes.set_yticks(rows, [lines_of(label, 24) for label in evaluation.labels])
+    axes.set_yticks(rows, [lines_of(label, NAME_COLUMNS) for label in evaluation.labels])
     axes.tick_params(length=0, labelcolor=INK)
     for row, score in zip(rows, evaluation.per_class.values(), strict=True):
         share = f"{score.accuracy:.0%}" if score.n else "not done"

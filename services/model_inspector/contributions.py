@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from model_inspector.anatomy import Floats, complete_weights
-from som_classifier.codes import left_handed
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.streams import Frame
 
@@ -72,5 +71,5 @@ def contributions(model: PyramidModel, frames: Sequence[Frame], instead: str | N
     return Contributions(
         winner, second, (float(scores[winner]), float(scores[second])), units * vector,
         float(offsets[winner] - offsets[second]), vector**4,
-        model.description.mirrors and left_handed(codes),
+        model.reads_in_mirror(codes),
     )  # fmt: skip

@@ -12,7 +12,8 @@ from model_inspector.anatomy import Floats, Indices
 from model_inspector.answered import Answered, encoded
 from model_inspector.bodies import Pen, draw_bodies
 from model_inspector.labels import spread
-from model_inspector.style import HALO, action_colours, axes_at, bare, board, in_house_style, lines_of
+from model_inspector.lettering import columns, lines_of, shortened
+from model_inspector.style import HALO, action_colours, axes_at, bare, board, in_house_style
 from model_inspector.wording import headline
 from som_classifier.model import Model
 from som_classifier.recognition import Recognition
@@ -20,10 +21,13 @@ from som_classifier.recognition import Recognition
 NAMED = 5
 FIGURES = 6
 MOST_INSTANTS = 200
-SIZE_IN = 10.0, 7.0
+SIZE_IN = 10.5, 7.0
 LINES_IN, DECISION_IN = (0.9, 3.35, 6.9, 2.9), (0.9, 2.25, 6.9, 0.85)
 """Left, bottom, width and height."""
 ACTOR_IN = 1.6
+NAME_COLUMNS = 28
+"""What there is room for at the right of the axes."""
+DONE = " (done)"
 _BROAD = 0.011
 """What a letter takes of the width of the axes."""
 _GAP = 0.07
@@ -82,13 +86,16 @@ def _draw_lines(axes: Axes, told: Course, labels: Sequence[str], done: str | Non
     seconds, activations = told.seconds[:-1], told.activations[:-1]
     named = _named(told, labels, done)
     colours = action_colours(len(labels))
-    axes.plot(seconds, np.delete(activations, named, axis=1), color="#cccccc", linewidth=0.8)
+    dot = "o" if len(seconds) == 1 else ""
+    axes.plot(seconds, np.delete(activations, named, axis=1), dot + "-", color="#cccccc", linewidth=0.8, clip_on=False)
     for rank, index in enumerate(named):
-        axes.plot(seconds, activations[:, index], color=colours[index], linewidth=2.8 if rank == 0 else 1.6)
+        width = 2.8 if rank == 0 else 1.6
+        axes.plot(seconds, activations[:, index], dot + "-", color=colours[index], linewidth=width, clip_on=False)
     ends = [float(activations[-1, index]) for index in named]
     height = float(np.ptp(activations)) or 1.0
     for index, end, place in zip(named, ends, spread(ends, _GAP * height), strict=True):
-        name = lines_of(labels[index], 22, 1) + (" (done)" if labels[index] == done else "")
+        done_too = DONE if labels[index] == done else ""
+        name = shortened(labels[index], NAME_COLUMNS - len(done_too)) + done_too
         _name_line(axes, name, (float(seconds[-1]), end), place, colours[index])
     axes.set_ylabel("activation (cosine)")
     axes.set_title("each line an action's neuron: how much the frames so far are like what it learnt; grey: the others")
@@ -122,13 +129,13 @@ def _draw_decision(axes: Axes, told: Course, labels: Sequence[str]) -> None:
     )  # fmt: skip
     begins = np.flatnonzero(np.concatenate([[True], winners[1:] != winners[:-1]]))
     for first, last in zip(begins, [*begins[1:], len(winners)], strict=True):
-        name = lines_of(labels[winners[first]], 22, 1)
-        if (seconds[last] - seconds[first]) / max(seconds[-1], 1e-9) > _BROAD * len(name):
+        name = shortened(labels[winners[first]], NAME_COLUMNS)
+        if (seconds[last] - seconds[first]) / max(seconds[-1], 1e-9) > _BROAD * columns(name):
             middle = (seconds[first] + seconds[last]) / 2
             axes.text(middle, 0.45, name, ha="center", va="center", path_effects=HALO, fontsize=8)
     axes.set_ylim(0, 1)
     axes.set_ylabel("confidence")
-    answer = lines_of(labels[told.winners[-1]], 22)
+    answer = lines_of(labels[told.winners[-1]], NAME_COLUMNS - 5)
     axes.text(
         1.04, 0.5, f"answer at the end:\n{answer} {told.confidences[-1]:.2f}", transform=axes.transAxes, va="center"
     )

@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
+from model_inspector.lettering import columns
+
 Box = tuple[float, float, float, float]
 """Left, top, right, bottom; y down."""
 
@@ -41,7 +43,7 @@ class Room:
 def text_size(text: str, size: float) -> tuple[float, float]:
     """Return about how wide and high some lines of text are, in the unit of the letters' size."""
     lines = text.split("\n")
-    return CHARACTER * size * max(map(len, lines)), LINE * size * len(lines)
+    return CHARACTER * size * max(map(columns, lines)), LINE * size * len(lines)
 
 
 def spread(wanted: list[float], distance: float) -> list[float]:

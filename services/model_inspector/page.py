@@ -7,15 +7,18 @@ from urllib.parse import quote
 
 from model_inspector.answered import Answered
 from model_inspector.inspection import Picture
+from model_inspector.lettering import shortened
+from model_inspector.style import unwritable
 from model_trainer.evaluation import Evaluation
 from som_classifier.model import Model
 
 STYLE_SHEET = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 75rem; margin: 2rem auto; padding: 0 1rem; }
+body { overflow-wrap: anywhere; }
 h1 { font-size: 1.6rem; margin-bottom: 0; }
-h2 { font-size: 1.2rem; margin-top: 3rem; border-top: 1px solid #ddd; padding-top: 1rem; overflow-wrap: anywhere; }
+h2 { font-size: 1.2rem; margin-top: 3rem; border-top: 1px solid #ddd; padding-top: 1rem; }
 p, figcaption { color: #555; max-width: 45rem; }
-nav a { margin-right: 1rem; white-space: nowrap; }
+nav a { margin-right: 1rem; display: inline-block; }
 .pictures { display: grid; gap: 1.5rem; align-items: start; }
 .pictures { grid-template-columns: repeat(auto-fill, minmax(min(34rem, 100%), 1fr)); }
 figure { margin: 0; }
@@ -42,7 +45,7 @@ def page(
     """
     sections = [(title, list(group)) for title, group in groupby(planned, key=lambda picture: picture.section)]
     links = [f'<a href="#{number}">{escape(title)}</a>' for number, (title, _) in enumerate(sections)]
-    facts = [model_facts(model), *test_facts(model, segments, evaluation)]
+    facts = [model_facts(model), *test_facts(model, segments, evaluation), *missing_letters(model, segments)]
     return "\n".join(
         [
             '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
@@ -67,6 +70,16 @@ def model_facts(model: Model) -> str:
         f"Kind {about.kind}, preset {about.preset}, seed {about.seed}; trained on {about.samples} samples{people} of "
         f"{len(about.labels)} actions: {', '.join(about.labels)}."
     )
+
+
+def missing_letters(model: Model, segments: Sequence[Answered]) -> Iterable[str]:
+    """Say which letters of the actions' names the pictures cannot show."""
+    names = [*model.about.labels, *(segment.label or "" for segment in segments)]
+    if letters := unwritable(" ".join(names)):
+        yield (
+            f"Boxes stand for {shortened(letters, 40)} in the pictures: no font here has these letters. A font such as "
+            "Noto Sans for their script, or --format svg, shows them."
+        )  # fmt: skip
 
 
 def test_facts(model: Model, segments: Sequence[Answered], evaluation: Evaluation | None) -> Iterable[str]:

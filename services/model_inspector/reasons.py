@@ -13,9 +13,9 @@ from model_inspector.answered import Answered, encoded
 from model_inspector.arm_map import ArmsOnBodies, fastest_m
 from model_inspector.bodies import LONGEST_ARROW_M, Pen, draw_arrows, draw_bodies
 from model_inspector.contributions import Contributions, contributions
+from model_inspector.lettering import shortened
 from model_inspector.movement_map import arrows_of
 from model_inspector.style import FAINT, PAPER, axes_at, bare, board, in_house_style
-from model_inspector.wording import shortened
 from som_classifier.handedness import mirrored
 from som_classifier.pyramid_model import PyramidModel
 

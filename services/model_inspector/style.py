@@ -1,6 +1,7 @@
 """How all pictures look: type, colours that do not rest on telling red from green, and how they are saved."""
 
 import textwrap
+import warnings
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -11,9 +12,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from matplotlib.font_manager import get_font_names
+from matplotlib.font_manager import findfont, get_font, get_font_names
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
+
+from model_inspector.lettering import lines_of, on_one_line
 
 Floats = NDArray[Any]
 
@@ -28,7 +31,11 @@ _HUES = (
 )  # fmt: skip
 _LIGHTER = 0.45
 _CHARACTERS_PER_IN, _TITLE_CHARACTERS_PER_IN = 14.0, 8.5
-_WIDER_SCRIPTS = ("Noto Sans CJK JP", "Noto Sans CJK SC", "Noto Sans Arabic", "Noto Sans Devanagari", "Unifont")
+_WIDER_SCRIPTS = (
+    "Noto Sans CJK JP", "Noto Sans CJK SC", "Noto Sans Arabic", "Noto Sans Devanagari", "Noto Sans Thai", "Noto Emoji",
+    "WenQuanYi Zen Hei", "Droid Sans Fallback", "Unifont", "Arial Unicode MS", "Hiragino Sans", "Apple SD Gothic Neo",
+    "Yu Gothic", "Microsoft YaHei", "Malgun Gothic", "Nirmala UI", "Leelawadee UI",
+)  # fmt: skip
 
 STYLE: Any = {
     "font.family": ["DejaVu Sans", *(name for name in _WIDER_SCRIPTS if name in get_font_names())],
@@ -82,8 +89,8 @@ def board(width_in: float, height_in: float, title: str) -> Figure:
 
 
 def _titled(figure: Figure, title: str) -> Figure:
-    title = "\n".join(textwrap.wrap(title, int(figure.get_figwidth() * _TITLE_CHARACTERS_PER_IN)))
-    figure.suptitle(title, x=0.005, ha="left")
+    broken = lines_of(title, figure.get_figwidth() * _TITLE_CHARACTERS_PER_IN, lines=3)
+    figure.suptitle(broken, x=0.005, ha="left")
     return figure
 
 
@@ -96,12 +103,22 @@ def axes_at(figure: Figure, left_in: float, bottom_in: float, width_in: float, h
 def save(figure: Figure, path: Path) -> None:
     """Write a picture in the format that the file's name says; the same picture makes the same file.
 
+    Boxes stand for letters that no font has; `unwritable` names those.
+
     Raises:
         OSError: the file cannot be written.
     """
     metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(STYLE), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", r"Glyph .* missing from font")
         figure.savefig(path, dpi=DOTS_PER_INCH, metadata=metadata)
+
+
+def unwritable(text: str) -> str:
+    """Return the letters that no font of this computer has, each once; they are drawn as boxes."""
+    fonts = [get_font(findfont(family)) for family in STYLE["font.family"]]
+    letters = sorted(set(on_one_line(text)))
+    return "".join(letter for letter in letters if not any(font.get_char_index(ord(letter)) for font in fonts))
 
 
 def explain(axes: Axes, text: str, width_in: float) -> None:
@@ -140,8 +157,3 @@ def paler(colours: Floats, strength: Floats) -> Floats:
     """Mix colours (…, 3) with white: at strength 1 as they are, at 0 white."""
     mixed: Floats = 1 - np.asarray(strength)[..., None] * (1 - colours)
     return mixed
-
-
-def lines_of(text: str, width: int, lines: int = 2) -> str:
-    """Break a name into few short lines, its end cut off where it does not fit."""
-    return "\n".join(textwrap.wrap(text, width, max_lines=lines, placeholder="…") or [text])

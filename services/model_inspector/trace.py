@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
 from actum.node import SECOND_NS
+from actum.som import Som
 from model_inspector.anatomy import Anatomy, Floats, Indices
 from model_inspector.answered import Answered, encoded
 from model_inspector.posture_map import draw_postures, draw_units, map_size, name_sides
@@ -26,7 +27,8 @@ _LATEST = 0.88
 @in_house_style
 def trace_picture(anatomy: Anatomy, answered: Answered) -> Figure:
     """Draw the winners of a segment, one after the other, over the pale posture map."""
-    winners = anatomy.winners(encoded(anatomy.model, answered.frames))
+    frames = encoded(anatomy.model, answered.frames)
+    winners = anatomy.winners(frames)
     units, first = stays(winners)
     width, height = map_size(anatomy.postures)
     figure = canvas(width + 0.9, height, headline(answered))
@@ -35,7 +37,8 @@ def trace_picture(anatomy: Anatomy, answered: Answered) -> Figure:
     when = first / max(len(winners) - 1, 1)
     _draw_way(axes, anatomy.postures.coordinates[units][:, ::-1], when)
     _draw_cards(axes, anatomy, units, when)
-    axes.set_title(f"{len(units)} stays on {len(np.unique(units))} units, framed in the colour of the first")
+    mirror = "; the left arm acts: read in a mirror" if anatomy.in_mirror(frames) else ""
+    axes.set_title(f"{len(units)} stays on {len(np.unique(units))} units, framed in the colour of the first{mirror}")
     name_sides(axes)
     seconds = (answered.frames[-1].stamp_ns - answered.frames[0].stamp_ns) / SECOND_NS
     _add_time_scale(figure, axes, seconds)
@@ -80,12 +83,21 @@ def _draw_cards(axes: Axes, anatomy: Anatomy, units: Indices, when: Floats) -> N
         )  # fmt: skip
         axes.add_patch(card)
     draw_units(axes, anatomy, visited, CARD, zorder=5)
-    start, end = places[units[0]], places[units[-1]]
-    if units[0] == units[-1]:
-        _name(axes, "start and end", start, above=start[1] > 0)
+    start, end = units[0], units[-1]
+    above, below = (free_side(anatomy.postures, unit, visited, side) for unit, side in ((start, -1), (end, 1)))
+    if start == end:
+        _name(axes, "start and end", places[start], above < 0)
     else:
-        _name(axes, "start", start, above=start[1] > 0)
-        _name(axes, "end", end, above=end[1] == anatomy.postures.rows - 1)
+        _name(axes, "start", places[start], above < 0)
+        _name(axes, "end", places[end], below < 0)
+
+
+def free_side(som: Som, unit: int, visited: Indices, preferred: int) -> int:
+    """Return on which side of a unit, −1 above or 1 below, a name covers no visited one; the preferred if both do."""
+    rows = {side: unit // som.cols + side for side in (preferred, -preferred)}
+    on_map = [side for side, row in rows.items() if 0 <= row < som.rows]
+    free = [side for side in on_map if unit + side * som.cols not in visited]
+    return next(iter(free or on_map), preferred)
 
 
 def _name(axes: Axes, name: str, place: Floats, above: bool) -> None:

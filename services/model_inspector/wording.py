@@ -1,8 +1,7 @@
 """What pictures say in words."""
 
 from model_inspector.answered import Answered
-
-LONGEST = 24
+from model_inspector.lettering import shortened
 
 
 def headline(answered: Answered) -> str:
@@ -19,8 +18,3 @@ def verdict(answered: Answered) -> str:
     taken = "recognised" if answered.label is None or answered.correct else "taken for"
     unsure = " (unfamiliar)" if answered.recognition.unknown else ""
     return f"{taken} {shortened(found)} {confidence:.2f}{unsure}"
-
-
-def shortened(text: str, longest: int = LONGEST) -> str:
-    """Cut the end of a long name off."""
-    return text if len(text) <= longest else text[: longest - 1] + "…"

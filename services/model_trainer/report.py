@@ -1,5 +1,7 @@
 """An evaluation as tables for the terminal."""
 
+from collections import Counter
+
 from rich.box import SIMPLE
 from rich.console import Group
 from rich.table import Table
@@ -24,25 +26,25 @@ def summary(evaluation: Evaluation, seconds: float) -> Text:
 
 def per_class(evaluation: Evaluation) -> Table:
     """Tabulate each action's tests, right answers and rejections."""
-    table = Table("action", title="per action")
+    table = Table(title="per action")
+    table.add_column("action", overflow="fold")
     for heading in ("tests", "recognised", "rejected", "accuracy"):
-        table.add_column(heading, justify="right")
+        table.add_column(heading, justify="right", no_wrap=True)
     for label, score in evaluation.per_class.items():
         accuracy = f"{score.accuracy:.1%}" if score.n else "-"
         table.add_row(Text(label), str(score.n), str(score.correct), str(score.rejected), accuracy)
     return table
 
 
-def confusion(evaluation: Evaluation) -> Table:
-    """Tabulate actions done (rows) against answered (columns, by the row's number; none: rejected)."""
-    table = Table(title="confusion: rows done, columns answered", box=SIMPLE, padding=(0, 1, 0, 0))
-    table.add_column("", justify="right")
-    table.add_column("action", no_wrap=True)
-    for number in range(1, len(evaluation.labels) + 1):
-        table.add_column(str(number), justify="right")
-    table.add_column("none", justify="right", no_wrap=True)
-    rows = zip(evaluation.labels, evaluation.confusion, evaluation.per_class.values(), strict=True)
-    for number, (label, counts, score) in enumerate(rows, start=1):
-        cells = [str(count) if count else "·" for count in counts]
-        table.add_row(str(number), Text(label), *cells, str(score.rejected) if score.rejected else "·")
+def confusion(evaluation: Evaluation) -> Table | Text:
+    """Tabulate what was taken for what, the most frequent first."""
+    mistakes = Counter((wrong.label, wrong.predicted) for wrong in evaluation.predictions if not wrong.correct)
+    if not mistakes:
+        return Text("confusion: none")
+    table = Table(title="confusion", box=SIMPLE)
+    table.add_column("done", overflow="fold")
+    table.add_column("answered", overflow="fold")
+    table.add_column("times", justify="right", no_wrap=True)
+    for (done, answered), times in sorted(mistakes.items(), key=lambda item: (-item[1], item[0][0], item[0][1] or "")):
+        table.add_row(Text(done), Text("(rejected)" if answered is None else answered), str(times))
     return table

@@ -24,16 +24,16 @@ _UM_PER_M = 1e6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Code:
-    """One frame: the running totals before and after it, and the posture map's winner.
+    """One frame: the running totals before and after it, and the posture map's winners.
 
-    The sums of activities are of the actor as seen and in a mirror.
+    The sums of activities and the winners are of the actor as seen and in a mirror.
     """
 
     before: Instant
     after: Instant
     totals_before: Totals
     totals: Totals
-    winner: int
+    winners: tuple[int, int]
 
 
 class FrameEncoder:
@@ -57,8 +57,8 @@ class FrameEncoder:
         self._totals[_PARTS] += moved_um
         self._totals[_LIMBS] += moments(frame.movement.posture).ravel()
         self._totals[_MISSING] += len(frame.missing)
-        winner = int(sides[0, : len(self._first.postures.weights)].argmax())
-        return Code(before, self._instant, totals_before, self._totals, winner)
+        seen, mirrored = sides[:, : len(self._first.postures.weights)].argmax(axis=1).tolist()
+        return Code(before, self._instant, totals_before, self._totals, (seen, mirrored))
 
 
 def trail_of(codes: Sequence[Code], in_mirror: bool) -> Trail:

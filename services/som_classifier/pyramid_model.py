@@ -156,12 +156,22 @@ class PyramidModel(Model):
 
     def trail(self, codes: Sequence[Code]) -> Trail:
         """Return a segment's running sums, of the actor as seen or in a mirror."""
-        return trail_of(codes, in_mirror=self.description.mirrors and left_handed(codes))
+        return trail_of(codes, self.reads_in_mirror(codes))
+
+    def reads_in_mirror(self, codes: Sequence[Code]) -> bool:
+        """Tell whether a segment is read as its mirror image, because the left arm acts."""
+        return self.description.mirrors and left_handed(codes)
+
+    def winners(self, frames: Sequence[Frame]) -> NDArray[np.intp]:
+        """Return the posture map's winner at each frame, of the actor as seen or in a mirror, shape (n,)."""
+        codes: list[Code] = [frame.code for frame in frames]
+        side = int(self.reads_in_mirror(codes))
+        return np.array([code.winners[side] for code in codes], dtype=np.intp)
 
     def trace(self, frames: Sequence[Frame]) -> NDArray[np.float64]:
         """Return row and column of the posture map's winners, repeats removed, shape (n, 2)."""
         coordinates: NDArray[np.float64] = self.first.postures.coordinates
-        return coordinates[without_repeats(np.array([frame.code.winner for frame in frames]))]
+        return coordinates[without_repeats(self.winners(frames))]
 
     def maps(self, frames: Sequence[Frame]) -> Arrays:
         """Return the mean activity of the first maps, relative to the most active unit's, and that of actions."""

@@ -5,7 +5,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from model_inspector.labels import Room, spread, text_size
-from model_inspector.style import lines_of
 
 heights = st.lists(st.floats(-1, 1), max_size=8)
 
@@ -43,9 +42,3 @@ def test_a_box_is_moved_onto_the_page() -> None:
 def test_longer_names_are_wider_and_more_lines_higher() -> None:
     assert text_size("abcd", 1) == pytest.approx((2 * text_size("ab", 1)[0], text_size("ab", 1)[1]))
     assert text_size("ab\ncd", 1)[1] == pytest.approx(2 * text_size("ab", 1)[1])
-
-
-def test_a_long_name_is_broken_and_cut() -> None:
-    assert lines_of("horizontal arm wave", 14) == "horizontal arm\nwave"
-    assert max(map(len, lines_of("x" * 90, 14).split("\n"))) <= 14
-    assert lines_of("", 14) == ""

@@ -1,4 +1,5 @@
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -58,3 +59,10 @@ def test_names_are_text_and_never_markup(anatomy: Anatomy) -> None:
     written = page(anatomy.model, [], None, [picture], {picture.name: str(Path("why-a b&c.png"))})
     assert "<script>" not in written
     assert 'src="why-a%20b%26c.png"' in written
+
+
+def test_letters_that_the_pictures_cannot_show_are_named(segments: list[Answered], anatomy: Anatomy) -> None:
+    known = page(anatomy.model, segments, None, [], {})
+    strange = [replace(segments[0], label="\ue000push")]
+    assert "Boxes stand for" not in known
+    assert "Boxes stand for \ue000 in the pictures" in page(anatomy.model, strange, None, [], {})

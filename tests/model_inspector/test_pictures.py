@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.text import Text
 
@@ -18,6 +19,7 @@ from model_inspector.action_map import action_map
 from model_inspector.anatomy import Anatomy, PaperAnatomy, PyramidAnatomy
 from model_inspector.answered import Answered, answered_segments
 from model_inspector.confusion import confusion_picture
+from model_inspector.course import course_picture
 from model_inspector.inspection import Picture, pictures, write
 from model_inspector.posture_map import MOST_FIGURES, drawn_units
 from model_inspector.style import action_colours
@@ -107,8 +109,9 @@ def many_actions(labels: list[str]) -> PaperAnatomy:
         [f"action {number}" for number in range(25)],
         ["a name that goes on and on " * 6, "put_down_the_thing_that_was_picked_up_before_it_was_put_down"],
         ["costs $5 and {x}", "_hidden $", "<b>&amp;"],
+        ["\ue000\ue001", "two\nlines\tand \x07 bell"],
     ],
-    ids=["many", "long", "odd"],
+    ids=["many", "long", "odd", "undrawable"],
 )
 def test_many_long_and_odd_names_are_drawn(labels: list[str], record: Record, tmp_path: Path) -> None:
     anatomy = many_actions(labels)
@@ -118,6 +121,36 @@ def test_many_long_and_odd_names_are_drawn(labels: list[str], record: Record, tm
     planned = list(pictures(anatomy, segments, evaluate(anatomy.model, [recording])))
     chosen = [picture for picture in planned if not picture.name.startswith(("posture", "trace"))]
     assert all(imread(file).size for file in drawn(chosen, tmp_path))
+
+
+@pytest.mark.parametrize(
+    "label", ["pick_up_the_cup_and_then_put_it_back", "put down what was taken up", "PICK UP CUP NOW"]
+)
+def test_no_name_leaves_the_page(label: str, record: Record) -> None:
+    anatomy = many_actions([label, f"{label} again"])
+    skeletons, marks = performance(["push"])
+    recording = record(skeletons, [marks[0].model_copy(update={"label": label}), marks[1]])
+    (answered,) = answered_segments(anatomy, [recording])
+    confusion = confusion_picture(evaluate(anatomy.model, [recording]))
+    for figure in (course_picture(anatomy.model, answered), action_map(anatomy), confusion):
+        assert beyond_the_page(figure) == []
+
+
+def beyond_the_page(figure: Figure) -> list[str]:
+    """Name the texts that are not wholly on the page, give or take two dots."""
+    figure.draw_without_rendering()
+    page = figure.bbox.padded(2)
+    drawn_texts = [text for text in figure.findobj(Text) if text.get_text() and text.get_visible()]
+    boxes = [(text.get_text(), text.get_window_extent()) for text in drawn_texts]
+    return [name for name, box in boxes if not (page.contains(*box.min) and page.contains(*box.max))]
+
+
+def test_the_one_instant_of_the_shortest_segment_is_a_dot(anatomy: Anatomy, record: Record) -> None:
+    skeletons, _ = performance(["push"])
+    recording = record(skeletons, still(anatomy.model.min_frames))
+    (answered,) = answered_segments(anatomy, [recording])
+    axes = course_picture(anatomy.model, answered).axes[0]
+    assert {line.get_marker() for line in axes.lines} == {"o"}
 
 
 def test_segments_without_labels_get_pictures_but_no_confusion(

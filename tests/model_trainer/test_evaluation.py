@@ -17,7 +17,7 @@ from model_trainer.evaluation import (
     leave_one_person_out,
     wilson_interval,
 )
-from model_trainer.report import report
+from model_trainer.report import confusion, report
 from model_trainer.samples import samples_from
 from model_trainer.training import TrainingError, train
 from people import FRAME_NS, skeleton
@@ -156,6 +156,22 @@ def test_the_report_shows_accuracy_interval_classes_and_confusion() -> None:
     assert f"60.0% (3 of 5, 95 % interval {low:.1%} to {high:.1%})" in text
     assert "33.3%" in text
     assert "confusion" in text
+
+
+def test_no_mistake_is_lost_however_many_actions_there_are_and_however_long_their_names() -> None:
+    console = Console(record=True, width=80)
+    labels = [f"{number}_pick_up_the_cup_and_put_it_down_again_slowly_with_care" for number in range(10, 50)]
+    answers = [None, *labels[:-1]]
+    predictions = [Prediction("a.mcap", "1", *pair) for pair in zip(labels, answers, strict=True) for _ in range(140)]
+    console.print(confusion(Evaluation(tuple(predictions))))
+    text = console.export_text()
+    assert text.count(" 140 ") == len(labels)
+    assert text.count("(rejected)") == 1
+    assert "48_pick" in text and "49_pick" in text
+
+
+def test_the_report_of_right_answers_has_no_confusion() -> None:
+    assert str(confusion(Evaluation((Prediction("a.mcap", "1", "push", "push"),)))) == "confusion: none"
 
 
 @pytest.mark.parametrize("labels", [["reach [left]", "reach [right]"], ["reach [/left]", "b"]])

@@ -242,6 +242,13 @@ def test_the_trace_is_where_the_postures_won() -> None:
     np.testing.assert_array_equal(model().trace(encoded(model(), sample)), model().first.postures.coordinates[kept])
 
 
+def test_who_acts_with_the_left_arm_leaves_the_trace_of_the_mirror_image() -> None:
+    for sample in SAMPLES[:2]:
+        right, left = encoded(model(), sample), encoded(model(), in_a_mirror(sample))
+        assert model().reads_in_mirror([frame.code for frame in left])
+        np.testing.assert_array_equal(model().trace(left), model().trace(right))
+
+
 def test_the_maps_show_where_a_segment_was_active() -> None:
     """Each map's most active unit is 1, whatever was summed before."""
     frames = encoded(model(), one_after_the_other(SAMPLES[1], SAMPLES[0]))[len(SAMPLES[1].stamps_ns) :]

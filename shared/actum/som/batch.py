@@ -1,6 +1,7 @@
 """Batch training: every unit moves to the mean of what its neighbourhood won (Kohonen, 2013), by matrix products."""
 
 from dataclasses import replace
+from functools import reduce
 from typing import Any, Generic
 
 import numpy as np
@@ -79,18 +80,31 @@ def _columns(vectors: NDArray[Any]) -> tuple[Doubles, list[Doubles | None]]:
 
 
 def _smoothed(sums: Doubles, grid: Grid, radius: float) -> Doubles:
-    """Return G sums; on a rectangular grid G is the product of a Gaussian over rows and one over columns."""
-    if grid.topology == "hexagonal":
-        return producted(_pairwise(grid.positions, radius), sums)
-    width = sums.shape[1]
-    over_rows = producted(_pairwise(np.arange(grid.rows)[:, None], radius), sums.reshape(grid.rows, -1))
-    by_cols = over_rows.reshape(grid.rows, grid.cols, width).swapaxes(0, 1).reshape(grid.cols, -1)
-    over_both = producted(_pairwise(np.arange(grid.cols)[:, None], radius), by_cols)
-    return over_both.reshape(grid.cols, grid.rows, width).swapaxes(0, 1).reshape(-1, width)
+    """Return G sums: G is the product of a Gaussian over rows and one over columns, for rows shifted alike."""
+    by_row = sums.reshape(grid.rows, grid.cols, -1)
+    smoothed = np.empty_like(by_row)
+    shifts = np.unique(grid.shifts)
+    for shift in shifts:
+        smoothed[grid.shifts == shift] = reduce(
+            np.add, (_spread(by_row, grid, radius, shift, start) for start in shifts)
+        )
+    return smoothed.reshape(sums.shape)
 
 
-def _pairwise(places: NDArray[Any] | NDArray[np.intp], radius: float) -> Doubles:
-    """Return exp(−r² / 2 radius²) between all places, shape (n, n)."""
-    distances2 = np.square(places[:, None] - places).sum(axis=2)
-    gaussians: Doubles = np.exp(-distances2 / (2 * radius**2))
+def _spread(by_row: Doubles, grid: Grid, radius: float, shift: int, start: int) -> Doubles:
+    """Return what the rows of one shift get from those of another, shape (rows so shifted, cols, width)."""
+    to, origin = np.flatnonzero(grid.shifts == shift), np.flatnonzero(grid.shifts == start)
+    cols, width = np.arange(grid.cols), by_row.shape[2]
+    over_rows = producted(
+        _gaussians(to * grid.row_spacing, origin * grid.row_spacing, radius), by_row[origin].reshape(len(origin), -1)
+    )
+    by_cols = over_rows.reshape(len(to), grid.cols, width).swapaxes(0, 1).reshape(grid.cols, -1)
+    over_both = producted(_gaussians(cols + shift / grid.substeps, cols + start / grid.substeps, radius), by_cols)
+    spread: Doubles = over_both.reshape(grid.cols, len(to), width).swapaxes(0, 1)
+    return spread
+
+
+def _gaussians(places: NDArray[Any], others: NDArray[Any], radius: float) -> Doubles:
+    """Return exp(−r² / 2 radius²) between places on a line, shape (n, m)."""
+    gaussians: Doubles = np.exp(-np.square(places[:, None] - others) / (2 * radius**2))
     return gaussians

@@ -40,14 +40,15 @@ class Grid:
 
     @cached_property
     def coordinates(self) -> NDArray[np.float64]:
-        """Row and column of each unit, shape (nodes, 2)."""
-        return np.stack(np.divmod(np.arange(self.nodes), self.cols), axis=1).astype(np.float64)
+        """Row and column of each unit, read-only, shape (nodes, 2)."""
+        return _fixed(np.stack(np.divmod(np.arange(self.nodes), self.cols), axis=1).astype(np.float64))
 
     @cached_property
     def positions(self) -> NDArray[np.float64]:
-        """Centre of each unit as (down, right) in grid units, shape (nodes, 2)."""
+        """Centre of each unit as (down, right) in grid units, read-only, shape (nodes, 2)."""
         row, col = self.coordinates.T
-        return np.stack([row * self.row_spacing, col + np.tile(self.shifts[:, None], self.cols).ravel() / 2], axis=1)
+        right = col + np.tile(self.shifts[:, None], self.cols).ravel() / 2
+        return _fixed(np.stack([row * self.row_spacing, right], axis=1))
 
     @property
     def row_spacing(self) -> float:
@@ -107,3 +108,8 @@ class Grid:
             possible = " or ".join(map(str, known))
             raise ValueError(f"units of a {self.topology} grid have {possible} neighbours, not {count}")
         return known[count]
+
+
+def _fixed(places: NDArray[np.float64]) -> NDArray[np.float64]:
+    places.setflags(write=False)
+    return places

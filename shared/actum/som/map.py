@@ -60,7 +60,7 @@ class Som(Codebook):
         to the winner.
 
         Raises:
-            ValueError: the vectors do not fit the map.
+            ValueError: the vectors do not fit the map, or α or a radius makes no sense.
         """
         training = SequentialTraining.drawn(self, vectors, steps, schedule, rng)
         while training.steps_done < steps:
@@ -100,7 +100,7 @@ class Som(Codebook):
         """Return the map after one adaptation to each row of (n, dim), in their order, at constant α and radius.
 
         Raises:
-            ValueError: the vectors do not fit the map.
+            ValueError: the vectors do not fit the map, α is not from 0 to 1, or the radius not above 0.
         """
         inputs = training_vectors(vectors, self.dim, self.dtype)
         constant = Steps(np.full(len(inputs), alpha), np.full(len(inputs), radius))

@@ -62,7 +62,13 @@ class Steps:
 
 
 def falling(first: float, last: float, steps: int) -> Array:
-    """Return values (steps,) that fall exponentially from first to last."""
+    """Return values (steps,) that fall exponentially from first to last.
+
+    Raises:
+        ValueError: one of these is not finite and above 0.
+    """
+    if not (0 < first < np.inf and 0 < last < np.inf):
+        raise ValueError(f"nothing falls exponentially from {first} to {last}: both must be finite and above 0")
     return np.geomspace(first, last, steps)
 
 

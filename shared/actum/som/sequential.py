@@ -65,7 +65,7 @@ class SequentialTraining(Generic[Map]):
         """Prepare `steps` steps on rows of (n, dim) drawn at random, with replacement.
 
         Raises:
-            ValueError: the vectors do not fit the map.
+            ValueError: the vectors do not fit the map, or α or radius make no sense.
         """
         inputs = training_vectors(vectors, som.dim, som.dtype)
         return cls(som, inputs, rng.integers(len(inputs), size=steps), decay)
@@ -146,8 +146,8 @@ def _checked_order(order: ArrayLike, rows: int) -> NDArray[np.intp]:
 
 def _checked_alphas(alphas: ArrayLike) -> NDArray[np.float64]:
     values = np.array(alphas, np.float64)
-    if not np.isfinite(values).all():
-        raise ValueError("adaptation strengths (alpha) must be finite")
+    if not ((values >= 0) & (values <= 1)).all():
+        raise ValueError(f"adaptation strengths (alpha) must be from 0 to 1; got {values.min()} to {values.max()}")
     return values
 
 

@@ -51,10 +51,14 @@ def reading(path: Path, file_format: str) -> Iterator[Mapping[str, NDArray[Any]]
         SomError: the file is missing, foreign or damaged.
     """
     try:
-        with path.open("rb") as stored, np.load(stored, allow_pickle=False) as file:
-            if str(file["format"]) != file_format:
-                raise SomError(path, f"its format is {str(file['format'])!r}, not {file_format!r}")
-            yield file
+        with path.open("rb") as stored:
+            if not zipfile.is_zipfile(stored):
+                raise SomError(path, "this is no npz file")
+            stored.seek(0)
+            with np.load(stored, allow_pickle=False) as file:
+                if str(file["format"]) != file_format:
+                    raise SomError(path, f"its format is {str(file['format'])!r}, not {file_format!r}")
+                yield file
     except SomError:
         raise
     except FileNotFoundError:

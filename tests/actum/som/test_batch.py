@@ -1,5 +1,7 @@
 """Batch training and the linear start, against the equation and plain principal components."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -32,6 +34,18 @@ def test_an_epoch_moves_every_unit_to_the_mean_of_its_neighbourhood(
         np.testing.assert_allclose(training.som.weights, expected, atol=tolerance)
     assert training.epochs_done == training.epochs == 2
     assert training.som.weights.dtype == dtype
+
+
+def test_a_large_map_needs_no_table_of_all_pairs_of_units() -> None:
+    """48 × 48 units have 42 MB of distances."""
+    som = Som.random(48, 48, 2, rng(), topology="hexagonal")
+    training = BatchTraining(som, rng(1).random((100, 2)), [3.0])
+    tracemalloc.start()
+    try:
+        training.run_epoch()
+        assert tracemalloc.get_traced_memory()[1] < 10e6
+    finally:
+        tracemalloc.stop()
 
 
 def test_a_unit_that_no_input_reaches_stays_where_it_is() -> None:

@@ -1,12 +1,16 @@
 """The map as it is looked up: hand-computed cases and invariances, in both precisions."""
 
+import pickle
+from collections.abc import Callable
+from copy import copy, deepcopy
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from actum.som import Som
+from actum.som import Som, Topology
 
 
 def rng(seed: int = 0) -> np.random.Generator:
@@ -138,6 +142,46 @@ def test_vectors_of_another_length_are_refused() -> None:
     for lookup in (som.bmus, som.best_two, som.excess2s):
         with pytest.raises(ValueError, match="rows of 3"):
             lookup(np.zeros((5, 1)))
+
+
+def test_lists_and_values_that_are_no_floats_are_looked_up_like_arrays() -> None:
+    som = line_map()
+    assert som.bmu([3]) == som.bmu(np.array([3])) == som.bmus([[3]])[0] == 1
+    assert som.excess2([3]).tolist() == [5, 0, 45]
+    assert som.distances2([3]).tolist() == [9, 4, 49]
+    assert (Som.of_planes([[[0.0], [1.0], [10.0]]]).weights == som.weights).all()
+    pair = Som(1, 2, np.array([[0.0, 5.0], [5.0, 7.0]]))
+    assert pair.bmus([[3.0, None]]).tolist() == pair.bmus([[3.0, np.nan]]).tolist() == [1]
+
+
+@pytest.mark.parametrize("copied", [copy, deepcopy, lambda som: pickle.loads(pickle.dumps(som))])
+def test_copies_are_the_same_map_and_cannot_be_written_either(copied: Callable[[Som], Som]) -> None:
+    som = Som.random(3, 4, 2, rng(), np.float32, "hexagonal")
+    som.bmus([[0.5, 0.5]])
+    twin = copied(som)
+    assert (twin.rows, twin.cols, twin.topology, twin.dtype) == (3, 4, "hexagonal", np.float32)
+    assert (twin.weights == som.weights).all()
+    assert not twin.weights.flags.writeable
+
+
+@pytest.mark.parametrize("topology", ["rectangular", "hexagonal"])
+def test_where_units_stand_cannot_be_written(topology: Topology) -> None:
+    som = Som.random(3, 4, 2, rng(), topology=topology)
+    for places in (som.coordinates, som.grid.positions):
+        with pytest.raises(ValueError, match="read-only"):
+            np.multiply(places, 30, out=places)
+
+
+@pytest.mark.parametrize(("dtype", "allowed", "too_large"), [(np.float32, 1e18, 1e20), (np.float64, 1e150, 1e155)])
+def test_values_whose_squares_overflow_are_refused(dtype: type, allowed: float, too_large: float) -> None:
+    weights = rng().random((20, 4))
+    vectors = rng(1).random((30, 4))
+    som, large = Som(4, 5, weights.astype(dtype)), Som(4, 5, (weights * allowed).astype(dtype))
+    assert (large.bmus(vectors * allowed) == som.bmus(vectors)).all()
+    with pytest.raises(ValueError, match=f"too large for distances in {dtype.__name__}"):
+        Som(4, 5, (weights * too_large).astype(dtype))
+    with pytest.raises(ValueError, match=f"cannot train.* too large for distances in {dtype.__name__}"):
+        som.train_batch(vectors * too_large, 1, (1.0, 1.0))
 
 
 def test_infinite_components_are_refused() -> None:

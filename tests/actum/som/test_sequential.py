@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum.som import Schedule, SequentialTraining, Som, SomError, Steps
+from actum.som import Decay, Schedule, SequentialTraining, Som, SomError, Steps
 
 CONSTANT = Schedule(alpha=(0.5, 0.5), radius=(1.0, 1.0))
 FALLING = Schedule(alpha=(0.5, 0.02), radius=(5.0, 0.7))
@@ -122,11 +122,15 @@ def test_inputs_that_do_not_fit_are_refused(vectors: np.ndarray) -> None:
         ([-1, 0], Steps([0.1] * 2, [1.0] * 2), "rows -1 to 0"),
         ([0.5], Steps([0.1], [1.0]), "row numbers"),
         ([0], Steps([np.nan], [1.0]), "alpha"),
+        ([0, 0], Steps([0.5, 50.0], [1.0] * 2), "alpha.* from 0 to 1; got 0.5 to 50.0"),
+        ([0, 0], Steps([0.5, -0.1], [1.0] * 2), "alpha.* from 0 to 1"),
+        ([0, 0], Schedule((0.5, 0.0), (2.0, 1.0)), "exponentially from 0.5 to 0.0"),
+        ([0, 0], Schedule((0.5, 0.1), (2.0, -1.0)), "exponentially from 2.0 to -1.0"),
         ([0], Steps([0.1], [0.0]), "radii"),
         ([0], Steps([0.1], [np.inf]), "radii"),
     ],
 )
-def test_steps_that_make_no_sense_are_refused(order: list[float], decay: Steps, problem: str) -> None:
+def test_steps_that_make_no_sense_are_refused(order: list[float], decay: Decay, problem: str) -> None:
     with pytest.raises(ValueError, match=problem):
         SequentialTraining(line_map(), [[1.0], [2.0]], order, decay)
 
