@@ -2,26 +2,29 @@
 
 from typing import Annotated
 
-import typer
-
 from actum import keys
-from actum_command import (
-    calibrating,
-    demo,
-    doctor,
-    drawing,
-    importing_commands,
-    inspecting,
-    learning,
-    marker_sheets,
-    marks,
-    models,
-    scene,
-    streaming,
-    system,
-    watching,
-)
-from actum_command.context import connect, console, fail, say
+from actum.runtime import needs_extra
+
+with needs_extra("actum-command"):
+    import typer
+
+    from actum_command import (
+        calibrating,
+        demo,
+        doctor,
+        drawing,
+        importing_commands,
+        inspecting,
+        learning,
+        marker_sheets,
+        marks,
+        models,
+        scene,
+        streaming,
+        system,
+        watching,
+    )
+    from actum_command.context import connect, console, fail, say
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -71,7 +74,7 @@ def diagnose() -> None:
     """Check router, services, rates and versions; exit 1 if anything is wrong."""
     with connect() as client:
         findings = doctor.examine(client)
-    console.print(doctor.table(findings))
+    doctor.show(findings, console)
     problems = [problem for finding in findings for problem in finding.problems]
     for problem in problems:
         say(problem, style="red")

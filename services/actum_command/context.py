@@ -45,6 +45,18 @@ def connect(wait_s: float = 5.0) -> Client:
         fail(str(error))
 
 
+def connect_whenever() -> Client:
+    """Open a session with the router whenever it comes, saying where it is waited for."""
+    here = settings()
+    try:
+        return Client(here, wait_s=0)
+    except RouterUnreachableError:
+        say(f"no router at {here.connect} yet: waiting for it")
+    except SettingsError as error:
+        fail(str(error))
+    return connect(wait_s=float("inf"))
+
+
 def refuse_unwritable(file: Path) -> None:
     """Fail now where a file could not be written after long work; folders that are missing will be made."""
     try:

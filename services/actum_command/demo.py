@@ -61,6 +61,7 @@ def demo(
     expected = len(actors) * repetitions * len(ACTIONS)
     if len(score.events) < expected:
         fail(f"only {len(score.events)} of {expected} events came; see {log_file('demo', here)}")
+    log_file("demo", here).unlink(missing_ok=True)
 
 
 def _baseline(training: Path, folder: Path, actors: Sequence[int], repetitions: int) -> Evaluation:

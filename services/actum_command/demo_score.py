@@ -54,7 +54,7 @@ def table(score: Score) -> Table:
     """Lay out the paper's table 2 beside this run."""
     result = Table("action", title="table 2 of the paper, and this run")
     for heading in ("paper: tests", "action", "object", "here: tests", "action", "object"):
-        result.add_column(heading, justify="right")
+        result.add_column(heading, justify="right", overflow="fold")
     rows = {action: (*counts, *_counts(score, action)) for action, counts in TABLE_2.items()}
     for action, counts in rows.items():
         result.add_row(action, *_cells(counts))

@@ -1,12 +1,13 @@
 """`actum doctor`: is everything there, alive, and of one version?"""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from operator import attrgetter
 
+from rich.console import Console
 from rich.markup import escape
-from rich.table import Table
+from rich.table import Column, Table
 
 from actum import __version__, keys
 from actum.codec import schema_name
@@ -15,7 +16,9 @@ from actum.runtime import Client
 
 EXPECTED = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
 STATUS_S = 2.5
+TABLE_WIDTH = 100
 ENDED = "source ended"
+NO_MODEL = "no model"
 
 
 @dataclass(frozen=True)
@@ -42,8 +45,40 @@ def examine(client: Client) -> list[Finding]:
     return [_finding(name, tokens.count(name), infos.get(name), statuses.get(name)) for name in names]
 
 
+def show(findings: list[Finding], console: Console) -> None:
+    """Print what was found, as wide as the console allows."""
+    if console.width >= TABLE_WIDTH:
+        console.print(table(findings))
+    else:
+        console.print("\n".join(paragraphs(findings)))
+
+
 def table(findings: list[Finding]) -> Table:
-    """Lay the findings out, one service a row; drops are shown where there are any."""
+    """Lay the findings out, one service a row."""
+    columns = _columns(findings)
+    result = Table(Column("service", no_wrap=True), "alive", *(Column(name, overflow="fold") for name in columns))
+    for finding in findings:
+        cells = (escape(cell(finding)) for cell in columns.values())
+        result.add_row(escape(finding.service), _coloured(finding, f"{finding.instances or 'no'}"), *cells)
+    return result
+
+
+def paragraphs(findings: list[Finding]) -> Iterator[str]:
+    """Say the same in lines, for a console that has no room for a table."""
+    columns = _columns(findings)
+    for finding in findings:
+        yield f"{_coloured(finding, escape(finding.service))}, {finding.instances or 'none'} alive"
+        told = {name: cell(finding) for name, cell in columns.items()}
+        yield from (f"  {name}: {escape(text)}" for name, text in told.items() if text)
+
+
+def _coloured(finding: Finding, text: str) -> str:
+    colour = "red" if finding.problems else "green"
+    return f"[{colour}]{text}[/{colour}]"
+
+
+def _columns(findings: list[Finding]) -> dict[str, Callable[[Finding], str]]:
+    """What is told of each service; drops where there are any."""
     columns: dict[str, Callable[[Finding], str]] = {
         "version": attrgetter("version"),
         "state": attrgetter("state"),
@@ -54,12 +89,7 @@ def table(findings: list[Finding]) -> Table:
     }
     if not any(finding.drops for finding in findings):
         del columns["dropped"]
-    result = Table("service", "alive", *columns)
-    for finding in findings:
-        colour = "red" if finding.problems else "green"
-        alive = f"[{colour}]{finding.instances or 'no'}[/{colour}]"
-        result.add_row(escape(finding.service), alive, *(escape(cell(finding)) for cell in columns.values()))
-    return result
+    return columns
 
 
 def _statuses(client: Client) -> dict[str, Status]:
@@ -115,6 +145,9 @@ def _problems(name: str, instances: int, info: Info | None, status: Status | Non
         problems.append(f"{name}: {status.state}; it tries again by itself")
     elif status.state == ENDED:
         problems.append(f"{name}: {status.state}; start it again for more")
+    elif status.state == NO_MODEL:
+        why = f" ({status.last_error})" if (status.last_error or "").startswith("bad_model") else ""
+        problems.append(f"{name}: no model, so every action is rejected{why}; name it in --model or ACTUM_MODEL")
     if info is None:
         problems.append(f"{name} does not answer on its info key")
     else:

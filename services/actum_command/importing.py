@@ -15,6 +15,7 @@ from sensor_gateway.camera.perceiving import Optics
 from sensor_gateway.takes import Take
 
 SENSOR = "kinect0"
+MOST_NAMES = 12
 Progress = Callable[[int, int], None]
 """Told after each file: how many are done, of how many."""
 
@@ -33,6 +34,8 @@ class ImportReport:
     invalid_frames: int = 0
     segments: int = 0
     excluded: int = 0
+    actions: set[str] = field(default_factory=set)
+    persons: set[str] = field(default_factory=set)
     skipped: list[str] = field(default_factory=list)
     notes: Counter[str] = field(default_factory=Counter)
 
@@ -41,7 +44,7 @@ class ImportReport:
         self.files += 1
         self.frames += len(take.frames)
         self.invalid_frames += sum(not frame.valid or not frame.agents for frame in take.frames)
-        self.segments += sum(mark.kind == "start" for mark in take.marks)
+        self._add_labels(take)
         self.excluded += "excluded" in take.fields
         self.skipped += take.skipped
         self.notes += take.notes
@@ -50,13 +53,20 @@ class ImportReport:
         """Count one written take of hands and objects."""
         self.files += 1
         self.frames += len(take.postures)
-        self.segments += sum(mark.kind == "start" for mark in take.marks)
+        self._add_labels(take)
         self.skipped += take.skipped
+
+    def _add_labels(self, take: Take | HandsTake) -> None:
+        self.persons.add(take.person)
+        starts = [mark for mark in take.marks if mark.kind == "start"]
+        self.segments += len(starts)
+        self.actions |= {mark.label for mark in starts if mark.label}
 
     def lines(self) -> list[str]:
         """Say it for people."""
         said = [
             f"{self.files} recordings, {self.frames} frames, {self.segments} labelled segments",
+            f"{_counted(self.actions, 'actions')}; {_counted(self.persons, 'persons')}",
             f"{self.invalid_frames} frames without a skeleton, kept as such",
         ]
         if self.excluded:
@@ -67,6 +77,11 @@ class ImportReport:
 
     def __str__(self) -> str:
         return "\n".join(self.lines())
+
+
+def _counted(names: set[str], what: str) -> str:
+    first = ", ".join(sorted(names)[:MOST_NAMES])
+    return f"{len(names)} {what}: {first}{', …' if len(names) > MOST_NAMES else ''}"
 
 
 def import_msr_action3d(src: Path, out: Path, progress: Progress) -> ImportReport:

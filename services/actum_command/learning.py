@@ -69,6 +69,8 @@ def evaluate_command(
     began_s = time.monotonic()
     if json_file is not None:
         _refuse_place(json_file)
+    if not by_person and len(files) == 1:
+        fail(f"{files[0]} alone cannot be evaluated: name a model and then recordings, or use --leave-one-person-out")
     try:
         model = None if by_person else load_model(files[0])
         recordings = chosen(files if by_person else files[1:], person, with_excluded)

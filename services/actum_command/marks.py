@@ -94,5 +94,6 @@ def _waits_for_enter(prompt: str) -> bool:
     try:
         input(prompt)
     except EOFError:
+        print()
         return False
     return True

@@ -44,12 +44,13 @@ class StreamRecorder:
 
     Attributes:
         stored: how many messages are in the file.
+        starts: how many of them mark the start of an action.
         undecodable: payloads that are no message, by kind.
         tally: marks that were thrown away.
     """
 
     def __init__(self, recorder: Recorder, topics: Collection[keys.Topic] = STREAMS, label: str | None = None) -> None:
-        self.stored = 0
+        self.stored = self.starts = 0
         self.undecodable: Counter[str] = Counter()
         self.tally = Tally()
         self._recorder = recorder
@@ -123,3 +124,4 @@ class StreamRecorder:
     def _store(self, message: Message, received_ns: int) -> None:
         self._recorder.write(message, received_ns)
         self.stored += 1
+        self.starts += isinstance(message, Segment) and message.kind == "start"

@@ -10,7 +10,7 @@ from actum import keys
 from actum.messages import Segment, Truth
 from actum.recording import Recorder
 from actum.runtime import Client, stop_on_signals
-from actum_command.context import connect, fail, refuse_unwritable, say
+from actum_command.context import connect_whenever, fail, refuse_unwritable, say
 from sensor_gateway.simulator import Simulator, balanced_programme, labelled_stream
 
 POLL_S = 0.005
@@ -41,7 +41,7 @@ def write_examples(output: Path, repetitions: int, actor: int, seed: int) -> Non
 
 def scene() -> None:
     """Put the start and end marks of the simulated scene, as an ordinary client."""
-    with connect(wait_s=float("inf")) as client:
+    with connect_whenever() as client:
         mark_truth(client, stop_on_signals())
 
 

@@ -34,6 +34,8 @@ def record(
 ) -> None:
     """Record a sensor's streams and marks to a file."""
     refuse_unwritable(output)
+    if output.exists():
+        fail(f"{output} is there already: name another file, or remove it")
     stop = stop_on_signals()
     deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
     try:
@@ -42,7 +44,7 @@ def record(
             _store_all(client, stream, output, stop, deadline_s)
     except OSError as error:
         fail(f"{output} cannot be written ({error.strerror}); what there is lies in {output}.part")
-    _report(stream, output)
+    _report(stream, output, label)
 
 
 def _store_all(client: Client, stream: StreamRecorder, output: Path, stop: threading.Event, deadline_s: float) -> None:
@@ -70,15 +72,17 @@ def _store(listening: Listening, stream: StreamRecorder) -> bool:
     return True
 
 
-def _report(stream: StreamRecorder, output: Path) -> None:
+def _report(stream: StreamRecorder, output: Path, label: str | None) -> None:
     """Say what the file holds and what it lacks."""
-    say(f"{stream.stored} messages, written to {output}")
+    say(f"{stream.stored} messages, {stream.starts} marked actions, written to {output}")
     if stream.tally.rejects:
         say(f"not stored: {_listed(stream.tally.rejects)} (the last: {stream.tally.last_error})", style="yellow")
     if stream.undecodable:
         say(f"not decodable: {stream.undecodable.total()} ({_listed(stream.undecodable)})", style="yellow")
     if not stream.stored:
         say("nothing was stored: does the sensor's gateway run, on this sensor? See actum doctor", style="yellow")
+    elif label is not None and not stream.starts:
+        say(f"nothing of it is labelled {label!r}: mark starts and ends with actum segment toggle", style="yellow")
 
 
 def _listed(counts: Counter[str]) -> str:

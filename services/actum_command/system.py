@@ -4,18 +4,27 @@ import logging
 import socket
 import tempfile
 import threading
+import time
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from actum.runtime import serve_router, stop_on_signals
+from actum.runtime import Client, RouterUnreachableError, serve_router, stop_on_signals
 from actum.settings import DEFAULT_ENDPOINT, ServiceSettings, SettingsError, host_and_port
 from actum_command import processes
 from actum_command.context import fail, say, settings
 from actum_command.supervising import Program, Supervisor, UnusableError
+from som_classifier.storage import ModelError, load_model
 
 CHECK_S = 0.2
+ROUTER_S = 5.0
+NO_FILES = {
+    "simulator": "--source recording",
+    "none": "--source recording",
+    "camera": "a video file in ACTUM_CAMERA",
+}
+NO_MARKS = "nobody marks actions here: 'actum segment toggle' does, and 'actum play' beside --source none"
 NO_MODEL = (
     "no --model: every action is answered with 'no model'. For the simulated scene: "
     "actum simulate examples.mcap; actum train examples.mcap -o model.npz; actum up --model model.npz"
@@ -39,7 +48,7 @@ def router(
 
 def up(
     source: Annotated[
-        str, typer.Option(help="simulator, camera, realsense, openni2, recording, msr-action3d or utkinect")
+        str, typer.Option(help="simulator, camera, realsense, openni2, recording, msr-action3d, utkinect or none")
     ] = "simulator",
     path: Annotated[Path | None, typer.Option(help="what a source from files plays")] = None,
     model: Annotated[
@@ -50,29 +59,63 @@ def up(
     """Run router and all services here, restart what ends, until Ctrl-C."""
     here = settings()
     refuse_taken(here.connect)
+    if path is not None and source in NO_FILES:
+        fail(f"source {source} takes no --path: to have {path} played, name {NO_FILES[source]}")
     arguments = ["--source", source, "--actor", str(actor), *(["--path", str(path)] if path else [])]
     objects = processes.simulated_objects() if source == "simulator" else {}
-    programs = [processes.router(here), *processes.services(here, model, objects), processes.gateway(here, arguments)]
+    programs = processes.services(here, model, objects)
+    if source != "none":
+        programs.append(processes.gateway(here, arguments))
     if source == "simulator":
         programs.append(processes.scene(here))
     say(f"actum starts on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
+    if source != "simulator":
+        say(NO_MARKS)
+    _tell_lack_of(model)
+    stop = stop_on_signals()
+    with Supervisor() as supervisor:
+        supervisor.start(processes.router(here))
+        _wait_for_router(here, stop)
+        supervise(supervisor, programs, stop)
+
+
+def supervise(supervisor: Supervisor, programs: list[Program], stop: threading.Event) -> None:
+    """Keep programs running until stopped; fail when one says that it cannot be used as it is set."""
+    for program in programs:
+        supervisor.start(program)
+    while not stop.wait(CHECK_S):
+        try:
+            ended = supervisor.check()
+        except UnusableError as error:
+            fail(str(error))
+        for line in ended:
+            say(line, style="yellow")
+
+
+def _tell_lack_of(model: Path | None) -> None:
+    """Say so where there is no model that can be used yet."""
     if model is None:
         say(NO_MODEL, style="yellow")
-    supervise(programs, stop_on_signals())
+    elif not model.exists():
+        say(f"no {model} yet: every action is answered with 'no model' until it is there", style="yellow")
+    else:
+        try:
+            load_model(model)
+        except ModelError as error:
+            say(str(error), style="yellow")
 
 
-def supervise(programs: list[Program], stop: threading.Event) -> None:
-    """Keep programs running until stopped; fail when one says that it cannot be used as it is set."""
-    with Supervisor() as supervisor:
-        for program in programs:
-            supervisor.start(program)
-        while not stop.wait(CHECK_S):
-            try:
-                ended = supervisor.check()
-            except UnusableError as error:
-                fail(str(error))
-            for line in ended:
-                say(line, style="yellow")
+def _wait_for_router(here: ServiceSettings, stop: threading.Event) -> None:
+    """Give the router time to come up, so that the services find it at once; if it does not, they wait for it."""
+    deadline_s = time.monotonic() + ROUTER_S
+    while time.monotonic() < deadline_s and not stop.wait(CHECK_S):
+        try:
+            with Client(here, wait_s=0):
+                return
+        except RouterUnreachableError:
+            continue
+        except SettingsError as error:
+            fail(str(error))
 
 
 def refuse_taken(endpoint: str) -> None:

@@ -2,9 +2,11 @@
 
 import time
 
-from actum.runtime import run_source
-from sensor_gateway.settings import Settings
-from sensor_gateway.sources import source_of
+from actum.runtime import needs_extra, run_source
+
+with needs_extra("sensor-gateway"):
+    from sensor_gateway.settings import Settings
+    from sensor_gateway.sources import source_of
 
 
 def main() -> None:

@@ -32,6 +32,8 @@ def load_model(path: Path) -> Model:
     Raises:
         ModelError: the file is missing, foreign, damaged, or made for another joint order.
     """
+    if path.is_file() and not zipfile.is_zipfile(path):
+        raise ModelError(path, "no actum model, or a damaged one")
     try:
         with path.open("rb") as stored, np.load(stored, allow_pickle=False) as file:
             metadata = str(file["metadata"])

@@ -1,5 +1,5 @@
 from actum.node import Tally
-from actum.runtime.meter import MOST_KEYS, Meter
+from actum.runtime.meter import MOST_KEYS, MOST_ORIGINS, Meter
 from actum.settings import ServiceSettings
 from people import STANDING, skeleton
 
@@ -15,6 +15,23 @@ def test_missing_numbers_are_drops_and_falling_ones_a_restart() -> None:
     status = watched.status()
     assert status.handled == {"actum/kinect0/skeleton": 6}
     assert status.drops == {"actum/kinect0/skeleton": 3}
+
+
+def test_several_who_put_on_one_key_number_their_own() -> None:
+    watched = meter()
+    for origin, seq in (("a", 900), ("b", 0), ("a", 901), ("b", 1), ("a", 903), ("b", 2)):
+        watched.received("actum/kinect0/skeleton", skeleton(seq, STANDING, seq=seq), origin)
+    assert watched.status().drops == {"actum/kinect0/skeleton": 1}
+
+
+def test_of_origins_without_end_only_the_last_are_remembered() -> None:
+    watched = meter()
+    key, many = "actum/kinect0/skeleton", range(3 * MOST_ORIGINS)
+    for origin in many:
+        watched.received(key, skeleton(1, STANDING, seq=0), f"{origin}")
+    for origin in (many[0], many[-1]):
+        watched.received(key, skeleton(1, STANDING, seq=5), f"{origin}")
+    assert watched.status().drops == {key: 4}
 
 
 def test_agents_without_end_do_not_fill_the_status() -> None:

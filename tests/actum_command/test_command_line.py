@@ -2,13 +2,16 @@ import signal
 import socket
 import tempfile
 from collections.abc import Iterator
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from actum.recording import Recorder
-from actum_command import demo, learning, system
+from actum.runtime import RouterUnreachableError
+from actum.settings import ServiceSettings
+from actum_command import context, demo, learning, marks, processes, system
 from actum_command.__main__ import app
 from people import FRAME_NS
 from performers import mark, performance
@@ -46,6 +49,32 @@ def test_a_folder_without_recordings_is_refused(tmp_path: Path) -> None:
 def test_a_foreign_model_is_refused_with_the_remedy(tmp_path: Path) -> None:
     (tmp_path / "m.npz").write_bytes(b"PK not a model")
     assert "actum train" in refusal("evaluate", str(tmp_path / "m.npz"), str(tmp_path))
+
+
+def test_a_file_that_is_no_model_is_refused_without_advice_to_load_it_unsafely(tmp_path: Path) -> None:
+    (tmp_path / "a.mcap").write_text("a recording, named where the model is to stand")
+    refused = refusal("evaluate", str(tmp_path / "a.mcap"), str(tmp_path))
+    assert "a.mcap: no actum model" in refused
+    assert "pickle" not in refused
+
+
+def test_a_model_alone_is_nothing_to_evaluate() -> None:
+    assert "name a model and then recordings" in refusal("evaluate", "m.npz")
+
+
+@pytest.mark.parametrize(
+    ("source", "remedy"),
+    [
+        ("simulator", "--source recording"),
+        ("none", "--source recording"),
+        ("camera", "a video file in ACTUM_CAMERA"),
+    ],
+)
+def test_a_file_is_not_passed_over_by_a_source_that_plays_none(
+    source: str, remedy: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(system, "refuse_taken", lambda _: None)
+    assert remedy in refusal("up", "--source", source, "--path", "a.mcap")
 
 
 def test_an_unknown_preset_is_refused_with_the_known_ones(tmp_path: Path) -> None:
@@ -165,6 +194,70 @@ def test_a_mark_that_is_none_is_refused_without_a_router(arguments: list[str], c
     refused = CliRunner().invoke(app, ["segment", "start", *arguments])
     assert (refused.exit_code, refused.stderr.count("\n")) == (1, 1)
     assert complaint in refused.stderr
+
+
+@pytest.fixture
+def supervised(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The programs that would run beside the router, by name, where none does."""
+    names: list[str] = []
+    monkeypatch.setattr(system, "refuse_taken", lambda _: None)
+    monkeypatch.setattr(system, "stop_on_signals", lambda: None)
+    monkeypatch.setattr(system, "_wait_for_router", lambda *_: None)
+    monkeypatch.setattr(system, "supervise", lambda _, programs, __: names.extend(p.name for p in programs))
+    monkeypatch.setattr(system.Supervisor, "start", lambda *_: None)
+    return names
+
+
+@pytest.mark.parametrize(
+    ("source", "beside", "told"),
+    [
+        ("simulator", ["sensor_gateway", "scene"], False),
+        ("camera", ["sensor_gateway"], True),
+        ("none", [], True),
+    ],
+)
+def test_what_runs_beside_the_services_and_whether_somebody_marks(
+    source: str, beside: list[str], told: bool, supervised: list[str]
+) -> None:
+    started = CliRunner().invoke(app, ["up", "--source", source])
+    assert supervised == [*processes.SERVICES, *beside]
+    assert ("nobody marks actions here" in started.stdout) == told
+
+
+@pytest.mark.usefixtures("supervised")
+def test_a_system_that_has_no_model_says_so_when_it_starts(tmp_path: Path) -> None:
+    (tmp_path / "foreign.npz").write_text("nothing of the kind")
+    for arguments, said in (
+        ([], "no --model"),
+        (["--model", "none.npz"], "no none.npz yet"),
+        (["--model", str(tmp_path / "foreign.npz")], "foreign.npz: no actum model"),
+    ):
+        started = CliRunner().invoke(app, ["up", *arguments], env={"ACTUM_MODEL": None})
+        assert started.exit_code == 0
+        assert said in started.stdout
+
+
+def test_a_switch_that_is_left_leaves_the_line_to_the_shell(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(marks, "connect", lambda: nullcontext(None))
+    left = CliRunner().invoke(app, ["segment", "toggle"], input="")
+    assert left.exit_code == 0
+    assert left.stdout == "Enter starts action 1, Ctrl-D leaves \n"
+
+
+def test_who_waits_for_a_router_says_so_once(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tried: list[float] = []
+
+    def opened(here: ServiceSettings, wait_s: float) -> None:
+        tried.append(wait_s)
+        if len(tried) == 1:
+            raise RouterUnreachableError(here.connect)
+
+    monkeypatch.setattr(context, "Client", opened)
+    context.connect_whenever()
+    assert tried == [0, float("inf")]
+    assert capsys.readouterr().out == f"no router at {ServiceSettings().connect} yet: waiting for it\n"
 
 
 @pytest.fixture

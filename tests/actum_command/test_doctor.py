@@ -3,6 +3,7 @@
 from typing import Any
 
 import pytest
+from rich.console import Console
 from typer.testing import CliRunner
 
 from actum import __version__
@@ -10,7 +11,7 @@ from actum.codec import schema_name
 from actum.messages import MESSAGES, Info, Message, Status
 from actum.runtime import Received
 from actum_command import __main__, doctor
-from actum_command.doctor import EXPECTED, Finding, examine
+from actum_command.doctor import EXPECTED, Finding, examine, show
 
 
 def status(service: str, **fields: Any) -> Status:
@@ -21,10 +22,9 @@ def status(service: str, **fields: Any) -> Status:
         "rejects": {},
         "latency_ms": {"p50": 1.0, "p99": 2.0},
         "state": "running",
+        "last_error": None,
     }
-    return Status(
-        stamp_ns=1, sensor="kinect0", service=service, instance="a", uptime_s=1.0, last_error=None, **(said | fields)
-    )
+    return Status(stamp_ns=1, sensor="kinect0", service=service, instance="a", uptime_s=1.0, **(said | fields))
 
 
 def info(service: str, version: str = __version__) -> Info:
@@ -113,6 +113,27 @@ def test_a_source_that_gives_nothing_is_a_problem(state: str) -> None:
 )
 def test_a_latency_that_is_not_told_is_a_dash(latency_ms: dict[str, float], shown: str) -> None:
     assert examined(latency_ms=latency_ms).latency == shown
+
+
+@pytest.mark.parametrize(
+    ("last_error", "why"),
+    [("bad_model: m.npz: damaged", "(bad_model: m.npz: damaged)"), ("rejected_segment: a: no model", "rejected;")],
+)
+def test_a_classifier_without_a_model_is_a_problem(last_error: str, why: str) -> None:
+    [problem] = examined(state="no model", last_error=last_error).problems
+    assert "som_classifier: no model" in problem
+    assert why in problem
+
+
+def test_where_there_is_no_room_for_a_table_there_are_lines_of_whole_words() -> None:
+    console = Console(width=60)
+    with console.capture() as capture:
+        show(examine(System(status("som_classifier", drops={"actum/kinect0/skeleton": 3}))), console)  # type: ignore[arg-type]
+    lines = capture.get().splitlines()
+    assert "som_classifier, 1 alive" in lines
+    assert "  dropped: skeleton 3" in lines
+    assert "  latency p50/p99 (ms): 1.00 / 2.00" in lines
+    assert "pose_preprocessor, 1 alive" in lines
 
 
 def test_drops_are_shown(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -49,6 +49,7 @@ def test_utkinect_recordings_keep_their_segments(tmp_path: Path) -> None:
     assert calls == [(1, 1)]
     assert report.lines() == [
         "1 recordings, 3 frames, 2 labelled segments",
+        "2 actions: pull, push; 1 persons: 3",
         "0 frames without a skeleton, kept as such",
         "1 segments without bounds skipped: s03_e02 carry",
         "1 duplicate rows dropped",

@@ -84,7 +84,7 @@ def refused(*arguments: object) -> str:
 def test_only_what_is_stored_is_counted(live: Live, tmp_path: Path) -> None:
     live.comes(status(), skeleton(1), image(1), skeleton(2), mark("start", 2))
     recorded = actum("record", tmp_path / "a.mcap")
-    assert f"3 messages, written to {tmp_path / 'a.mcap'}" in recorded.stdout
+    assert f"3 messages, 1 marked actions, written to {tmp_path / 'a.mcap'}" in recorded.stdout
     assert len(list(Recording(tmp_path / "a.mcap").messages())) == 3
     assert "not stored" not in recorded.stdout
     assert "not decodable" not in recorded.stdout
@@ -135,6 +135,21 @@ def cut(path: Path) -> Path:
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) - 1])
     return path
+
+
+def test_a_recording_is_never_written_over(live: Live, tmp_path: Path) -> None:
+    path = written(tmp_path / "a.mcap", skeleton(1))
+    before = path.read_bytes()
+    live.comes(skeleton(2))
+    assert f"{path} is there already" in refused("record", path)
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize(("marks", "told"), [([], True), ([mark("start", 2), mark("end", 3)], False)])
+def test_a_label_that_nothing_got_is_told(marks: list[Message], told: bool, live: Live, tmp_path: Path) -> None:
+    live.comes(skeleton(1), *marks)
+    recorded = actum("record", tmp_path / "a.mcap", "--label", "push")
+    assert ("nothing of it is labelled 'push'" in recorded.stdout) == told
 
 
 def test_blanks_between_persons_are_none_of_their_names(live: Live, tmp_path: Path) -> None:

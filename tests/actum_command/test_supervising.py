@@ -44,8 +44,8 @@ def test_what_cannot_be_used_as_it_is_set_is_not_started_again(ending: type[Prog
 def test_a_system_ends_with_the_line_of_the_program_that_cannot_be_used(
     ending: type[Program], capfd: pytest.CaptureFixture[str]
 ) -> None:
-    with pytest.raises(typer.Exit) as ended:
-        supervise([ending("worker", "ending", [str(UNUSABLE)])], threading.Event())
+    with Supervisor() as supervisor, pytest.raises(typer.Exit) as ended:
+        supervise(supervisor, [ending("worker", "ending", [str(UNUSABLE)])], threading.Event())
     told = capfd.readouterr()
     assert ended.value.exit_code == 1
     assert told.out == "mode: no such thing\n"

@@ -72,6 +72,7 @@ def test_up_runs_everything_that_watch_shows_restarts_what_dies_and_leaves_nothi
         examined = running.actum("doctor")
         assert examined.returncode == 0, examined.stdout
         assert "all services are there" in examined.stdout
+        assert "waiting for it" not in up.said(), "the router is there first"
         subprocess.run(["pkill", "-KILL", "-P", str(up.process.pid), "-f", "action_fusion"], check=True)
         wait_until(lambda: "action_fusion ended with code -9: restart" in up.said(), "the supervisor notices")
         assert collect(events, Event, bool)[0].valid
@@ -90,10 +91,19 @@ def test_up_refuses_an_endpoint_that_a_router_has(running: System) -> None:
     assert "cannot be listened on" in refused.stderr
 
 
+def test_up_refuses_a_zenoh_configuration_that_cannot_be_used(running: System, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ACTUM_ZENOH_CONFIG", "/nowhere.json5")
+    refused = running.actum("up")
+    assert refused.returncode == 1
+    assert "actum: zenoh-config: /nowhere.json5 is no Zenoh configuration" in refused.stderr
+    assert "Traceback" not in refused.stderr
+    assert pids_of(running) == set()
+
+
 def test_up_ends_with_the_complaint_of_a_service_that_cannot_be_used_as_it_is_set(running: System) -> None:
     refused = running.actum("up", "--source", "foo")
     assert refused.returncode == 1
-    assert "settings: source: Input should be 'simulator'" in refused.stderr
+    assert "sensor_gateway: settings: source: Input should be 'simulator'" in refused.stderr
     assert "sensor_gateway cannot run as it is set" in refused.stderr
     assert "actum is up" not in refused.stdout
     assert pids_of(running) == set()
@@ -136,11 +146,16 @@ def test_what_is_recorded_holds_the_streams_and_the_resolved_marks(
 
 
 @pytest.mark.timeout(240)
-def test_the_demo_runs_to_its_table_and_leaves_nothing(running: System) -> None:
+def test_the_demo_runs_to_its_table_and_leaves_nothing(
+    running: System, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
     demo = running.actum("demo", "--people", "1", timeout_s=200)
     assert demo.returncode == 0, demo.stdout + demo.stderr
     assert len(re.findall(r"^ *\d+/5 ", demo.stdout, re.M)) == 5, demo.stdout
     assert re.search(r"total .*41 \(91.1%\)", demo.stdout)
+    assert list((tmp_path / "temporary").iterdir()) == []
     wait_until(lambda: pids_of(running) == set(), "no process is left")
 
 

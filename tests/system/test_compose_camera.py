@@ -1,5 +1,6 @@
 """The camera host's compose file: what it says, and a person seen by it on a real engine."""
 
+import json
 import os
 import subprocess
 from collections.abc import Iterator
@@ -29,11 +30,38 @@ def test_the_host_runs_router_gateway_and_tracker(services):
     assert extends == {name: {"file": "../docker-compose.yml", "service": name} for name in SERVICES}
 
 
-def test_every_variable_is_a_setting_of_the_gateway(services):
-    known = import_module("sensor_gateway.settings").Settings.model_fields
-    variables = [variable.removeprefix("ACTUM_").lower() for variable in services["sensor_gateway"]["environment"]]
-    assert set(variables) <= set(known)
-    assert {"source", "camera", "pose_model"} <= set(variables)
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [("sensor_gateway", {"source", "camera", "pose_model", "calibration"}), ("marker_tracker", {"objects", "scene"})],
+)
+def test_every_variable_is_a_setting_of_its_service(name, told, services):
+    known = import_module(f"{name}.settings").Settings.model_fields
+    variables = {variable.removeprefix("ACTUM_").lower() for variable in services[name]["environment"]}
+    assert told <= variables <= set(known)
+
+
+def resolved(environment: dict[str, str]) -> dict[str, dict[str, Any]]:
+    told = compose("config", "--format", "json", environment={"ACTUM_POSE_MODEL": "/pose.task", **environment})
+    return json.loads(told)["services"]
+
+
+def mounted(service: dict[str, Any]) -> dict[str, str]:
+    return {volume["target"]: volume["source"] for volume in service["volumes"]}
+
+
+@pytest.mark.containers
+@pytest.mark.parametrize(
+    ("name", "variable"), [("sensor_gateway", "ACTUM_CALIBRATION"), ("marker_tracker", "ACTUM_SCENE")]
+)
+def test_a_file_of_the_hosts_stands_where_the_service_looks_for_it(name, variable):
+    service = resolved({variable: "/home/anna/file.yaml"})[name]
+    assert mounted(service)[service["environment"][variable]] == "/home/anna/file.yaml"
+    assert resolved({})[name]["environment"].get(variable) is None
+
+
+@pytest.mark.containers
+def test_no_real_marker_is_taken_for_an_object_of_the_simulated_scene():
+    assert resolved({})["marker_tracker"]["environment"].get("ACTUM_OBJECTS") is None
 
 
 def compose(*arguments: str, environment: dict[str, str]) -> str:

@@ -152,6 +152,7 @@ def test_tokens_go_with_their_process(running: System) -> None:
 def test_settings_that_cannot_be_used_end_with_one_line(running: System, arguments: list[str], complaint: str) -> None:
     service = running.start(*arguments)
     assert service.process.wait(timeout=30) == 2
+    assert service.said().startswith(f"{arguments[0]}: ")
     assert complaint in service.said()
     assert service.said().count("\n") == 1
 
@@ -162,7 +163,8 @@ def test_a_configuration_file_that_is_not_there_is_no_defaults(
     monkeypatch.setenv("ACTUM_CONFIG", "/nowhere.toml")
     service = running.start("pose_preprocessor")
     assert service.process.wait(timeout=30) == 2
-    assert service.said() == "ACTUM_CONFIG names /nowhere.toml, which is no file: correct or unset it\n"
+    named = "ACTUM_CONFIG names /nowhere.toml, which is no file: correct or unset it"
+    assert service.said() == f"pose_preprocessor: {named}\n"
 
 
 def test_a_service_goes_on_where_its_health_file_cannot_be_written(running: System) -> None:

@@ -1,6 +1,7 @@
 """The one runtime: everything that knows Zenoh, clocks, signals and threads."""
 
 from actum.runtime.client import Client, Listening, Received
+from actum.runtime.extras import needs_extra
 from actum.runtime.router import serve_router
 from actum.runtime.serving import Pace, run, run_source, stop_on_signals
 from actum.runtime.session import RouterUnreachableError
@@ -11,6 +12,7 @@ __all__ = [
     "Pace",
     "Received",
     "RouterUnreachableError",
+    "needs_extra",
     "run",
     "run_source",
     "serve_router",

@@ -15,6 +15,8 @@ from actum.skeletons import JOINTS
 LATENCIES = 1000
 MOST_KEYS = 256
 """Keys of agents who left long ago make room for new ones."""
+MOST_ORIGINS = 16
+"""Each mark may come from a process of its own."""
 
 
 class Meter:
@@ -29,16 +31,19 @@ class Meter:
         self._handled: Counter[str] = Counter()
         self._reported: Counter[str] = Counter()
         self._drops: Counter[str] = Counter()
-        self._last_seq: dict[str, int] = {}
+        self._last_seq: dict[str, dict[str, int]] = {}
         self._latencies_ms: deque[float] = deque(maxlen=LATENCIES)
 
-    def received(self, key: str, message: Message) -> None:
-        """Count a message, and the ones that its number says are missing before it."""
+    def received(self, key: str, message: Message, origin: str = "") -> None:
+        """Count a message, and the ones that its number says are missing before it: each origin numbers its own."""
         self._count(key)
-        if message.seq is not None:
-            last = self._last_seq.get(key, message.seq)
-            self._drops[key] += max(message.seq - last - 1, 0)
-            self._last_seq[key] = message.seq
+        if message.seq is None:
+            return
+        numbers = self._last_seq.setdefault(key, {})
+        self._drops[key] += max(message.seq - numbers.pop(origin, message.seq) - 1, 0)
+        numbers[origin] = message.seq
+        if len(numbers) > MOST_ORIGINS:
+            del numbers[next(iter(numbers))]
 
     def put(self, key: str) -> None:
         """Count a message of our own."""

@@ -48,15 +48,15 @@ def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
 
 def _configured(settings_type: type[S], build: Callable[[S], N]) -> tuple[S, N]:
     """Read the settings and build what they describe; what cannot be used ends the process with a line, code 2."""
+    service = settings_type.__module__.partition(".")[0]
     try:
-        service = settings_type.__module__.partition(".")[0]
         settings = settings_type(_cli_parse_args=True, _cli_prog_name=f"python -m {service}")
         client_config(settings)  # refused now, not after what takes long to build
         return settings, build(settings)
     except ValidationError as error:
-        print(f"{complaint(error)} (see --help)", file=sys.stderr)
+        print(f"{service}: {complaint(error)} (see --help)", file=sys.stderr)
     except ValueError as error:
-        print(str(error), file=sys.stderr)
+        print(f"{service}: {error}", file=sys.stderr)
     sys.exit(UNUSABLE)
 
 
@@ -187,7 +187,7 @@ class NodeService(Service):
             return
         try:
             with self._lock:
-                self._meter.received(key, message)
+                self._meter.received(key, message, _origin(sample))
             self._step(message, outbox)
             with self._lock:
                 self._meter.took((time.perf_counter_ns() - began_ns) / 1e6)
@@ -200,6 +200,11 @@ class NodeService(Service):
         with self._lock:
             for output in self._node.handle(message):
                 outbox.put(output)
+
+
+def _origin(sample: zenoh.Sample) -> str:
+    """Name the session that put a sample: the one that stamped it."""
+    return str(sample.timestamp.get_id()) if sample.timestamp else ""
 
 
 class SourceService(Service):

@@ -1,0 +1,17 @@
+"""What a service needs beside the library, and what to do where it is missing."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from actum.runtime.serving import UNUSABLE
+
+
+@contextmanager
+def needs_extra(name: str) -> Iterator[None]:
+    """Import within this what the extra `name` brings: where it is missing, the process ends with a line, code 2."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        print(f"{error.name} is not installed: pip install 'actum[{name}]'", file=sys.stderr)
+        sys.exit(UNUSABLE)
