@@ -47,8 +47,10 @@ def position(patch, width_m, focal_px, centre_px, last_m):
 
 def objects(image, last_m):
     """Find the things in one image; `last_m` keeps where they were."""
+    if image["format"] != "jpeg" or not image["data"]:
+        return []
     pixels = cv2.imdecode(np.frombuffer(image["data"], np.uint8), cv2.IMREAD_COLOR)
-    if pixels is None or image["format"] != "jpeg":
+    if pixels is None:
         return []
     hsv = cv2.cvtColor(pixels, cv2.COLOR_BGR2HSV)
     fx, _, cx, _, fy, cy, *_ = image["K"]

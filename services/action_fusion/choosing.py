@@ -17,6 +17,7 @@ from actum.messages import Action, Hand, Pointing
 NO_HAND = "the hand is not known"
 NO_OBJECT = "no object in sight"
 OUT_OF_REACH = "no object within reach"
+LEFT_ALONE = "no object within reach was acted on"
 OFF_THE_LINE = "no object along the arm"
 
 
@@ -83,7 +84,7 @@ def _jointly(
     applies = action.action not in settings.expected_outcomes
     decision = decide(paths, [e.track for e in near], hands, applies, settings)
     if decision is None:
-        return Choice(why=OUT_OF_REACH)
+        return Choice(why=LEFT_ALONE if any(e.distance_m <= settings.reach_m for e in near) else OUT_OF_REACH)
     of_track = {e.track.id: e for e in near}
     rivals = tuple(of_track[track.id] for track in decision.rivals)
     return Choice(of_track[decision.track.id], decision.hand, decision.held, rivals)

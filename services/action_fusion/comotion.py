@@ -1,7 +1,7 @@
 """Which hand moves which object: what moves as the hand does, near it, is in it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -70,8 +70,20 @@ def comotion(path: HandPath, track: Track, reach_m: float, moved_m: float) -> Co
     return Comotion(path, track, object_m, relative, steps, near, moving, moving & explained & near)
 
 
-def carriers(pairs: Sequence[Comotion], moved_m: float) -> Mapping[int, HandPath]:
-    """Tell the hand that carries each object, by the object's id: of several the one that moved it further."""
-    carried = [pair for pair in pairs if pair.is_carried(moved_m)]
-    carried.sort(key=lambda pair: pair.moved_by_hand_m())
-    return {pair.track.id: pair.path for pair in carried}
+def carriers(pairs: Sequence[Comotion], moved_m: float) -> Mapping[int, Sequence[HandPath]]:
+    """Tell the hands that carry each object, together or one after another, by the object's id."""
+    carried: dict[int, list[HandPath]] = {}
+    for pair in pairs:
+        others = [other for other in pairs if other.track is pair.track and other is not pair]
+        if pair.is_carried(moved_m) or _without(pair, others).is_carried(moved_m):
+            carried.setdefault(pair.track.id, []).append(pair.path)
+    return carried
+
+
+def _without(pair: Comotion, others: Sequence[Comotion]) -> Comotion:
+    """Leave out the instants at which another hand moved the object."""
+    apart = np.ones_like(pair.with_hand)
+    for other in others:
+        if len(other.path.stamps_ns):
+            apart &= np.interp(pair.path.stamps_ns, other.path.stamps_ns, other.with_hand) < 0.5
+    return replace(pair, moving=pair.moving & apart, with_hand=pair.with_hand & apart)

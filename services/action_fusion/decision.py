@@ -20,6 +20,9 @@ STEADY_SHARE = 0.75
 
 MOST_OBJECTS = 32
 
+Carriers = Mapping[int, Sequence[HandPath]]
+"""The hands that carry each object, by its id."""
+
 NUDGED_MORE = 3.0
 """One object was nudged and another was not where the first moved this many times as far."""
 
@@ -58,14 +61,18 @@ def decide(
     carrier = carriers(pairs, settings.moved_m)
     acting = [paths.own[hand] for hand in hands if hand in paths.own]
     own = [pair for path in acting for pair in pairs if pair.path is path]
-    held = [pair for pair in own if carrier.get(pair.track.id) is pair.path and _is_kept(pair, settings)]
+    held = [pair for pair in own if _carries(carrier, pair) and _is_kept(pair, settings)]
     if held:
         best = max(held, key=lambda pair: (pair.moved_by_hand_m(0.0), pair.moved_by_hand_m()))
         return _with_held(best, pairs, carrier, applies, settings)
-    free = [pair for pair in own if carrier.get(pair.track.id, pair.path) is pair.path]
+    free = [pair for pair in own if pair.track.id not in carrier or _carries(carrier, pair)]
     displaced = [pair for pair in free if float(np.linalg.norm(pair.track.shift())) >= settings.moved_m]
     at_hand = [pair for pair in displaced if (pair.near & pair.moving & (pair.path.stamps_ns >= 0)).any()]
     return _nearest(at_hand) or _reached(acting, free, settings) or _released(own, carrier) or _nearest(displaced)
+
+
+def _carries(carrier: Carriers, pair: Comotion) -> bool:
+    return any(path is pair.path for path in carrier.get(pair.track.id, ()))
 
 
 def _concerned(paths: Mapping[Hand, HandPath], tracks: Sequence[Track], settings: Settings) -> list[Track]:
@@ -92,7 +99,7 @@ def _is_kept(pair: Comotion, settings: Settings) -> bool:
 
 
 def _with_held(
-    held: Comotion, pairs: Sequence[Comotion], carrier: Mapping[int, HandPath], applies: bool, settings: Settings
+    held: Comotion, pairs: Sequence[Comotion], carrier: Carriers, applies: bool, settings: Settings
 ) -> Decision:
     others = [pair for pair in pairs if pair.path is held.path and pair.track.id not in carrier]
     patient = applied_to(held, others, settings) if applies else None
@@ -127,9 +134,9 @@ def _missed(path: HandPath, own: Sequence[Comotion], settings: Settings) -> list
     return [(pair, misses[pair.track.id]) for pair in own if pair.track.id in misses]
 
 
-def _released(own: Sequence[Comotion], carrier: Mapping[int, HandPath]) -> Decision | None:
+def _released(own: Sequence[Comotion], carrier: Carriers) -> Decision | None:
     """Take what a hand has just let go of."""
-    released = [pair for pair in own if carrier.get(pair.track.id) is pair.path]
+    released = [pair for pair in own if _carries(carrier, pair)]
     latest = max(released, key=lambda pair: float(pair.path.stamps_ns[pair.with_hand].max()), default=None)
     return None if latest is None else Decision(latest.track, latest.path.hand)
 

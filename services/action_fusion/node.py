@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from action_fusion.buffers import LOOK_BACK_NS, Buffer, S
+from action_fusion.buffers import LATEST_ACTION_NS, LOOK_BACK_NS, Buffer, S
 from action_fusion.fusion import fuse, rejected
 from action_fusion.samples import ObjectsSample, PostureSample, objects_sample, posture_sample
 from action_fusion.settings import Settings
@@ -126,8 +126,10 @@ class ActionFusion:
         return [self._answer(pending) for pending in list(self._pending) if self._is_complete(pending)]
 
     def _is_complete(self, pending: Pending) -> bool:
+        """Tell whether all streams have reached its end; any that is much further is of the time before a restart."""
         postures = self._postures.get(pending.action.agent)
-        if postures is None or min(postures.newest_ns, self._objects.newest_ns) < pending.end_ns:
+        reached = (-1 if postures is None else postures.newest_ns, self._objects.newest_ns)
+        if not all(pending.end_ns <= newest_ns <= pending.end_ns + LATEST_ACTION_NS for newest_ns in reached):
             return False
         others = self._others(pending.action.agent, self._own(pending))
         return all(buffer is not None and buffer.newest_ns >= last_ns for buffer, last_ns in others)

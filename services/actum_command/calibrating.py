@@ -179,6 +179,12 @@ def _report_intrinsics(found: Intrinsics) -> None:
         f"{fy:.1f} ± {found.deviations_px[1]:.1f} px down"
     )
     console.print(f"coverage {found.coverage:.0%} of the image")
+    if found.bend_mm:
+        console.print(
+            f"[yellow]the board is bent by {found.bend_mm:.1f} mm: allowed for here, but not in extrinsics; glue it "
+            "to something flat[/yellow]",
+            soft_wrap=True,
+        )
     if found.coverage < GOOD_COVERAGE:
         console.print(
             "[yellow]towards the edges of the image the distortion is extrapolated: "

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.calibration import Calibration, IntrinsicsQuality
+from calibrator.bending import FLAT, Bend, bend_of, bent_corners_m
 from calibrator.board import Array
 from calibrator.views import View
 
@@ -19,6 +20,9 @@ CELLS = (16, 12)
 LEAST_COVERAGE, GOOD_COVERAGE = 0.3, 0.6
 MOST_FOCAL_DEVIATION = 0.005
 MOST_RMS_OF_DIAGONAL = 1e-3
+SURE_DEVIATIONS = 4.0
+MOST_BEND_OF_DIAGONAL = 0.01
+LENS_UNKNOWNS, POSE_UNKNOWNS = 9, 6
 
 
 class PoorSetError(ValueError):
@@ -35,7 +39,7 @@ class Intrinsics:
 
     `deviations_px` are the standard deviations of fx, fy, cx and cy; `residuals_px` holds each view's corners as found
     minus as projected (n, 2), `tilts_deg` its angle between the board and the image plane. `covered` is by cells of
-    the image, (rows, columns).
+    the image, (rows, columns). `bend_mm` is how far the board is from flat, which is allowed for.
     """
 
     size: tuple[int, int]
@@ -46,6 +50,7 @@ class Intrinsics:
     residuals_px: list[Array]
     tilts_deg: list[float]
     covered: NDArray[np.bool_]
+    bend_mm: float = 0.0
 
     @property
     def coverage(self) -> float:
@@ -71,7 +76,10 @@ def find_intrinsics(views: Sequence[View]) -> Intrinsics:
     if reasons := shortcomings(views):
         raise PoorSetError([*reasons, *_untilted(nominal_tilts_deg(views))])
     found = _solved(views)
-    if reasons := [*_untilted(found.tilts_deg), *_undetermined(found), *_inexact(found, views)]:
+    if reasons := [*_untilted(found.tilts_deg), *_inexact(found, views)] or _contradiction(found, views):
+        raise PoorSetError(reasons)
+    found = _unbent(found, views)
+    if reasons := _bent(found, views) or _undetermined(found):
         raise PoorSetError(reasons)
     return found
 
@@ -120,18 +128,31 @@ def nominal_tilts_deg(views: Sequence[View]) -> list[float]:
     return tilts
 
 
-def _solved(views: Sequence[View]) -> Intrinsics:
-    objects = [view.corners_m.astype(np.float32) for view in views]
+def _unbent(flat: Intrinsics, views: Sequence[View]) -> Intrinsics:
+    """Allow for the bend of the board, where the views tell one."""
+
+    def fit(bend: Bend) -> Array:
+        return np.concatenate(_solved(views, bend, flat).residuals_px).ravel()
+
+    bend = bend_of(fit, LENS_UNKNOWNS + POSE_UNKNOWNS * len(views))
+    return flat if bend is FLAT else _solved(views, bend, flat)
+
+
+def _solved(views: Sequence[View], bend: Bend = FLAT, start: Intrinsics | None = None) -> Intrinsics:
+    """Calibrate with a board bent in some way; only a flat one needs no camera to start from."""
+    board_m = bent_corners_m(views[0].board, bend)
+    objects = [board_m[view.ids].astype(np.float32) for view in views]
     images = [view.corners_px.astype(np.float32) for view in views]
+    guess = (np.eye(3), np.zeros(5)) if start is None else (start.matrix.copy(), start.distortion.copy())
     try:
         error, matrix, distortion, rotations, positions, deviations, _, _ = cv2.calibrateCameraExtended(
-            objects, images, views[0].size, np.eye(3), np.zeros(5)
+            objects, images, views[0].size, *guess, flags=0 if start is None else cv2.CALIB_USE_INTRINSIC_GUESS
         )
     except cv2.error:
         raise PoorSetError(["no camera fits these views: tilt the board more, and differently in each view"]) from None
     residuals = []
     for view, rotation, position in zip(views, rotations, positions, strict=True):
-        projected, _ = cv2.projectPoints(view.corners_m, rotation, position, matrix, distortion)
+        projected, _ = cv2.projectPoints(board_m[view.ids], rotation, position, matrix, distortion)
         residuals.append(view.corners_px - projected.reshape(-1, 2))
     return Intrinsics(
         size=views[0].size,
@@ -142,6 +163,7 @@ def _solved(views: Sequence[View]) -> Intrinsics:
         residuals_px=residuals,
         tilts_deg=[_tilt_deg(np.asarray(rotation)) for rotation in rotations],
         covered=covered_cells(views),
+        bend_mm=1000 * float(np.ptp(board_m[:, 2])),
     )
 
 
@@ -160,11 +182,43 @@ def _untilted(tilts_deg: Sequence[float]) -> list[str]:
     ]
 
 
-def _undetermined(found: Intrinsics) -> list[str]:
-    share = max(
-        found.deviations_px[axis] / found.matrix[axis, axis] if found.matrix[axis, axis] > 0 else math.inf
+def _contradiction(found: Intrinsics, views: Sequence[View]) -> list[str]:
+    """Name the view that fits worst where the others alone tell another focal length, or one where all tell none."""
+    worst = int(np.argmax(found.rms_of_views_px()))
+    without = _solved([view for place, view in enumerate(views) if place != worst])
+    focal, others, deviations = np.diag(found.matrix)[:2], np.diag(without.matrix)[:2], without.deviations_px[:2]
+    limits = np.maximum(SURE_DEVIATIONS * deviations, MOST_FOCAL_DEVIATION * others)
+    told = _focal_deviation(without) <= MOST_FOCAL_DEVIATION < _focal_deviation(found)
+    if not told and (np.abs(focal - others) <= limits).all():
+        return []
+    return [
+        f"one picture contradicts the others: {views[worst].name}; with it the focal length is "
+        f"{focal[0]:.1f} x {focal[1]:.1f} px, without it {others[0]:.1f} x {others[1]:.1f}: was the zoom, the focus or "
+        "the board another? Leave it out or take it again"
+    ]
+
+
+def _focal_deviation(found: Intrinsics) -> float:
+    """Standard deviation of the focal length, in parts of it, along the axis in which it is worse."""
+    return max(
+        float(found.deviations_px[axis] / found.matrix[axis, axis]) if found.matrix[axis, axis] > 0 else math.inf
         for axis in (0, 1)
     )
+
+
+def _bent(found: Intrinsics, views: Sequence[View]) -> list[str]:
+    board = views[0].board
+    limit_mm = 1000 * MOST_BEND_OF_DIAGONAL * math.hypot(board.width_m, board.height_m)
+    if found.bend_mm <= limit_mm:
+        return []
+    return [
+        f"the board is bent by {found.bend_mm:.1f} mm, at most {limit_mm:.1f}: glue it to something flat and stiff, "
+        "and take the pictures anew"
+    ]
+
+
+def _undetermined(found: Intrinsics) -> list[str]:
+    share = _focal_deviation(found)
     if share <= MOST_FOCAL_DEVIATION:
         return []
     return [

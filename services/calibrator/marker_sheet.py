@@ -1,5 +1,6 @@
 """Sheets of single markers to print and cut out."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -61,9 +62,10 @@ def marker_sheet(family: str, ids: Sequence[int], size_mm: float, paper: Paper) 
     if not cells:
         raise PatternError("no ids: name at least one")
     tile, (width, height) = Tile(size_mm), SIZES_MM[paper]
-    columns = int((width - 2 * EDGE_MM) // tile.width_mm)
-    rows = int((height - HEAD_MM - FOOT_MM) // tile.height_mm)
-    if size_mm < SMALLEST_MM or columns * rows == 0:
+    is_printable = math.isfinite(size_mm) and size_mm >= SMALLEST_MM
+    columns = int((width - 2 * EDGE_MM) // tile.width_mm) if is_printable else 0
+    rows = int((height - HEAD_MM - FOOT_MM) // tile.height_mm) if is_printable else 0
+    if columns * rows == 0:
         largest = int((width - 2 * EDGE_MM) / (1 + 2 * WHITE_SHARE))
         raise PatternError(
             f"markers of {size_mm:g} mm on {paper}: use {SMALLEST_MM:g} to {largest} mm (white is needed around them)"

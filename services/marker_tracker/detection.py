@@ -22,7 +22,11 @@ BORDER_TOLERANCE = 0.1
 """Part of the border's cells that may look white once the corners are exact."""
 SMALL_FAMILY = 50
 """Codes up to which it costs little to search all of them, so that unknown markers are found and told."""
+MOST_COVERED = 0.1
+"""Part of a marker that is not of its pattern, as in a shadow, from which on its sides tell more than the pattern."""
 MOST_LOOKED_AT_AGAIN = 16
+LEAST_LIKENESS = 0.73
+"""Correlation with its pattern from which on a marker is one: grey cells of something else are read as a code, too."""
 STAYS_PX = 1.0
 SAME_PLACE = 0.25
 """Markers whose centres are nearer than this, in parts of a side, are one printed marker."""
@@ -78,8 +82,11 @@ class MarkerDetector:
         markers: list[Marker] = []
         refined = refine(pixels, found)
         for index in np.unique(numbers):
-            of_family = numbers == index
-            markers += self._read(pixels, refined[of_family], found[of_family], self._families[int(index)])
+            of_family, one = numbers == index, self._families[int(index)]
+            read = self._read(pixels, refined[of_family], found[of_family], one)
+            markers += read
+            if len(read) < np.count_nonzero(of_family):
+                markers += self._read_within(pixels, _outside(found[of_family], _squares(read)), one)
         if not self.is_complete(markers):
             markers += self._second_look(pixels, _quads(rejected), found)
         return _apart(markers)
@@ -101,6 +108,14 @@ class MarkerDetector:
         known = {(marker.family, marker.id) for marker in markers}
         return _apart([marker for marker in here if (marker.family, marker.id) in known])
 
+    def _read_within(self, pixels: Pixels, unread: Array, one: Family) -> list[Marker]:
+        """Read what is darker in squares that OpenCV read: it may take the white's outline for the marker's."""
+        within = [square for quad in unread if (square := reading.dark_square(pixels, quad)) is not None]
+        if not within:
+            return []
+        rough = np.stack(within)
+        return self._read(pixels, refine(pixels, rough), rough, one)
+
     def _second_look(self, pixels: Pixels, rejected: Array, found: Array) -> list[Marker]:
         """Read squares with a black rim that OpenCV could not read, the largest first."""
         free = _outside(rejected, found)
@@ -116,20 +131,33 @@ class MarkerDetector:
             return []
         found: list[tuple[Match, int]] = []
         kept: list[int] = []
-        shown = reading.read(pixels, squares, one.cells)
-        for index, cells in enumerate(shown):
-            match, border = one.match(cells[1:-1, 1:-1]), reading.border_wrong(cells)
-            if match is not None and border <= BORDER_TOLERANCE * 4 * (one.cells + 1):
-                found.append((match, match.wrong + border))
+        levels = reading.sampled(pixels, squares, one.cells)
+        shown, shadowed = reading.white(levels), reading.white(levels, reading.SHADOWED)
+        for index in range(len(squares)):
+            read = _matched(one, shown[index], one.corrected) or _matched(one, shadowed[index], 0)
+            if read is not None:
+                found.append(read)
                 kept.append(index)
-                shown[index] = np.rot90(one.shown(match.id), match.turns)
+                shown[index] = np.rot90(one.shown(read[0].id), read[0].turns)
+        if not kept:
+            return []
         exact = _aligned(pixels, squares[kept], shown[kept])
+        alike = reading.likeness(levels[kept], shown[kept]) >= LEAST_LIKENESS
         return [
             Marker(one.name, match.id, quad[(np.arange(4) - match.turns) % 4], wrong, covered, start)
-            for (match, wrong), quad, covered, start in zip(
-                found, exact.corners_px, exact.covered.tolist(), rough[kept], strict=True
+            for (match, wrong), quad, covered, start, is_one in zip(
+                found, exact.corners_px, exact.covered.tolist(), rough[kept], alike, strict=True
             )
+            if is_one
         ]
+
+
+def _matched(one: Family, cells: Cells, corrected: int) -> tuple[Match, int] | None:
+    """Find the marker that shows cells with their border, and how many of them are wrong."""
+    match, border = one.match(cells[1:-1, 1:-1]), reading.border_wrong(cells)
+    if match is None or match.wrong > corrected or border > BORDER_TOLERANCE * 4 * (one.cells + 1):
+        return None
+    return match, match.wrong + border
 
 
 def _start_px(marker: Marker) -> Array:
@@ -145,7 +173,9 @@ def _aligned(pixels: Pixels, squares: Array, shown: Cells) -> Aligned:
     exact = Aligned(squares.copy(), np.zeros(len(squares)))
     if small.any():
         found = aligned(pixels, squares[small], shown[small])
-        exact.corners_px[small], exact.covered[small] = found.corners_px, found.covered
+        shaded = (found.covered > MOST_COVERED)[:, None, None]
+        exact.corners_px[small] = np.where(shaded, squares[small], found.corners_px)
+        exact.covered[small] = found.covered
     return exact
 
 
@@ -156,6 +186,10 @@ def _searched(one: Family, ids: Collection[int]) -> Any:
 
 def _quads(corners: object) -> Array:
     return np.asarray(corners, dtype=np.float64).reshape(-1, 4, 2)
+
+
+def _squares(markers: Sequence[Marker]) -> Array:
+    return np.array([marker.corners_px for marker in markers]).reshape(-1, 4, 2)
 
 
 def _outside(squares: Array, found: Array) -> Array:

@@ -15,9 +15,13 @@ from marker_tracker.catalogue import Carried, Catalogue, Key
 from marker_tracker.families import canonical, family
 
 Array = NDArray[np.float64]
-Triple = Annotated[list[Annotated[FiniteFloat, Field(ge=-360, le=360)]], Field(min_length=3, max_length=3)]
+Degrees = Annotated[FiniteFloat, Field(ge=-360, le=360)]
+Metres = Annotated[FiniteFloat, Field(ge=-5, le=5)]
 FamilyName = Annotated[str, AfterValidator(canonical)]
 Size = Annotated[float, Field(gt=0, le=10)]
+
+
+INTEGER = "tag:yaml.org,2002:int"
 
 
 class SceneFileError(ValueError):
@@ -31,8 +35,8 @@ class _Part(BaseModel):
 class Placement(_Part):
     """Where a marker is on its object: its centre seen from the object's, and turns about x, then y, then z."""
 
-    translation_m: Triple = [0.0, 0.0, 0.0]
-    rotation_deg: Triple = [0.0, 0.0, 0.0]
+    translation_m: Annotated[list[Metres], Field(min_length=3, max_length=3)] = [0.0, 0.0, 0.0]
+    rotation_deg: Annotated[list[Degrees], Field(min_length=3, max_length=3)] = [0.0, 0.0, 0.0]
 
     def transform(self) -> Array:
         """Build object_from_marker (4, 4)."""
@@ -138,9 +142,10 @@ def _refuse_repeated_keys(path: Path, node: yaml.Node) -> None:
     if isinstance(node, yaml.MappingNode):
         seen: set[str] = set()
         for key, value in node.value:
-            if key.value in seen:
-                raise SceneFileError(f"{path}, line {key.start_mark.line + 1}: {key.value} is given twice: remove one")
-            seen.add(key.value)
+            said = str(yaml.SafeLoader("").construct_object(key)) if key.tag == INTEGER else key.value
+            if said in seen:
+                raise SceneFileError(f"{path}, line {key.start_mark.line + 1}: {said} is given twice: remove one")
+            seen.add(said)
             _refuse_repeated_keys(path, value)
     elif isinstance(node, yaml.SequenceNode):
         for value in node.value:
@@ -148,7 +153,12 @@ def _refuse_repeated_keys(path: Path, node: yaml.Node) -> None:
 
 
 def _problem(path: Path, root: yaml.Node, error: Any) -> str:
-    advice = {"extra_forbidden": "no such field: remove it or mend its spelling", "missing": "is missing: add it"}
+    advice = {
+        "extra_forbidden": "no such field: remove it or mend its spelling",
+        "missing": "is missing: add it",
+        "dict_type": "needs ids with what they are, as `1: {name: cup}`",
+        "model_type": "needs fields, as {name: cup} for an object and {id: 3} for a marker",
+    }
     said = advice.get(error["type"], error["msg"].removeprefix("Value error, "))
     return str(_refusal(path, root, error["loc"], said))
 

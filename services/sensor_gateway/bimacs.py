@@ -1,4 +1,4 @@
-"""OptiTrack takes of bimanual cooking: two hands and three objects at 60 Hz, actions labelled for each hand.
+"""OptiTrack takes of bimanual actions: two hands and some objects at 60 Hz, actions labelled for each hand.
 
 `subject0_take0.csv` holds poses in metres in a world frame with z up; `labels_subject_0/<task>/take_0.json` holds, for
 each hand, frame numbers and between them `[action, object class, instance]` in the ids of the KIT Bimanual Actions
@@ -34,10 +34,13 @@ ACTIONS = (
 )  # fmt: skip
 """The names of the action ids 0 … 13."""
 
-OBJECTS: Mapping[int, str] = {0: "bowl", 4: "whisk", 6: "bottle"}
-"""The object classes in use; they serve as object ids, so that two instances of a class are one object."""
+OBJECTS = (
+    "bowl", "knife", "screwdriver", "cutting board", "whisk", "hammer", "bottle", "cup", "banana", "cereals", "sponge",
+    "wood", "saw", "hard drive",
+)  # fmt: skip
+"""The names of the object classes 0 … 13; they serve as object ids, so that two instances of a class are one object."""
 
-COLUMNS: Mapping[int, str] = {number: name.capitalize() for number, name in OBJECTS.items()}
+VALID = "_valid"
 HANDS: Mapping[Hand, str] = {"right": "HandRight", "left": "HandLeft"}
 
 EGO_FROM_CAMERA = [-1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]
@@ -106,6 +109,7 @@ def read_take(path: Path, sensor: str) -> HandsTake:
         stamps_ns = [int(Decimal(row["stamp"]) * 10**9) for row in rows]
         postures = [_posture(row, ns, sensor, path.stem) for row, ns in zip(rows, stamps_ns, strict=True)]
         objects = _objects(rows, stamps_ns, sensor, path.stem)
+        _check_targets(labels, _bodies(rows))
         kept = [label for label in labels if label.first < label.last]
         marks = [m for i, label in enumerate(kept) for m in _marks(label, _id(path, label, i), stamps_ns, sensor)]
         truths = [t for i, label in enumerate(kept) for t in _truths(label, _id(path, label, i), stamps_ns, sensor)]
@@ -127,8 +131,10 @@ def _id(path: Path, label: Label, number: int) -> str:
 
 def _place(row: Row, body: str) -> Point | None:
     """Read where a rigid body is, None where the cameras lost it."""
+    if row[f"{body}{VALID}"] != "1":
+        return None
     x, y, z = (float(row[f"{body}_{axis}"]) for axis in "xyz")
-    return camera((x, y, z)) if row[f"{body}_valid"] == "1" and math.isfinite(x + y + z) else None
+    return camera((x, y, z)) if math.isfinite(x + y + z) else None
 
 
 def _posture(row: Row, stamp_ns: int, sensor: str, session_id: str) -> Posture:
@@ -150,12 +156,26 @@ def _posture(row: Row, stamp_ns: int, sensor: str, session_id: str) -> Posture:
     )
 
 
+def _bodies(rows: Sequence[Row]) -> dict[int, str]:
+    """Name the columns of each object class that the table has."""
+    known = {name.replace(" ", ""): number for number, name in enumerate(OBJECTS)}
+    bodies = [column.removesuffix(VALID) for column in rows[0] if column.endswith(VALID)] if rows else []
+    return {known[name]: body for body in bodies if (name := body.lower().replace("_", "")) in known}
+
+
+def _check_targets(labels: Sequence[Label], bodies: Mapping[int, str]) -> None:
+    for label in labels:
+        if label.target is not None and label.target not in bodies:
+            raise ValueError(f"its labels name a {OBJECTS[label.target]}, which has no columns")
+
+
 def _objects(rows: Sequence[Row], stamps_ns: Sequence[int], sensor: str, session_id: str) -> list[Objects]:
     """Read the objects of each frame; one that is lost stays where it was last, unseen."""
     last: dict[int, TrackedObject] = {}
+    bodies = _bodies(rows)
     frames = []
     for row, stamp_ns in zip(rows, stamps_ns, strict=True):
-        for number, body in COLUMNS.items():
+        for number, body in bodies.items():
             place = _place(row, body)
             if place is not None:
                 last[number] = _tracked(number, place, _quaternion(row, body))

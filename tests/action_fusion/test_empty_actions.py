@@ -37,7 +37,7 @@ def event_of(*stops: tuple[float, Place], label: str = "act", **fields: object) 
 )
 def test_what_is_done_beside_things_is_done_to_none(taken, left) -> None:
     event = event_of((0.7, taken), (1.5, left), label="push")
-    assert (event.object, event.outcome, event.why) == (None, None, "no object within reach")
+    assert (event.object, event.outcome, event.why) == (None, None, "no object within reach was acted on")
 
 
 def test_a_hand_that_stays_where_it_reached_to_is_at_the_thing() -> None:
@@ -62,4 +62,4 @@ def test_of_two_things_touched_the_last_counts() -> None:
 
 def test_a_hand_that_rests_beyond_a_grasp_has_not_reached() -> None:
     event = event_of((0.9, (0.1, 0.1, 0.26)))
-    assert (event.object, event.why) == (None, "no object within reach")
+    assert (event.object, event.why) == (None, "no object within reach was acted on")

@@ -86,6 +86,7 @@ def test_skew_between_keys_of_up_to_two_seconds_changes_nothing(postures_ns, obj
 @given(delays, delays, delays)
 @example([0], [SKEW_NS], [0])
 @example([SKEW_NS], [0], [0])
+@example([SKEW_NS], [SKEW_NS], [0])
 def test_nor_does_it_after_time_has_gone_back(postures_ns, objects_ns, actions_ns) -> None:
     """As where a recording is played once more: the streams of the time before are further than any of this one."""
     skewed = [*delayed(POSTURES, postures_ns), *delayed(SIGHTINGS, objects_ns), *delayed(SEGMENTS, actions_ns)]

@@ -7,16 +7,23 @@ from hypothesis import strategies as st
 
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
-from actum.messages import Event, Message
-from scenes import REST_RIGHT, Path, Place, Scene, acting_on, action, moving, still
+from actum.messages import Event, Hand, Message
+from scenes import REST_LEFT, REST_RIGHT, Path, Place, Scene, acting_on, action, moving, still
 
 CUP: Place = (0.1, 0.0, 0.45)
 BESIDE: Place = (0.1, 0.0, 0.6)
 
 
-def event_of(scene: Scene, label: str = "act", start_s: float = 0.0, end_s: float = 2.0, **chosen: object) -> Event:
+def event_of(
+    scene: Scene,
+    label: str = "act",
+    start_s: float = 0.0,
+    end_s: float = 2.0,
+    marked: Hand | None = None,
+    **chosen: object,
+) -> Event:
     node = ActionFusion(Settings(**chosen))
-    act = action(label, start_s, end_s)
+    act = action(label, start_s, end_s, hand=marked)
     messages: list[Message] = [*scene.postures(), *scene.sightings(), act]
     (event,) = [event for message in messages for event in node.handle(message)]
     assert isinstance(event, Event)
@@ -79,8 +86,8 @@ def test_a_reach_past_one_thing_to_another_is_for_the_one_it_heads_at() -> None:
 def test_a_hand_that_stays_beside_things_it_never_reached_for_acts_on_none() -> None:
     scene = Scene(right_hand=still((0.0, 0.0, 0.4)), objects={1: still((0.0, 0.0, 0.62)), 2: still((0.23, 0.0, 0.4))})
     event = event_of(scene)
-    assert (event.object, event.why) == (None, "no object within reach")
-    assert event.sentence == "act, no object within reach, 0.94"
+    assert (event.object, event.why) == (None, "no object within reach was acted on")
+    assert event.sentence == "act, no object within reach was acted on, 0.94"
 
 
 def test_a_hold_is_told_by_the_reach_that_came_before_it() -> None:
@@ -177,3 +184,30 @@ def test_a_hand_seen_once_is_enough_to_be_near(measure: str) -> None:
     messages: list[Message] = [*once, *scene.sightings(), scene.posture(3.0), action("touch")]
     (event,) = [e for message in messages for e in node.handle(message)]
     assert isinstance(event, Event) and event.object is not None
+
+
+LEFT_BRINGS = moving((0.5, (-0.3, 0.08, 0.45)), (1.2, (0.0, 0.18, 0.5)), (1.5, (0.0, 0.18, 0.5)), (2.2, REST_LEFT))
+RIGHT_TAKES = moving((0.9, REST_RIGHT), (1.3, (0.06, 0.1, 0.5)), (1.5, (0.06, 0.1, 0.5)), (2.3, (0.35, 0.08, 0.5)))
+HANDED_OVER = moving((0.5, (-0.3, 0.0, 0.45)), (1.2, (0.0, 0.1, 0.5)), (1.5, (0.0, 0.1, 0.5)), (2.3, (0.29, 0.08, 0.5)))
+
+
+@pytest.mark.parametrize("hand", ["left", "right"])
+@pytest.mark.parametrize("covered", [False, True])
+def test_both_hands_acted_on_what_one_gave_to_the_other(hand, covered) -> None:
+    scene = Scene(
+        left_hand=LEFT_BRINGS,
+        right_hand=RIGHT_TAKES,
+        objects={1: HANDED_OVER, 2: still((0.4, 0.0, 0.3))},
+        hidden=lambda number, t: covered and number == 1 and 0.6 < t < 2.2,
+    )
+    event = event_of(scene, "give", end_s=2.5, marked=hand)
+    assert (names(event), event.hand) == (("cup", "cup"), hand)
+
+
+@pytest.mark.parametrize("hand", ["left", "right"])
+def test_what_both_hands_lift_is_lifted_by_either(hand) -> None:
+    right = moving((0.0, REST_RIGHT), (0.6, (0.2, 0.02, 0.45)), (1.6, (0.2, 0.27, 0.45)))
+    left = moving((0.0, REST_LEFT), (0.6, (0.0, 0.02, 0.45)), (1.6, (0.0, 0.26, 0.45)))
+    scene = Scene(left_hand=left, right_hand=right, objects={1: moving((0.6, CUP), (1.6, (0.1, 0.25, 0.45)))})
+    event = event_of(scene, "lift", marked=hand)
+    assert (names(event), event.hand, event.outcome) == (("cup", "cup"), hand, "lifted")

@@ -1,6 +1,7 @@
 """A camera's intrinsics from rendered boards: as they truly are, or refused with the reason."""
 
 import datetime
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -87,6 +88,16 @@ def test_corners_that_do_not_fit_are_refused_and_the_worst_named(good_views: lis
     said = reasons([*good_views[:3], shaken, *good_views[4:]])
     assert "corners do not fit" in said
     assert "worst bent.png" in said
+
+
+@pytest.mark.parametrize("zoom", [1.05, 1.3])
+@pytest.mark.parametrize("place", [0, 3])
+def test_one_picture_at_another_zoom_is_refused_and_named(good_views: list[View], zoom: float, place: int) -> None:
+    view, centre_px = good_views[place], np.array([320.0, 240.0])
+    zoomed = replace(view, corners_px=centre_px + zoom * (view.corners_px - centre_px))
+    views = [*good_views[:place], zoomed, *good_views[place + 1 :]]
+    with pytest.raises(PoorSetError, match=f"one picture contradicts the others: view {place};"):
+        find_intrinsics(views)
 
 
 def test_pictures_of_several_sizes_are_refused(good_views: list[View]) -> None:

@@ -107,6 +107,8 @@ REFUSED = [
     ("DICT_4X4_50", [], 80.0, "no ids"),
     ("DICT_4X4_50", [1], 170.0, "use 10 to 160 mm"),
     ("DICT_4X4_50", [1], 5.0, "use 10 to 160 mm"),
+    ("DICT_4X4_50", [1], float("nan"), "use 10 to 160 mm"),
+    ("DICT_4X4_50", [1], float("inf"), "use 10 to 160 mm"),
 ]
 
 

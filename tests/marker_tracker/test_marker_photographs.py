@@ -110,3 +110,9 @@ def test_a_tag_as_narrow_as_at_steeper_angles_is_found(data, degrees, steeper) -
     pixels = cv2.imread(str(data / "markers" / "dt_apriltags" / f"test_image_rotation_{degrees}.png"))
     narrower = np.cos(np.radians(steeper)) / np.cos(np.radians(degrees))
     assert tag_in(cv2.resize(pixels, None, fx=narrower, fy=1.0, interpolation=cv2.INTER_AREA)).seen
+
+
+@pytest.mark.parametrize("degrees", ANGLES)
+def test_the_tag_is_found_in_smaller_photographs(data, degrees) -> None:
+    pixels = cv2.imread(str(data / "markers" / "dt_apriltags" / f"test_image_rotation_{degrees}.png"))
+    assert tag_in(cv2.resize(pixels, None, fx=0.75, fy=0.75, interpolation=cv2.INTER_AREA)).seen

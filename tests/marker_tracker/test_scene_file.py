@@ -48,6 +48,10 @@ BAD = {
     GOOD + "  2: {nmae: box}\n": "line 5: objects.2.nmae: no such field: remove it or mend its spelling",
     GOOD + "  2: {size_m: 0.1}\n": "line 5: objects.2.name: is missing: add it",
     GOOD + "  1: {name: box}\n": "line 5: 1 is given twice: remove one",
+    GOOD + "  01: {name: box}\n": "line 5: 1 is given twice: remove one",
+    GOOD + "  2: box\n": "line 5: objects.2: needs fields, as {name: cup}",
+    "family: 4X4_50\nobjects: [cup]\n": "line 2: objects: needs ids with what they are",
+    GOOD + "  2: {name: box, markers: [{id: 2, object_from_marker: {translation_m: [0, 0, 35]}}]}\n": "equal to 5",
     GOOD
     + "  2: {name: box, markers: [{id: 1}]}\n": "marker 1 of DICT_4X4_50 is already on object 1: give object 2 anoth",
     GOOD + "  60: {name: box}\n": "line 5: objects.60: DICT_4X4_50 has no marker 60: use 0 to 49",

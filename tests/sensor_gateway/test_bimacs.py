@@ -117,6 +117,34 @@ def test_what_is_no_take_is_named(tmp_path: Path) -> None:
         read_take(take(tmp_path).rename(tmp_path / "subject0_take7.csv"), "kinect0")
 
 
+def test_other_objects_are_read_as_well(tmp_path: Path) -> None:
+    path = take(tmp_path)
+    path.write_text(path.read_text().replace("Whisk_", "Knife_").replace("Bottle_", "CuttingBoard_"))
+    labels = tmp_path / "labels_subject_0" / "task_1_k_cooking" / "take_0.json"
+    labels.write_text(json.dumps({"right_hand": [0, [7, 3, "cutting_board_1"], 5], "left_hand": LEFT}))
+    read = read_take(path, "kinect0")
+    assert {(found.id, found.name) for found in read.objects[0].objects} == {
+        (0, "bowl"), (1, "knife"), (3, "cutting board"),
+    }  # fmt: skip
+    assert [(t.action, t.object_id, t.object_name) for t in read.truths] == [
+        ("cut", 3, "cutting board"), ("hold", 0, "bowl"),
+    ]  # fmt: skip
+
+
+def test_an_object_that_the_table_lacks_is_named(tmp_path: Path) -> None:
+    path = take(tmp_path)
+    path.write_text(path.read_text().replace("Whisk_", "Table_"))
+    with pytest.raises(DatasetError, match="labels name a whisk, which has no columns"):
+        read_take(path, "kinect0")
+
+
+def test_numbers_of_what_the_cameras_lost_need_not_be_there(tmp_path: Path) -> None:
+    path = take(tmp_path, lost=("Bottle", 2))
+    path.write_text(path.read_text().replace("1.0,2.0,3.2,0,0,0,1,0,0", ",,,,,,,,0"))
+    seen = [{o.name: o.seen for o in message.objects}["bottle"] for message in read_take(path, "kinect0").objects]
+    assert seen == [True, True, False, True, True, True]
+
+
 def test_labels_beyond_the_table_are_no_labels_of_it(tmp_path: Path) -> None:
     with pytest.raises(DatasetError, match="not a table"):
         read_take(take(tmp_path, frames=4), "kinect0")

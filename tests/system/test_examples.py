@@ -1,6 +1,7 @@
 """The example programs, beside real processes, with nothing of ours imported."""
 
 import ast
+import runpy
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -64,3 +65,9 @@ def test_the_colour_tracker_is_short_and_needs_nothing_of_ours() -> None:
     assert len(text.splitlines()) < 100
     assert imported <= PLAIN | sys.stdlib_module_names
     assert not [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ImportFrom)]
+
+
+@pytest.mark.parametrize("data", [b"", b"no image"])
+def test_the_colour_tracker_finds_nothing_in_a_broken_image(data: bytes) -> None:
+    program = runpy.run_path(str(EXAMPLES / "colour_tracker.py"))
+    assert program["objects"]({"format": "jpeg", "data": data}, {}) == []

@@ -1,0 +1,39 @@
+"""What frames a marker, and what only looks like one."""
+
+import cv2
+import numpy as np
+import pytest
+
+from marker_tracker.detection import MarkerDetector
+
+SIDE, CELLS = 96, 6
+DARK, PAPER = 30, 200
+
+
+def cut_out(number: int, edge_px: int) -> np.ndarray:
+    """A marker with a narrow white edge on something dark, a little turned."""
+    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
+    printed = np.where(cv2.aruco.generateImageMarker(dictionary, number, SIDE) > 0, PAPER, DARK).astype(np.uint8)
+    printed = cv2.copyMakeBorder(printed, *[edge_px] * 4, cv2.BORDER_CONSTANT, value=PAPER)
+    turned = cv2.getRotationMatrix2D((len(printed) / 2, len(printed) / 2), 25.0, 1.0)
+    turned[:, 2] += (160 - len(printed) / 2, 120 - len(printed) / 2)
+    return cv2.warpAffine(printed, turned, (320, 240), borderMode=cv2.BORDER_CONSTANT, borderValue=DARK)
+
+
+@pytest.mark.parametrize("edge_px", [4, 5, 6, 7, 8, 12])
+@pytest.mark.parametrize("number", [7, 21, 25, 28])
+def test_a_marker_cut_out_with_hardly_any_white_is_found_on_a_dark_thing(number, edge_px) -> None:
+    (marker,) = MarkerDetector({"DICT_4X4_50": (number,)}).detect(cut_out(number, edge_px))
+    assert marker.id == number
+    assert marker.side_px == pytest.approx(SIDE, abs=1.0)
+
+
+def mirrored(number: int) -> np.ndarray:
+    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_5X5_1000)
+    printed = cv2.aruco.generateImageMarker(dictionary, number, 7 * 30)[:, ::-1]
+    return cv2.copyMakeBorder(np.ascontiguousarray(printed), *[60] * 4, cv2.BORDER_CONSTANT, value=255)
+
+
+@pytest.mark.parametrize("number", [1, 12, 25, 39, 47, 81, 83, 85, 92, 95, 101, 186])
+def test_a_code_read_from_cells_that_do_not_show_it_is_no_marker(number) -> None:
+    assert MarkerDetector({"DICT_4X4_1000": ()}).detect(mirrored(number)) == []
