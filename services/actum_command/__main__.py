@@ -1,5 +1,6 @@
 """`actum`, or `python -m actum_command`."""
 
+import os
 from typing import Annotated
 
 from actum import keys
@@ -25,6 +26,7 @@ with needs_extra("actum-command"):
         watching,
     )
     from actum_command.context import connect, console, fail, say
+    from actum_command.misspelt import misspelt
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -71,11 +73,11 @@ def watch(
 
 @app.command("doctor")
 def diagnose() -> None:
-    """Check router, services, rates and versions; exit 1 if anything is wrong."""
+    """Check router, services, rates, versions and the names of settings; exit 1 if anything is wrong."""
     with connect() as client:
         findings = doctor.examine(client)
     doctor.show(findings, console)
-    problems = [problem for finding in findings for problem in finding.problems]
+    problems = [*misspelt(os.environ), *(problem for finding in findings for problem in finding.problems)]
     for problem in problems:
         say(problem, style="red")
     if problems:

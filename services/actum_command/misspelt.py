@@ -1,0 +1,40 @@
+"""Settings that no service has: each service takes its own of what all are told, so none misses what is misspelt."""
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
+from pathlib import Path
+
+import action_fusion.settings
+import marker_tracker.settings
+import pose_preprocessor.settings
+import sensor_gateway.settings
+import som_classifier.settings
+
+PREFIX = "ACTUM_"
+FILE = PREFIX + "CONFIG"
+OTHERS = ("camera_device", "config", "data", "log", "models", "videos")
+"""What the runtime, the compose files and the tests are told in the environment."""
+SERVICES = (action_fusion, marker_tracker, pose_preprocessor, sensor_gateway, som_classifier)
+KNOWN = sorted({name for service in SERVICES for name in service.settings.Settings.model_fields})
+
+
+def misspelt(environment: Mapping[str, str]) -> Iterator[str]:
+    """Name what is no setting, in the file that `ACTUM_CONFIG` names and in the environment.
+
+    Raises:
+        OSError, ValueError: the file cannot be read.
+    """
+    file = environment.get(FILE)
+    for name in tomllib.loads(Path(file).read_text()) if file else ():
+        if name not in KNOWN:
+            yield f"{file}: {name} is no setting{_meant(name)}"
+    for name in environment:
+        setting = name.removeprefix(PREFIX).lower()
+        if name.startswith(PREFIX) and setting not in (*KNOWN, *OTHERS):
+            yield f"{name} is no setting{_meant(setting, PREFIX)}"
+
+
+def _meant(name: str, prefix: str = "") -> str:
+    near = get_close_matches(name, KNOWN, n=1)
+    return "".join(f": is {prefix + (one.upper() if prefix else one)} meant?" for one in near)
