@@ -25,7 +25,7 @@ SMALL_FAMILY = 50
 MOST_COVERED = 0.1
 """Part of a marker that is not of its pattern, as in a shadow, from which on its sides tell more than the pattern."""
 MOST_LOOKED_AT_AGAIN = 16
-LEAST_LIKENESS = 0.73
+LEAST_LIKENESS = 0.72
 """Correlation with its pattern from which on a marker is one: grey cells of something else are read as a code, too."""
 STAYS_PX = 1.0
 SAME_PLACE = 0.25
