@@ -17,12 +17,12 @@ from actum.recording import Recording
 from actum.runtime import Client, Listening, stop_on_signals
 from actum.settings import ServiceSettings
 from actum_command import processes
-from actum_command.context import connect, console, fail, say, settings
+from actum_command.context import connect, console, fail, settings
 from actum_command.demo_score import Score, line, summary, table
 from actum_command.progress import bars
 from actum_command.scene import write_examples
-from actum_command.supervising import Supervisor, UnusableError
-from actum_command.system import log_file, refuse_taken
+from actum_command.supervising import Supervisor
+from actum_command.system import log_file, refuse_taken, restart_ended
 from model_trainer.baseline import nearest_neighbour
 from model_trainer.evaluation import Evaluation, evaluate
 from model_trainer.samples import samples_from
@@ -132,21 +132,12 @@ def _collect(listening: Listening, score: Score, until: int, supervisor: Supervi
         received = listening.take()
         if received is None:
             time.sleep(0.01)
-            _restart(supervisor)
+            restart_ended(supervisor)
         elif isinstance(received.message, Truth):
             score.truths[received.message.segment_id] = received.message
         elif isinstance(received.message, Event):
             score.events[received.message.segment_id] = received.message
             console.print(line(score, received.message), soft_wrap=True)
-
-
-def _restart(supervisor: Supervisor) -> None:
-    try:
-        ended = supervisor.check()
-    except UnusableError as error:
-        fail(str(error))
-    for report in ended:
-        say(report, style="yellow")
 
 
 def _end_if(stop: threading.Event) -> None:

@@ -26,7 +26,7 @@ def misspelt(environment: Mapping[str, str]) -> Iterator[str]:
         OSError, ValueError: the file cannot be read.
     """
     file = environment.get(FILE)
-    for name in tomllib.loads(Path(file).read_text()) if file else ():
+    for name in tomllib.loads(Path(file).read_text(encoding="utf-8")) if file else ():
         if name not in KNOWN:
             yield f"{file}: {name} is no setting{_meant(name)}"
     for name in environment:

@@ -80,16 +80,21 @@ def up(
 
 
 def supervise(supervisor: Supervisor, programs: list[Program], stop: threading.Event) -> None:
-    """Keep programs running until stopped; fail when one says that it cannot be used as it is set."""
+    """Keep programs running until stopped."""
     for program in programs:
         supervisor.start(program)
     while not stop.wait(CHECK_S):
-        try:
-            ended = supervisor.check()
-        except UnusableError as error:
-            fail(str(error))
-        for line in ended:
-            say(line, style="yellow")
+        restart_ended(supervisor)
+
+
+def restart_ended(supervisor: Supervisor) -> None:
+    """Restart what has ended and say so; fail when it cannot be used as it is set."""
+    try:
+        ended = supervisor.check()
+    except UnusableError as error:
+        fail(str(error))
+    for line in ended:
+        say(line, style="yellow")
 
 
 def _tell_lack_of(model: Path | None) -> None:

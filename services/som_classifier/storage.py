@@ -4,11 +4,12 @@ import json
 import zipfile
 import zlib
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 from pydantic import ValidationError
 
-from som_classifier.model import Model
+from som_classifier.model import Arrays, Model
 from som_classifier.paper_model import PaperModel
 from som_classifier.pyramid_model import PyramidModel
 
@@ -32,12 +33,9 @@ def load_model(path: Path) -> Model:
     Raises:
         ModelError: the file is missing, foreign, damaged, or made for another joint order.
     """
-    if path.is_file() and not zipfile.is_zipfile(path):
-        raise ModelError(path, "no actum model, or a damaged one")
     try:
-        with path.open("rb") as stored, np.load(stored, allow_pickle=False) as file:
-            metadata = str(file["metadata"])
-            arrays = {name: file[name] for name in file.files if name != "metadata"}
+        with path.open("rb") as stored:
+            metadata, arrays = _parts(path, stored)
         kind = json.loads(metadata).get("kind")
         if kind not in KINDS:
             raise ModelError(path, f"a model of kind {kind!r}, which this version does not know")
@@ -52,3 +50,11 @@ def load_model(path: Path) -> Model:
         raise ModelError(path, f"no actum model: metadata {field}: {first['msg']}") from None
     except (*UNREADABLE, AttributeError) as error:
         raise ModelError(path, f"no actum model, or a damaged one ({error})") from None
+
+
+def _parts(path: Path, stored: IO[bytes]) -> tuple[str, Arrays]:
+    if not zipfile.is_zipfile(stored):  # which NumPy would advise to read as a pickle
+        raise ModelError(path, "no actum model, or a damaged one")
+    stored.seek(0)
+    with np.load(stored, allow_pickle=False) as file:
+        return str(file["metadata"]), {name: file[name] for name in file.files if name != "metadata"}
