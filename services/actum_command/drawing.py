@@ -9,7 +9,7 @@ import typer
 
 from actum.messages import Skeleton
 from actum.node import SECOND_NS, Tally
-from actum_command.context import fail, say
+from actum_command.context import fail, refuse_unwritable, say
 from sensor_gateway.camera.drawing import Pixels, drawn, sheet
 from sensor_gateway.camera.perceiving import Optics, Perceiver
 from sensor_gateway.camera.source import estimator_of, optics_of
@@ -30,11 +30,15 @@ def draw_command(
     The camera is described as for the gateway: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION,
     ACTUM_MIRRORED.
     """
+    if not cv2.haveImageWriter(str(output)):
+        fail(f"{output}: no kind of picture that can be written; name a .png or .jpg")
+    refuse_unwritable(output)
     try:
         settings = Settings(people=people)
         chosen, frames = _drawn(video, settings, optics_of(settings), count)
+        output.parent.mkdir(parents=True, exist_ok=True)
         if not cv2.imwrite(str(output), sheet(chosen, COLUMNS)):
-            fail(f"{output}: cannot be written; does the folder exist?")
+            fail(f"{output} cannot be written")
     except (ValueError, OSError, cv2.error) as error:
         fail(str(error))
     say(f"{len(chosen)} of {frames} pictures, the actor's left blue: {output}")

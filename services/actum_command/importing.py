@@ -11,7 +11,7 @@ from sensor_gateway import bimacs, msr_action3d, utkinect
 from sensor_gateway.bimacs import HandsTake
 from sensor_gateway.camera.bodies import Estimator
 from sensor_gateway.camera.clips import Naming, check_names, clip_files, read_clip
-from sensor_gateway.camera.perceiving import Optics
+from sensor_gateway.camera.perceiving import OTHER_SIZE, Optics
 from sensor_gateway.takes import Take
 
 SENSOR = "kinect0"
@@ -22,6 +22,7 @@ Progress = Callable[[int, int], None]
 NOTES = {
     utkinect.DUPLICATE_ROW: "duplicate rows dropped",
     utkinect.OVERLAPPING_PAIR: "pairs of segments that overlap, kept",
+    OTHER_SIZE: "frames of another size than was calibrated: nobody is looked for in them",
 }
 
 

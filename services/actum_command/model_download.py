@@ -70,7 +70,7 @@ def _chunks(url: str) -> Iterator[bytes]:
                 yield chunk
     except urllib.error.HTTPError as error:
         raise FetchError(f"{url}: the server says {error.code} {error.reason}; try again later") from None
-    except (OSError, HTTPException) as error:
+    except (OSError, HTTPException, ValueError) as error:
         reason = getattr(error, "reason", None) or error
         raise FetchError(f"{url} cannot be reached ({reason}); is there a network, a proxy?") from None
 

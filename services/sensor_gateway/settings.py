@@ -18,6 +18,10 @@ def _number(text: object) -> object:
     return int(text) if isinstance(text, str) and text.isdecimal() else text
 
 
+def _text(number: object) -> object:
+    return str(number) if type(number) is int else number
+
+
 class Settings(ServiceSettings):
     """What the gateway can be told beside what every service can."""
 
@@ -37,7 +41,9 @@ class Settings(ServiceSettings):
     up_in_camera: Direction | None = Field(
         None, description="against gravity in the camera's frame, where it is tilted; see calibrate up"
     )
-    camera: str = Field("0", description="camera: a device's number or path, a URL, or a video file")
+    camera: Annotated[str, BeforeValidator(_text)] = Field(
+        "0", description="camera: a device's number or path, a URL, or a video file"
+    )
     camera_size: str | None = Field(
         None,
         pattern=r"^\d{2,5}x\d{2,5}$",
@@ -47,7 +53,7 @@ class Settings(ServiceSettings):
         60.0,
         gt=5,
         lt=170,
-        description="camera, openni2: how much it sees from left to right, where it is not calibrated",
+        description="camera, openni2: how much it sees along the picture's longer side, where it is not calibrated",
     )
     mirrored: bool = Field(False, description="camera: its images are mirrored, and are to be turned back")
     pose_model: Path = Field(

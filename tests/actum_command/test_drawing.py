@@ -107,6 +107,27 @@ def test_every_frame_is_seen_but_only_those_asked_for_are_drawn(
     assert cv2.imread(str(output)).shape == (-(-count // 3) * 48, min(count, 3) * 64, 3)
 
 
+@pytest.mark.parametrize("name", ["a.xyz", "a", "file/a.png", ""])
+def test_a_picture_that_cannot_be_written_is_refused_before_the_video_is_seen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    model = Counting()
+    monkeypatch.setattr(drawing, "estimator_of", lambda _: nullcontext(model))
+    (tmp_path / "file").touch()
+    refused = CliRunner().invoke(app, ["draw", str(brightening(tmp_path / "a.avi", 3)), "-o", str(tmp_path / name)])
+    assert refused.exit_code == 1
+    assert str(tmp_path) in refused.stderr.replace("\n", "")
+    assert model.asked == 0
+
+
+def test_a_folder_that_is_missing_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(drawing, "estimator_of", lambda _: nullcontext(Counting()))
+    output = tmp_path / "pictures" / "a.png"
+    done = CliRunner().invoke(app, ["draw", str(brightening(tmp_path / "a.avi", 3)), "-o", str(output)])
+    assert done.exit_code == 0, done.output
+    assert output.is_file()
+
+
 @pytest.mark.data
 @pytest.mark.pose_model
 def test_a_real_clip_becomes_a_sheet(data: Path, tmp_path: Path) -> None:

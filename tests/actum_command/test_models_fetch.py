@@ -89,6 +89,11 @@ def test_a_server_that_is_not_there_is_told(tmp_path: Path) -> None:
         fetch(published(url), tmp_path / "pose.task", nothing)
 
 
+def test_an_address_that_is_none_is_told(tmp_path: Path) -> None:
+    with pytest.raises(FetchError, match="cannot be reached"):
+        fetch(published("http://[pose.task"), tmp_path / "pose.task", nothing)
+
+
 def test_only_the_web_is_read(tmp_path: Path) -> None:
     with pytest.raises(FetchError, match="not an http"):
         fetch(published(f"file://{tmp_path}"), tmp_path / "pose.task", nothing)

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 
 from actum.node import SECOND_NS
@@ -23,6 +25,40 @@ def test_a_files_pictures_carry_its_own_times_from_the_first_on(tmp_path: Path) 
     pictures = list(pictures_of(write_video(tmp_path / "a.avi"), start_ns=5 * SECOND_NS))
     assert [picture.stamp_ns for picture in pictures] == [5 * SECOND_NS + i * TENTH_NS for i in range(6)]
     assert [round(float(picture.image_bgr.mean()) / 10) for picture in pictures] == [2, 3, 4, 5, 6, 7]
+
+
+class Film:
+    """Stands in for OpenCV's reader of a file whose container tells these times (ms) at 25 frames/s."""
+
+    def __init__(self, *times_ms: float) -> None:
+        self.times_ms, self.at = times_ms, -1
+
+    def read(self) -> tuple[bool, np.ndarray | None]:
+        self.at += 1
+        return (True, np.zeros((48, 64, 3), np.uint8)) if self.at < len(self.times_ms) else (False, None)
+
+    def get(self, what: int) -> float:
+        return {cv2.CAP_PROP_POS_MSEC: self.times_ms[self.at], cv2.CAP_PROP_FPS: 25.0}[what]
+
+    def release(self) -> None:
+        pass
+
+
+@pytest.mark.parametrize(
+    ("told_ms", "stamped_ms"),
+    [
+        ((0, 0, 0), (0, 40, 80)),
+        ((0, 40, 80, 0), (0, 40, 80, 120)),
+        ((0, 0, 30, 200), (0, 40, 80, 200)),
+        ((500, 517, 600), (0, 17, 100)),
+    ],
+    ids=["none, as in a bare H.264 stream", "none for the last", "at times", "all"],
+)
+def test_frames_whose_times_a_file_does_not_tell_come_one_interval_apart(
+    told_ms: tuple[float, ...], stamped_ms: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sensor_gateway.camera.video.cv2.VideoCapture", lambda _path: Film(*told_ms))
+    assert [picture.stamp_ns for picture in pictures_of(Path("a.h264"))] == [ms * 1_000_000 for ms in stamped_ms]
 
 
 def test_what_is_no_video_is_named(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from actum import keys
+from actum.calibration import Calibration
 from actum.messages import Segment, Skeleton
 from actum.recording import Recording
 from actum_command.importing import ImportReport, import_video
@@ -32,7 +33,7 @@ class Seer:
 
 
 def imported(
-    source: Path, out: Path, pattern: str = DEFAULT_PATTERN, names: str = ""
+    source: Path, out: Path, pattern: str = DEFAULT_PATTERN, names: str = "", optics: Optics | None = None
 ) -> tuple[ImportReport, list[Seer]]:
     seers: list[Seer] = []
 
@@ -41,7 +42,8 @@ def imported(
         return nullcontext(seers[-1])
 
     naming = Naming.of(pattern, names)
-    report = import_video(source, out, lambda done, total: None, naming=naming, optics=Optics(), opened=opened)
+    optics = optics or Optics()
+    report = import_video(source, out, lambda done, total: None, naming=naming, optics=optics, opened=opened)
     return report, seers
 
 
@@ -93,6 +95,16 @@ def test_each_clip_becomes_a_recording_of_which_the_whole_is_one_labelled_segmen
     assert (start.stamp_ns, end.stamp_ns) == (frames[0].stamp_ns, frames[-1].stamp_ns) == (0, 300_000_000)
     assert all(isinstance(frame, Skeleton) and frame.valid for frame in frames)
     assert [len(frame.agents) for frame in frames if isinstance(frame, Skeleton)] == [0, 1, 1, 1]
+
+
+def test_clips_of_another_size_than_was_calibrated_are_told(tmp_path: Path) -> None:
+    write_video(tmp_path / "clips" / "wave_anna.avi")
+    calibration = Calibration(image_size=(640, 480), K=[600, 0, 320, 0, 600, 240, 0, 0, 1], distortion=[])
+    report, _ = imported(tmp_path / "clips", tmp_path / "out", optics=Optics(calibration=calibration))
+    assert report.lines()[-2:] == [
+        "6 frames without a skeleton, kept as such",
+        "6 frames of another size than was calibrated: nobody is looked for in them",
+    ]
 
 
 def test_a_name_that_does_not_tell_is_refused_before_anything_is_written(tmp_path: Path) -> None:

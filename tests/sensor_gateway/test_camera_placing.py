@@ -97,6 +97,13 @@ def test_an_assumed_lens_spans_its_field_of_view_and_says_that_it_is_assumed() -
     assert lens.assumed
 
 
+def test_a_camera_turned_upright_has_the_same_focal_length() -> None:
+    upright, lying = Lens.of_field_of_view(480, 640, 60.0), Lens.of_field_of_view(640, 480, 60.0)
+    assert upright.matrix[0, 0] == lying.matrix[0, 0]
+    top, bottom = upright.sights(np.array([[239.5, -0.5], [239.5, 639.5]]))
+    assert np.degrees(np.arctan(bottom[1]) - np.arctan(top[1])) == pytest.approx(60.0)
+
+
 def test_a_calibrations_lens_sees_along_the_lines_that_were_measured() -> None:
     calibration = Calibration(image_size=(640, 480), K=K.ravel().tolist(), distortion=[0.1, 0, 0, 0, 0])
     lens = Lens.of_calibration(calibration)

@@ -1,7 +1,10 @@
 """The pose model itself, on real people."""
 
+import zipfile
 from collections import Counter
+from io import BytesIO
 from pathlib import Path
+from types import SimpleNamespace
 from typing import ClassVar
 
 import cv2
@@ -47,6 +50,31 @@ def test_a_missing_model_is_told_with_the_command_that_gets_it(tmp_path: Path) -
         source_of(Settings(source="camera", pose_model=tmp_path / "pose.task"), 0)
 
 
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (PermissionError("Unable to open file at pose.task"), "this user may not read it"),
+        (FileNotFoundError("No file with name: pose_detector.tflite"), "no pose model .*'actum models fetch'"),
+        (OSError("libGLESv2.so.2: cannot open shared object file"), "'apt install libegl1 libgles2'"),
+    ],
+)
+def test_why_the_model_cannot_be_opened_is_told(
+    error: OSError, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(_options: object) -> None:
+        raise error
+
+    landmarker = SimpleNamespace(create_from_options=refuse)
+    vision = SimpleNamespace(
+        PoseLandmarker=landmarker, PoseLandmarkerOptions=dict, RunningMode=SimpleNamespace(VIDEO=None)
+    )
+    mediapipe = SimpleNamespace(tasks=SimpleNamespace(vision=vision, BaseOptions=dict))
+    monkeypatch.setattr("sensor_gateway.camera.pose._mediapipe", lambda: mediapipe)
+    (tmp_path / "pose.task").touch()
+    with pytest.raises(PoseModelError, match=told):
+        PoseEstimator(tmp_path / "pose.task")
+
+
 class Counted:
     """Stands in for MediaPipe: finds as many as there are, and counts how often it looks, by how many it looks for."""
 
@@ -80,9 +108,16 @@ def test_others_are_looked_for_once_a_second_until_there_is_somebody(
     assert looks_while(PoseEstimator(tmp_path / "pose.task", people=1), 2, range(4)) == ({1: 40}, 1)
 
 
+def bundle_of_another_kind() -> bytes:
+    with zipfile.ZipFile(file := BytesIO(), "w") as bundle:
+        bundle.writestr("hand_detector.tflite", b"")
+    return file.getvalue()
+
+
 @pytest.mark.pose_model
-def test_what_is_no_model_is_told_likewise(tmp_path: Path) -> None:
-    (tmp_path / "pose.task").write_bytes(b"no model" * 1000)
+@pytest.mark.parametrize("content", [b"no model" * 1000, bundle_of_another_kind()], ids=["no model", "a hand's"])
+def test_what_is_no_pose_model_is_told_likewise(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "pose.task").write_bytes(content)
     with pytest.raises(PoseModelError, match=r"pose\.task: no pose model .*'actum models fetch'"):
         PoseEstimator(tmp_path / "pose.task")
 

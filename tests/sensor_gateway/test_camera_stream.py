@@ -1,5 +1,6 @@
 """A network camera, for real: its stream is read, ends, is told to be lost, and is found again."""
 
+import socket
 import threading
 from collections.abc import Iterator
 from contextlib import nullcontext
@@ -10,7 +11,9 @@ import numpy as np
 import pytest
 
 from actum.messages import Image, Skeleton
-from sensor_gateway.camera.capture import LiveCapture
+from live import wait_until
+from sensor_gateway.camera import capture
+from sensor_gateway.camera.capture import CameraLostError, LiveCapture
 from sensor_gateway.camera.landmarks import Landmarks
 from sensor_gateway.camera.perceiving import Optics
 from sensor_gateway.camera.source import CameraSource
@@ -76,3 +79,20 @@ def test_a_stream_that_ends_is_lost_and_comes_back_by_itself(camera: str) -> Non
     assert source.tally.state == "running"
     stamps = [skeleton.stamp_ns for skeleton in told]
     assert stamps == sorted(set(stamps))
+
+
+@pytest.fixture
+def mute() -> Iterator[str]:
+    """A camera that takes calls and never answers."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        yield f"http://127.0.0.1:{server.getsockname()[1]}/camera.mjpg"
+
+
+def test_a_stream_that_never_answers_is_let_go_of_when_it_counts_as_lost(
+    mute: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(capture, "OPENING_S", 0.3)
+    silent = LiveCapture(mute)
+    wait_until(lambda: silent.over, "the attempt has ended")
+    with pytest.raises(CameraLostError):
+        silent.next(0.0)

@@ -123,7 +123,7 @@ class LiveCapture:
 
     def _opened(self) -> cv2.VideoCapture:
         cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what fails is said in status, once
-        capture = cv2.VideoCapture(self._device)
+        capture = cv2.VideoCapture(self._device, cv2.CAP_ANY, patience_with(self._device))
         if self._size is not None:
             capture.set(cv2.CAP_PROP_FOURCC, COMPRESSED)
             capture.set(cv2.CAP_PROP_FRAME_WIDTH, self._size[0])
@@ -141,6 +141,17 @@ class LiveCapture:
         with self._changed:
             self._lost = reason
             self._changed.notify_all()
+
+
+def patience_with(device: int | str) -> list[int]:
+    """Return what OpenCV is told of time: to give a silent stream up as we do, for one that opens holds up all others.
+
+    Other than streams take no such parameters.
+    """
+    if isinstance(device, int) or "://" not in device:
+        return []
+    limit_ms = round(1000 * OPENING_S)
+    return [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, limit_ms, cv2.CAP_PROP_READ_TIMEOUT_MSEC, limit_ms]
 
 
 class FileCapture:

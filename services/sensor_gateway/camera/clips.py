@@ -1,6 +1,7 @@
 """Video clips named with a class and a person, as labelled takes: the whole clip is one segment."""
 
 import re
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -104,14 +105,15 @@ def read_clip(
         DatasetError: the name does not tell the action, or the file is no video.
     """
     action, person = naming.read(path)
-    name = recording_name(path)
+    name, tally = recording_name(path), Tally()
     try:
         with opened() as estimator:
-            perceiver = Perceiver(estimator, optics, sensor, name, Tally())
+            perceiver = Perceiver(estimator, optics, sensor, name, tally)
             frames = [perceiver.skeleton(picture) for picture in pictures_of(path)]
     except VideoError as error:
         raise DatasetError(str(error)) from None
-    return Take(name, person, frames, _whole(frames, name, action), {"lens": str(optics)})
+    marks = _whole(frames, name, action)
+    return Take(name, person, frames, marks, {"lens": str(optics)}, notes=Counter(tally.rejects))
 
 
 def _whole(frames: list[Skeleton], name: str, action: str) -> list[Segment]:

@@ -19,9 +19,12 @@ class Lens:
     assumed: bool
 
     @classmethod
-    def of_field_of_view(cls, width: int, height: int, horizontal_deg: float) -> Self:
-        """Assume an ideal camera of this horizontal field of view, square pixels and no distortion."""
-        focal_px = width / 2 / np.tan(np.radians(horizontal_deg) / 2)
+    def of_field_of_view(cls, width: int, height: int, long_side_deg: float) -> Self:
+        """Assume an ideal camera of this field of view along the longer side, square pixels and no distortion.
+
+        A phone held upright sees as much from top to bottom as it does from left to right where it lies.
+        """
+        focal_px = max(width, height) / 2 / np.tan(np.radians(long_side_deg) / 2)
         matrix = np.array([[focal_px, 0, (width - 1) / 2], [0, focal_px, (height - 1) / 2], [0, 0, 1]])
         return cls(matrix, np.zeros(5), assumed=True)
 

@@ -16,6 +16,7 @@ from sensor_gateway.camera.placing import Placed, placed
 from sensor_gateway.camera.video import Picture, unmirrored
 
 JPEG_QUALITY = 90
+OTHER_SIZE = "image_size_mismatch"
 SAME_CAMERA = np.eye(4).ravel().tolist()
 
 
@@ -116,7 +117,7 @@ class Perceiver:
         height, width = picture.image_bgr.shape[:2]
         calibrated = "x".join(map(str, self._optics.calibration.image_size))
         reason = f"image_size_mismatch: {width}x{height}, calibrated for {calibrated}"
-        self._tally.reject("image_size_mismatch", reason)
+        self._tally.reject(OTHER_SIZE, reason)
         return self.nobody(picture.stamp_ns, reason)
 
     def _image(self, picture: Picture, lens: Lens) -> Image:

@@ -128,11 +128,13 @@ class Landmarker:
         )
         try:
             return vision.PoseLandmarker.create_from_options(options)
-        except OSError as error:
-            raise PoseModelError(f"MediaPipe cannot be loaded ({error}): {LIBRARIES}") from None
-        except (RuntimeError, ValueError) as error:
+        except PermissionError:
+            raise PoseModelError(f"{model_path}: this user may not read it") from None
+        except (FileNotFoundError, RuntimeError, ValueError) as error:  # "not found": a part within the file
             first = str(error).partition("\n")[0]
             raise PoseModelError(f"{model_path}: no pose model ({first}): {FETCH}") from None
+        except OSError as error:
+            raise PoseModelError(f"MediaPipe cannot be loaded ({error}): {LIBRARIES}") from None
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from actum.node import SECOND_NS
 
 MILLISECOND_NS = SECOND_NS // 1000
+USUAL_RATE_HZ = 25.0
 SUFFIXES = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm", ".wmv"})
 
 
@@ -34,6 +35,8 @@ def unmirrored(picture: Picture) -> Picture:
 def pictures_of(path: Path, start_ns: int = 0) -> Generator[Picture, None, None]:
     """Yield a file's frames; the first is stamped `start_ns`, the others by the file's own times.
 
+    Where those do not rise, as in a bare H.264 stream or at some files' end, a frame comes one interval after the last.
+
     Raises:
         VideoError: it cannot be read as a video, or holds no frame.
     """
@@ -44,10 +47,17 @@ def pictures_of(path: Path, start_ns: int = 0) -> Generator[Picture, None, None]
             at_ns = round(capture.get(cv2.CAP_PROP_POS_MSEC) * MILLISECOND_NS)
             first_ns = at_ns if first_ns is None else first_ns
             stamp_ns = start_ns + at_ns - first_ns
-            if newest_ns is None or stamp_ns > newest_ns:
-                newest_ns = stamp_ns
-                yield Picture(grabbed[1].astype(np.uint8, copy=False), stamp_ns)
+            if newest_ns is not None and stamp_ns <= newest_ns:
+                stamp_ns = newest_ns + _interval_ns(capture)
+            newest_ns = stamp_ns
+            yield Picture(grabbed[1].astype(np.uint8, copy=False), stamp_ns)
         if first_ns is None:
             raise VideoError(f"{path}: no video that OpenCV can read; convert it, for example to .mp4 with H.264")
     finally:
         capture.release()
+
+
+def _interval_ns(capture: cv2.VideoCapture) -> int:
+    """Return the time between two frames at the rate that the file tells, or the usual one."""
+    per_second = capture.get(cv2.CAP_PROP_FPS)
+    return round(SECOND_NS / (per_second if per_second > 0 else USUAL_RATE_HZ))
