@@ -31,6 +31,8 @@ def inspect_command(
     began_s = time.monotonic()
     if picture_format not in FORMATS:
         fail(f"--format is {picture_format!r}: use one of {', '.join(FORMATS)}")
+    if output.exists() and not output.is_dir():
+        fail(f"{output} is no folder: name the one to write pictures to")
     if find_spec("matplotlib") is None:
         fail("matplotlib draws the pictures and is not installed: pip install 'actum[model-inspector]'")
     try:
@@ -56,6 +58,7 @@ def _inspect(model: Model, recordings: list[Recording], folder: Path, ending: st
     with bars() as progress:
         segments = answered_segments(anatomy, recordings, progress)
         if recordings and not segments:
+            tell_unread(recordings)
             fail("no segment in these recordings: start and end marks make one, see actum segment --help")
         labelled = any(segment.label is not None for segment in segments)
         evaluation = evaluate(model, recordings, progress) if labelled else None

@@ -43,7 +43,7 @@ class Anatomy(ABC):
 
     @abstractmethod
     def winners(self, frames: Sequence[Frame]) -> Indices:
-        """Return the first map's winner at each encoded frame in which it has one."""
+        """Return the first map's winner at each encoded frame, UNSEEN where it has none, shape (n,)."""
 
     def in_mirror(self, frames: Sequence[Frame]) -> bool:
         """Tell whether a segment of encoded frames is read as its mirror image."""
@@ -106,16 +106,16 @@ class PaperAnatomy(Anatomy):
         return points
 
     def winners(self, frames: Sequence[Frame]) -> Indices:
-        """Return the winner for the part attended to, at each encoded frame in which that part has a joint."""
+        """Return the winner for the part attended to at each encoded frame, UNSEEN where that part has no joint."""
         cells = np.array([frame.code for frame in frames])
         motion = np.array([frame.motion for frame in frames])
         seen: Indices = cells[:, attended(motion, self.model.description.part, (cells != UNSEEN).any(axis=0))]
-        known: Indices = seen[seen != UNSEEN]
-        return known
+        return seen
 
     def place(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a segment of encoded frames."""
-        trace = self.postures.coordinates[without_repeats(self.winners(frames))]
+        winners = self.winners(frames)
+        trace = self.postures.coordinates[without_repeats(winners[winners != UNSEEN])]
         return self.actions.bmu(ordered_vector(trace, self.model.description.points))
 
     def answers(self) -> Floats:

@@ -3,6 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from actum.recording import Recording
 from model_inspector.anatomy import Anatomy
 from model_trainer.progress import Progress, silent
@@ -36,6 +39,13 @@ class Answered:
     def correct(self) -> bool:
         """Whether the answer is the label."""
         return self.recognition is not None and self.recognition.label == self.label
+
+    @property
+    def shares(self) -> NDArray[np.float64]:
+        """How far through the segment's time each frame lies, 0 to 1, shape (n,)."""
+        stamps = np.array([frame.stamp_ns for frame in self.frames], dtype=np.float64)
+        shares: NDArray[np.float64] = (stamps - stamps[0]) / max(stamps[-1] - stamps[0], 1.0)
+        return shares
 
 
 def answered_segments(anatomy: Anatomy, recordings: Sequence[Recording], progress: Progress = silent) -> list[Answered]:

@@ -148,7 +148,7 @@ def _draw_actor(figure: Figure, answered: Answered) -> None:
     axes.set_xlim(-ACTOR_IN / 2, width + ACTOR_IN / 2)
     axes.set_ylim(ACTOR_IN / 2, -ACTOR_IN / 2)
     bare(axes)
-    across = _across(answered) * width
+    across = answered.shares * width
     chosen = spaced(across, FIGURES)
     movements = [answered.frames[index].movement for index in chosen]
     postures = np.array([movement.posture for movement in movements if movement is not None])
@@ -164,10 +164,3 @@ def spaced(places: Floats, most: int) -> list[int]:
         if not chosen or places[index] - places[chosen[-1]] > 0.6 * (wanted[1] - wanted[0]):
             chosen.append(index)
     return chosen
-
-
-def _across(answered: Answered) -> Floats:
-    """Return how far through the segment each frame lies, 0 to 1."""
-    stamps = np.array([frame.stamp_ns for frame in answered.frames], dtype=np.float64)
-    shares: Floats = (stamps - stamps[0]) / max(stamps[-1] - stamps[0], 1.0)
-    return shares

@@ -16,6 +16,7 @@ from model_inspector.answered import Answered, encoded
 from model_inspector.posture_map import draw_postures, draw_units, map_size, name_sides
 from model_inspector.style import HALO, PAPER, canvas, in_house_style
 from model_inspector.wording import headline
+from som_classifier.attention import UNSEEN
 
 PALE = 0.28
 CARD, ASIDE = 0.94, 0.07
@@ -29,12 +30,13 @@ def trace_picture(anatomy: Anatomy, answered: Answered) -> Figure:
     """Draw the winners of a segment, one after the other, over the pale posture map."""
     frames = encoded(anatomy.model, answered.frames)
     winners = anatomy.winners(frames)
-    units, first = stays(winners)
+    seen = np.flatnonzero(winners != UNSEEN)
+    units, first = stays(winners[seen])
     width, height = map_size(anatomy.postures)
     figure = canvas(width + 0.9, height, headline(answered))
     axes = figure.add_subplot()
     draw_postures(axes, anatomy, PALE)
-    when = first / max(len(winners) - 1, 1)
+    when = answered.shares[seen[first]]
     _draw_way(axes, anatomy.postures.coordinates[units][:, ::-1], when)
     _draw_cards(axes, anatomy, units, when)
     mirror = "; the left arm acts: read in a mirror" if anatomy.in_mirror(frames) else ""

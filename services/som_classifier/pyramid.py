@@ -16,7 +16,9 @@ Floats = NDArray[Any]
 Sums = NDArray[np.uint32]
 
 SCALE = float(2**19)
-"""The whole number that stands for an activity of 1: 8191 frames of it stay below 2³²."""
+"""The whole number that stands for an activity of 1."""
+MOST_FRAMES = 2**32 // 2**19 - 1
+"""So many frames of it stay below 2³²."""
 
 
 def quantised(activities: Floats) -> Sums:
@@ -56,6 +58,26 @@ class Trail:
     def until(self, frames: int) -> "Trail":
         """Return the first frames alone."""
         return Trail(self.instants[: frames + 1], self.side)
+
+    def gained(self, at: Sequence[int]) -> NDArray[np.unsignedinteger]:
+        """Return the sums at these instants, 0 to n, less those at the start, shape (instants, units)."""
+        if len(self) > MOST_FRAMES:
+            return self._gained_in_steps(at)
+        sums = self._sums(at)
+        sums -= self.instants[0].sums[self.side]
+        return sums
+
+    def _gained_in_steps(self, at: Sequence[int]) -> NDArray[np.uint64]:
+        """Return the same where the sums may have passed 2³² more than once."""
+        marks = self._sums(range(0, len(self.instants), MOST_FRAMES))
+        before = np.cumsum(np.diff(marks, axis=0, prepend=marks[:1]), axis=0, dtype=np.uint64)
+        step = [k // MOST_FRAMES for k in at]
+        gained: NDArray[np.uint64] = before[step] + (self._sums(at) - marks[step])
+        return gained
+
+    def _sums(self, at: Sequence[int]) -> Sums:
+        instants, side = self.instants, self.side
+        return np.concatenate([instants[k].sums[side] for k in at]).reshape(len(at), -1)
 
     def when(self, shares: Sequence[float]) -> Floats:
         """Return at which instants, 0 to n, the segment is on by these shares (0 to 1): half by time, half by movement.
@@ -135,7 +157,5 @@ class Pyramid:
 
 def _sums_beside(trail: Trail, below: Sequence[int]) -> NDArray[np.float32]:
     """Return the sums at these instants and at those that follow, less those at the start, (2, instants, units)."""
-    instants = [trail.instants[k] for k in below] + [trail.instants[k + 1] for k in below]
-    sums = np.concatenate([instant.sums[trail.side] for instant in instants]).reshape(2, len(below), -1)
-    sums -= trail.instants[0].sums[trail.side]
-    return sums.astype(np.float32)
+    sums = trail.gained([*below, *(k + 1 for k in below)])
+    return sums.astype(np.float32).reshape(2, len(below), -1)

@@ -178,7 +178,7 @@ class PyramidModel(Model):
         codes: list[Code] = [frame.code for frame in frames]
         scores = self.scores(codes, self.stages.weights(0.0, complete=True))
         seen = self.trail(codes)
-        sums = (seen.instants[-1].sums[seen.side] - seen.instants[0].sums[seen.side]).reshape(len(self.first.maps), -1)
+        sums = seen.gained([len(seen)]).reshape(len(self.first.maps), -1)
         heard = activity(self.concepts.layout.excess2(scores), self.concepts.contrast)
         layers = zip(
             ("postures", "velocities", "arms"), self.first.maps, sums / sums.max(axis=1, keepdims=True), strict=True

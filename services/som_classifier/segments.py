@@ -15,6 +15,7 @@ from som_classifier.streams import LONGEST_NS, SKEW_NS, Encode, Frame, Streams
 
 REMEMBERED = 10_000
 LATE_FOR = 16
+LONGEST_WHY = 500
 NO_END = "start without end: no end within 60 s"
 
 
@@ -235,7 +236,8 @@ class Segmenter:
         agent = segment.whose if segment.whose is not None or first is None else first[1]
         stream = None if agent is None else self._streams.of(agent)
         if stream is None or agent is None:
-            return self._reject(segment, "no person")
+            why = self._streams.why_not(start_ns, segment.end_ns) if agent is None else None
+            return self._reject(segment, _because("no person" if why is None else "no person with a usable frame", why))
         if segment.end_ns - start_ns > LONGEST_NS:
             return self._reject(segment, NO_END)
         if stream.newest_ns < segment.end_ns:
@@ -292,5 +294,9 @@ def _why_unusable(frames: list[Frame]) -> str | None:
     if not frames:
         return "no person"
     if not any(frame.valid for frame in frames):
-        return "no usable frame"
+        return _because("no usable frame", next((frame.reason for frame in frames if frame.reason is not None), None))
     return None
+
+
+def _because(reason: str, why: str | None) -> str:
+    return f"{reason} ({why[:LONGEST_WHY]})" if why else reason

@@ -2,22 +2,18 @@
 
 import json
 import zipfile
-import zlib
 from pathlib import Path
 from typing import IO
 
 import numpy as np
 from pydantic import ValidationError
 
+from actum.som.storage import UNREADABLE
 from som_classifier.model import Arrays, Model
 from som_classifier.paper_model import PaperModel
 from som_classifier.pyramid_model import PyramidModel
 
 KINDS: dict[str, type[Model]] = {"paper": PaperModel, "pyramid": PyramidModel}
-UNREADABLE = (
-    OSError, ValueError, TypeError, EOFError, KeyError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error,
-)  # fmt: skip
-"""What NumPy and zipfile are known to raise on files that are not theirs or were cut or altered."""
 
 
 class ModelError(ValueError):

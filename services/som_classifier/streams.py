@@ -35,7 +35,8 @@ class Frame:
     `joints` (15, 3) scaled egocentric, `motion` (5,) and `movement` are None where the frame is not valid, joints NaN
     where the source lacks them, which `missing` counts out; `previous_ns` is the captured frame before it, of whatever
     agents; `missed` counts the frames lost just before it; `depth_inferred` tells that distances follow from a picture
-    and a body's usual size; `code` is what the model in use makes of it.
+    and a body's usual size; `code` is what the model in use makes of it; `reason` is why the preprocessor could not use
+    it.
     """
 
     stamp_ns: int
@@ -49,6 +50,7 @@ class Frame:
     missing: tuple[int, ...] = ()
     depth_inferred: bool = False
     code: Any = None
+    reason: str | None = None
 
     @property
     def valid(self) -> bool:
@@ -67,6 +69,7 @@ def frame_of(posture: Posture, lost: int, movement: MovementFilter) -> Frame:
         _distance_m(posture),
         None,
         None,
+        reason=posture.reason,
     )
     if measured is not None:
         frame.joints, frame.motion, upright = measured
@@ -225,6 +228,16 @@ class Streams:
         )
         stamp_ns, _, agent = min(valid, default=(None, None, 0))
         return None if stamp_ns is None else (stamp_ns, agent)
+
+    def why_not(self, start_ns: int, end_ns: int) -> str | None:
+        """Return why the first frame of anybody that could not be used could not; None where there is none."""
+        reasons = (
+            (frame.stamp_ns, agent, frame.reason)
+            for agent, stream in self._streams.items()
+            for frame in stream.between(start_ns, end_ns)
+            if agent and frame.reason is not None
+        )
+        return min(reasons, default=(0, 0, None))[2]
 
     def complete(self, start_ns: int, end_ns: int) -> bool:
         """Tell whether every captured frame from the start to the end has come, for every agent in it.

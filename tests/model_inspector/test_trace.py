@@ -1,10 +1,11 @@
 import numpy as np
 import pytest
 
+from actum.node import SECOND_NS
 from actum.som import Som
 from model_inspector.anatomy import anatomy_of
 from model_inspector.answered import Answered
-from model_inspector.trace import free_side, trace_picture
+from model_inspector.trace import COURSE, free_side, trace_picture
 from model_trainer.answering import encoded
 from model_trainer.samples import SegmentSample
 from recognisers import in_a_mirror, tiny_model, tiny_samples
@@ -47,3 +48,13 @@ def test_the_way_of_a_left_hander_is_that_of_the_mirror_image_and_says_so(
     title = trace_picture(anatomy_of(model), answered).axes[0].get_title(loc="left")
     assert title.startswith(f"{len(model.trace(encoded(model, sample)))} stays")
     assert ("read in a mirror" in title) == left_handed
+
+
+def test_stays_are_framed_in_the_colour_of_their_time_whatever_frames_were_lost() -> None:
+    model, sample = tiny_model(), tiny_samples()[0]
+    frames = encoded(model, sample)
+    for frame in frames[-2:]:
+        frame.stamp_ns += 100 * SECOND_NS
+    answered = Answered("file", "1", "a", sample.label, frames)
+    early = {tuple(card.get_edgecolor()) for card in trace_picture(anatomy_of(model), answered).axes[0].patches}
+    assert {COURSE(0.0)} <= early <= {COURSE(0.0), COURSE(1), COURSE(2), COURSE(0.88)}

@@ -3,10 +3,12 @@
 from itertools import accumulate
 from itertools import chain as chained
 
+import numpy as np
 import pytest
 
 from actum.messages import Action, Event, Message, Objects, Segment, Skeleton
 from actum.node import SECOND_NS
+from actum.skeletons import INDEX
 from chain import answers, by_key, delayed, replayed
 from people import FRAME_NS, STANDING, reaches, skeleton
 from pose_preprocessor.node import PosePreprocessor
@@ -96,9 +98,20 @@ def test_a_segment_is_recognised_where_there_are_three_frames() -> None:
 
 def test_a_person_whose_joints_are_never_usable() -> None:
     frozen = [skeleton(i * FRAME_NS, STANDING, seq=i) for i in range(20)]
-    assert reasons(told(mark("start", 3), mark("end", 12), skeletons=frozen)) == [("s", "no person")]
+    why = "(repeated_joints: the same joints as in the frame before)"
+    marks = mark("start", 3), mark("end", 12)
+    assert reasons(told(*marks, skeletons=frozen)) == [("s", f"no person with a usable frame {why}")]
     of_agent = mark("start", 3, agent=1), mark("end", 12)
-    assert reasons(told(*of_agent, skeletons=frozen)) == [("s", "no usable frame")]
+    assert reasons(told(*of_agent, skeletons=frozen)) == [("s", f"no usable frame {why}")]
+    of_another = mark("start", 3, agent=2), mark("end", 12)
+    assert reasons(told(*of_another, skeletons=frozen)) == [("s", "no person")]
+
+
+def test_a_joint_that_nobody_can_do_without_is_named() -> None:
+    no_torso = np.where(np.arange(15)[:, None] == INDEX["torso"], np.nan, STANDING)
+    frames = [skeleton(i * FRAME_NS, no_torso, seq=i) for i in range(20)]
+    ((_, reason),) = reasons(told(mark("start", 3), mark("end", 12), skeletons=frames))
+    assert reason == "no person with a usable frame (missing_joint: no torso)"
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from som_classifier.pyramid import SCALE, Instant, Pyramid, Trail, quantised
+from som_classifier.pyramid import MOST_FRAMES, SCALE, Instant, Pyramid, Trail, quantised
 
 UNITS = 4
 PLAIN = Pyramid((1, 2, 4), 0.0)
@@ -48,6 +48,15 @@ def test_where_activity_is_constant_every_cell_is_its_fourth_root(frames: int, s
     vector = pyramid.vector(trail(np.tile(activity, (frames, 1)), random_steps(frames, seed)))
     assert vector.dtype == np.float32
     np.testing.assert_allclose(vector, np.tile(activity**0.25, pyramid.cells), rtol=1e-6)
+
+
+@pytest.mark.parametrize("frames", [MOST_FRAMES, MOST_FRAMES + 1, 3 * MOST_FRAMES])
+@pytest.mark.parametrize("begun", [0, 2**32 - 1])
+def test_however_many_frames_there_are_every_cell_is_its_fourth_root(frames: int, begun: int) -> None:
+    activity = np.array([0.0, 0.0625, 0.5, 1.0])
+    long = trail(np.tile(activity, (frames, 1)), begun=begun)
+    np.testing.assert_allclose(OVERLAPPING.vector(long), np.tile(activity**0.25, OVERLAPPING.cells), rtol=1e-6)
+    np.testing.assert_array_equal(long.gained([0, 1, frames]), np.outer([0, 1, frames], activity * SCALE))
 
 
 def test_a_unit_that_wins_one_frame_in_sixteen_counts_half_of_one_that_always_wins() -> None:

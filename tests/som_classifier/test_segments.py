@@ -154,6 +154,17 @@ def test_nobody_there() -> None:
     assert run.reasons == ["no person"]
 
 
+@pytest.mark.parametrize("agent", [None, 1])
+def test_why_no_frame_could_be_used_is_told_as_far_as_there_is_room(agent: int | None) -> None:
+    blank = {"valid": False, "joints": None, "joints_m": None, "upright": None, "motion": None}
+    frames = [p.model_copy(update={**blank, "reason": 500 * "no" + "t"}) for p in postures()]
+    run = Run().feed(*frames, mark("start", 0, agent=agent), mark("end", 9 * FRAME_NS)).wait(3)
+    (reason,) = run.reasons
+    assert reason is not None
+    assert "no usable frame (no" in reason or "with a usable frame (no" in reason
+    assert len(reason) < 600
+
+
 def test_no_stream_at_all() -> None:
     assert Run().feed(mark("start"), mark("end")).wait(2.3).reasons == ["no person"]
 

@@ -1,6 +1,7 @@
 """A model's file brings back the same model of its kind, or is refused by name."""
 
 import json
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -135,6 +136,24 @@ def test_a_kind_that_is_not_the_arrays_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("kind", "name"), [("paper", "layer2"), ("pyramid", "axes"), ("pyramid", "postures")])
 def test_pickled_objects_are_never_read(tmp_path: Path, kind: str, name: str) -> None:
     refused(altered(saved(tmp_path, kind), **{name: np.array([{"a": 1}], dtype=object)}))
+
+
+def with_headers(path: Path, old: bytes, new: bytes) -> Path:
+    """Write the archive anew, sound in itself, with something else in the headers of its arrays."""
+    with zipfile.ZipFile(path) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in members.items():
+            header = content[10:128].replace(old, new).rstrip().ljust(117) + b"\n"
+            archive.writestr(name, content[:10] + header + content[128:])
+    return path
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [(b"}", b""), (b"'<", b"'(01,)"), (b"(", b"(9" + 25 * b"9" + b", "), (b"'", b"\xff")]
+)
+def test_headers_that_numpy_cannot_read_are_refused(tmp_path: Path, old: bytes, new: bytes) -> None:
+    refused(with_headers(saved(tmp_path, "pyramid"), old, new))
 
 
 SINGLE = np.float32

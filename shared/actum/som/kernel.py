@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from functools import cache
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -20,8 +19,6 @@ row's shift in substeps (rows,) and the substeps of a column. Missing components
 @cache
 def fastest() -> Kernel:
     """Return the compiled kernel where Numba can be imported, else the one in NumPy."""
-    if find_spec("numba") is None:
-        return adapt_in_numpy
     try:
         from actum.som.compiled import compiled_kernel
 

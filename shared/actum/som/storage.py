@@ -1,6 +1,7 @@
 """Files of maps and of trainings under way: npz without pickle, so that reading one runs no code."""
 
 import os
+import tokenize
 import zipfile
 import zlib
 from collections.abc import Iterator, Mapping
@@ -14,9 +15,9 @@ from numpy.typing import NDArray
 MAP_FORMAT = "actum.som/1"
 TRAINING_FORMAT = "actum.som.training/1"
 
-_UNREADABLE = (
-    OSError, ValueError, TypeError, EOFError, KeyError, RuntimeError, MemoryError, OverflowError, zipfile.BadZipFile,
-    zlib.error,
+UNREADABLE = (
+    OSError, ValueError, TypeError, EOFError, KeyError, RuntimeError, MemoryError, OverflowError, SyntaxError,
+    tokenize.TokenError, zipfile.BadZipFile, zlib.error,
 )  # fmt: skip
 """What NumPy and zipfile are known to raise on files that are not theirs or were cut or altered."""
 
@@ -63,5 +64,5 @@ def reading(path: Path, file_format: str) -> Iterator[Mapping[str, NDArray[Any]]
         raise
     except FileNotFoundError:
         raise SomError(path, "there is no such file") from None
-    except _UNREADABLE as error:
+    except UNREADABLE as error:
         raise SomError(path, f"not of format {file_format!r}, or damaged ({error})") from None

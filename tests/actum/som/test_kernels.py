@@ -90,8 +90,18 @@ def test_without_a_place_for_compiled_code_it_is_compiled_anew(as_installed: str
     assert as_installed.startswith("False")
 
 
-def test_without_numba_the_map_is_the_same(as_installed: str) -> None:
-    hidden = "import sys\nsys.modules['numba'] = None\n"
+REFUSED = """
+import sys
+class Refusing:
+    def find_spec(self, name, path=None, target=None):
+        if name == "numba":
+            raise ImportError("not here")
+sys.meta_path.insert(0, Refusing())
+"""
+
+
+@pytest.mark.parametrize("hidden", ["import sys\nsys.modules['numba'] = None\n", REFUSED], ids=["absent", "refused"])
+def test_without_numba_the_map_is_the_same(as_installed: str, hidden: str) -> None:
     by_numpy = run(hidden + TRAINING)
     assert by_numpy.startswith("True")
     assert by_numpy.split()[1] == as_installed.split()[1]

@@ -1,5 +1,6 @@
 """Maps in files: what is written is read, and what is no map is refused by name."""
 
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -62,6 +63,16 @@ def test_a_single_array_and_a_text_are_no_maps(tmp_path: Path) -> None:
     for name in ("array.npy", "text.npz", "empty.npz"):
         with pytest.raises(SomError, match=f"{name}: this is no npz file"):
             Som.load(tmp_path / name)
+
+
+@pytest.mark.parametrize(
+    "header", ["{'descr': '<f8', 'shape': (2,", "{'descr': '(01,)f8', 'fortran_order': False, 'shape': ()}"]
+)
+def test_headers_that_numpy_cannot_read_are_refused(tmp_path: Path, header: str) -> None:
+    with zipfile.ZipFile(tmp_path / "foreign.npz", "w") as archive:
+        archive.writestr("format.npy", b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header.encode())
+    with pytest.raises(SomError, match="foreign.npz: "):
+        Som.load(tmp_path / "foreign.npz")
 
 
 def stored(folder: Path) -> bytes:
