@@ -27,6 +27,8 @@ NAMES = {1: "cup", 2: "box", 3: "book"}
 HEAD: Place = (0.0, 0.75, 0.05)
 REST_RIGHT: Place = (0.2, 0.1, 0.2)
 REST_LEFT: Place = (-0.2, 0.1, 0.2)
+SHOULDER_RIGHT: Place = (0.18, 0.5, 0.0)
+SHOULDER_LEFT: Place = (-0.18, 0.5, 0.0)
 ELBOW_RIGHT: Place = (0.25, 0.15, -0.05)
 ELBOW_LEFT: Place = (-0.25, 0.15, -0.05)
 
@@ -92,7 +94,8 @@ class Scene:
         for name in ("right_hand", "left_hand", "right_elbow", "left_elbow"):
             place = getattr(self, name)(seconds)
             joints[INDEX[name]] = geometry.apply(self._ego_from_actor(seconds), np.array(place)).tolist()
-        joints[INDEX["head"]] = geometry.apply(self._ego_from_actor(seconds), np.array(HEAD)).tolist()
+        for name, place in (("head", HEAD), ("right_shoulder", SHOULDER_RIGHT), ("left_shoulder", SHOULDER_LEFT)):
+            joints[INDEX[name]] = geometry.apply(self._ego_from_actor(seconds), np.array(place)).tolist()
         message = {
             "stamp_ns": at(seconds),
             "seq": seq,

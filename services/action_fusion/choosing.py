@@ -10,6 +10,7 @@ from action_fusion import proximity
 from action_fusion.decision import decide
 from action_fusion.hands import Hands
 from action_fusion.proximity import Actor
+from action_fusion.samples import Array
 from action_fusion.settings import Settings
 from action_fusion.tracks import Track
 from actum.messages import Action, Hand, Pointing
@@ -19,6 +20,9 @@ NO_OBJECT = "no object in sight"
 OUT_OF_REACH = "no object within reach"
 LEFT_ALONE = "no object within reach was acted on"
 OFF_THE_LINE = "no object along the arm"
+
+CLEARLY = 0.5
+"""One line fits clearly better than another where an object is off it by less than this part of the angle."""
 
 
 @dataclass(frozen=True)
@@ -47,15 +51,25 @@ class Choice:
 def evidence(tracks: Sequence[Track], actor: Actor, hands: Sequence[Hand]) -> list[Evidence]:
     """Measure how near each hand came to each object, and how the arm that is out points at it."""
     pointing_hand = proximity.pointing_hand(actor, hands)
-    return [_evidence(track, actor, hands, pointing_hand) for track in tracks]
+    views = [actor.view(track) for track in tracks]
+    angles = _angles(views, actor, pointing_hand)
+    found = []
+    for track, view, angle in zip(tracks, views, angles, strict=True):
+        distances = {hand: proximity.smallest_distance(view, actor.hand(hand)) for hand in hands}
+        near_hand = min(hands, key=distances.__getitem__)
+        found.append(Evidence(track, distances[near_hand], near_hand, angle, pointing_hand))
+    return found
 
 
-def _evidence(track: Track, actor: Actor, hands: Sequence[Hand], pointing_hand: Hand) -> Evidence:
-    view = actor.view(track)
-    distances = {hand: proximity.smallest_distance(view, actor.hand(hand)) for hand in hands}
-    near_hand = min(hands, key=distances.__getitem__)
-    angle = proximity.pointing_angle(view, actor.fingertip(pointing_hand), actor.head())
-    return Evidence(track, distances[near_hand], near_hand, angle, pointing_hand)
+def _angles(views: Sequence[Array], actor: Actor, hand: Hand) -> list[float]:
+    """Measure how far each object is off the line from head to finger or, where that fits clearly better, the arm's.
+
+    Most hold the finger where they look, some point with the stretched arm.
+    """
+    sight = [proximity.pointing_angle(view, actor.fingertip(hand), actor.head()) for view in views]
+    arm = [proximity.pointing_angle(view, actor.hand(hand), actor.shoulder(hand)) for view in views]
+    with_arm = bool(sight) and math.isfinite(min(sight)) and min(arm) < CLEARLY * min(sight)
+    return arm if with_arm else sight
 
 
 def choose(
@@ -104,7 +118,7 @@ def _nearest(near: Sequence[Evidence], settings: Settings) -> Choice:
 
 
 def _pointed_at(found: Sequence[Evidence], settings: Settings) -> Choice:
-    """Take the object nearest to the ray from the head through the fingertip."""
+    """Take the object nearest to the line on which the actor points."""
     ranked = sorted((e for e in found if math.isfinite(e.angle)), key=lambda e: e.angle)
     if not ranked:
         return Choice(why=NO_HAND)

@@ -9,7 +9,7 @@ import numpy as np
 
 from action_fusion import displacement, proximity
 from action_fusion.carrying import carried_tracks
-from action_fusion.choosing import Choice, Evidence, choose, evidence
+from action_fusion.choosing import NO_HAND, Choice, Evidence, choose, evidence
 from action_fusion.hands import HandPath, Hands, hand_path
 from action_fusion.samples import ObjectsSample, PostureSample
 from action_fusion.settings import Settings
@@ -49,7 +49,7 @@ def fuse(
     seen = _tracks(action, frames, paths, depth_std_m(inside), settings)
     actor = proximity.actor(inside, action.start_ns)
     found = [] if actor is None else evidence(seen, actor, hands)
-    choice = choose(action, found, paths, hands, settings)
+    choice = Choice(why=NO_HAND) if actor is None and seen else choose(action, found, paths, hands, settings)
     became = _became(action, choice, inside, settings)
     return Event(
         **_common(action),

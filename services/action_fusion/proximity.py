@@ -23,6 +23,7 @@ ARMS: dict[Hand, tuple[int, int]] = {
     "right": (INDEX["right_elbow"], INDEX["right_hand"]),
     "left": (INDEX["left_elbow"], INDEX["left_hand"]),
 }
+SHOULDERS: dict[Hand, int] = {"right": INDEX["right_shoulder"], "left": INDEX["left_shoulder"]}
 
 
 _SMALLEST_M = 1e-9
@@ -50,6 +51,10 @@ class Actor:
     def hand(self, hand: Hand) -> Array:
         """Return a hand's path (p, 3)."""
         return self.joints_m[:, ARMS[hand][1]]
+
+    def shoulder(self, hand: Hand) -> Array:
+        """Return the path (p, 3) of a hand's shoulder."""
+        return self.joints_m[:, SHOULDERS[hand]]
 
     def fingertip(self, hand: Hand) -> Array:
         """Return where the hand's stretched index finger ends (p, 3)."""
@@ -94,16 +99,16 @@ def _outstretched_m(actor: Actor, hand: Hand) -> float:
     return float(np.median(aside / np.maximum(np.linalg.norm(head[held], axis=1), _SMALLEST_M)))
 
 
-def pointing_angle(object_ego: Array, fingertip_ego: Array, head_ego: Array) -> float:
-    """Compute the angle (rad) between head-to-fingertip and head-to-object, each the median while the arm is out.
+def pointing_angle(object_ego: Array, tip_ego: Array, origin_ego: Array) -> float:
+    """Compute the angle (rad) between origin-to-tip and origin-to-object, each the median while the arm is out.
 
-    Infinite where head and arm are never known together.
+    Infinite where origin and tip are never known together.
     """
-    known = np.flatnonzero(np.isfinite(fingertip_ego + head_ego).all(axis=1))
+    known = np.flatnonzero(np.isfinite(tip_ego + origin_ego).all(axis=1))
     held = known[-max(1, round(len(known) * HOLDING_SHARE)) :]
     if not len(held):
         return np.inf
-    rays, sights = fingertip_ego[known] - head_ego[known], object_ego[known] - head_ego[known]
+    rays, sights = tip_ego[known] - origin_ego[known], object_ego[known] - origin_ego[known]
     last = np.median(rays[-len(held) :], axis=0)
     out = np.linalg.norm(rays - last, axis=1) <= POINTING_M
     ray, sight = (np.median(rays[out], axis=0), np.median(sights[out], axis=0)) if out.any() else (last, sights[-1])

@@ -25,6 +25,9 @@ DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
 JPEG_START = b"\xff\xd8"
 RIGID_TOLERANCE = 1e-3
 FURTHEST_M = 100.0
+BLACK_LEVEL = 10
+"""The 99th percentile of an image in which nothing can be seen, of 255."""
+STEP_PX = 8
 
 
 class UnusableImageError(ValueError):
@@ -73,6 +76,16 @@ def camera(image: Image, calibrated_size_px: tuple[int, int] | None = None) -> C
         raise UnusableImageError("bad_calibration", "skeleton_from_image is no rigid transform")
     matrix = _of_size(matrix, (image.width, image.height), calibrated_size_px)
     return Camera(matrix, _distortion(image.distortion), skeleton_from_image)
+
+
+def refuse_black(pixels: Pixels) -> None:
+    """Tell an image in which nothing can be seen from one in which no marker is.
+
+    Raises:
+        UnusableImageError: of kind `black_image`.
+    """
+    if np.percentile(pixels[::STEP_PX, ::STEP_PX], 99) <= BLACK_LEVEL:
+        raise UnusableImageError("black_image", "nothing can be seen: is the lens covered, is it dark?")
 
 
 def _of_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tuple[int, int] | None) -> Array:

@@ -1,5 +1,6 @@
 """The marker tracker's pure step: each colour image becomes the objects in it."""
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -8,9 +9,9 @@ from actum import keys
 from actum.messages import Image, Message, Objects, TrackedObject
 from actum.node import SECOND_NS, Tally, Tick
 from actum.stamps import Order, StampGuard
-from marker_tracker.catalogue import Carried, Catalogue, plain
+from marker_tracker.catalogue import Carried, Catalogue, Key, plain
 from marker_tracker.detection import Marker
-from marker_tracker.images import Camera, UnusableImageError, camera, gray
+from marker_tracker.images import Camera, UnusableImageError, camera, gray, refuse_black
 from marker_tracker.poses import WORST_ERROR_PX, BadPoseError, Pose, confidence, solve
 from marker_tracker.rotations import Array
 from marker_tracker.scene_file import SceneFileError, load
@@ -41,6 +42,7 @@ class MarkerTracker:
         self._watch = Watch(self._catalogue.wanted())
         self._tracks = Tracks(round(settings.memory_s * SECOND_NS))
         self._order = StampGuard()
+        self._places_px: dict[Key, Array] = {}
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
         """Answer each colour image with one `Objects` of its stamp, invalid where the image cannot be used."""
@@ -53,6 +55,7 @@ class MarkerTracker:
         if order is Order.RESTART:
             self._tracks.clear()
             self._watch.clear()
+            self._places_px.clear()
         return [self._objects(message)]
 
     def _objects(self, image: Image) -> Objects:
@@ -60,25 +63,37 @@ class MarkerTracker:
             return _answer(image, [], image.reason or "the source says so")
         try:
             pixels, view = gray(image), camera(image, self._settings.calibrated_size_px)
+            markers = self._watch.markers(image.stamp_ns, pixels)
+            if not markers:
+                refuse_black(pixels)
         except UnusableImageError as error:
             self.tally.reject(error.kind, f"image at {image.stamp_ns}: {error.detail}")
             return _answer(image, [], str(error))
-        for number, markers in self._carried(self._watch.markers(image.stamp_ns, pixels)).items():
-            self._see(image.stamp_ns, number, markers, view)
+        for number, of_object in self._carried(self._once(markers)).items():
+            self._see(image.stamp_ns, number, of_object, view)
         return _answer(image, self._tracks.listed(image.stamp_ns))
 
+    def _once(self, markers: list[Marker]) -> list[Marker]:
+        """Keep of one seen twice the one nearest to where it was, at first the largest."""
+        kept: dict[Key, Marker] = {}
+        for marker in sorted(markers, key=self._moved_px):
+            if kept.setdefault((marker.family, marker.id), marker) is not marker:
+                self.tally.reject("repeated_marker", f"marker {marker.id} of {marker.family} twice in one image")
+        self._places_px |= {key: marker.centre_px for key, marker in kept.items()}
+        return list(kept.values())
+
+    def _moved_px(self, marker: Marker) -> tuple[float, float]:
+        place_px = self._places_px.get((marker.family, marker.id))
+        return 0.0 if place_px is None else math.dist(marker.centre_px, place_px), -marker.side_px
+
     def _carried(self, markers: list[Marker]) -> dict[int, OnObject]:
-        """Group markers by the objects they are on, the largest first; of one seen twice the largest counts."""
+        """Group markers by the objects they are on, the largest first."""
         objects: dict[int, OnObject] = {}
-        taken: set[tuple[str, int]] = set()
         for marker in sorted(markers, key=lambda one: -one.side_px):
             carried = self._catalogue.find(marker.family, marker.id)
             if carried is None:
                 self.tally.reject("unknown_marker", f"marker {marker.id} of {marker.family} is on none of the objects")
-            elif (marker.family, marker.id) in taken:
-                self.tally.reject("repeated_marker", f"marker {marker.id} of {marker.family} twice in one image")
             else:
-                taken.add((marker.family, marker.id))
                 objects.setdefault(carried.object_id, []).append((marker, carried))
         return objects
 

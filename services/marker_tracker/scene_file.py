@@ -88,9 +88,11 @@ def load(path: Path) -> Catalogue:
         raise SceneFileError(f"{path} is no YAML: {' '.join(str(error).split())}") from None
     if root is None or not isinstance(content, dict):
         raise SceneFileError(f"{path} holds no scene: it needs `objects:` with an id and a name for each")
-    _refuse_repeated_keys(path, root)
     try:
+        _refuse_repeated_keys(path, root)
         scene = SceneFile.model_validate(content)
+    except RecursionError:
+        raise SceneFileError(f"{path} contains itself: write out what its `*` stand for") from None
     except ValidationError as error:
         raise SceneFileError("; ".join(_problem(path, root, each) for each in error.errors())) from None
     return _catalogue(path, root, scene)

@@ -11,7 +11,7 @@ from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
 from actum.messages import Action, Event, Message
 from actum.node import Tick
-from scenes import ELBOW_RIGHT, HEAD, NAMES, REST_RIGHT, Scene, Stance, acting_on, action, moving, still
+from scenes import ELBOW_RIGHT, HEAD, NAMES, REST_RIGHT, SHOULDER_RIGHT, Scene, Stance, acting_on, action, moving, still
 
 CUP = (0.1, 0.0, 0.45)
 OTHERS = {2: (-0.25, 0.0, 0.5), 3: (0.45, 0.0, 0.5)}
@@ -138,6 +138,19 @@ def test_pointing_is_resolved_by_the_line_from_the_head_through_the_fingertip(ta
     assert event.object is not None and event.object.id == pointed_at
     assert event.object.distance_m == event.distances_m[str(pointed_at)]
     assert event.sentence == f'point object {pointed_at} "{NAMES[pointed_at]}", unmoved, 0.94'
+
+
+@pytest.mark.parametrize(("target", "pointed_at"), [((-0.3, 0.0, 0.9), 1), ((0.1, 0.0, 0.9), 2), ((0.5, 0.0, 0.9), 3)])
+def test_pointing_is_resolved_by_the_ray_of_the_arm(target, pointed_at) -> None:
+    ray = np.subtract(target, SHOULDER_RIGHT)
+    elbow, hand = (tuple((SHOULDER_RIGHT + metres * ray / np.linalg.norm(ray)).tolist()) for metres in (0.3, 0.55))
+    arm = {
+        "right_hand": moving((0.0, REST_RIGHT), (1.0, hand)),
+        "right_elbow": moving((0.0, ELBOW_RIGHT), (1.0, elbow)),
+    }
+    event = event_of(Scene(**arm, objects=pointing_at(target, 0.5).objects), action("point"))
+    assert event.object is not None and event.object.id == pointed_at
+    assert event.pointing is not None and event.pointing.angle_deg == pytest.approx(0.0, abs=1e-5)
 
 
 def test_pointing_may_choose_an_object_that_is_not_the_nearest() -> None:

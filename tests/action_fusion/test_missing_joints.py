@@ -18,7 +18,7 @@ CUP = (0.1, 0.0, 0.45)
 TOUCH = acting_on(CUP, CUP, others={2: (-0.25, 0.0, 0.5)})
 POSTURES, SIGHTINGS = TOUCH.postures(), TOUCH.sightings()
 ARM = ("right_elbow", "right_hand")
-FUSED = ("head", *ARM, "left_elbow", "left_hand")
+FUSED = ("head", "right_shoulder", *ARM, "left_shoulder", "left_elbow", "left_hand")
 
 
 def lacking(posture: Posture, *names: str) -> Posture:
@@ -44,6 +44,13 @@ def test_joints_that_fusion_does_not_need_may_be_missing(label: str) -> None:
     others = [name for name in JOINTS if name not in FUSED]
     partial = [lacking(posture, *others) for posture in POSTURES]
     assert event_of(partial, SIGHTINGS, label) == event_of(POSTURES, SIGHTINGS, label)
+
+
+@pytest.mark.parametrize("label", ["touch", "point"])
+def test_without_a_posture_the_hand_is_not_known_whatever_is_in_sight(label: str) -> None:
+    nothing = {"valid": False, "joints_m": None, "ego_from_camera": None}
+    event = event_of([posture.model_copy(update=nothing) for posture in POSTURES], SIGHTINGS, label)
+    assert (event.object, event.why, event.objects_present) == (None, "the hand is not known", [1, 2])
 
 
 @given(st.integers(0, 10**6), st.floats(0.0, 1.0), st.sampled_from(["touch", "point"]))

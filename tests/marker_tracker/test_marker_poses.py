@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from actum.messages import Image, Objects
+from actum.node import SECOND_NS
 from marker_tracker.node import MarkerTracker
 from marker_tracker.rotations import quaternion_xyzw
 from marker_tracker.settings import ObjectSpec, Settings
@@ -93,6 +94,17 @@ def test_the_same_marker_twice_is_one_object_and_counted(image_of, pose_at) -> N
     (answer,) = tracker.handle(image_of(twice))
     assert [found.id for found in answer.objects] == [3]
     assert tracker.tally.rejects == {"repeated_marker": 1}
+
+
+def test_of_a_marker_seen_twice_the_one_that_was_followed_is(image_of, pose_at) -> None:
+    tracker = MarkerTracker(Settings(marker_size_m=0.12))
+    places = []
+    for frame, (left_z, right_z) in enumerate([(0.8, 0.82), (0.82, 0.8), (0.82, 0.8), (0.82, 0.8)]):
+        twice = [(3, 0.12, pose_at((-0.2, 0.0, left_z))), (3, 0.12, pose_at((0.2, 0.0, right_z)))]
+        (answer,) = tracker.handle(image_of(twice, stamp_ns=frame * SECOND_NS // 15))
+        places.append(answer.objects[0].position_m[0])
+    assert np.allclose(places, -0.2, atol=0.01)
+    assert tracker.tally.rejects == {"repeated_marker": 4}
 
 
 def test_another_dictionary_is_chosen_by_name(image_of, pose_at) -> None:

@@ -66,6 +66,7 @@ BAD = {
     "a: !!int foo": "is no YAML",
     "a: 2026-13-45": "is no YAML",
     "[" * 3000: "is no YAML",
+    "objects: &all\n  1: *all\n": "contains itself",
 }
 
 
