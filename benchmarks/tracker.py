@@ -1,7 +1,8 @@
 """What the marker tracker costs for a frame, on one core, beside OpenCV's bare detection in the same run.
 
 Eight markers that go slowly over a cluttered 640x480 colour image, 60 times a second: all that the scene file names, or
-all but one. `make bench-tracker` prints a Markdown table.
+all but one. They are large enough to be known by their edges, or so small that their whole pattern is aligned.
+`make bench-tracker` prints a Markdown table.
 """
 
 import statistics
@@ -21,7 +22,7 @@ from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings
 
 WIDTH, HEIGHT = 640, 480
-SIDE, QUIET = 56, 8
+SIDES_PX, QUIET_PX = (56, 32), 8
 MARKERS = 8
 FRAMES, WARM_UP = 120, 10
 SETS: tuple[tuple[str, ...], ...] = (
@@ -38,14 +39,15 @@ SETS: tuple[tuple[str, ...], ...] = (
 
 def main() -> None:
     cv2.setNumThreads(1)
-    print("| families | bare detection, ms | tracker, ms | ratio | frames/s | one missing, ms | ratio | objects |")
-    print("|---|---|---|---|---|---|---|---|")
-    for names in SETS:
-        print(row(names))
+    print("| families | px | bare detection, ms | tracker, ms | ratio | frames/s | one missing, ms | ratio | objects |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for side_px in SIDES_PX:
+        for names in SETS:
+            print(row(names, side_px))
 
 
-def row(names: Sequence[str]) -> str:
-    frames = [frame(names, shift) for shift in range(FRAMES)]
+def row(names: Sequence[str], side_px: int) -> str:
+    frames = [frame(names, side_px, shift) for shift in range(FRAMES)]
     trackers = [MarkerTracker(Settings(scene=scene(names, count))) for count in (MARKERS, MARKERS + 1)]
     bare = cv2.aruco.ArucoDetector([family(name).dictionary for name in names], cv2.aruco.DetectorParameters())
     greys = [gray(image) for image in frames]
@@ -62,7 +64,7 @@ def row(names: Sequence[str]) -> str:
     bare_ms, all_ms, missing_ms = (1e3 * statistics.mean(times[WARM_UP:]) for times in timed(steps))
     listed = ", ".join(name.removeprefix("DICT_") for name in names)
     return (
-        f"| {listed} | {bare_ms:.1f} | {all_ms:.1f} | {all_ms / bare_ms:.2f} | {1e3 / all_ms:.0f} "
+        f"| {listed} | {side_px} | {bare_ms:.1f} | {all_ms:.1f} | {all_ms / bare_ms:.2f} | {1e3 / all_ms:.0f} "
         f"| {missing_ms:.1f} | {missing_ms / bare_ms:.2f} | {min(seen)} |"
     )
 
@@ -85,7 +87,7 @@ def scene(names: Sequence[str], count: int) -> Path:
     return path
 
 
-def frame(names: Sequence[str], shift: int) -> Image:
+def frame(names: Sequence[str], side_px: int, shift: int) -> Image:
     """Draw eight markers, a little further on in each frame, over grey rectangles, blurred and with noise."""
     chance = np.random.default_rng(0)
     canvas = np.full((HEIGHT, WIDTH), 120, dtype=np.uint8)
@@ -94,9 +96,8 @@ def frame(names: Sequence[str], shift: int) -> Image:
         cv2.rectangle(canvas, (x, y), (x + w, y + h), level, -1)
     for i in range(MARKERS):
         x, y = 30 + 150 * (i % 4) + shift // 4, 90 + 210 * (i // 4) + shift // 6
-        sheet = np.full((SIDE + 2 * QUIET, SIDE + 2 * QUIET), 235, dtype=np.uint8)
-        drawn = cv2.aruco.generateImageMarker(family(names[i % len(names)]).dictionary, i, SIDE)
-        sheet[QUIET:-QUIET, QUIET:-QUIET] = np.maximum(drawn, 25)
+        drawn = cv2.aruco.generateImageMarker(family(names[i % len(names)]).dictionary, i, side_px)
+        sheet = np.pad(np.maximum(drawn, 25), QUIET_PX, constant_values=235)
         canvas[y : y + len(sheet), x : x + len(sheet)] = sheet
     noisy = cv2.GaussianBlur(canvas, (0, 0), 0.7) + np.random.default_rng(shift).normal(0, 2, canvas.shape)
     bgr = cv2.cvtColor(np.clip(noisy, 0, 255).astype(np.uint8), cv2.COLOR_GRAY2BGR)
