@@ -8,6 +8,9 @@ DIRECTIONS = (("right", "left"), ("up", "down"), ("away", "towards"))
 """Words for a positive and a negative step along right, up and forward."""
 
 UNMOVED = "unmoved"
+MOVED = "moved"
+"""Along the surface and sideways: neither away from the actor nor towards."""
+PUSHED, PULLED = "pushed", "pulled"
 
 STEEPEST_SURFACE = 0.25
 """What rises by more than a quarter of its way has left the surface: a table seen by a tilted camera is flatter."""
@@ -62,5 +65,12 @@ def outcome(displacement_m: Array, moved_m: float, faces: bool = True) -> str:
     if abs(up) >= max(moved_m, STEEPEST_SURFACE * length):
         return "lifted" if up > 0 else "put down"
     if direction(displacement_m, moved_m, faces) in DIRECTIONS[2]:
-        return "pushed" if forward > 0 else "pulled"
-    return "moved"
+        return PUSHED if forward > 0 else PULLED
+    return MOVED
+
+
+def agrees(became: str, expected: str | None) -> bool | None:
+    """Tell whether an outcome is the expected one; None where none is, or where it may be: things are pushed aside."""
+    if expected is None or (became == MOVED and expected in (PUSHED, PULLED)):
+        return None
+    return became == expected

@@ -147,7 +147,7 @@ def _became(action: Action, choice: Choice, postures: Sequence[PostureSample], s
         "motion": Motion(displacement_m=shift.tolist(), direction=direction),
         "result": displacement.result(shift, settings.moved_m, first.faces),
         "outcome": outcome,
-        "agrees": None if expected is None else outcome == expected,
+        "agrees": displacement.agrees(outcome, expected),
     }
 
 

@@ -248,7 +248,8 @@ class Event(Message):
 
     `candidates` are two or more objects that are as likely, the likeliest first; empty where one is. `why` tells why
     there is no object. `outcome` is lifted, put down, pushed, pulled, moved or unmoved, and `agrees` whether that is
-    what the action is to do; null where the action is not one that is to do something of the kind.
+    what the action is to do; null where the action is not one that is to do something of the kind, or where what was to
+    be pushed or pulled went sideways.
     """
 
     SCHEMA = "actum.event"

@@ -34,6 +34,8 @@ def event_of(scene: Scene, label: str, frame: str = "egocentric", **chosen: obje
         ("push", (0.1, 0.0, 0.27), "pulled", "towards", False),
         ("pull", (0.1, 0.0, 0.27), "pulled", "towards", True),
         ("sweep", (0.35, 0.0, 0.45), "moved", "right", None),
+        ("push", (0.35, 0.0, 0.45), "moved", "right", None),
+        ("lift", (0.35, 0.0, 0.45), "moved", "right", False),
         ("push", CUP, "unmoved", None, False),
         ("touch", CUP, "unmoved", None, None),
     ],
@@ -57,7 +59,7 @@ def test_a_table_may_slope_a_little_in_the_cameras_eyes(displacement, expected) 
 
 def test_without_a_body_away_and_towards_mean_nothing() -> None:
     event = event_of(acting_on(CUP, (0.1, 0.0, 0.66)), "push", frame="world")
-    assert (event.outcome, event.result) == ("moved", "0.21 m sideways")
+    assert (event.outcome, event.result, event.agrees) == ("moved", "0.21 m sideways", None)
     lifted = event_of(acting_on(CUP, (0.1, 0.2, 0.45)), "lift", frame="world")
     assert (lifted.outcome, lifted.result) == ("lifted", "0.20 m up")
 
