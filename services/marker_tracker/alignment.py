@@ -96,9 +96,16 @@ def _first_look(pixels: Pixels, corners: Array, white: Array) -> Array:
     blur = START_BLUR_PX / (_sides(corners) / across)
     levels, pattern = _levels(pixels, corners, _grid(across)), _pattern(white, blur, across)[0]
     darkest, lightest = np.quantile(pattern, (0.25, 0.75), axis=1, keepdims=True)
-    dark = np.nanmedian(np.where(pattern <= darkest, levels, np.nan), axis=1)
-    light = np.nanmedian(np.where(pattern >= lightest, levels, np.nan), axis=1)
+    dark, light = _medians(levels, pattern <= darkest), _medians(levels, pattern >= lightest)
     return np.stack([blur, dark, np.maximum(light - dark, LEAST_CONTRAST)], axis=1)
+
+
+def _medians(levels: Array, chosen: NDArray[np.bool_]) -> Array:
+    """Return the median of each row's chosen levels (n, m): (n,); there is one in every row."""
+    ordered, count = np.sort(np.where(chosen, levels, np.inf), axis=1), np.count_nonzero(chosen, axis=1)
+    rows = np.arange(len(ordered))
+    medians: Array = (ordered[rows, (count - 1) // 2] + ordered[rows, count // 2]) / 2
+    return medians
 
 
 def _step(pixels: Pixels, corners: Array, white: Array, look: Array, moves: Array) -> tuple[Array, Array, Array]:
@@ -109,15 +116,21 @@ def _step(pixels: Pixels, corners: Array, white: Array, look: Array, moves: Arra
     pattern, slopes, by_blur = _pattern(white, blur[:, 0], across)
     residual = levels - black - contrast * pattern
     weight = 1 / (1 + (residual / (OUTLYING * contrast)) ** 2)
-    gradient = contrast[..., None] * _in_image(slopes, corners)
-    by_corner = (gradient[:, :, None, :] * _shares(across)[None, :, :, None]).reshape(*levels.shape, 8)
-    by_look = np.stack([-contrast * by_blur, -np.ones_like(levels), -pattern], axis=2)
-    jacobian = np.concatenate([by_corner @ moves, by_look], axis=2)
-    weighted = np.swapaxes(jacobian * weight[..., None], 1, 2)
-    normal = weighted @ jacobian
+    jacobian = np.empty((len(levels), moves.shape[2] + 3, levels.shape[1]))
+    by_corner = _by_corner(contrast[..., None] * _in_image(slopes, corners), across)
+    np.matmul(np.swapaxes(moves, 1, 2), by_corner, out=jacobian[:, :-3])
+    jacobian[:, -3], jacobian[:, -2], jacobian[:, -1] = -contrast * by_blur, -1.0, -pattern
+    weighted = jacobian * weight[:, None]
+    normal = weighted @ np.swapaxes(jacobian, 1, 2)
     normal += np.eye(normal.shape[1]) * (DAMPING * np.einsum("nii->ni", normal) + LEAST)[:, None, :]
     step = -np.linalg.solve(normal, weighted @ residual[..., None])
     return (moves @ step[:, :-3]).reshape(-1, 4, 2), step[:, -3:, 0], weight
+
+
+def _by_corner(gradient: Array, across: int) -> Array:
+    """Return how the grey levels change with each corner's x and y (n, 8, m) by how they change in the image."""
+    by_corner: Array = _shares(across)[:, None] * gradient[:, None]
+    return by_corner.reshape(len(gradient), 8, -1)
 
 
 @cache
@@ -136,7 +149,7 @@ def _ticks(across: int) -> Array:
 def _shares(across: int) -> Array:
     """How much each corner (4) moves each point (m): bilinearly."""
     u, v = _grid(across).T
-    return np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v], axis=1)
+    return np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v])
 
 
 def _levels(pixels: Pixels, corners: Array, unit: Array) -> Array:
@@ -149,7 +162,7 @@ def _levels(pixels: Pixels, corners: Array, unit: Array) -> Array:
 
 
 def _pattern(white: Array, blur: Array, across: int) -> tuple[Array, Array, Array]:
-    """Blur the cells: (n, m) at each point, its slopes (n, m, 2) along the unit square's sides, and by the blur."""
+    """Blur the cells: (n, m) at each point, its slopes (n, 2, m) along the unit square's sides, and by the blur."""
     x = (_ticks(across)[:, None] - np.arange(-1, across + 2))[None] / blur[:, None, None]
     inner = SLOPE * (x + CURVE * x**3)
     below = np.tanh(inner) / 2
@@ -163,14 +176,14 @@ def _pattern(white: Array, blur: Array, across: int) -> tuple[Array, Array, Arra
     pattern, along, by_blur = (rows @ part for part in turned)
     down = steep @ white @ turned[0]
     by_blur = by_blur + wider @ white @ turned[0]
-    slopes = across * np.stack([along.reshape(flat), down.reshape(flat)], axis=-1)
+    slopes = across * np.stack([along.reshape(flat), down.reshape(flat)], axis=1)
     return pattern.reshape(flat), slopes, by_blur.reshape(flat)
 
 
 def _in_image(slopes: Array, corners: Array) -> Array:
-    """Turn slopes along the unit square's sides into slopes per pixel (n, m, 2)."""
+    """Turn slopes along the unit square's sides into slopes per pixel (n, 2, m)."""
     first, second, third, fourth = np.moveaxis(corners, 1, 0)
     right, down = (second - first + third - fourth) / 2, (fourth - first + third - second) / 2
-    image_from_unit = np.stack([right, down], axis=2)
-    per_px: Array = slopes @ np.linalg.inv(image_from_unit)
+    image_from_unit = np.stack([right, down], axis=1)
+    per_px: Array = np.linalg.inv(image_from_unit) @ slopes
     return per_px
