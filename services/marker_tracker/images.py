@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum import geometry
+from actum.darkness import is_black
 from actum.messages import Image
 
 Array = NDArray[np.float64]
@@ -25,9 +26,6 @@ DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
 JPEG_START = b"\xff\xd8"
 RIGID_TOLERANCE = 1e-3
 FURTHEST_M = 100.0
-BLACK_LEVEL = 10
-"""The 99th percentile of an image in which nothing can be seen, of 255."""
-STEP_PX = 8
 
 
 class UnusableImageError(ValueError):
@@ -84,7 +82,7 @@ def refuse_black(pixels: Pixels) -> None:
     Raises:
         UnusableImageError: of kind `black_image`.
     """
-    if np.percentile(pixels[::STEP_PX, ::STEP_PX], 99) <= BLACK_LEVEL:
+    if is_black(pixels):
         raise UnusableImageError("black_image", "nothing can be seen: is the lens covered, is it dark?")
 
 

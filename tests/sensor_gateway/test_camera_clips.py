@@ -86,7 +86,7 @@ def test_each_clip_becomes_a_recording_of_which_the_whole_is_one_labelled_segmen
 
     recording = Recording(tmp_path / "out" / "clap_ben_2.mcap")
     assert (recording.person, recording.source) == ("ben", "video")
-    assert recording.metadata["lens"] == "assumed: 60 degrees across, not calibrated"
+    assert recording.metadata["lens"] == "assumed: 60 degrees along the longer side, not calibrated"
     assert recording.topics == {keys.SKELETON, keys.SEGMENT}, "images are not kept"
     start, *frames, end = recording.messages()
     assert isinstance(start, Segment)

@@ -65,7 +65,7 @@ class Optics:
         """Say it in a word or two."""
         if self.calibration is not None:
             return self.calibration.id
-        return f"assumed: {self.field_of_view_deg:g} degrees across, not calibrated"
+        return f"assumed: {self.field_of_view_deg:g} degrees along the longer side, not calibrated"
 
 
 class Perceiver:

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.darkness import is_black
 from actum.node import SECOND_NS
 from sensor_gateway.camera.video import Picture
 
@@ -12,9 +13,6 @@ FROZEN_NS = SECOND_NS
 BLACK_NS = SECOND_NS // 2
 BLACK_LOST_NS = 5 * SECOND_NS
 """How long a camera that was opened may show nothing: a lens may be covered, but the driver may have failed, too."""
-
-BLACK_LEVEL = 10
-"""The 99th percentile of a picture in which nothing can be seen, of 255."""
 
 STEP_PX = 8
 
@@ -42,7 +40,7 @@ class Watch:
         sample = np.ascontiguousarray(picture.image_bgr[::STEP_PX, ::STEP_PX])
         if self._sample is None or not np.array_equal(sample, self._sample):
             self._sample, self._changed_ns = sample, picture.stamp_ns
-        lit = bool(np.percentile(sample, 99) > BLACK_LEVEL)
+        lit = not is_black(picture.image_bgr)
         self._lit_ns = picture.stamp_ns if lit or self._lit_ns is None else self._lit_ns
         self._hopeful_ns = picture.stamp_ns if lit or self._hopeful_ns is None else self._hopeful_ns
         return self._judged(picture.stamp_ns, self._lit_ns, self._hopeful_ns)
