@@ -22,6 +22,8 @@ from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings
 
 WIDTH, HEIGHT = 640, 480
+FINE = 4
+"""Drawn so many times as large: cells are even, and steps a quarter of a pixel."""
 SIDES_PX, QUIET_PX = (56, 32), 8
 MARKERS = 8
 FRAMES, WARM_UP = 120, 10
@@ -88,18 +90,19 @@ def scene(names: Sequence[str], count: int) -> Path:
 
 
 def frame(names: Sequence[str], side_px: int, shift: int) -> Image:
-    """Draw eight markers, a little further on in each frame, over grey rectangles, blurred and with noise."""
+    """Draw eight markers, a part of a pixel further on in each frame, over grey rectangles, blurred and with noise."""
     chance = np.random.default_rng(0)
-    canvas = np.full((HEIGHT, WIDTH), 120, dtype=np.uint8)
+    fine = np.full((FINE * HEIGHT, FINE * WIDTH), 120, dtype=np.uint8)
     for _ in range(60):
-        x, y, w, h, level = (int(v) for v in chance.integers((0, 0, 8, 8, 40), (WIDTH, HEIGHT, 90, 90, 220)))
-        cv2.rectangle(canvas, (x, y), (x + w, y + h), level, -1)
+        box = FINE * chance.integers((0, 0, 8, 8), (WIDTH, HEIGHT, 90, 90))
+        cv2.rectangle(fine, [int(v) for v in box], int(chance.integers(40, 220)), -1)
     for i in range(MARKERS):
-        x, y = 30 + 150 * (i % 4) + shift // 4, 90 + 210 * (i // 4) + shift // 6
-        drawn = cv2.aruco.generateImageMarker(family(names[i % len(names)]).dictionary, i, side_px)
-        sheet = np.pad(np.maximum(drawn, 25), QUIET_PX, constant_values=235)
-        canvas[y : y + len(sheet), x : x + len(sheet)] = sheet
-    noisy = cv2.GaussianBlur(canvas, (0, 0), 0.7) + np.random.default_rng(shift).normal(0, 2, canvas.shape)
+        x, y = FINE * (30 + 150 * (i % 4)) + shift, FINE * (90 + 210 * (i // 4)) + 2 * shift // 3
+        drawn = cv2.aruco.generateImageMarker(family(names[i % len(names)]).dictionary, i, FINE * side_px)
+        sheet = np.pad(np.maximum(drawn, 25), FINE * QUIET_PX, constant_values=235)
+        fine[y : y + len(sheet), x : x + len(sheet)] = sheet
+    canvas = cv2.GaussianBlur(cv2.resize(fine, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA), (0, 0), 0.7)
+    noisy = canvas + np.random.default_rng(shift).normal(0, 2, canvas.shape)
     bgr = cv2.cvtColor(np.clip(noisy, 0, 255).astype(np.uint8), cv2.COLOR_GRAY2BGR)
     return Image(
         stamp_ns=shift * 16_666_667, sensor="kinect0", format="bgr8", width=WIDTH, height=HEIGHT, data=bgr.tobytes(),

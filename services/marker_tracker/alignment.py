@@ -8,12 +8,12 @@ import math
 from dataclasses import dataclass
 from functools import cache
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from marker_tracker.families import Cells
 from marker_tracker.images import Pixels
+from marker_tracker.reading import levels_at
 
 Array = NDArray[np.float64]
 
@@ -24,6 +24,8 @@ POINTS = 3
 QUIET = 0.5
 """How many cells of the white around the black border are taken in."""
 ITERATIONS = 3
+ENOUGH_PX, SETTLED_PX = 0.05, 0.15
+"""A step of the corners after which the next would be lost in noise, and one that shows that nothing runs away."""
 START_BLUR_PX = 0.8
 BLUR_PX = np.array([0.35, 2.5])
 OUTLYING = 0.12
@@ -38,20 +40,26 @@ SLOPE, CURVE = math.sqrt(2 / math.pi), 0.044715
 
 @dataclass(frozen=True)
 class Aligned:
-    """Corners (n, 4, 2), and which part (n,) of each marker is covered: its grey levels are not of the pattern."""
+    """Corners (n, 4, 2), and which part (n,) of each marker is covered: its grey levels are not of the pattern.
+
+    `looks` (n, 3) are each one's blur in cells, black and contrast; `settled` (n,) tells which have come to rest.
+    """
 
     corners_px: Array
     covered: Array
+    looks: Array
+    settled: NDArray[np.bool_]
 
 
-def aligned(pixels: Pixels, corners_px: Array, shown: Cells) -> Aligned:
+def aligned(pixels: Pixels, corners_px: Array, shown: Cells, looks: Array | None = None) -> Aligned:
     """Align one family's markers with what they show, border and all (n, across, across), True where white.
 
     With corners (n, 4, 2) clockwise, blur, black and contrast as parameters, sum rho(I(H u) - black - contrast T(u))
     over points u of the marker is made small by Gauss-Newton steps, where T is the pattern blurred as the image is and
-    rho Cauchy's. What runs further than `FURTHEST_PX` stays as it is.
+    rho Cauchy's. What runs further than `FURTHEST_PX` stays as it is. The looks (n, 3) of another image are a start.
     """
-    return _aligned(pixels, corners_px, shown, np.broadcast_to(np.eye(8), (len(corners_px), 8, 8)))
+    moves = np.broadcast_to(np.eye(8), (len(corners_px), 8, 8))
+    return _aligned(pixels, corners_px, _on_white(shown), moves, looks)
 
 
 def aligned_alike(pixels: Pixels, corners_px: Array, shown: Cells) -> Aligned:
@@ -62,7 +70,7 @@ def aligned_alike(pixels: Pixels, corners_px: Array, shown: Cells) -> Aligned:
     moves = np.stack(
         [across, down, around / _sides(corners_px)[:, None, None], turned / _sides(corners_px)[:, None, None]]
     )
-    return _aligned(pixels, corners_px, shown, np.moveaxis(moves.reshape(4, -1, 8), 0, 2))
+    return _aligned(pixels, corners_px, _on_white(shown), np.moveaxis(moves.reshape(4, -1, 8), 0, 2))
 
 
 def is_small(corners_px: Array, across: int) -> NDArray[np.bool_]:
@@ -71,18 +79,32 @@ def is_small(corners_px: Array, across: int) -> NDArray[np.bool_]:
     return small
 
 
-def _aligned(pixels: Pixels, corners_px: Array, shown: Cells, moves: Array) -> Aligned:
+def _aligned(pixels: Pixels, corners_px: Array, white: Array, moves: Array, looks: Array | None = None) -> Aligned:
     """Align by a number of moves: each (8,) is how the corners go, (n, 8, moves)."""
-    white = np.pad(shown, ((0, 0), (1, 1), (1, 1)), constant_values=True).astype(np.float64)
-    look = _first_look(pixels, corners_px, white)
-    found, blurs = corners_px, BLUR_PX / (_sides(corners_px) / shown.shape[1])[:, None]
+    found, looks = corners_px.copy(), _first_look(pixels, corners_px, white) if looks is None else looks.copy()
+    blurs = BLUR_PX / (_sides(corners_px) / (white.shape[1] - 2))[:, None]
+    covered, stepped_px = np.zeros(len(found)), np.full(len(found), np.inf)
     for _ in range(ITERATIONS):
-        step, change, weight = _step(pixels, found, white, look, moves)
-        found, look = found + np.clip(step, -FURTHEST_PX, FURTHEST_PX), look + change
-        look[:, 0] = np.clip(look[:, 0], blurs[:, 0], blurs[:, 1])
-        look[:, 2] = np.maximum(look[:, 2], LEAST_CONTRAST)
-    stays = (np.abs(found - corners_px) <= FURTHEST_PX).all(axis=(1, 2), keepdims=True)
-    return Aligned(np.where(stays, found, corners_px), (weight < NOT_OF_IT).mean(axis=1))
+        (on,) = np.nonzero(stepped_px > ENOUGH_PX)
+        if not len(on):
+            break
+        step, change, weight = _step(pixels, found[on], white[on], looks[on], moves[on])
+        found[on] += np.clip(step, -FURTHEST_PX, FURTHEST_PX)
+        looks[on] = _possible(looks[on] + change, blurs[on])
+        covered[on], stepped_px[on] = (weight < NOT_OF_IT).mean(axis=1), np.abs(step).max(axis=(1, 2))
+    ran = np.abs(found - corners_px).max(axis=(1, 2)) > FURTHEST_PX
+    found[ran] = corners_px[ran]
+    return Aligned(found, covered, looks, (stepped_px <= SETTLED_PX) & ~ran)
+
+
+def _on_white(shown: Cells) -> Array:
+    return np.pad(shown, ((0, 0), (1, 1), (1, 1)), constant_values=True).astype(np.float64)
+
+
+def _possible(looks: Array, blurs: Array) -> Array:
+    looks[:, 0] = np.clip(looks[:, 0], blurs[:, 0], blurs[:, 1])
+    looks[:, 2] = np.maximum(looks[:, 2], LEAST_CONTRAST)
+    return looks
 
 
 def _sides(corners: Array) -> Array:
@@ -94,7 +116,7 @@ def _first_look(pixels: Pixels, corners: Array, white: Array) -> Array:
     """Guess blur in cells, black and contrast (n, 3), by the medians where it is to be darkest and lightest."""
     across = white.shape[1] - 2
     blur = START_BLUR_PX / (_sides(corners) / across)
-    levels, pattern = _levels(pixels, corners, _grid(across)), _pattern(white, blur, across)[0]
+    levels, pattern = levels_at(pixels, corners, _grid(across)), _pattern(white, blur, across)[0]
     darkest, lightest = np.quantile(pattern, (0.25, 0.75), axis=1, keepdims=True)
     dark, light = _medians(levels, pattern <= darkest), _medians(levels, pattern >= lightest)
     return np.stack([blur, dark, np.maximum(light - dark, LEAST_CONTRAST)], axis=1)
@@ -112,7 +134,7 @@ def _step(pixels: Pixels, corners: Array, white: Array, look: Array, moves: Arra
     """Take one Gauss-Newton step: (n, 4, 2) of the corners in px, (n, 3) of the look; and weigh the levels (n, m)."""
     across = white.shape[1] - 2
     blur, black, contrast = look.T[:, :, None]
-    levels = _levels(pixels, corners, _grid(across))
+    levels = levels_at(pixels, corners, _grid(across))
     pattern, slopes, by_blur = _pattern(white, blur[:, 0], across)
     residual = levels - black - contrast * pattern
     weight = 1 / (1 + (residual / (OUTLYING * contrast)) ** 2)
@@ -152,24 +174,16 @@ def _shares(across: int) -> Array:
     return np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v])
 
 
-def _levels(pixels: Pixels, corners: Array, unit: Array) -> Array:
-    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=np.float32)
-    image_from_unit = np.array([cv2.getPerspectiveTransform(square, quad.astype(np.float32)) for quad in corners])
-    mapped = np.column_stack([unit, np.ones(len(unit))]) @ np.swapaxes(image_from_unit, 1, 2)
-    points = (mapped[..., :2] / mapped[..., 2:]).astype(np.float32)
-    sampled = cv2.remap(pixels, points[..., 0], points[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-    return np.asarray(sampled, dtype=np.float64)
-
-
 def _pattern(white: Array, blur: Array, across: int) -> tuple[Array, Array, Array]:
     """Blur the cells: (n, m) at each point, its slopes (n, 2, m) along the unit square's sides, and by the blur."""
     x = (_ticks(across)[:, None] - np.arange(-1, across + 2))[None] / blur[:, None, None]
-    inner = SLOPE * (x + CURVE * x**3)
-    below = np.tanh(inner) / 2
-    density = (1 - 4 * below**2) / 2 * SLOPE * (1 + 3 * CURVE * x**2)
+    squared = x * x
+    below = np.tanh(SLOPE * x * (1 + CURVE * squared)) / 2
+    density = (1 - 4 * below**2) / 2 * SLOPE * (1 + 3 * CURVE * squared)
     cells = below[..., :-1] - below[..., 1:]
     steep = (density[..., :-1] - density[..., 1:]) / blur[:, None, None]
-    wider = -(x * density)[..., :-1] / blur[:, None, None] + (x * density)[..., 1:] / blur[:, None, None]
+    moment = x * density
+    wider = (moment[..., 1:] - moment[..., :-1]) / blur[:, None, None]
     turned = [np.swapaxes(part, 1, 2) for part in (cells, steep, wider)]
     rows = cells @ white
     flat = (len(white), -1)

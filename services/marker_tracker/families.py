@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 import cv2
@@ -51,10 +51,11 @@ class Family:
         fewest = int(wrong.flat[at])
         return Match(at // 4, at % 4, fewest) if fewest <= self.corrected else None
 
-    def shown(self, number: int) -> Cells:
-        """Tell what a marker shows with its border, upright: (cells + 2, cells + 2), True where white."""
-        bits = self.codes[number, 0] >> np.arange(self.cells**2, dtype=np.uint64) & np.uint64(1)
-        return np.pad(bits.astype(bool).reshape(self.cells, self.cells), 1)
+    @cached_property
+    def shown(self) -> Cells:
+        """What each marker shows with its border, upright: (ids, cells + 2, cells + 2), True where white."""
+        bits = self.codes[:, :1] >> np.arange(self.cells**2, dtype=np.uint64) & np.uint64(1)
+        return np.pad(bits.astype(bool).reshape(-1, self.cells, self.cells), ((0, 0), (1, 1), (1, 1)))
 
     def only(self, ids: Collection[int]) -> Any:
         """Make a dictionary of these ids alone, in rising order: every id it lacks costs no time and is no mistake."""

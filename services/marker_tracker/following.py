@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from actum.node import SECOND_NS
 from marker_tracker import reading
 from marker_tracker.alignment import aligned, aligned_alike
-from marker_tracker.detection import SAME_PLACE, Marker
+from marker_tracker.decoding import Marker
+from marker_tracker.detection import SAME_PLACE
 from marker_tracker.families import family
 from marker_tracker.images import Pixels
 
@@ -112,7 +113,7 @@ def _again(stamp_ns: int, pixels: Pixels, known: Known) -> Marker | None:
         return None
     corner = np.array(_box(marker, 0.0)[:2])
     start = scale * (marker.corners_px - corner + 0.5) - 0.5 + (x, y)
-    shown = family(marker.family).shown(marker.id)
+    shown = family(marker.family).shown[marker.id]
     exact = aligned_alike(window, start[None], shown[None])
     if exact.covered[0] <= known.usual + TOUCHED:
         exact = aligned(window, exact.corners_px, shown[None])

@@ -10,7 +10,7 @@ from actum.messages import Image, Message, Objects, TrackedObject
 from actum.node import SECOND_NS, Tally, Tick
 from actum.stamps import Order, StampGuard
 from marker_tracker.catalogue import Carried, Catalogue, Key, plain
-from marker_tracker.detection import Marker
+from marker_tracker.decoding import Marker
 from marker_tracker.images import Camera, UnusableImageError, camera, gray, refuse_black
 from marker_tracker.poses import WORST_ERROR_PX, BadPoseError, Pose, confidence, solve
 from marker_tracker.rotations import Array
@@ -140,8 +140,7 @@ def _noise(pose: Pose, side_px: float, view: Camera) -> Array:
     corner_px = max(LEAST_NOISE_PX, pose.error_px)
     across_m, along_m = distance_m * corner_px / view.matrix[0, 0], distance_m * corner_px / side_px
     ray = view.skeleton_from_image[:3, :3] @ (position_m / distance_m)
-    along = np.outer(ray, ray)
-    noise: Array = (along_m**2) * along + across_m**2 * (np.eye(3) - along) + LEAST_NOISE_M**2 * np.eye(3)
+    noise: Array = (along_m**2 - across_m**2) * np.outer(ray, ray) + (across_m**2 + LEAST_NOISE_M**2) * np.eye(3)
     return noise
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from marker_tracker.catalogue import Carried
-from marker_tracker.detection import Marker
+from marker_tracker.decoding import Marker
 from marker_tracker.images import Camera
 from marker_tracker.rotations import apart_rad
 

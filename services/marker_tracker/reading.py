@@ -33,7 +33,7 @@ def read(pixels: Pixels, corners_px: Array, cells: int) -> Cells:
 def sampled(pixels: Pixels, corners_px: Array, cells: int) -> Array:
     """Sample the grey levels of squares (n, 4, 2) with their border: (n, cells + 2, POINTS, cells + 2, POINTS)."""
     across = cells + 2
-    return _levels(pixels, corners_px, _grid(across)).reshape(-1, across, POINTS, across, POINTS)
+    return levels_at(pixels, corners_px, _grid(across)).reshape(-1, across, POINTS, across, POINTS)
 
 
 def white(levels: Array, part: float = 0.5) -> Cells:
@@ -103,7 +103,7 @@ def has_black_rim(pixels: Pixels, corners_px: Array) -> NDArray[np.bool_]:
     """
     along = np.linspace(0.15, 0.85, RIM_POINTS)
     outside, inside = (np.concatenate([_side(along, depth), _side(along, 1 - depth)]) for depth in (-RIM, RIM))
-    levels = _levels(pixels, corners_px, np.concatenate([outside, inside]))
+    levels = levels_at(pixels, corners_px, np.concatenate([outside, inside]))
     rise = levels[:, : len(outside)] - levels[:, len(outside) :]
     sides = np.median(rise.reshape(len(corners_px), 4, RIM_POINTS), axis=2)
     return np.asarray(np.sort(sides, axis=1)[:, 1] > LEAST_CONTRAST)
@@ -115,12 +115,12 @@ def _side(along: Array, depth: float) -> Array:
     return np.concatenate([np.stack([along, level], axis=1), np.stack([level, along], axis=1)])
 
 
-def _levels(pixels: Pixels, corners_px: Array, unit: Array) -> Array:
+def levels_at(pixels: Pixels, corners_px: Array, unit: Array) -> Array:
     """Sample grey levels (n, points) at points of the unit square, laid by perspective on squares (n, 4, 2)."""
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=np.float32)
-    homogeneous = np.column_stack([unit, np.ones(len(unit))])
     image_from_unit = np.array([cv2.getPerspectiveTransform(square, quad.astype(np.float32)) for quad in corners_px])
-    mapped = homogeneous @ np.swapaxes(image_from_unit.reshape(-1, 3, 3), -1, -2)
+    by_column = np.swapaxes(image_from_unit.reshape(-1, 3, 3), 1, 2)
+    mapped = unit @ by_column[:, :2] + by_column[:, 2:]
     points = (mapped[..., :2] / mapped[..., 2:]).astype(np.float32)
     sampled = cv2.remap(pixels, points[..., 0], points[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     return np.asarray(sampled, dtype=np.float64)

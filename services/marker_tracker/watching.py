@@ -3,7 +3,8 @@
 from collections.abc import Collection, Mapping
 
 from actum.node import SECOND_NS
-from marker_tracker.detection import Marker, MarkerDetector
+from marker_tracker.decoding import Marker
+from marker_tracker.detection import MarkerDetector
 from marker_tracker.following import Follower
 from marker_tracker.images import Pixels
 
@@ -31,12 +32,14 @@ class Watch:
 
     def markers(self, stamp_ns: int, pixels: Pixels) -> list[Marker]:
         """Find the markers of the next grey image (height, width)."""
-        in_place = [] if self._is_due(stamp_ns) else self._detector.read_again(pixels, self._last)
-        if not in_place or len(in_place) < len(self._last):
-            in_place = self._detector.detect(pixels)
+        due = self._is_due(stamp_ns)
+        read = self._detector.read_in_place if due else self._detector.read_again
+        here = read(pixels, self._last)
+        if due or len(here) < max(1, len(self._last)):
+            here = self._detector.detect(pixels, here)
             self._searched_ns = stamp_ns
-        self._last = in_place
-        return self._follower.followed(stamp_ns, pixels, in_place)
+        self._last = here
+        return self._follower.followed(stamp_ns, pixels, here)
 
     def _is_due(self, stamp_ns: int) -> bool:
         """Tell whether an image is to be searched though all the last ones may be in their places."""

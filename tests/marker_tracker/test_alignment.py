@@ -10,7 +10,7 @@ from marker_tracker.alignment import aligned, aligned_alike, is_small
 from marker_tracker.families import family
 
 FAMILY = family("DICT_4X4_50")
-SHOWN = FAMILY.shown(3)
+SHOWN = FAMILY.shown[3]
 FINE = 8
 BLACK, WHITE, SKIN = 30, 225, 165
 
@@ -93,7 +93,7 @@ def test_small_is_by_the_cells() -> None:
 @pytest.mark.parametrize("number", [0, 17, 49])
 def test_a_family_tells_what_its_markers_show(number) -> None:
     picture = cv2.aruco.generateImageMarker(FAMILY.dictionary, number, FAMILY.cells + 2)
-    assert np.array_equal(FAMILY.shown(number), picture > 0)
+    assert np.array_equal(FAMILY.shown[number], picture > 0)
 
 
 @settings(max_examples=60)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from marker_tracker.catalogue import Carried
-from marker_tracker.detection import Marker
+from marker_tracker.decoding import Marker
 from marker_tracker.facing import Facing
 from marker_tracker.images import Camera
 from marker_tracker.poses import Pose, solve

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from actum.messages import Image, TrackedObject
-from marker_tracker.detection import Marker, MarkerDetector
+from marker_tracker.decoding import Marker
+from marker_tracker.detection import MarkerDetector
 from marker_tracker.node import MarkerTracker
 from marker_tracker.rotations import apart_rad
 from marker_tracker.settings import Settings
