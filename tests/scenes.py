@@ -77,7 +77,10 @@ class Stance:
 
 @dataclass(frozen=True)
 class Scene:
-    """An actor's arms, their leaning torso (rad), and the objects; `hidden` says when an object is covered."""
+    """An actor's arms, their leaning torso (rad), and the objects; `hidden` says when an object is covered.
+
+    Where it is then `followed` to, if the tracker follows what covers it.
+    """
 
     right_hand: Path = lambda _: REST_RIGHT
     left_hand: Path = lambda _: REST_LEFT
@@ -85,6 +88,7 @@ class Scene:
     left_elbow: Path = lambda _: ELBOW_LEFT
     objects: Mapping[int, Path] = field(default_factory=dict)
     hidden: Callable[[int, float], bool] = lambda _id, _time: False
+    followed: Mapping[int, Path] = field(default_factory=dict)
     lean: Callable[[float], float] = lambda _: 0.0
     stance: Stance = Stance()
 
@@ -109,18 +113,21 @@ class Scene:
         return Posture.model_validate(message | fields)
 
     def objects_seen(self, seconds: float, **fields: Any) -> Objects:
-        listed = [
-            TrackedObject(
-                id=number,
-                name=NAMES[number],
-                position_m=self.stance.camera(path(seconds)),
-                quaternion_xyzw=[0.0, 0.0, 0.0, 1.0],
-                confidence=1.0,
-                seen=not self.hidden(number, seconds),
-            )
-            for number, path in self.objects.items()
-        ]
+        listed = [self._tracked(number, path, seconds) for number, path in self.objects.items()]
         return Objects.model_validate({"stamp_ns": at(seconds), "sensor": SENSOR, "objects": listed} | fields)
+
+    def _tracked(self, number: int, path: Path, seconds: float) -> TrackedObject:
+        hidden = self.hidden(number, seconds)
+        followed = hidden and number in self.followed
+        return TrackedObject(
+            id=number,
+            name=NAMES[number],
+            position_m=self.stance.camera(self.followed[number](seconds) if followed else path(seconds)),
+            quaternion_xyzw=[0.0, 0.0, 0.0, 1.0],
+            confidence=1.0,
+            seen=not hidden,
+            followed=followed,
+        )
 
     def postures(self, start_s: float = -1.0, end_s: float = 3.5) -> list[Posture]:
         return [self.posture(t, seq=i) for i, t in enumerate(_times(start_s, end_s, 0.0))]

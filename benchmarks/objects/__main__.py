@@ -11,7 +11,16 @@ from pathlib import Path
 import cv2
 from benchmarks.page import measure_page, part_asked_for
 
-from .parts import CONTACT_PEOPLE, EMPTY_PEOPLE, FIRST_PERSON, IMAGE_HZ, PARTS, POINTING_PEOPLE, STILL_IMAGE_HZ
+from .parts import (
+    CONTACT_PEOPLE,
+    EMPTY_PEOPLE,
+    FIRST_IN_CONTACT,
+    FIRST_PERSON,
+    IMAGE_HZ,
+    PARTS,
+    POINTING_PEOPLE,
+    STILL_IMAGE_HZ,
+)
 
 PAGE = Path(__file__).with_name("results.md")
 LIBRARIES = ("numpy", "opencv-python-headless")
@@ -27,8 +36,9 @@ def header() -> Iterator[str]:
 times a second with a Kinect's noise. Fusion is told which action was done, and when, as if it were recognised: nothing
 but the object's side is measured. `proximity` is the plain smallest distance, `joint` the default; both judge the same
 sightings."""
-    yield f"""Protocol: every threshold was chosen on persons 101 to 170 and 200 to 479, on OptiTrack recordings, or
-from anatomy; the persons here are {FIRST_PERSON} and up and had no part in it; how many of them point, and that the
+    yield f"""Protocol: every threshold was chosen on persons 101 to 170, 200 to 479 and 5000 to 5135, on OptiTrack
+recordings, or from anatomy; the persons here, {FIRST_IN_CONTACT} and up for
+push, pull, put and lift, {FIRST_PERSON} and up for the rest, had no part in it; how many of them point, and that the
 nearest pantomimes stand by themselves, was settled after a first look at them. Each row has persons of its own:
 {CONTACT_PEOPLE} for each condition and distance between the objects, {POINTING_PEOPLE} for each distance to point
 from, and for pantomimes {EMPTY_PEOPLE} for each nearness, condition (`plain` and `together`) and distance between the
@@ -38,9 +48,9 @@ pixels and the shutter open for 16 ms; `unread`, each marker by itself illegible
 hand over the marker from grasp to release; `together`, all of these at once. Objects 10 cm apart, and their markers,
 are 0.7 times as large: 17 pixels."""
     yield """Displacements are right within 2 cm or a tenth: how far level and how far up; with direction, as the person
-faces, which the hips tell to some degrees; the outcome is lifted, put down, pushed or pulled as was done. What is not
-seen where it ends, for a hand covers it to the end of the segment, goes with the hand. A Kinect tells where a hand is
-to 2 cm in each axis, in errors that last for 0.15 s: how far it went is told to 3.4 cm even by the best average."""
+faces, which the hips tell to some degrees; the outcome is lifted, put down, pushed or pulled as was done. What a
+hand covers is followed in the image by how the hand looks; where that fails, as where the hand itself goes behind
+something, it goes with the hand's joint, which a Kinect tells to 2 cm in each axis, in errors that last for 0.15 s."""
 
 
 def section(part: str) -> str:

@@ -24,7 +24,7 @@ IMAGE_HZ = 15
 STILL_IMAGE_HZ = 2
 """Nothing moves that is pointed at."""
 
-FIRST_PERSON = 1001
+FIRST_PERSON, FIRST_IN_CONTACT = 1001, 2001
 CONTACT_PEOPLE, POINTING_PEOPLE, EMPTY_PEOPLE = 6, 40, 3
 
 Table = Callable[[], Iterator[str]]
@@ -93,7 +93,7 @@ def _contact_row(what: str, trials: Sequence[Trial]) -> str:
 @cache
 def _contacts(name: str, spacing_m: float) -> list[Trial]:
     conditions = load_conditions()[name].model_copy(update={"spacing_m": spacing_m})
-    first = FIRST_PERSON + CONTACT_PEOPLE * (len(SPACINGS_M) * list(load_conditions()).index(name))
+    first = FIRST_IN_CONTACT + CONTACT_PEOPLE * (len(SPACINGS_M) * list(load_conditions()).index(name))
     people = range(first, first + CONTACT_PEOPLE * len(SPACINGS_M))[SPACINGS_M.index(spacing_m) :: len(SPACINGS_M)]
     return _trials(
         Scene([Sample(action, IDS[(person + i) % 3]) for i, action in enumerate(CONTACT)], person, conditions, IMAGE_HZ)

@@ -26,11 +26,13 @@ Grasp = tuple[HandPath, int, int]
 def carried_tracks(tracks: Sequence[Track], paths: Sequence[HandPath], end_ns: int, settings: Settings) -> list[Track]:
     """Let what is not seen move with the hand that has it, until it is seen again or the segment ends.
 
-    It is in a hand that came within grasp of where it was last seen: things do not move by themselves. Where it is seen
-    again, it has moved and is within reach of that hand. Of several that are not seen again a hand has the nearest,
-    and none if it moves one that is seen.
+    Where what covers it is followed in the image it is there, and else where the hand's joint is. It is in a hand that
+    came within grasp of where it was last seen: things do not move by themselves. Where it is seen again, it has moved
+    and is within reach of that hand. Of several that are not seen again a hand has the nearest, and none if it moves
+    one that is seen.
     """
-    bridged = [_bridged(track, paths, settings) for track in tracks]
+    held = [held for track in tracks if len((held := _in_hand(track, paths, settings)).stamps_ns)]
+    bridged = [_bridged(track, paths, settings) for track in held]
     lost = [(distance_m, grasp, t) for path in paths for distance_m, grasp, t in _lost(bridged, path, end_ns, settings)]
     nearest = {t.id: grasp for _, grasp, t in sorted(lost, key=lambda found: -found[0])}
     return [_following(t, nearest[t.id]) if t.id in nearest else t for t in bridged]
@@ -46,6 +48,26 @@ def _lost(tracks: Sequence[Track], path: HandPath, end_ns: int, settings: Settin
     moved = [pair.track.id for pair in seen_moving if pair.is_carried(settings.moved_m)]
     candidates = [one for one in found if not moved or one[2].id in moved]
     return sorted(candidates, key=lambda one: one[0])[:1]
+
+
+def _in_hand(track: Track, paths: Sequence[HandPath], settings: Settings) -> Track:
+    """Leave out where an object was followed to though no hand had taken it, or had it still: something else did."""
+    kept = track.seen.copy()
+    for run in np.split(np.arange(len(kept)), np.flatnonzero(np.diff(kept)) + 1):
+        if not track.seen[run[0]]:
+            kept[run] = any(_has(path, track, max(int(run[0]) - 1, 0), int(run[-1]), settings) for path in paths)
+    return track.only(kept)
+
+
+def _has(path: HandPath, track: Track, first: int, last: int, settings: Settings) -> bool:
+    """Tell whether a hand came within grasp of an object's first place, and was within reach of it at its last."""
+    since_ns, until_ns = track.stamps_ns[[first, last]]
+    inside = np.flatnonzero((path.stamps_ns >= since_ns) & (path.stamps_ns <= until_ns))
+    if not len(inside):
+        return False
+    taken = np.linalg.norm(path.positions_m[inside] - track.positions_m[first], axis=1).min() <= settings.grasp_m
+    left = np.linalg.norm(path.positions_m[inside[-1]] - track.positions_m[last])
+    return bool(taken and left <= settings.reach_m)
 
 
 def _bridged(track: Track, paths: Sequence[HandPath], settings: Settings) -> Track:

@@ -122,10 +122,10 @@ def _tracks(
     action: Action, frames: Sequence[ObjectsSample], paths: Hands, std_m: float, settings: Settings
 ) -> list[Track]:
     """Follow the objects; the paper's measure takes what was seen alone."""
-    seen = aligned(tracks(frames, action.start_ns), paths.own.values(), std_m, settings)
+    known = aligned(tracks(frames, action.start_ns), paths.own.values(), std_m, settings)
     if settings.measure == "proximity" or action.end_ns is None:
-        return seen
-    return carried_tracks(seen, paths.everybodys, action.end_ns - action.start_ns, settings)
+        return [track.only(track.seen) for track in known if track.seen.any()]
+    return carried_tracks(known, paths.everybodys, action.end_ns - action.start_ns, settings)
 
 
 def _became(action: Action, choice: Choice, postures: Sequence[PostureSample], settings: Settings) -> dict[str, Any]:

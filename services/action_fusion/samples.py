@@ -54,10 +54,14 @@ class PostureSample(Sample):
 
 @dataclass(frozen=True)
 class ObjectsSample(Sample):
-    """The objects seen in one image: positions (3,) in the camera frame, and names, by id."""
+    """The objects known in one image: positions (3,) in the camera frame, and names, by id.
+
+    Those `followed` were not seen: what covers them was.
+    """
 
     positions_m: dict[int, Array]
     names: dict[int, str]
+    followed: frozenset[int] = frozenset()
 
 
 def posture_sample(posture: Posture, tally: Tally) -> PostureSample:
@@ -69,16 +73,17 @@ def posture_sample(posture: Posture, tally: Tally) -> PostureSample:
 
 
 def objects_sample(message: Objects, tally: Tally) -> ObjectsSample:
-    """Read the objects that were seen, not remembered; absurdly far ones are counted as `bad_object`."""
-    seen = [found for found in message.objects if found.seen] if message.valid else []
-    near = [found for found in seen if max(map(abs, found.position_m)) < FURTHEST_M]
-    if len(near) < len(seen):
+    """Read the objects that were seen or followed, not remembered; absurdly far ones are counted as `bad_object`."""
+    known = [found for found in message.objects if found.seen or found.followed] if message.valid else []
+    near = [found for found in known if max(map(abs, found.position_m)) < FURTHEST_M]
+    if len(near) < len(known):
         tally.reject("bad_object", f"an object beyond {FURTHEST_M:g} m at {message.stamp_ns}")
     return ObjectsSample(
         message.stamp_ns,
         message.session_id,
         {found.id: np.array(found.position_m, dtype=np.float64) for found in near},
         {found.id: found.name for found in near},
+        frozenset(found.id for found in near if not found.seen),
     )
 
 

@@ -1,7 +1,7 @@
-"""Where each object was at any instant of a segment, from the frames in which it was seen."""
+"""Where each object was at any instant of a segment, from the frames in which it was seen or followed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,7 +22,7 @@ RESTING_M = 0.05
 class Track:
     """An object's places: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera frame.
 
-    `seen` (n,) tells the sightings; the others are places in the hand that covered it.
+    `seen` (n,) tells the sightings; the others are places in the hand that covered it, or of what did.
     """
 
     id: int
@@ -35,6 +35,10 @@ class Track:
     def carried(self) -> bool:
         """Whether some places are no sightings."""
         return not bool(self.seen.all())
+
+    def only(self, kept: Mask) -> "Track":
+        """Leave out places: all that are not kept (n,)."""
+        return replace(self, stamps_ns=self.stamps_ns[kept], positions_m=self.positions_m[kept], seen=self.seen[kept])
 
     def at(self, stamps_ns: Array) -> Array:
         """Interpolate linearly between places, holding the first and the last: (p,) to (p, 3)."""
@@ -72,7 +76,7 @@ def _middle(places_m: Array) -> Array:
 
 
 def tracks(frames: Sequence[ObjectsSample], start_ns: int) -> list[Track]:
-    """Collect the sightings of each object, by id; stamps count from `start_ns`."""
+    """Collect the places of each object, by id; stamps count from `start_ns`."""
     ids = sorted({number for frame in frames for number in frame.positions_m})
     return [_track(number, [frame for frame in frames if number in frame.positions_m], start_ns) for number in ids]
 
@@ -83,5 +87,5 @@ def _track(number: int, frames: Sequence[ObjectsSample], start_ns: int) -> Track
         frames[-1].names[number],
         np.array([frame.stamp_ns - start_ns for frame in frames], dtype=np.float64),
         np.stack([frame.positions_m[number] for frame in frames]),
-        np.ones(len(frames), dtype=bool),
+        np.array([number not in frame.followed for frame in frames]),
     )

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from rich.markup import escape
 
 from actum import keys
-from actum.messages import Action, Event, Message, Objects, Segment, Skeleton, Status
+from actum.messages import Action, Event, Message, Objects, Segment, Skeleton, Status, TrackedObject
 from actum.runtime import Client, Received
 
 
@@ -49,7 +49,7 @@ def _describe_stream(message: Message) -> str:
         case Skeleton():
             gist = f"{len(message.agents)} agents"
         case Objects():
-            gist = ", ".join(f"{o.id} {escape(o.name)}{'' if o.seen else ' (hidden)'}" for o in message.objects)
+            gist = ", ".join(f"{o.id} {escape(o.name)}{_hidden(o)}" for o in message.objects)
         case Segment():
             gist = f"{message.kind} {escape(message.segment_id)}"
         case Status():
@@ -72,3 +72,9 @@ def _leaf(key: str) -> str | None:
         return keys.parse(key).topic.leaf
     except keys.InvalidKeyError:
         return None
+
+
+def _hidden(found: TrackedObject) -> str:
+    if found.seen:
+        return ""
+    return " (covered, followed)" if found.followed else " (hidden)"

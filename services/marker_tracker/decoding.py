@@ -42,7 +42,8 @@ class Marker:
     """A detected marker with `wrong` cells misread, and in part `covered` (0 to 1).
 
     `corners_px` (4, 2) go clockwise from the marker's own top left; `rough_px` (4, 2) are what they were refined from.
-    One that was aligned by all of its pattern, and is not covered, has a `start`.
+    One that was aligned by all of its pattern, and is not covered, has a `start`. A `hidden` one is where what covers
+    it has gone.
     """
 
     family: str
@@ -52,6 +53,7 @@ class Marker:
     covered: float = 0.0
     rough_px: Array | None = None
     start: Start | None = None
+    hidden: bool = False
 
     @cached_property
     def side_px(self) -> float:
@@ -105,11 +107,11 @@ def read_in_place(pixels: Pixels, markers: Sequence[Marker], one: Family) -> lis
     wrong = (reading.white(levels) != shown).sum(axis=(1, 2))
     shows = (wrong <= one.corrected) & (reading.likeness(levels, shown) >= LEAST_LIKENESS)
     (here,) = np.nonzero(shows & found.settled & (found.covered <= CLEAR))
-    return [_gone_on(*before[at], found, at, int(wrong[at])) for at in here.tolist()]
+    return [_gone_on(before[at], found, at, int(wrong[at])) for at in here.tolist()]
 
 
-def _gone_on(marker: Marker, start: Start, found: Aligned, at: int, wrong: int) -> Marker:
-    corners_px = found.corners_px[at]
+def _gone_on(before: tuple[Marker, Start], found: Aligned, at: int, wrong: int) -> Marker:
+    (marker, start), corners_px = before, found.corners_px[at]
     moved_px = corners_px.mean(axis=0) - marker.centre_px
     return replace(
         marker,

@@ -22,6 +22,8 @@ from marker_tracker.watching import Watch
 OnObject = list[tuple[Marker, Carried]]
 LEAST_NOISE_PX = 0.2
 LEAST_NOISE_M = 5e-4
+FOLLOWED = 0.5
+"""How much less a place is trusted that is known by what covers the object alone."""
 
 
 class MarkerTracker:
@@ -97,8 +99,10 @@ class MarkerTracker:
                 objects.setdefault(carried.object_id, []).append((marker, carried))
         return objects
 
-    def _see(self, stamp_ns: int, number: int, markers: OnObject, view: Camera) -> None:
+    def _see(self, stamp_ns: int, number: int, listed: OnObject, view: Camera) -> None:
+        """Take in an object by those of its markers that show, or else by those that are followed."""
         name = self._catalogue.name(number)
+        markers = [it for it in listed if not it[0].hidden] or listed
         try:
             poses = self._poses(name, markers, view)
         except BadPoseError as error:
@@ -125,11 +129,12 @@ def _catalogue(settings: Settings) -> Catalogue:
 
 
 def _sighting(poses: list[Pose], markers: OnObject, view: Camera) -> Sighting:
-    side_px = markers[0][0].side_px
+    side_px, hidden = markers[0][0].side_px, markers[0][0].hidden
     return Sighting(
         [Pose(view.skeleton_from_image @ pose.image_from_object, pose.error_px) for pose in poses],
         _noise(poses[0], side_px, view),
-        confidence(poses[0], side_px),
+        confidence(poses[0], side_px) * (FOLLOWED if hidden else 1.0),
+        hidden,
     )
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Mapping
 
 from actum.node import SECOND_NS
+from marker_tracker.covers import Covers
 from marker_tracker.decoding import Marker
 from marker_tracker.detection import MarkerDetector
 from marker_tracker.following import Follower
@@ -15,23 +16,25 @@ MISSING_NS = SECOND_NS // 20
 
 
 class Watch:
-    """Finds markers where they were, by searching, and by what shows of them under a hand."""
+    """Finds markers where they were, by searching, by what shows of them under a hand, and by the hand."""
 
     def __init__(self, wanted: Mapping[str, Collection[int]]) -> None:
         """Watch for these ids of these families, or for all of a family where there are none."""
         self._detector = MarkerDetector(wanted)
         self._follower = Follower()
+        self._covers = Covers()
         self._last: list[Marker] = []
         self._searched_ns = 0
 
     def clear(self) -> None:
         """Forget everything: the source has started anew."""
         self._follower.clear()
+        self._covers.clear()
         self._last = []
         self._searched_ns = 0
 
     def markers(self, stamp_ns: int, pixels: Pixels) -> list[Marker]:
-        """Find the markers of the next grey image (height, width)."""
+        """Find the markers of the next grey image (height, width), and the hidden ones that are carried."""
         due = self._is_due(stamp_ns)
         read = self._detector.read_in_place if due else self._detector.read_again
         here = read(pixels, self._last)
@@ -39,7 +42,8 @@ class Watch:
             here = self._detector.detect(pixels, here)
             self._searched_ns = stamp_ns
         self._last = here
-        return self._follower.followed(stamp_ns, pixels, here)
+        found = self._follower.followed(stamp_ns, pixels, here)
+        return [*found, *self._covers.followed(stamp_ns, pixels, found)]
 
     def _is_due(self, stamp_ns: int) -> bool:
         """Tell whether an image is to be searched though all the last ones may be in their places."""

@@ -146,8 +146,9 @@ class Posture(Message):
 class TrackedObject(Model):
     """One object's pose in the skeleton's camera frame; `seen` is false while it is only remembered.
 
-    `velocity_mps` is null where it is not known. `predicted` tells that the object, not seen, has been carried on with
-    its velocity; neither seen nor predicted, it is listed where it was expected last.
+    `velocity_mps` is null where it is not known. Of an object that is not seen, `followed` tells that what covers it is
+    followed in the image instead, `predicted` that it has been carried on with its velocity; if neither, it is listed
+    where it was expected last.
     """
 
     id: Annotated[int, Field(ge=0, lt=2**31)]
@@ -158,6 +159,7 @@ class TrackedObject(Model):
     seen: bool
     velocity_mps: FinitePoint | None = None
     predicted: bool = False
+    followed: bool = False
 
 
 class Objects(Message):
