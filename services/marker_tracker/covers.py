@@ -33,9 +33,10 @@ STILL_ALIKE, ALIKE = 0.9, 0.8
 """Correlation with how it looked before from which it is at rest, and from which it is still what it was."""
 NEAR, SIDES_PER_S2 = 0.12, 60.0
 """How far from where it is expected it is looked for, in sides of the marker: 8 cm are sped up by up to 5 m/s²."""
-GROWTH, GROWTH_PER_S = 0.25, 0.75
-"""How much it may grow or shrink, in all and in a second: 1.3 m/s at 1.7 m. What seems to do more is hidden in part."""
-SIZE_NOISE = 0.015
+GROWTH = 0.25
+"""How much it may grow or shrink in all: its logarithm."""
+SIZE_NOISE, GROWTH_PER_S2 = 0.02, 5.0
+"""How much larger or smaller than expected it may be; what seems to be more is hidden in part."""
 HALF = 0.5 + 0.5j
 """From a pixel's corner to its middle."""
 
@@ -71,6 +72,7 @@ class Cover:
     stamp_ns: int
     place: Similarity
     px_per_ns: complex = 0.0
+    growth_per_ns: float = 0.0
     rested: bool = False
 
 
@@ -93,7 +95,11 @@ class Covers:
         covers = {key: _next(stamp_ns, pixels, seen, self._covers.get(key)) for key, seen in hidden.items()}
         self._covers = {key: cover for key, cover in covers.items() if cover is not None}
         self._seen = here | {key: hidden[key] for key in self._covers}
-        return [_carried(hidden[key].marker, cover.place) for key, cover in self._covers.items() if cover.rested]
+        return [
+            _carried(hidden[key].marker, cover.place)
+            for key, cover in self._covers.items()
+            if cover.rested and cover.stamp_ns == stamp_ns
+        ]
 
     def _sight(self, stamp_ns: int, marker: Marker) -> Seen:
         """Note where a marker is, and whether it is where it was a moment ago."""
@@ -135,13 +141,22 @@ def _resting(stamp_ns: int, pixels: Pixels, seen: Seen, cover: Cover) -> Cover |
 def _followed(stamp_ns: int, pixels: Pixels, seen: Seen, cover: Cover) -> Cover | None:
     """Follow what covers a marker; where something else now lies there, begin with that."""
     passed_ns = stamp_ns - cover.stamp_ns
-    found = _found(pixels, seen, cover, passed_ns, ALIKE) if passed_ns <= TAKEN_NS else None
+    if passed_ns > TAKEN_NS:
+        return None
+    found = _found(pixels, seen, cover, passed_ns, ALIKE)
     if found is None:
         return _begun(stamp_ns, pixels, seen, cover.stamp_ns) if _is_in_place(cover.place, seen) else None
     if _is_in_place(found, seen) and stamp_ns - seen.stamp_ns > RESTS_NS:
         return None
     px_per_ns = (found.middle_px - cover.place.middle_px) / passed_ns
-    return replace(cover, stamp_ns=stamp_ns, place=found, px_per_ns=px_per_ns)
+    growth_per_ns = (_size(found) - _size(cover.place)) / passed_ns
+    return replace(
+        cover,
+        stamp_ns=stamp_ns,
+        place=found,
+        px_per_ns=px_per_ns,
+        growth_per_ns=(growth_per_ns + cover.growth_per_ns) / 2,
+    )
 
 
 def _is_in_place(place: Similarity, seen: Seen) -> bool:
@@ -158,14 +173,21 @@ def _found(pixels: Pixels, seen: Seen, cover: Cover, passed_ns: int, least_alike
     starts = (view.inside(expected_px), least_alike), (cover.patch.near(view.levels), STILL_ALIKE)
     for start_px, least in starts:
         found, alike = cover.patch.found(view.levels, Similarity(start_px, cover.place.turn))
-        if alike >= least and _is_as_large(found, cover.place, passed_ns):
+        if alike >= least and _is_as_large(found, cover, passed_ns):
             return Similarity(view.outside(found.middle_px), found.turn)
     return None
 
 
-def _is_as_large(found: Similarity, before: Similarity, passed_ns: int) -> bool:
-    size, grown = abs(found.turn), abs(found.turn) / abs(before.turn)
-    return abs(math.log(size)) <= GROWTH and abs(math.log(grown)) <= SIZE_NOISE + GROWTH_PER_S * passed_ns / SECOND_NS
+def _is_as_large(found: Similarity, cover: Cover, passed_ns: int) -> bool:
+    """Tell whether it has about the size that it is to have by now."""
+    grown = _size(found) - _size(cover.place) - cover.growth_per_ns * passed_ns
+    most = SIZE_NOISE + GROWTH_PER_S2 * (passed_ns / SECOND_NS) ** 2 / 2
+    return abs(_size(found)) <= GROWTH and abs(grown) <= most
+
+
+def _size(place: Similarity) -> float:
+    """How large it is beside how it looked first: the logarithm."""
+    return math.log(abs(place.turn))
 
 
 def _carried(marker: Marker, place: Similarity) -> Marker:

@@ -126,3 +126,17 @@ def test_what_was_moving_when_it_was_covered_is_not_known_to_be_under_the_hand(s
     sliding = smoothly(REST, REST + ASIDE, 0.0, 0.8)
     listed = seen(lambda t: sliding(COVERED_S) if t >= COVERED_S else None, 1.0, 30, sliding)
     assert not any(found.followed for objects in listed.values() for found in objects)
+
+
+def test_what_seems_to_come_nearer_at_once_is_not_believed(seen) -> None:
+    hand, place = carried((0.05, -0.1, 1.5))
+    listed = seen(lambda t: hand(t) if t < 1.0 else place(t) * 0.9, 1.1, 30, place)
+    assert listed[29 / 30][0].followed
+    assert not last(listed).followed
+    assert last(listed).position_m[2] == pytest.approx(1.5, abs=0.02)
+
+
+def test_over_a_long_gap_between_images_nothing_is_followed(seen) -> None:
+    hand, place = carried((0.05, -0.1, 1.5))
+    listed = seen(hand, 1.6, 2, place)
+    assert not any(found.followed for objects in listed.values() for found in objects)
