@@ -38,8 +38,8 @@ class Patch:
         self._points = (x + 1j * y)[self._inside]
         self.levels = _levels(window, middle_px + x + 1j * y)
         self._known = self.levels[self._inside]
-        down, across = np.gradient(self.levels)
-        gx, gy = across[self._inside], down[self._inside]
+        slopes: Array = np.asarray(np.gradient(self.levels), dtype=np.float64)
+        gy, gx = slopes[:, self._inside]
         self._furthest = np.array([reach, reach, MOST_TURN, MOST_TURN, np.inf, np.inf])
         px, py = self._points.real, self._points.imag
         larger, turned = gx * px + gy * py, gy * px - gx * py
