@@ -10,7 +10,7 @@ from action_fusion.hands import HandPath
 from action_fusion.samples import Array
 from action_fusion.settings import Settings
 from action_fusion.stops import RESTING_M_PER_S
-from action_fusion.tracks import Track
+from action_fusion.tracks import SETTLED_NS, Track
 from actum.node import SECOND_NS
 
 SHORTEST_GAP_NS = SECOND_NS // 5
@@ -18,6 +18,9 @@ SHORTEST_GAP_NS = SECOND_NS // 5
 
 TOUCHING_M = 0.02
 """A hand that is this close to its closest is there."""
+
+SLIPS_M = 0.10
+"""What a hand carries stays where it is in it, as far as a joint's noise lets one tell."""
 
 Grasp = tuple[HandPath, int, int]
 """A hand, and the instants of it at which it takes and lets go of an object that is not seen in between."""
@@ -60,14 +63,17 @@ def _in_hand(track: Track, paths: Sequence[HandPath], settings: Settings) -> Tra
 
 
 def _has(path: HandPath, track: Track, first: int, last: int, settings: Settings) -> bool:
-    """Tell whether a hand came within grasp of an object's first place, and was within reach of it at its last."""
+    """Tell whether a hand came within grasp of an object's first place, and has it where it had it at its last."""
     since_ns, until_ns = track.stamps_ns[[first, last]]
     inside = np.flatnonzero((path.stamps_ns >= since_ns) & (path.stamps_ns <= until_ns))
     if not len(inside):
         return False
-    taken = np.linalg.norm(path.positions_m[inside] - track.positions_m[first], axis=1).min() <= settings.grasp_m
-    left = np.linalg.norm(path.positions_m[inside[-1]] - track.positions_m[last])
-    return bool(taken and left <= settings.reach_m)
+    distances = np.linalg.norm(path.positions_m[inside] - track.positions_m[first], axis=1)
+    held = inside[_first_closest(distances) :]
+    stamps_ns = path.stamps_ns[held]
+    to_hand = path.positions_m[held] - track.at(stamps_ns)
+    early, late = (to_hand[np.abs(stamps_ns - end_ns) <= SETTLED_NS].mean(axis=0) for end_ns in stamps_ns[[0, -1]])
+    return bool(distances.min() <= settings.grasp_m and np.linalg.norm(late - early) <= SLIPS_M)
 
 
 def _bridged(track: Track, paths: Sequence[HandPath], settings: Settings) -> Track:

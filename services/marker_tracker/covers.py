@@ -25,8 +25,10 @@ RESTING = 1.0
 """Sides per second up to which a marker rests: what is covered as it moves is not known to be where it was."""
 TAKEN_NS = SECOND_NS // 3
 """What comes to rest on a marker within this time of its last sighting has taken it."""
-RESTS_NS = 2 * SECOND_NS
-"""What stays on a marker's place for longer may be what was behind it."""
+RESTS_NS, RESTS = 2 * SECOND_NS, 0.75
+"""What stays within so many sides of a marker's place for longer may be what was behind it."""
+MOST_FOLLOWED = 6
+"""Each takes a millisecond or two of every image."""
 STILL_NS, STILL = SECOND_NS // 20, 0.06
 """What covers a marker rests on it where it moves by less than this part of a side in this time or a little more."""
 STILL_ALIKE, ALIKE = 0.9, 0.8
@@ -37,6 +39,8 @@ GROWTH = 0.25
 """How much it may grow or shrink in all: its logarithm."""
 SIZE_NOISE, GROWTH_PER_S2 = 0.02, 5.0
 """How much larger or smaller than expected it may be; what seems to be more is hidden in part."""
+SAME_PLACE = 0.5
+"""Within this of a marker's place, in sides of it, another marker lies on it."""
 HALF = 0.5 + 0.5j
 """From a pixel's corner to its middle."""
 
@@ -64,11 +68,10 @@ class Seen:
 class Cover:
     """What is on a marker's place, how it looked first, and once it `rested` there where it has gone since.
 
-    The marker was known to be there at `known_ns`; `place` is where it was at `stamp_ns`.
+    `place` is where it was at `stamp_ns`.
     """
 
     patch: Patch
-    known_ns: int
     stamp_ns: int
     place: Similarity
     px_per_ns: complex = 0.0
@@ -91,7 +94,8 @@ class Covers:
     def followed(self, stamp_ns: int, pixels: Pixels, found: Sequence[Marker]) -> list[Marker]:
         """Place markers that are not among those found in a grey image (height, width) where what covers them is."""
         here = {(marker.family, marker.id): self._sight(stamp_ns, marker) for marker in found}
-        hidden = {key: seen for key, seen in self._seen.items() if key not in here}
+        gone = [(key, seen) for key, seen in self._seen.items() if key not in here and not _lies_under(seen, found)]
+        hidden = dict(sorted(gone, key=lambda one: one[0] not in self._covers)[:MOST_FOLLOWED])
         covers = {key: _next(stamp_ns, pixels, seen, self._covers.get(key)) for key, seen in hidden.items()}
         self._covers = {key: cover for key, cover in covers.items() if cover is not None}
         self._seen = here | {key: hidden[key] for key in self._covers}
@@ -110,30 +114,35 @@ class Covers:
         return Seen(marker, stamp_ns, moved_px <= RESTING * marker.side_px * (stamp_ns - before.stamp_ns) / SECOND_NS)
 
 
+def _lies_under(seen: Seen, found: Sequence[Marker]) -> bool:
+    """Tell whether another marker is where one was: that one's object is another."""
+    return any(abs(complex(*one.centre_px) - seen.middle_px) < SAME_PLACE * seen.marker.side_px for one in found)
+
+
 def _next(stamp_ns: int, pixels: Pixels, seen: Seen, cover: Cover | None) -> Cover | None:
     """Begin to watch what covers a marker, see whether it rests, or follow it; None where nothing is known of it."""
     if cover is None:
-        return _begun(stamp_ns, pixels, seen, seen.stamp_ns) if seen.rests else None
+        return _begun(stamp_ns, pixels, seen) if seen.rests else None
     if cover.rested:
         return _followed(stamp_ns, pixels, seen, cover)
     if stamp_ns - cover.stamp_ns < STILL_NS:
         return cover
-    return _resting(stamp_ns, pixels, seen, cover) or _begun(stamp_ns, pixels, seen, cover.known_ns)
+    return _resting(stamp_ns, pixels, seen, cover) or _begun(stamp_ns, pixels, seen)
 
 
-def _begun(stamp_ns: int, pixels: Pixels, seen: Seen, known_ns: int) -> Cover | None:
-    """Take what is on a marker's place as it looks now, soon after the marker was known to be there."""
-    if stamp_ns - known_ns > TAKEN_NS:
+def _begun(stamp_ns: int, pixels: Pixels, seen: Seen) -> Cover | None:
+    """Take what is on a marker's place as it looks now, soon after the marker was seen there."""
+    if stamp_ns - seen.stamp_ns > TAKEN_NS:
         return None
     view = View.around(pixels, seen.middle_px, 2 * REACH * seen.marker.side_px, seen.scale)
     patch = Patch(view.levels, view.inside(seen.middle_px), REACH * seen.marker.side_px * seen.scale)
-    return Cover(patch, known_ns, stamp_ns, Similarity(seen.middle_px))
+    return Cover(patch, stamp_ns, Similarity(seen.middle_px))
 
 
 def _resting(stamp_ns: int, pixels: Pixels, seen: Seen, cover: Cover) -> Cover | None:
     """Take what covers a marker as resting on it, if it has hardly moved."""
     found = _found(pixels, seen, cover, 0, STILL_ALIKE)
-    if found is None or not _is_in_place(found, seen):
+    if found is None or not _is_within(STILL, found, seen):
         return None
     return replace(cover, stamp_ns=stamp_ns, place=found, rested=True)
 
@@ -145,8 +154,8 @@ def _followed(stamp_ns: int, pixels: Pixels, seen: Seen, cover: Cover) -> Cover 
         return None
     found = _found(pixels, seen, cover, passed_ns, ALIKE)
     if found is None:
-        return _begun(stamp_ns, pixels, seen, cover.stamp_ns) if _is_in_place(cover.place, seen) else None
-    if _is_in_place(found, seen) and stamp_ns - seen.stamp_ns > RESTS_NS:
+        return _begun(stamp_ns, pixels, seen) if _is_within(STILL, cover.place, seen) else None
+    if _is_within(RESTS, found, seen) and stamp_ns - seen.stamp_ns > RESTS_NS:
         return None
     px_per_ns = (found.middle_px - cover.place.middle_px) / passed_ns
     growth_per_ns = (_size(found) - _size(cover.place)) / passed_ns
@@ -159,8 +168,9 @@ def _followed(stamp_ns: int, pixels: Pixels, seen: Seen, cover: Cover) -> Cover 
     )
 
 
-def _is_in_place(place: Similarity, seen: Seen) -> bool:
-    return abs(place.middle_px - seen.middle_px) <= STILL * seen.marker.side_px
+def _is_within(sides: float, place: Similarity, seen: Seen) -> bool:
+    """Tell whether a place is within so many sides of where the marker was."""
+    return abs(place.middle_px - seen.middle_px) <= sides * seen.marker.side_px
 
 
 def _found(pixels: Pixels, seen: Seen, cover: Cover, passed_ns: int, least_alike: float) -> Similarity | None:
@@ -212,7 +222,9 @@ class View:
         left, top = max(round(middle_px.real - radius_px), 0), max(round(middle_px.imag - radius_px), 0)
         right, bottom = max(round(middle_px.real + radius_px), 0) + 1, max(round(middle_px.imag + radius_px), 0) + 1
         part = pixels[top:bottom, left:right]
-        if scale < 1 and part.size:
+        if scale * min(part.shape) < 1:
+            part = part[:0, :0]
+        elif scale < 1:
             part = np.asarray(cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), dtype=np.uint8)
         return cls(blurred(part), complex(left, top), scale)
 

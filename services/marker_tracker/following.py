@@ -146,6 +146,8 @@ def _box(marker: Marker, more_px: float) -> Box:
 
 
 def _scaled(pixels: Pixels, scale: float) -> Pixels:
-    if scale == 1.0 or not pixels.size:
+    if scale == 1.0:
         return pixels
+    if scale * min(pixels.shape) < 1:
+        return pixels[:0, :0]
     return np.asarray(cv2.resize(pixels, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), dtype=np.uint8)

@@ -126,7 +126,7 @@ class Track:
     def _is_moving(self) -> bool:
         assert self._motion is not None
         velocity = self._motion.velocity_mps
-        if self._sightings < 3 or float(np.linalg.norm(velocity)) < SLOWEST_MPS:
+        if self._followed or self._sightings < 3 or float(np.linalg.norm(velocity)) < SLOWEST_MPS:
             return False
         return float(velocity @ np.linalg.solve(self._motion.covariance[3:, 3:], velocity)) > MOVING
 
@@ -167,6 +167,8 @@ class Tracks:
 
     def see(self, stamp_ns: int, number: int, name: str, sighting: Sighting) -> bool:
         """Take in one object's sighting; false where it is too far off to be believed yet."""
+        if sighting.hidden and number not in self._tracks:
+            return False
         return self._tracks.setdefault(number, Track(number, name)).see(stamp_ns, sighting)
 
     def listed(self, stamp_ns: int) -> list[TrackedObject]:

@@ -25,6 +25,7 @@ class Watch:
         self._covers = Covers()
         self._last: list[Marker] = []
         self._searched_ns = 0
+        self._shape: tuple[int, ...] = ()
 
     def clear(self) -> None:
         """Forget everything: the source has started anew."""
@@ -35,6 +36,9 @@ class Watch:
 
     def markers(self, stamp_ns: int, pixels: Pixels) -> list[Marker]:
         """Find the markers of the next grey image (height, width), and the hidden ones that are carried."""
+        if pixels.shape != self._shape:
+            self.clear()
+            self._shape = pixels.shape
         due = self._is_due(stamp_ns)
         read = self._detector.read_in_place if due else self._detector.read_again
         here = read(pixels, self._last)

@@ -6,6 +6,7 @@ import pytest
 
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
+from marker_tracker.covers import MOST_FOLLOWED
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings
 
@@ -140,3 +141,47 @@ def test_over_a_long_gap_between_images_nothing_is_followed(seen) -> None:
     hand, place = carried((0.05, -0.1, 1.5))
     listed = seen(hand, 1.6, 2, place)
     assert not any(found.followed for objects in listed.values() for found in objects)
+
+
+def test_another_marker_that_is_laid_on_it_takes_it_nowhere(image_of, pose_at) -> None:
+    tracker = MarkerTracker(Settings(marker_size_m=SIZE_M))
+    on_it = smoothly(REST, np.array([0.05, -0.15, 1.5]), 1.0, 1.6)
+    for i in range(30):
+        t = i / 15
+        shown = (3, SIZE_M, pose_at(REST)) if t < COVERED_S else (7, SIZE_M, pose_at(on_it(t)))
+        (answer,) = tracker.handle(image_of([shown], stamp_ns=round(t * SECOND_NS)))
+        for found in answer.objects:
+            assert found.id != 3 or np.linalg.norm(np.subtract(found.position_m, REST)) < 0.01
+
+
+@pytest.mark.parametrize("speed_mps", [1.2, 1.8])
+def test_what_leaves_the_image_in_a_hand_is_let_go(seen, speed_mps) -> None:
+    near = np.array([-0.22, 0.0, 0.5])
+    leaving = smoothly(near, near - (0.5, 0.0, 0.0), COVERED_S + 0.2, COVERED_S + 0.2 + 0.5 / speed_mps)
+    listed = seen(lambda t: leaving(t) if t >= COVERED_S else None, 1.4, 5, lambda t: near if t < COVERED_S else None)
+    assert not any(found.followed for found in listed[1.4])
+
+
+def test_images_of_another_size_begin_anew(image_of, pose_at) -> None:
+    tracker = MarkerTracker(Settings(marker_size_m=SIZE_M))
+    image = image_of([(3, SIZE_M, pose_at(REST))])
+    for i in range(5):
+        [*tracker.handle(image.model_copy(update={"stamp_ns": i * SECOND_NS // 15}))]
+    pixels = np.frombuffer(with_hand(image, REST).data, dtype=np.uint8).reshape(image.height, image.width, 3)
+    small = np.ascontiguousarray(cv2.resize(pixels, (320, 240)))
+    for i in range(5, 10):
+        fields = {"stamp_ns": i * SECOND_NS // 15, "width": 320, "height": 240, "data": small.tobytes()}
+        (answer,) = tracker.handle(image.model_copy(update=fields))
+        assert not any(found.seen or found.followed for found in answer.objects)
+
+
+def test_of_many_at_once_a_few_are_followed(image_of, pose_at) -> None:
+    tracker = MarkerTracker(Settings(marker_size_m=0.05))
+    places = [(x, y, 1.0) for x in (-0.4, -0.2, 0.0, 0.2, 0.4) for y in (-0.2, 0.1)]
+    shown = image_of([(number, 0.05, pose_at(place)) for number, place in enumerate(places)])
+    still = np.random.default_rng(0).integers(0, 255, (shown.height // 8, shown.width // 8), dtype=np.uint8)
+    curtain = cv2.cvtColor(cv2.resize(still, (shown.width, shown.height)), cv2.COLOR_GRAY2BGR).tobytes()
+    for i in range(8):
+        fields = {"stamp_ns": i * SECOND_NS // 15} | ({"data": curtain} if i > 3 else {})
+        (answer,) = tracker.handle(shown.model_copy(update=fields))
+    assert 0 < sum(found.followed for found in answer.objects) <= MOST_FOLLOWED
