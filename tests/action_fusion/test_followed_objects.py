@@ -67,7 +67,7 @@ def test_what_no_hand_came_near_has_not_moved() -> None:
     assert event.object is None
 
 
-@pytest.mark.parametrize("up_m", [0.2, 0.45])
+@pytest.mark.parametrize("up_m", [0.15, 0.45])
 def test_what_is_followed_to_where_the_hand_has_it_no_more_has_gone_with_the_hand(up_m) -> None:
     hand = moving((0.3, (0.2, 0.1, 0.2)), (0.7, IN_HAND), (0.8, IN_HAND), (1.5, (0.1, 0.06 + up_m, 0.45)))
     true = moving((0.8, CUP), (1.5, (0.1, up_m, 0.45)))

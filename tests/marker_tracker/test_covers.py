@@ -6,7 +6,7 @@ import pytest
 
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
-from marker_tracker.covers import MOST_FOLLOWED
+from marker_tracker.covers import MOST_FOLLOWED, View
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings
 
@@ -154,12 +154,11 @@ def test_another_marker_that_is_laid_on_it_takes_it_nowhere(image_of, pose_at) -
             assert found.id != 3 or np.linalg.norm(np.subtract(found.position_m, REST)) < 0.01
 
 
-@pytest.mark.parametrize("speed_mps", [1.2, 1.8])
-def test_what_leaves_the_image_in_a_hand_is_let_go(seen, speed_mps) -> None:
-    near = np.array([-0.22, 0.0, 0.5])
-    leaving = smoothly(near, near - (0.5, 0.0, 0.0), COVERED_S + 0.2, COVERED_S + 0.2 + 0.5 / speed_mps)
-    listed = seen(lambda t: leaving(t) if t >= COVERED_S else None, 1.4, 5, lambda t: near if t < COVERED_S else None)
-    assert not any(found.followed for found in listed[1.4])
+@pytest.mark.parametrize("middle_px", [-48 + 100j, 100 - 48j, 700 + 100j, 100 + 600j])
+@pytest.mark.parametrize("scale", [0.2, 0.5, 1.0])
+def test_beyond_the_images_edge_there_is_next_to_nothing_to_see(middle_px, scale) -> None:
+    view = View.around(np.zeros((480, 640), dtype=np.uint8), middle_px, 48.0, scale)
+    assert min(view.levels.shape) <= 1
 
 
 def test_images_of_another_size_begin_anew(image_of, pose_at) -> None:
@@ -168,9 +167,9 @@ def test_images_of_another_size_begin_anew(image_of, pose_at) -> None:
     for i in range(5):
         [*tracker.handle(image.model_copy(update={"stamp_ns": i * SECOND_NS // 15}))]
     pixels = np.frombuffer(with_hand(image, REST).data, dtype=np.uint8).reshape(image.height, image.width, 3)
-    small = np.ascontiguousarray(cv2.resize(pixels, (320, 240)))
+    large = np.ascontiguousarray(cv2.resize(pixels, (1280, 960)))
     for i in range(5, 10):
-        fields = {"stamp_ns": i * SECOND_NS // 15, "width": 320, "height": 240, "data": small.tobytes()}
+        fields = {"stamp_ns": i * SECOND_NS // 15, "width": 1280, "height": 960, "data": large.tobytes()}
         (answer,) = tracker.handle(image.model_copy(update=fields))
         assert not any(found.seen or found.followed for found in answer.objects)
 
