@@ -36,7 +36,7 @@ def header() -> Iterator[str]:
 times a second with a Kinect's noise. Fusion is told which action was done, and when, as if it were recognised: nothing
 but the object's side is measured. `proximity` is the plain smallest distance, `joint` the default; both judge the same
 sightings."""
-    yield f"""Protocol: every threshold was chosen on persons 101 to 170, 200 to 479 and 5000 to 5135, on OptiTrack
+    yield f"""Protocol: every threshold was chosen on persons 101 to 170, 200 to 479 and 5000 to 5235, on OptiTrack
 recordings, or from anatomy; the persons here, {FIRST_IN_CONTACT} and up for
 push, pull, put and lift, {FIRST_PERSON} and up for the rest, had no part in it; how many of them point, and that the
 nearest pantomimes stand by themselves, was settled after a first look at them. Each row has persons of its own:
