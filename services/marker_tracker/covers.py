@@ -99,11 +99,7 @@ class Covers:
         covers = {key: _next(stamp_ns, pixels, seen, self._covers.get(key)) for key, seen in hidden.items()}
         self._covers = {key: cover for key, cover in covers.items() if cover is not None}
         self._seen = here | {key: hidden[key] for key in self._covers}
-        return [
-            _carried(hidden[key].marker, cover.place)
-            for key, cover in self._covers.items()
-            if cover.rested and cover.stamp_ns == stamp_ns
-        ]
+        return [_carried(hidden[key].marker, cover.place) for key, cover in self._covers.items() if cover.rested]
 
     def _sight(self, stamp_ns: int, marker: Marker) -> Seen:
         """Note where a marker is, and whether it is where it was a moment ago."""
