@@ -9,25 +9,18 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
-from actum_command.importing import import_video
 from model_trainer.samples import select
-from sensor_gateway.camera.clips import Naming
-from sensor_gateway.camera.source import estimator_of, optics_of
-from sensor_gateway.settings import Settings
 
-from ..recognition.datasets import Example, examples_of
+from ..recognition.datasets import Example, examples_of, import_florence
 from ..recognition.ours import OURS, PAPERS
 from ..recognition.peers import DTW, MINIROCKET, MINIROCKET_UPRIGHT, MULTIROCKET, Recogniser
 from ..recognition.scores import Score, percent, table
 from ..recognition.splits import SEED, Split, leave_one_person_out
 
 PAGE = Path(__file__).with_name("results.md")
-PATTERN = r".*actor(?P<person>\d+)idAction\d+category(?P<action>\d+)"
-ACTIONS = "1=wave,2=drink,3=answer phone,4=clap,5=tight lace,6=sit down,7=stand up,8=read watch,9=bow"
 LIBRARIES = ("mediapipe", "numpy", "aeon", "scikit-learn")
 RECOGNISERS: tuple[Recogniser, ...] = (OURS, PAPERS, MINIROCKET, MINIROCKET_UPRIGHT, MULTIROCKET, DTW)
 
@@ -50,15 +43,10 @@ def _clips() -> Path:
 
 
 def _seen(folder: Path, imported: Path) -> list[Example]:
-    """Import the clips as `actum import video` does; they are mirror images, as the writing on a shirt shows."""
-    settings = Settings(people=1, mirrored=True)
-    import_video(
+    import_florence(
         folder,
         imported,
         lambda done, total: print(f"\r{done} of {total} clips", end="", file=sys.stderr, flush=True),
-        naming=Naming.of(PATTERN, ACTIONS),
-        optics=optics_of(settings),
-        opened=partial(estimator_of, settings),
     )
     print(file=sys.stderr)
     return examples_of(select([imported]))

@@ -1,9 +1,10 @@
 """The public sets, imported as `actum import` does, each sequence as our recogniser gets it and as its peers do."""
 
 import os
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
@@ -13,11 +14,33 @@ from actum import geometry, keys
 from actum.messages import Agent, Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
-from actum_command.importing import ImportReport, Progress, import_msr_action3d, import_utkinect
+from actum_command.importing import (
+    ImportReport,
+    Progress,
+    import_msr_action3d,
+    import_msrc12,
+    import_utkinect,
+    import_video,
+)
 from model_trainer.samples import SegmentSample, samples_from, select
+from sensor_gateway.camera.clips import Naming
+from sensor_gateway.camera.source import estimator_of, optics_of
+from sensor_gateway.settings import Settings
 
 Array = NDArray[np.float64]
 Import = Callable[[Path, Path, Progress], ImportReport]
+
+MSRC12_SEGMENTS = 5
+"""How many segments of each gesture and person of MSRC-12 are drawn of the ten or more: 900 instead of 3105."""
+
+MSRC12_SEED = 0
+
+FLORENCE_NAMING = Naming.of(
+    r".*actor(?P<person>\d+)idAction\d+category(?P<action>\d+)",
+    "1=wave,2=drink,3=answer phone,4=clap,5=tight lace,6=sit down,7=stand up,8=read watch,9=bow",
+)
+
+_NOBODY = "no person"
 _HIPS = [INDEX["left_hip"], INDEX["right_hip"]]
 
 
@@ -74,6 +97,20 @@ class Datasets:
         """The labelled segments of UTKinect-Action3D."""
         return examples_of(self._recordings("utkinect", import_utkinect))
 
+    @cached_property
+    def msrc12(self) -> list[Example]:
+        """At most `MSRC12_SEGMENTS` segments of each gesture and person of MSRC-12, of those with anybody in them."""
+        recordings = self._recordings("msrc12", import_msrc12)
+        samples = samples_from(recordings)
+        if unusable := [left_out for left_out in samples.unusable if left_out.reason != _NOBODY]:
+            raise ValueError(f"unusable: {unusable}")
+        return _examples(drawn(samples.usable, MSRC12_SEGMENTS, MSRC12_SEED), recordings)
+
+    @cached_property
+    def florence(self) -> list[Example]:
+        """The RGB clips of Florence 3D Actions, people 1 to 6, seen by the pose model that ACTUM_POSE_MODEL names."""
+        return examples_of(self._recordings("florence3d_rgb", import_florence))
+
     def action_set(self, number: int) -> list[Example]:
         """Return the sequences of AS1, AS2 or AS3 that are among the 557."""
         names = set((self._originals / "msr_action3d" / f"ActionSet{number}.txt").read_text().split())
@@ -93,8 +130,29 @@ def examples_of(recordings: Sequence[Recording]) -> list[Example]:
     samples = samples_from(recordings)
     if samples.unusable:
         raise ValueError(f"unusable: {samples.unusable}")
+    return _examples(samples.usable, recordings)
+
+
+def import_florence(src: Path, out: Path, progress: Progress) -> ImportReport:
+    """Import the clips as `actum import video` does; they are mirror images, as the writing on a shirt shows."""
+    settings = Settings(people=1, mirrored=True)
+    opened = partial(estimator_of, settings)
+    return import_video(src, out, progress, naming=FLORENCE_NAMING, optics=optics_of(settings), opened=opened)
+
+
+def drawn(samples: Sequence[SegmentSample], at_most: int, seed: int) -> list[SegmentSample]:
+    """Draw so many samples of each person and action, or all where there are fewer; they keep their order."""
+    groups: dict[tuple[str, str], list[int]] = defaultdict(list)
+    for index, sample in enumerate(samples):
+        groups[sample.person, sample.label].append(index)
+    rng = np.random.default_rng(seed)
+    chosen = [index for group in sorted(groups) for index in rng.permutation(groups[group])[:at_most].tolist()]
+    return [samples[index] for index in sorted(chosen)]
+
+
+def _examples(samples: Sequence[SegmentSample], recordings: Sequence[Recording]) -> list[Example]:
     by_file = {str(recording.path): _by_stamp(recording) for recording in recordings}
-    return [Example(sample, _camera_m(sample, by_file[sample.file])) for sample in samples.usable]
+    return [Example(sample, _camera_m(sample, by_file[sample.file])) for sample in samples]
 
 
 def _by_stamp(recording: Recording) -> dict[int, Array]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from actum.recording import Recorder
-from sensor_gateway import bimacs, msr_action3d, utkinect
+from sensor_gateway import bimacs, msr_action3d, msrc12, utkinect
 from sensor_gateway.bimacs import HandsTake
 from sensor_gateway.camera.bodies import Estimator
 from sensor_gateway.camera.clips import Naming, check_names, clip_files, read_clip
@@ -106,6 +106,17 @@ def import_utkinect(src: Path, out: Path, progress: Progress) -> ImportReport:
     labels = utkinect.read_labels(src)
     takes = (utkinect.read_labelled(file, SENSOR, labels) for file in files)
     return _import("utkinect", takes, len(files), out, progress)
+
+
+def import_msrc12(src: Path, out: Path, progress: Progress) -> ImportReport:
+    """Write one recording per stream with a labelled segment about each action point, `out/P1_1_10A_p01.mcap`.
+
+    Raises:
+        DatasetError: `src` does not hold the set, or a file of it is damaged.
+    """
+    streams = msrc12.stream_names(src)
+    takes = (msrc12.read_stream(file, name, SENSOR) for file, name in streams)
+    return _import("msrc12", takes, len(streams), out, progress)
 
 
 def import_bimacs(src: Path, out: Path, progress: Progress) -> ImportReport:

@@ -13,6 +13,7 @@ from actum_command.importing import (
     Progress,
     import_bimacs,
     import_msr_action3d,
+    import_msrc12,
     import_utkinect,
     import_video,
 )
@@ -38,6 +39,12 @@ def msr_action3d(source: Source, out: Out) -> None:
 def utkinect(source: Source, out: Out) -> None:
     """Import UTKinect-Action3D: one recording per file, with its labelled segments."""
     _run(import_utkinect, source, out)
+
+
+@app.command("msrc12")
+def msrc12(source: Source, out: Out) -> None:
+    """Import MSRC-12: one recording per stream, with a labelled segment of up to 3 s about each action point."""
+    _run(import_msrc12, source, out)
 
 
 @app.command("bimacs")

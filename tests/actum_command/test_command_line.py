@@ -18,8 +18,9 @@ from performers import mark, performance
 
 COMMANDS = (
     "demo", "up", "router", "watch", "doctor", "segment start", "segment end", "segment toggle", "record", "play",
-    "import msr-action3d", "import utkinect", "train", "evaluate", "inspect", "simulate", "scene", "markers",
-    "calibrate intrinsics", "calibrate extrinsics", "calibrate up", "import video", "models fetch", "draw",
+    "import msr-action3d", "import utkinect", "import msrc12", "train", "evaluate", "inspect", "simulate",
+    "scene", "markers", "calibrate intrinsics", "calibrate extrinsics", "calibrate up", "import video", "models fetch",
+    "draw",
 )  # fmt: skip
 
 

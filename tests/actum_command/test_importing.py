@@ -7,7 +7,7 @@ import pytest
 from actum import keys
 from actum.messages import Segment
 from actum.recording import Recording
-from actum_command.importing import import_msr_action3d, import_utkinect
+from actum_command.importing import import_msr_action3d, import_msrc12, import_utkinect
 from sensor_gateway.takes import DatasetError
 
 Calls = list[tuple[int, int]]
@@ -82,3 +82,7 @@ def test_the_real_sets_are_imported_whole(tmp_path: Path, data: Path) -> None:
     assert utkinect.notes == {"duplicate_row": 542, "overlapping_pair": 7}
     assert utkinect.skipped == ["s10_e02 carry"]
     assert sum(len(list(Recording(f).messages())) for f in (tmp_path / "ut").iterdir()) == 15318 + 2 * 199
+
+    msrc12 = import_msrc12(data / "msrc12", tmp_path / "msrc12", lambda done, total: None)
+    assert (msrc12.files, msrc12.frames, msrc12.invalid_frames, msrc12.segments) == (298, 343362, 11957, 3115)
+    assert (len(msrc12.actions), len(msrc12.persons), msrc12.skipped) == (12, 15, [])

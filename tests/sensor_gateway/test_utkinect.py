@@ -2,13 +2,12 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from actum.messages import Segment
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX, JOINTS
-from sensor_gateway.takes import DatasetError, Take
+from kinect_takes import SOURCE_JOINTS, facing, times
+from sensor_gateway.takes import DatasetError
 from sensor_gateway.utkinect import (
     LabelledSegment,
     UtKinectSource,
@@ -18,17 +17,6 @@ from sensor_gateway.utkinect import (
     read_recording,
     recording_files,
 )
-
-SOURCE_JOINTS = [
-    "hip_center",
-    "torso",
-    "neck",
-    "head",
-    *(f"left_{joint}" for joint in ("shoulder", "elbow", "wrist", "hand")),
-    *(f"right_{joint}" for joint in ("shoulder", "elbow", "wrist", "hand")),
-    *(f"left_{joint}" for joint in ("hip", "knee", "ankle", "foot")),
-    *(f"right_{joint}" for joint in ("hip", "knee", "ankle", "foot")),
-]
 
 
 def recording(folder: Path, images: list[int], name: str = "s01_e01") -> Path:
@@ -42,10 +30,6 @@ def recording(folder: Path, images: list[int], name: str = "s01_e01") -> Path:
 def labels(folder: Path, text: str, name: str = "actionLabel_modified.txt") -> Path:
     (folder / name).write_text(text)
     return folder
-
-
-def times(marks: list[Segment]) -> list[tuple[str, str, int, str | None]]:
-    return [(mark.kind, mark.segment_id, mark.stamp_ns, mark.label) for mark in marks]
 
 
 def test_every_joint_is_found_by_its_name_in_the_camera_frame(tmp_path: Path) -> None:
@@ -151,16 +135,6 @@ def test_the_source_plays_a_folder_and_counts_what_it_drops(tmp_path: Path) -> N
     stamps = [frame.stamp_ns for instant in source.frames() for frame in instant]
     assert stamps == [SECOND_NS, 2 * SECOND_NS, 3 * SECOND_NS, 4 * SECOND_NS]
     assert source.tally.rejects == {"duplicate_row": 2}
-
-
-def facing(take: Take) -> float:
-    """Median cosine between the body's forward axis (left x up) and the way from the torso to the camera."""
-    joints = np.array([frame.agents[0].joints for frame in take.frames])
-    left = joints[:, INDEX["left_hip"]] - joints[:, INDEX["right_hip"]]
-    up = joints[:, INDEX["torso"]] - (joints[:, INDEX["left_hip"]] + joints[:, INDEX["right_hip"]]) / 2
-    forward, to_camera = np.cross(left, up), -joints[:, INDEX["torso"]]
-    norms = np.linalg.norm(forward, axis=1) * np.linalg.norm(to_camera, axis=1)
-    return float(np.median((forward * to_camera).sum(axis=1) / norms))
 
 
 @pytest.mark.data
