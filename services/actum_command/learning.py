@@ -15,6 +15,7 @@ from model_trainer.evaluation import Evaluation, evaluate, leave_one_person_out
 from model_trainer.report import report
 from model_trainer.samples import samples_from, select
 from model_trainer.training import TrainingError, train
+from model_trainer.warnings import warnings_of
 from som_classifier.presets import DEFAULT, PRESETS, Preset
 from som_classifier.storage import ModelError, load_model
 
@@ -52,6 +53,8 @@ def train_command(
         f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
         f"{time.monotonic() - began_s:.1f} s, written to {output}"
     )
+    for warning in warnings_of(samples.usable, held_out=()):
+        say(warning, style="yellow")
 
 
 def evaluate_command(
