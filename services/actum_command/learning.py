@@ -11,7 +11,8 @@ import typer
 from actum.recording import Recording, RecordingError
 from actum_command.context import console, fail, refuse_unwritable, say
 from actum_command.progress import bars
-from model_trainer.evaluation import Evaluation, evaluate, leave_one_person_out
+from model_trainer.evaluation import Evaluation, evaluate
+from model_trainer.leaving_out import leave_one_person_out
 from model_trainer.report import report
 from model_trainer.samples import samples_from, select
 from model_trainer.training import TrainingError, train

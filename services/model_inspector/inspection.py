@@ -17,12 +17,13 @@ from model_inspector.examples import examples, file_names, mistake_name, mistake
 from model_inspector.movement_map import movement_map
 from model_inspector.posture_map import posture_map
 from model_inspector.reasons import reasons_picture
-from model_inspector.reliability import FEWEST, judged, reliability_picture
+from model_inspector.reliability import judged, reliability_picture
 from model_inspector.style import save
 from model_inspector.trace import trace_picture
 from model_inspector.wording import headline
 from model_trainer.evaluation import Evaluation
 from model_trainer.progress import Progress, silent
+from model_trainer.reliability import FEWEST
 
 
 @dataclass(frozen=True)

@@ -1,37 +1,16 @@
 """Whether the confidence can be trusted: how often the answer was right when it was so sure."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from model_inspector.answered import Answered
 from model_inspector.style import ACCENT, FAINT, INK, canvas, explain, in_house_style
 from model_trainer.evaluation import wilson_interval
+from model_trainer.reliability import FEWEST, Bin, binned, calibration_error
 
-FEWEST = 30
-"""Segments with a label and an answer: fewer say nothing."""
-BINS = 10
 WIDTH_IN = 6.8
-
-
-@dataclass(frozen=True)
-class Bin:
-    """The answers whose confidence lies between two tenths."""
-
-    low: float
-    high: float
-    n: int
-    correct: int
-    confidence: float
-
-    @property
-    def accuracy(self) -> float:
-        """The share of right ones."""
-        return self.correct / self.n
 
 
 def judged(segments: Sequence[Answered]) -> list[Answered]:
@@ -41,20 +20,8 @@ def judged(segments: Sequence[Answered]) -> list[Answered]:
 
 def bins(segments: Sequence[Answered]) -> list[Bin]:
     """Sort judged segments by confidence; bins without a segment are left out."""
-    confidences = np.array([segment.recognition.confidence for segment in segments if segment.recognition is not None])
-    correct = np.array([segment.correct for segment in segments if segment.recognition is not None], dtype=bool)
-    which = np.minimum((confidences * BINS).astype(int), BINS - 1)
-    return [_bin(k, confidences[which == k], correct[which == k]) for k in np.unique(which).tolist()]
-
-
-def _bin(k: int, confidences: NDArray[np.float64], correct: NDArray[np.bool_]) -> Bin:
-    return Bin(k / BINS, (k + 1) / BINS, len(correct), int(correct.sum()), float(confidences.mean()))
-
-
-def calibration_error(found: Sequence[Bin]) -> float:
-    """Return the mean over all answers of |accuracy − confidence| of their bin."""
-    n = sum(each.n for each in found)
-    return sum(each.n * abs(each.accuracy - each.confidence) for each in found) / n
+    answers = [(segment.recognition.confidence, segment.correct) for segment in segments if segment.recognition]
+    return binned([confidence for confidence, _ in answers], [correct for _, correct in answers])
 
 
 @in_house_style

@@ -1,7 +1,7 @@
 """How often a model is right on recordings, judged by the final answers of the live classifier's own node."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from math import sqrt
@@ -12,23 +12,31 @@ from actum.messages import Action, Segment
 from actum.node import replay
 from actum.recording import Recording
 from model_trainer.progress import Progress, silent
-from model_trainer.samples import classifier_input, samples_from, sensors
-from model_trainer.training import TrainingError, train
+from model_trainer.reliability import FEWEST, binned, calibration_error
+from model_trainer.samples import classifier_input, sensors
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
-from som_classifier.presets import Preset
+from som_classifier.recognition import Recognition
 
 Z_95 = 1.959963984540054
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """A labelled segment and what it was taken for; `predicted` is None where it was rejected."""
+    """A labelled segment and what it was taken for.
+
+    Attributes:
+        predicted: None where it was rejected.
+        confidence: None where there is no answer, or what answers tells none.
+        unknown: whether it was told as possibly none of the trained actions; None where the model tells no familiarity.
+    """
 
     file: str
     segment_id: str
     label: str
     predicted: str | None
+    confidence: float | None = None
+    unknown: bool | None = None
 
     @property
     def correct(self) -> bool:
@@ -38,12 +46,20 @@ class Prediction:
 
 @dataclass(frozen=True)
 class ClassScore:
-    """How one action fared."""
+    """How one action fared.
+
+    Attributes:
+        accuracy: the share of its segments that were recognised.
+        confidence: the mean over its answers; None where none tells any.
+        unknown: the share of its answers that were told unknown; None where none tells.
+    """
 
     n: int
     correct: int
     rejected: int
     accuracy: float
+    confidence: float | None
+    unknown: float | None
 
 
 @dataclass(frozen=True)
@@ -81,25 +97,50 @@ class Evaluation:
 
     @cached_property
     def per_class(self) -> dict[str, ClassScore]:
-        """Each action's score; accuracy is the share of its own segments that were recognised."""
-        scores = {}
-        for label in self.labels:
-            own = [prediction for prediction in self.predictions if prediction.label == label]
-            correct = sum(prediction.correct for prediction in own)
-            rejected = sum(prediction.predicted is None for prediction in own)
-            scores[label] = ClassScore(len(own), correct, rejected, correct / len(own) if own else 0.0)
-        return scores
+        """Each action's score, of its own segments."""
+        return {label: _score([p for p in self.predictions if p.label == label]) for label in self.labels}
+
+    @cached_property
+    def told_unknown(self) -> list[bool]:
+        """Whether it was told unknown, of each answer whose model can tell."""
+        return [prediction.unknown for prediction in self.predictions if prediction.unknown is not None]
+
+    @cached_property
+    def calibration_error(self) -> float | None:
+        """How far confidence is from accuracy on average (ECE); None where too few answers tell any."""
+        sure = [(p.confidence, p.correct) for p in self.predictions if p.confidence is not None]
+        if len(sure) < FEWEST:
+            return None
+        return calibration_error(binned([confidence for confidence, _ in sure], [correct for _, correct in sure]))
 
     def as_json(self) -> dict[str, Any]:
         """Write everything as plain values."""
         return {
             "accuracy": self.accuracy,
             "n": self.n,
+            "calibration_error": self.calibration_error,
             "labels": self.labels,
             "confusion": self.confusion,
             "per_class": {label: asdict(score) for label, score in self.per_class.items()},
             "predictions": [asdict(prediction) for prediction in self.predictions],
         }
+
+
+def _score(own: Sequence[Prediction]) -> ClassScore:
+    correct = sum(prediction.correct for prediction in own)
+    return ClassScore(
+        n=len(own),
+        correct=correct,
+        rejected=sum(prediction.predicted is None for prediction in own),
+        accuracy=correct / len(own) if own else 0.0,
+        confidence=_mean([prediction.confidence for prediction in own]),
+        unknown=_mean([prediction.unknown for prediction in own]),
+    )
+
+
+def _mean(values: Sequence[float | None]) -> float | None:
+    told = [value for value in values if value is not None]
+    return sum(told) / len(told) if told else None
 
 
 def wilson_interval(correct: int, n: int) -> tuple[float, float]:
@@ -127,40 +168,17 @@ def evaluate(model: Model, recordings: Sequence[Recording], progress: Progress =
     return Evaluation(tuple(predictions))
 
 
-def leave_one_person_out(
-    recordings: Sequence[Recording], preset: Preset, seed: int = 0, progress: Progress = silent
-) -> Evaluation:
-    """Test each person on a model trained on all others, and pool the predictions.
-
-    Raises:
-        TrainingError: fewer than two persons, or the others' samples make no model.
-        RecordingError: a file is damaged.
-    """
-    people = sorted({recording.person for recording in recordings})
-    if len(people) < 2:
-        raise TrainingError(f"recordings of at least two persons are needed; these are of {people or 'none'}")
-    samples = samples_from(recordings, progress).usable
-    predictions: list[Prediction] = []
-    for person in people:
-        others = [sample for sample in samples if sample.person != person]
-        model = train(others, preset, seed, _prefixed(f"without {person or 'unnamed'}: ", progress))
-        own = [recording for recording in recordings if recording.person == person]
-        predictions += evaluate(model, own, _prefixed(f"on {person or 'unnamed'}: ", progress)).predictions
-    return Evaluation(tuple(predictions))
+def prediction(
+    recording: Recording, segment_id: str, label: str, predicted: str | None, answer: Action | Recognition | None
+) -> Prediction:
+    """Set an answer, whichever way it was got, beside the label; `predicted` is the action that it names."""
+    if predicted is None or answer is None:
+        return Prediction(str(recording.path), segment_id, label, None)
+    unknown = None if answer.familiarity is None else answer.unknown
+    return Prediction(str(recording.path), segment_id, label, predicted, answer.confidence, unknown)
 
 
-def _predictions(model: Model, recording: Recording, sensor: str) -> list[Prediction]:
-    answers: dict[str, str | None] = {}
-    for message in replay(SomClassifier(model), classifier_input(recording, sensor)):
-        if isinstance(message, Action) and message.final:
-            answers.setdefault(message.segment_id, message.action)
-    return [
-        Prediction(str(recording.path), segment_id, label, answers.get(segment_id))
-        for segment_id, label in _labels(recording, sensor).items()
-    ]
-
-
-def _labels(recording: Recording, sensor: str) -> dict[str, str]:
+def labels_of(recording: Recording, sensor: str) -> dict[str, str]:
     """Return the label of each labelled segment; the first start mark of an id counts."""
     labels: dict[str, str] = {}
     for mark in recording.messages((keys.SEGMENT,)):
@@ -169,5 +187,11 @@ def _labels(recording: Recording, sensor: str) -> dict[str, str]:
     return labels
 
 
-def _prefixed(prefix: str, progress: Progress) -> Progress:
-    return lambda stage, done, total: progress(prefix + stage, done, total)
+def _predictions(model: Model, recording: Recording, sensor: str) -> Iterator[Prediction]:
+    answers: dict[str, Action] = {}
+    for message in replay(SomClassifier(model), classifier_input(recording, sensor)):
+        if isinstance(message, Action) and message.final:
+            answers.setdefault(message.segment_id, message)
+    for segment_id, label in labels_of(recording, sensor).items():
+        answer = answers.get(segment_id)
+        yield prediction(recording, segment_id, label, answer.action if answer else None, answer)

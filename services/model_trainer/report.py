@@ -16,24 +16,34 @@ def report(evaluation: Evaluation, seconds: float) -> Group:
 
 
 def summary(evaluation: Evaluation, seconds: float) -> Text:
-    """Say in one line how often the answer was right."""
+    """Say how often the answer was right, how far its confidence was off and how often it was told unknown."""
     low, high = wilson_interval(evaluation.correct, evaluation.n)
-    return Text(
+    said = [
         f"accuracy {evaluation.accuracy:.1%} ({evaluation.correct} of {evaluation.n}, "
-        f"95 % interval {low:.1%} to {high:.1%}), {seconds:.1f} s"
-    )
+        f"95 % interval {low:.1%} to {high:.1%})"
+    ]
+    if evaluation.calibration_error is not None:
+        said.append(f"confidence off by {evaluation.calibration_error:.3f} on average (ECE)")
+    if evaluation.told_unknown:
+        said.append(f"{sum(evaluation.told_unknown)} of {len(evaluation.told_unknown)} answers told unknown")
+    return Text(", ".join([*said, f"{seconds:.1f} s"]))
 
 
 def per_class(evaluation: Evaluation) -> Table:
-    """Tabulate each action's tests, right answers and rejections."""
+    """Tabulate each action's tests, right answers and rejections, mean confidence and share told unknown."""
     table = Table(title="per action")
     table.add_column("action", overflow="fold")
-    for heading in ("tests", "recognised", "rejected", "accuracy"):
+    for heading in ("tests", "recognised", "rejected", "accuracy", "confidence", "unknown"):
         table.add_column(heading, justify="right", no_wrap=True)
     for label, score in evaluation.per_class.items():
-        accuracy = f"{score.accuracy:.1%}" if score.n else "-"
-        table.add_row(Text(label), str(score.n), str(score.correct), str(score.rejected), accuracy)
+        counts = str(score.n), str(score.correct), str(score.rejected)
+        accuracy = score.accuracy if score.n else None
+        table.add_row(Text(label), *counts, *map(_share, (accuracy, score.confidence, score.unknown)))
     return table
+
+
+def _share(share: float | None) -> str:
+    return "-" if share is None else f"{share:.1%}"
 
 
 def confusion(evaluation: Evaluation) -> Table | Text:

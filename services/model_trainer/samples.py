@@ -17,7 +17,6 @@ from pose_preprocessor.node import PosePreprocessor
 from som_classifier.handedness import Spreads, moments
 from som_classifier.model import Model
 from som_classifier.segments import Closed, Segmenter
-from som_classifier.streams import Frame
 
 Array = NDArray[np.float64]
 STREAMS = (keys.SKELETON, keys.SEGMENT)
@@ -34,6 +33,7 @@ class SegmentSample:
         postures: (n, 15, 3), scaled, upright, low-passed.
         velocities: (n, 15, 3), of the same.
         depth_inferred: whether distances follow from a picture and a body's usual size.
+        sensor: which viewpoint it is of.
     """
 
     label: str
@@ -46,6 +46,7 @@ class SegmentSample:
     file: str
     segment_id: str
     depth_inferred: bool = False
+    sensor: str = ""
 
     @cached_property
     def acting_hands(self) -> list[Hand | None]:
@@ -61,14 +62,24 @@ class Unusable:
     file: str
     segment_id: str
     reason: str
+    sensor: str
 
 
 @dataclass(frozen=True)
 class Samples:
-    """What recordings hold to learn from."""
+    """What recordings hold to learn from: their labelled segments, in the order in which they close."""
 
-    usable: list[SegmentSample]
-    unusable: list[Unusable]
+    segments: list[SegmentSample | Unusable]
+
+    @cached_property
+    def usable(self) -> list[SegmentSample]:
+        """Those that are samples."""
+        return [segment for segment in self.segments if isinstance(segment, SegmentSample)]
+
+    @cached_property
+    def unusable(self) -> list[Unusable]:
+        """The others."""
+        return [segment for segment in self.segments if isinstance(segment, Unusable)]
 
 
 def select(
@@ -112,14 +123,14 @@ def samples_from(recordings: Sequence[Recording], progress: Progress = silent) -
     Raises:
         RecordingError: a file is damaged.
     """
-    samples = Samples([], [])
+    segments: list[SegmentSample | Unusable] = []
     for done, recording in enumerate(recordings):
         progress("reading recordings", done, len(recordings))
         for sensor in sensors(recording):
-            for closed in closed_segments(classifier_input(recording, sensor)):
-                _collect(samples, recording, closed)
+            closed = closed_segments(classifier_input(recording, sensor))
+            segments += [_cut(recording, sensor, each, each.label) for each in closed if each.label is not None]
     progress("reading recordings", len(recordings), len(recordings))
-    return samples
+    return Samples(segments)
 
 
 def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[Closed]:
@@ -156,19 +167,11 @@ def _files(path: Path) -> list[Path]:
     return sorted(path.rglob("*.mcap")) if path.is_dir() else [path]
 
 
-def _collect(samples: Samples, recording: Recording, closed: Closed) -> None:
-    if closed.label is None:
-        return
-    file = str(recording.path)
+def _cut(recording: Recording, sensor: str, closed: Closed, label: str) -> SegmentSample | Unusable:
     frames = [frame for frame in closed.frames if frame.valid]
     if closed.reason or len(frames) < Model.min_frames:
         reason = closed.reason or f"{len(frames)} usable frames, at least {Model.min_frames} are needed"
-        samples.unusable.append(Unusable(file, closed.segment_id, reason))
-        return
-    samples.usable.append(_sample(closed.label, frames, recording.person, file, closed.segment_id))
-
-
-def _sample(label: str, frames: Sequence[Frame], person: str, file: str, segment_id: str) -> SegmentSample:
+        return Unusable(str(recording.path), closed.segment_id, reason, sensor)
     movements = [frame.movement for frame in frames if frame.movement is not None]
     return SegmentSample(
         label,
@@ -177,8 +180,9 @@ def _sample(label: str, frames: Sequence[Frame], person: str, file: str, segment
         np.array([frame.motion for frame in frames]),
         np.array([movement.posture for movement in movements]),
         np.array([movement.velocity for movement in movements]),
-        person,
-        file,
-        segment_id,
+        recording.person,
+        str(recording.path),
+        closed.segment_id,
         any(frame.depth_inferred for frame in frames),
+        sensor,
     )

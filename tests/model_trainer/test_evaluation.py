@@ -9,20 +9,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
+from actum.messages import Action
+from actum.node import replay
 from actum.recording import Recording
-from model_trainer.evaluation import (
-    Evaluation,
-    Prediction,
-    evaluate,
-    leave_one_person_out,
-    wilson_interval,
-)
-from model_trainer.report import confusion, report
-from model_trainer.samples import samples_from
-from model_trainer.training import TrainingError, train
+from model_trainer.evaluation import Evaluation, Prediction, evaluate, wilson_interval
+from model_trainer.report import confusion, report, summary
+from model_trainer.samples import classifier_input, samples_from
+from model_trainer.training import train
 from people import FRAME_NS, skeleton
 from performers import HAND_PATHS, TINY, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
-from som_classifier.model import Model
+from som_classifier.node import SomClassifier
 from som_classifier.presets import Preset
 
 Record = Callable[..., Recording]
@@ -30,13 +26,14 @@ each_preset = pytest.mark.parametrize("preset", TINY_OF_EACH_KIND, ids=lambda pr
 
 FIVE = Evaluation(
     (
-        Prediction("a.mcap", "1", "push", "push"),
-        Prediction("a.mcap", "2", "push", "pull"),
+        Prediction("a.mcap", "1", "push", "push", 0.9, unknown=False),
+        Prediction("a.mcap", "2", "push", "pull", 0.5, unknown=True),
         Prediction("a.mcap", "3", "push", None),
-        Prediction("b.mcap", "1", "lift", "lift"),
-        Prediction("b.mcap", "2", "lift", "lift"),
+        Prediction("b.mcap", "1", "lift", "lift", 1.0, unknown=False),
+        Prediction("b.mcap", "2", "lift", "lift", 0.8, unknown=False),
     )
 )
+WITHOUT_CONFIDENCE = Evaluation(tuple(Prediction(p.file, p.segment_id, p.label, p.predicted) for p in FIVE.predictions))
 
 
 def test_rejections_count_as_wrong() -> None:
@@ -50,11 +47,35 @@ def test_confusion_counts_done_by_answered() -> None:
     assert FIVE.confusion == [[2, 0, 0], [0, 0, 0], [0, 1, 1]]
 
 
+def test_an_action_is_told_with_its_mean_confidence_and_how_much_was_unknown() -> None:
+    push, lift, pull = (FIVE.per_class[label] for label in ("push", "lift", "pull"))
+    assert (push.confidence, push.unknown) == (pytest.approx(0.7), 1 / 2)
+    assert (lift.confidence, lift.unknown) == (pytest.approx(0.9), 0)
+    assert (pull.confidence, pull.unknown) == (None, None)
+    assert sum(FIVE.told_unknown) == 1
+    assert len(FIVE.told_unknown) == 4
+
+
+def test_answers_that_tell_no_confidence_have_none_on_average() -> None:
+    push = WITHOUT_CONFIDENCE.per_class["push"]
+    assert (push.confidence, push.unknown, WITHOUT_CONFIDENCE.told_unknown) == (None, None, [])
+
+
+def test_how_far_confidence_is_off_is_told_of_thirty_answers_and_not_of_fewer() -> None:
+    right, wrong = (Prediction("a.mcap", "1", "push", answer, 0.75) for answer in ("push", "pull"))
+    rejected = Prediction("a.mcap", "1", "push", None)
+    assert Evaluation((right, wrong) * 15).calibration_error == pytest.approx(0.25)
+    assert Evaluation((*(right, wrong) * 14, right, rejected, rejected)).calibration_error is None
+
+
 def test_json_has_every_key_and_survives_a_round_trip() -> None:
     written = json.loads(json.dumps(FIVE.as_json()))
-    assert list(written) == ["accuracy", "n", "labels", "confusion", "per_class", "predictions"]
-    assert written["predictions"][2] == {"file": "a.mcap", "segment_id": "3", "label": "push", "predicted": None}
-    assert written["per_class"]["pull"] == {"n": 0, "correct": 0, "rejected": 0, "accuracy": 0.0}
+    assert list(written) == ["accuracy", "n", "calibration_error", "labels", "confusion", "per_class", "predictions"]
+    rejected = {"predicted": None, "confidence": None, "unknown": None}
+    assert written["predictions"][2] == {"file": "a.mcap", "segment_id": "3", "label": "push"} | rejected
+    assert (written["predictions"][1]["confidence"], written["predictions"][1]["unknown"]) == (0.5, True)
+    nothing = {"n": 0, "correct": 0, "rejected": 0, "accuracy": 0.0, "confidence": None, "unknown": None}
+    assert written["per_class"]["pull"] == nothing
 
 
 def test_nothing_to_answer_is_no_accuracy() -> None:
@@ -88,6 +109,21 @@ def test_final_answers_are_compared_with_labels(three_people: list[Recording], p
     assert evaluation.accuracy == 1.0
 
 
+@pytest.mark.parametrize(("preset", "told"), [(TINY, True), (TINY_PAPER, False)])
+def test_confidence_is_the_answers_own_and_unknown_is_told_where_the_model_can_tell(
+    three_people: list[Recording], preset: Preset, told: bool
+) -> None:
+    model = train(samples_from(three_people).usable, preset)
+    final = [
+        message
+        for message in replay(SomClassifier(model), classifier_input(three_people[0], "kinect0"))
+        if isinstance(message, Action) and message.final
+    ]
+    predictions = evaluate(model, three_people[:1]).predictions
+    assert [p.confidence for p in predictions] == [action.confidence for action in final]
+    assert [p.unknown for p in predictions] == [action.unknown if told else None for action in final]
+
+
 def test_a_label_the_model_does_not_know_is_wrong(three_people: list[Recording], record: Record) -> None:
     model = train(samples_from(three_people).usable, TINY)
     skeletons, marks = performance(["lift"])
@@ -102,50 +138,7 @@ def test_segments_that_cannot_be_answered_are_predicted_as_none(three_people: li
     nobody = [skeleton(i * FRAME_NS) for i in range(12)]
     evaluation = evaluate(model, [record("nobody", *nobody, *marks)])
     assert [(p.segment_id, p.predicted) for p in evaluation.predictions] == [("x", None), ("y", None)]
-
-
-@pytest.mark.parametrize(("preset", "first"), [(TINY, "map of postures"), (TINY_PAPER, "layer 1")])
-def test_each_person_is_tested_once_on_a_model_of_the_others(
-    three_people: list[Recording], preset: Preset, first: str
-) -> None:
-    stages: list[str] = []
-    evaluation = leave_one_person_out(three_people, preset, progress=lambda stage, *_: stages.append(stage))
-    assert evaluation.n == 3 * 2 * len(HAND_PATHS)
-    assert evaluation.accuracy > 0.8
-    assert [p.file for p in evaluation.predictions[::6]] == [str(recording.path) for recording in three_people]
-    assert {stage for stage in stages if stage.endswith(first)} == {f"without {n}: {first}" for n in "123"}
-
-
-@each_preset
-def test_the_model_a_person_is_tested_on_is_made_of_the_others_samples_alone(
-    three_people: list[Recording], preset: Preset, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    tested: list[tuple[str, str]] = []
-
-    def noted(model: Model, own: list[Recording], *_: object) -> Evaluation:
-        tested.append((own[0].person, model.id))
-        return Evaluation(())
-
-    monkeypatch.setattr("model_trainer.evaluation.evaluate", noted)
-    leave_one_person_out(three_people, preset, seed=3)
-    of_others = {person: [r for r in three_people if r.person != person] for person in "123"}
-    assert tested == [
-        (person, train(samples_from(others).usable, preset, 3).id) for person, others in of_others.items()
-    ]
-
-
-def test_an_action_of_one_person_alone_is_never_recognised(three_people: list[Recording], record: Record) -> None:
-    """The model that is tested on a person has seen nothing of them."""
-    skeletons, marks = performance(["lift", "push"], seed=9)
-    renamed = [m.model_copy(update={"label": m.label and "own action"}) for m in marks]
-    recordings = [*three_people, record("person4", *skeletons, *renamed, person="4")]
-    own = [p for p in leave_one_person_out(recordings, TINY).predictions if p.label == "own action"]
-    assert [p.predicted for p in own] == ["lift", "push"]
-
-
-def test_one_person_cannot_be_left_out(three_people: list[Recording]) -> None:
-    with pytest.raises(TrainingError, match="at least two persons"):
-        leave_one_person_out(three_people[:1], TINY)
+    assert {(p.confidence, p.unknown) for p in evaluation.predictions} == {(None, None)}
 
 
 def test_the_report_shows_accuracy_interval_classes_and_confusion() -> None:
@@ -156,6 +149,23 @@ def test_the_report_shows_accuracy_interval_classes_and_confusion() -> None:
     assert f"60.0% (3 of 5, 95 % interval {low:.1%} to {high:.1%})" in text
     assert "33.3%" in text
     assert "confusion" in text
+    assert "1 of 4 answers told unknown" in text
+    assert "ECE" not in text
+    push = next(line for line in text.splitlines() if "push" in line).replace("│", " ").split()
+    assert push == ["push", "3", "1", "1", "33.3%", "70.0%", "50.0%"]
+
+
+def test_the_report_of_many_answers_tells_how_far_confidence_is_off() -> None:
+    assert "confidence off by 0.200 on average (ECE)" in str(summary(Evaluation(FIVE.predictions * 10), seconds=1.0))
+
+
+def test_the_report_of_answers_without_confidence_leaves_it_open() -> None:
+    console = Console(record=True, width=120)
+    console.print(report(WITHOUT_CONFIDENCE, seconds=1.25))
+    text = console.export_text()
+    push = next(line for line in text.splitlines() if "push" in line).replace("│", " ").split()
+    assert push == ["push", "3", "1", "1", "33.3%", "-", "-"]
+    assert "unknown," not in text
 
 
 def test_no_mistake_is_lost_however_many_actions_there_are_and_however_long_their_names() -> None:
