@@ -49,8 +49,8 @@ def _one_person(people: set[str]) -> Iterator[str]:
 def _few(counts: Mapping[str, int]) -> Iterator[str]:
     few = {label: n for label, n in sorted(counts.items()) if n < FEWEST}
     if few:
-        named = _listed(f"{label} has {n}" for label, n in few.items())
-        yield f"Few examples: {named}. Record {_more({label: FEWEST - n for label, n in few.items()})}."
+        named = _listed(f"{label} has {n} ({FEWEST - n} more)" for label, n in few.items())
+        yield f"Few examples: {named}. Record at least {FEWEST} of each action."
 
 
 def _unbalanced(actions: Mapping[str, int]) -> Iterator[str]:
@@ -58,10 +58,11 @@ def _unbalanced(actions: Mapping[str, int]) -> Iterator[str]:
     rare = {label: n for label, n in actions.items() if LARGEST_RATIO * n < actions[largest]}
     if rare:
         named = _listed(f"{label} ({n})" for label, n in rare.items())
-        missing = {label: ceil(actions[largest] / LARGEST_RATIO) - n for label, n in rare.items()}
+        needed = ceil(actions[largest] / LARGEST_RATIO)
+        more = _listed(f"{needed - n} more of {label}" for label, n in rare.items())
         yield (
             f"Unbalanced examples: {largest} has {actions[largest]}, more than {LARGEST_RATIO} times as many as "
-            f"{named}. Record {_more(missing)}."
+            f"{named}. Record {more}."
         )
 
 
@@ -95,10 +96,6 @@ def _no_background(counts: Mapping[str, int]) -> Iterator[str]:
             f"No segment is labelled {' or '.join(BACKGROUND)}: what is none of the actions is a guess. "
             f"Record people who do none of them, with --label {BACKGROUND[0]}."
         )
-
-
-def _more(missing: Mapping[str, int]) -> str:
-    return _listed(f"{n} more of {label}" for label, n in missing.items())
 
 
 def _listed(parts: Iterator[str]) -> str:

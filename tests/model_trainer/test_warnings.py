@@ -42,7 +42,7 @@ def test_people_that_are_not_named_may_be_one() -> None:
 
 def test_few_examples_are_named_with_how_many_more() -> None:
     assert warnings_of(examples({"push": 2, "lift": 4, "pull": 5, "idle": 5}), []) == [
-        "Few examples: lift has 4 and push has 2. Record 1 more of lift and 3 more of push."
+        "Few examples: lift has 4 (1 more) and push has 2 (3 more). Record at least 5 of each action."
     ]
 
 
