@@ -7,6 +7,7 @@ nobody was found, `NAME.t_us` (frames,) and `NAME.tags_us` (points,), all intege
 """
 
 import re
+import zlib
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -27,6 +28,9 @@ REACH_US = 1_500_000
 SOURCE_JOINTS = 20
 PATTERN = "p*.npz"
 PARTS = ("xyz_mm", "t_us", "tags_us")
+DAMAGED = (OSError, ValueError, EOFError, BadZipFile, zlib.error)
+"""What reading arrays raises where a file is none of them, or broken."""
+
 NAME = re.compile(r"P(?P<instruction>\d)_(?P<set>\d)_(?P<gesture>(?P<number>\d+)A?)_p(?P<person>\d\d)")
 
 GESTURES: tuple[str, ...] = (
@@ -111,18 +115,18 @@ def spans_about(points_us: Integers, first_us: int, last_us: int) -> list[tuple[
 
 def _names(file: Path) -> list[str]:
     try:
-        with np.load(file) as arrays:
+        with file.open("rb") as stored, np.load(stored) as arrays:
             return sorted({array.rpartition(".")[0] for array in arrays.files})
-    except (OSError, ValueError, BadZipFile) as error:
-        raise DatasetError(f"{file}: not a file of streams ({error}); fetch it anew") from None
+    except DAMAGED:
+        raise DatasetError(f"{file}: not a file of streams; fetch it anew") from None
 
 
 def _stream(path: Path, name: str) -> Stream:
     try:
-        with np.load(path) as arrays:
+        with path.open("rb") as stored, np.load(stored) as arrays:
             xyz_mm, stamps_us, points_us = (arrays[f"{name}.{part}"] for part in PARTS)
-    except (OSError, ValueError, KeyError, BadZipFile) as error:
-        raise DatasetError(f"{path}: no stream {name} in it ({error}); fetch it anew") from None
+    except (KeyError, *DAMAGED):
+        raise DatasetError(f"{path}: {name} is not whole there; fetch it anew") from None
     stamps_rise = stamps_us.size and (np.diff(stamps_us) > 0).all()
     if xyz_mm.shape != (len(stamps_us), SOURCE_JOINTS, 3) or not stamps_rise or not (np.diff(points_us) > 0).all():
         raise DatasetError(f"{path}: {name} is not frames of {SOURCE_JOINTS} joints with rising stamps; fetch it anew")

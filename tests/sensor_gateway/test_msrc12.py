@@ -92,10 +92,24 @@ def test_a_folder_without_the_set_is_an_error(tmp_path: Path) -> None:
         stream_names(tmp_path)
 
 
-def test_a_file_that_holds_no_arrays_is_an_error_that_names_it(tmp_path: Path) -> None:
-    (tmp_path / "p01.npz").write_text("nothing of the kind")
-    with pytest.raises(DatasetError, match=r"p01\.npz: not a file of streams"):
+@pytest.mark.parametrize("content", [b"", b"nothing of the kind", b"PK\x03\x04 broken off"])
+def test_a_file_that_holds_no_arrays_is_an_error_that_names_it(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "p01.npz").write_bytes(content)
+    with pytest.raises(DatasetError, match=r"p01\.npz: not a file of streams; fetch it anew"):
         stream_names(tmp_path)
+
+
+@pytest.mark.parametrize("at", [0.2, 0.5, 0.8])
+def test_a_damaged_stream_is_an_error_that_names_it(tmp_path: Path, at: float) -> None:
+    path = person(tmp_path, [NAME], xyz_mm=np.random.default_rng(0).integers(1, 999, (10, 20, 3)))
+    with np.load(path) as arrays:
+        np.savez_compressed(path, **arrays)
+    content = bytearray(path.read_bytes())
+    middle = int(at * content.index(b".t_us"))
+    content[middle : middle + 20] = bytes(20)
+    path.write_bytes(content)
+    with pytest.raises(DatasetError, match=rf"p01\.npz: {NAME} is not whole there"):
+        read_stream(path, NAME, "kinect0")
 
 
 @pytest.mark.parametrize("name", ["P3_1_13_p01", "P3_1_0_p01", "wave"])
@@ -120,7 +134,7 @@ def test_a_stream_of_another_form_is_an_error_that_names_it(tmp_path: Path, part
 
 
 def test_a_stream_that_is_not_there_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match="no stream P3_1_2_p01"):
+    with pytest.raises(DatasetError, match="P3_1_2_p01 is not whole there"):
         read_stream(person(tmp_path, [NAME]), "P3_1_2_p01", "kinect0")
 
 
