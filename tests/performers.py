@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from actum.messages import Segment, Skeleton
 from actum.som import Schedule
 from people import FRAME_NS, STANDING, skeleton
-from som_classifier.presets import MapPlan, Others, PaperPreset, PyramidPreset
+from som_classifier.presets import MapPlan, Others, PaperPreset, Prior, PyramidPreset
 
 FRAMES = 20
 PAUSE_FRAMES = 5
@@ -23,10 +23,13 @@ TINY = PyramidPreset(
     turns_deg=(-15.0, 15.0),
     leans_deg=(-10.0, 10.0),
     others=Others(1, build_sd=0.1, tempo=1.0),
-    others_of_one=Others(2, build_sd=0.1, tempo=0.5),
+    others_of_few=Others(2, build_sd=0.1, tempo=0.5),
+    few_people=1,
     stages=((0.3, 0.5), (0.7,), (1.0,)),
     shrinkage=0.15,
     held_out_share=0.5,
+    fewest_scores=200,
+    least_share=0.55,
     concepts=(8, 8),
     concept_epochs=6,
     concept_radius=(3.0, 0.8),
@@ -34,6 +37,7 @@ TINY = PyramidPreset(
     beta=0.05,
     epochs=5,
     known_share=0.95,
+    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.25, newcomer_log_error=1.7),
 )
 
 FALLING = Schedule(alpha=(0.5, 0.05), radius=(5.0, 0.6))

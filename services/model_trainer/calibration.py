@@ -1,4 +1,4 @@
-"""What turns cosines into probabilities, fitted on answers for people who were left out of training."""
+"""What turns cosines into probabilities: as sure on average as held-out answers are right."""
 
 from typing import Any
 
@@ -8,37 +8,30 @@ from numpy.typing import NDArray
 Floats = NDArray[Any]
 
 SMALLEST_GAIN, LARGEST_GAIN = 0.5, 200.0
-_STEPS = 60
-_GOLDEN = (np.sqrt(5.0) - 1) / 2
+_STEPS = 40
 
 
-def fitted_gain(cosines: Floats, targets: NDArray[np.intp]) -> float:
-    """Return the gain for which softmax(gain × cosines) explains the targets best (temperature scaling).
+def matched_gain(cosines: Floats, accuracy: float) -> float:
+    """Return the gain at which the largest share of softmax(gain × cosines) is the accuracy on average.
 
-    Minimises the mean negative log-likelihood, which is convex in the gain, by golden-section search on its logarithm.
+    That average grows with the gain, so halving the interval of its logarithm finds it; where no gain within the
+    bounds does, the nearer bound.
 
     Args:
         cosines: (n, actions).
-        targets: (n,), which action was done.
+        accuracy: within [0, 1].
     """
     low, high = np.log(SMALLEST_GAIN), np.log(LARGEST_GAIN)
     for _ in range(_STEPS):
-        left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
-        if surprise(cosines, targets, np.exp(left)) < surprise(cosines, targets, np.exp(right)):
-            high = right
+        middle = (low + high) / 2
+        if confidences(cosines, float(np.exp(middle))).mean() < accuracy:
+            low = middle
         else:
-            low = left
+            high = middle
     return float(np.exp((low + high) / 2))
 
 
-def surprise(cosines: Floats, targets: NDArray[np.intp], gain: float) -> float:
-    """Return the mean negative log-likelihood of the targets under softmax(gain × cosines).
-
-    As after Platt (1999) a target counts as certain only to (n + 1) / (n + 2), the rest being spread over all actions:
-    that all n answers were right does not make the next one sure.
-    """
-    logits = gain * (cosines - cosines.max(axis=1, keepdims=True))
-    done = np.take_along_axis(logits, targets[:, None], axis=1)[:, 0]
-    doubt = 1 / (len(targets) + 2)
-    expected = (1 - doubt) * done + doubt * logits.mean(axis=1)
-    return float((np.log(np.exp(logits).sum(axis=1)) - expected).mean())
+def confidences(cosines: Floats, gain: float) -> Floats:
+    """Return the largest share of softmax(gain × cosines) of each row (n, actions), shape (n,)."""
+    shares: Floats = 1 / np.exp(gain * (cosines - cosines.max(axis=1, keepdims=True))).sum(axis=1)
+    return shares

@@ -63,7 +63,7 @@ def discriminant_axes(vectors: NDArray[np.float32], wanted: Doubles, folds: Indi
     """Fit scores x · axes + offsets to what is wanted, minimising squared error + penalty × ‖axes‖².
 
     The penalty is `shrinkage` times the mean squared length of the centred vectors. Solved in the span of the
-    vectors, whose inner products are all that is needed, for all folds.
+    vectors, whose inner products are all that is needed, once for all folds.
 
     Args:
         vectors: (n, inputs).
@@ -75,24 +75,27 @@ def discriminant_axes(vectors: NDArray[np.float32], wanted: Doubles, folds: Indi
     centred = vectors - mean
     products = (centred @ centred.T).astype(np.float64)
     penalty = shrinkage * max(float(np.trace(products)) / len(products), SMALLEST_LENGTH2)
-    solved, level = _solved(products, wanted, np.arange(len(wanted)), penalty)
+    inverse = np.linalg.inv(products + penalty * np.eye(len(products)))
+    level: Doubles = wanted.mean(axis=0)
+    solved = inverse @ (wanted - level)
     axes = centred.T @ solved.astype(np.float32)
     own = products @ solved + level
     held_out = own.copy()
     for fold in np.unique(folds):
         inside = np.flatnonzero(folds != fold)
-        learned = wanted[inside].any(axis=0)
-        outside = np.flatnonzero((folds == fold) & wanted[:, learned].any(axis=1))
-        if len(outside):
-            partial, partial_level = _solved(products, wanted, inside, penalty)
-            held_out[outside] = products[np.ix_(outside, inside)] @ partial + partial_level
+        outside = np.flatnonzero(folds == fold)
+        known = wanted[np.ix_(outside, np.flatnonzero(wanted[inside].any(axis=0)))].any(axis=1)
+        if known.any():
+            held_out[outside[known]] = _held_out(inverse, wanted, inside, outside)[known]
     return Axes(axes, (level - mean @ axes).astype(np.float32), own, held_out)
 
 
-def _solved(products: Doubles, wanted: Doubles, rows: Indices, penalty: float) -> tuple[Doubles, Doubles]:
-    """Solve (K + penalty) a = wanted − level for some rows; return a (rows, actions) and the level (actions,)."""
-    level: Doubles = wanted[rows].mean(axis=0)
-    system = products[np.ix_(rows, rows)]
-    system[np.diag_indices_from(system)] += penalty
-    weights = np.asarray(np.linalg.solve(system, wanted[rows] - level), dtype=np.float64)
-    return weights, level
+def _held_out(inverse: Doubles, wanted: Doubles, inside: Indices, outside: Indices) -> Doubles:
+    """Return the scores of the rows outside on axes fitted to those inside, from the inverse B for all rows.
+
+    By the inverse of a matrix in blocks, K_oi (K_ii + penalty)⁻¹ = −B_oo⁻¹ B_oi: nothing is fitted anew.
+    """
+    level: Doubles = wanted[inside].mean(axis=0)
+    towards = inverse[np.ix_(outside, inside)] @ (wanted[inside] - level)
+    scores: Doubles = level - np.linalg.solve(inverse[np.ix_(outside, outside)], towards)
+    return scores

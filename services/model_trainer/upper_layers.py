@@ -1,6 +1,5 @@
 """The map of actions and the neurons on it, trained on scores; and how sure their answers may be."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -9,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.som import Som
-from model_trainer.calibration import fitted_gain
 from model_trainer.description import TrainingError
 from model_trainer.discriminants import Axes
-from model_trainer.progress import Progress, silent
+from model_trainer.progress import Progress
 from som_classifier.layers import Concepts
 from som_classifier.presets import PyramidPreset
 from som_classifier.supervised import SupervisedLayer, activity
@@ -46,8 +44,11 @@ class UpperLayers:
 
     def cosines(self, scores: Floats) -> Floats:
         """Return each neuron's cosine for each row of scores (n, actions)."""
-        heard = [self.concepts.activity(row) for row in scores.astype(np.float32)]
-        return np.stack([self.layer3.cosines(activities) for activities in heard])
+        heard = self.concepts.centred(
+            activity(self.concepts.layout.excess2s(scores.astype(np.float32)), self.concepts.contrast)
+        )
+        cosines: Floats = heard @ self.layer3.weights.T / np.sqrt(np.square(heard).sum(axis=1, keepdims=True))
+        return cosines
 
 
 def train_upper(
@@ -55,42 +56,30 @@ def train_upper(
 ) -> UpperLayers:
     """Train both on the complete actions, on scores partly of the final axes, partly of axes without the person.
 
-    The first alone are too clean, the second too poor: the final axes know more people than any of theirs.
+    The first alone are too clean, the second too poor: the final axes know more people than any of theirs. Few scores
+    are filled up with mixtures, so that both layers also know what lies between the actions, where other people's are.
 
     Raises:
         TrainingError: the scores of all samples are the same.
     """
     share = preset.held_out_share
-    scores = (share * stage.axes.held_out + (1 - share) * stage.axes.own).astype(np.float32)
-    return _trained(scores, stage.targets, actions, preset, rng, progress)
+    scores = share * stage.axes.held_out + (1 - share) * stage.axes.own
+    scores, targets = mixed(scores, stage.targets, preset.fewest_scores, preset.least_share, rng)
+    return _trained(scores.astype(np.float32), targets, actions, preset, rng, progress)
 
 
-def held_out_gains(
-    stages: Sequence[Scored], actions: int, preset: PyramidPreset, rng: np.random.Generator, progress: Progress
-) -> list[float]:
-    """Return what makes cosines logits at each stage, fitted on people whom neither axes nor upper layers have seen."""
-    cosines: list[list[Floats]] = [[] for _ in stages]
-    targets: list[list[Indices]] = [[] for _ in stages]
-    folds = np.unique(stages[-1].folds)
-    for done, fold in enumerate(folds):
-        progress("calibration", done, len(folds))
-        upper = train_upper(_without(stages[-1], fold), actions, preset, rng, silent)
-        for index, stage in enumerate(stages):
-            outside = stage.folds == fold
-            cosines[index].append(upper.cosines(stage.axes.held_out[outside]))
-            targets[index].append(stage.targets[outside])
-    progress("calibration", len(folds), len(folds))
-    return [fitted_gain(np.concatenate(c), np.concatenate(t)) for c, t in zip(cosines, targets, strict=True)]
+def mixed(
+    scores: Floats, targets: Indices, fewest: int, least_share: float, rng: np.random.Generator
+) -> tuple[Floats, Indices]:
+    """Return the scores (n, actions) and mixtures of two of them, filled up to `fewest` rows, and the targets of all.
 
-
-def _without(stage: Scored, fold: int) -> Scored:
-    """Return the first view of each sample outside a fold, of all samples where those are of one action at most."""
-    first = np.zeros(len(stage.owners), dtype=bool)
-    first[np.unique(stage.owners, return_index=True)[1]] = True
-    others = first & (stage.folds != fold)
-    rows = others if len(np.unique(stage.targets[others])) > 1 else first
-    axes = Axes(stage.axes.axes, stage.axes.offsets, stage.axes.own[rows], stage.axes.held_out[rows])
-    return Scored(axes, stage.owners[rows], stage.targets[rows], stage.folds[rows])
+    A mixture is m × one + (1 − m) × another, m drawn evenly from `least_share` to 1, and has the target of the one.
+    """
+    missing = max(fewest - len(scores), 0)
+    one, other = rng.integers(len(scores), size=(2, missing))
+    shares = rng.uniform(least_share, 1.0, (missing, 1))
+    mixtures = shares * scores[one] + (1 - shares) * scores[other]
+    return np.concatenate([scores, mixtures]), np.concatenate([targets, targets[one]])
 
 
 def _trained(

@@ -8,18 +8,21 @@ from numpy.typing import NDArray
 
 from actum.skeletons import JOINTS
 from som_classifier.attention import PART_NAMES
-from som_classifier.handedness import LIMBS, MOMENTS, Spreads, moments
+from som_classifier.handedness import LIMBS, MOMENTS, Spreads, mirrored, moments
 from som_classifier.layers import FirstMaps
 from som_classifier.pyramid import Instant, Sums, Trail, quantised
 from som_classifier.streams import Frame
 
 Totals = NDArray[np.int64]
-"""Whole numbers: how far each part has moved (5; micrometres), the moments of the limbs (4 * 8), missing joints."""
+"""Whole numbers: how far each part has moved (5; micrometres), the moments of the limbs (4 * 8), missing joints, and
+the logarithm of the posture map's quantization error as seen and in a mirror (2; millionths)."""
 
 _PARTS = slice(0, len(PART_NAMES))
 _LIMBS = slice(_PARTS.stop, _PARTS.stop + LIMBS * MOMENTS)
 _MISSING = _LIMBS.stop
+_LOG_ERRORS = slice(_MISSING + 1, _MISSING + 3)
 _UM_PER_M = 1e6
+_MILLIONTHS = 1e6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,7 +46,7 @@ class FrameEncoder:
         self._first = first
         self._sums: Sums = np.zeros((2, first.units), np.uint32)
         self._instant = Instant(tuple(self._sums), 0)
-        self._totals: Totals = np.zeros(_MISSING + 1, np.int64)
+        self._totals: Totals = np.zeros(_LOG_ERRORS.stop, np.int64)
 
     def encode(self, frame: Frame) -> Code:
         """Add a valid frame."""
@@ -57,8 +60,13 @@ class FrameEncoder:
         self._totals[_PARTS] += moved_um
         self._totals[_LIMBS] += moments(frame.movement.posture).ravel()
         self._totals[_MISSING] += len(frame.missing)
+        self._totals[_LOG_ERRORS] += self._log_errors(frame.movement.posture)
         seen, mirrored = sides[:, : len(self._first.postures.weights)].argmax(axis=1).tolist()
         return Code(before, self._instant, totals_before, self._totals, (seen, mirrored))
+
+    def _log_errors(self, posture: NDArray[np.float64]) -> NDArray[np.int64]:
+        both = np.stack([posture, mirrored(posture)])
+        return np.rint(self._first.log_errors(both) * _MILLIONTHS).astype(np.int64)
 
 
 def trail_of(codes: Sequence[Code], in_mirror: bool) -> Trail:
@@ -81,3 +89,9 @@ def seen_share(codes: Sequence[Code]) -> float:
     """Return which share of the joints was there over all frames."""
     missing = codes[-1].totals[_MISSING] - codes[0].totals_before[_MISSING]
     return 1.0 - int(missing) / (len(JOINTS) * len(codes))
+
+
+def mean_log_error(codes: Sequence[Code], in_mirror: bool) -> float:
+    """Return the mean logarithm of the posture map's squared quantization error over all frames."""
+    summed = (codes[-1].totals - codes[0].totals_before)[_LOG_ERRORS]
+    return int(summed[int(in_mirror)]) / (_MILLIONTHS * len(codes))

@@ -18,6 +18,8 @@ Floats = NDArray[Any]
 ARM_SPEED = 3.0
 """What a joint's velocity counts beside its position in the map of arms: both then spread about alike."""
 ARM_INPUTS = 12
+SMALLEST_ERROR2 = 1e-3
+"""Squared quantization errors below this, in units of the contrast, count as this: a logarithm knows no bottom."""
 
 _SIZE = 3 * len(JOINTS)
 _ARM = np.arange(3 * INDEX["right_elbow"], 3 * INDEX["right_hand"] + 3)
@@ -72,6 +74,20 @@ class FirstMaps:
         rows = frame_inputs(postures, velocities)
         excess2s = [_excess2s(som, inputs) for som, inputs in zip(self.maps, _of_maps(rows), strict=True)]
         return self._shared(np.concatenate(excess2s, axis=1))
+
+    def log_errors(self, postures: Floats) -> Floats:
+        """Return log(d²_min / contrast) of the map of postures for (n, 15, 3), its quantization error, shape (n,).
+
+        Scaled up for the joints that are missing; 0 where all are.
+        """
+        rows = postures.reshape(-1, _SIZE)
+        known = ~np.isnan(rows)
+        some = known.any(axis=1)
+        errors = np.zeros(len(rows))
+        off = rows[some] - self.postures.weights[self.postures.bmus(rows[some])]
+        mean2 = np.square(np.where(known[some], off, 0.0)).sum(axis=1) / known[some].sum(axis=1)
+        errors[some] = np.log(np.maximum(mean2 * _SIZE / self.contrasts[0], SMALLEST_ERROR2))
+        return errors
 
     def sides(self, posture: Floats, velocity: Floats) -> Floats:
         """Return the same for one frame (15, 3) as seen and in a mirror, shape (2, units).

@@ -33,6 +33,26 @@ class Others:
 
 
 @dataclass(frozen=True)
+class Prior:
+    """What is usual for models of other people's actions; it counts the more the fewer people are learnt from.
+
+    Attributes:
+        people: as though it had been seen in so many people beyond the first.
+        gain: what makes cosines logits.
+        gain_where_inferred: the same where distances follow from a picture and a body's usual size.
+        familiar: the familiarity that most segments of known actions exceed.
+        newcomer_log_error: how much larger the logarithm of the posture map's squared quantization error is for other
+            people than for those learnt from, where that is one; divided by the square root of their number where more.
+    """
+
+    people: float
+    gain: float
+    gain_where_inferred: float
+    familiar: float
+    newcomer_log_error: float
+
+
+@dataclass(frozen=True)
 class PaperPreset:
     """Everything that a training of the paper's recogniser depends on beside its samples and its seed.
 
@@ -67,16 +87,20 @@ class PyramidPreset:
         leans_deg: by how much it is also tilted back with each, where depth was inferred from a picture: there how far
             a body leans is guesswork.
         others: the other people as whom each sample is also shown.
-        others_of_one: those where all samples are one person's, from whom it cannot be learnt how people differ.
+        others_of_few: those where samples are of `few_people` at most, from whom it can hardly be learnt how people
+            differ.
         stages: the shares of an action that each set of discriminant axes is trained on; the last is the whole.
         shrinkage: of the discriminant axes, in units of the mean squared length of the pooled vectors.
         held_out_share: of the scores that the map of actions learns, how much comes from axes that were trained
             without the person scored; the rest comes from the final axes.
+        fewest_scores: how many rows of scores the upper layers learn at least, fewer being filled up with mixtures.
+        least_share: what the one whose action it is has in a mixture at least.
         concepts: rows and columns of the map of actions, trained for `concept_epochs` over `concept_radius`.
         relative_concept_contrast: of its activity, in units of the scores' mean variance within an action.
         beta: adaptation strength of the third layer.
         epochs: how often the third layer is shown every training vector.
         known_share: the share of held-out samples that are to count as known actions.
+        prior: what is usual for other models.
     """
 
     name: str
@@ -90,10 +114,13 @@ class PyramidPreset:
     turns_deg: tuple[float, ...]
     leans_deg: tuple[float, ...]
     others: Others
-    others_of_one: Others
+    others_of_few: Others
+    few_people: int
     stages: tuple[tuple[float, ...], ...]
     shrinkage: float
     held_out_share: float
+    fewest_scores: int
+    least_share: float
     concepts: tuple[int, int]
     concept_epochs: int
     concept_radius: tuple[float, float]
@@ -101,6 +128,7 @@ class PyramidPreset:
     beta: float
     epochs: int
     known_share: float
+    prior: Prior
 
 
 Preset = PaperPreset | PyramidPreset
@@ -132,10 +160,13 @@ PYRAMID = PyramidPreset(
     turns_deg=(-15.0, 15.0),
     leans_deg=(-10.0, 10.0),
     others=Others(2, build_sd=0.1, tempo=1.0),
-    others_of_one=Others(8, build_sd=0.2, tempo=0.5),
+    others_of_few=Others(8, build_sd=0.2, tempo=0.5),
+    few_people=2,
     stages=((0.1, 0.2, 0.3, 0.4, 0.5), (0.3, 0.4, 0.5, 0.6, 0.7, 0.8), (1.0,)),
     shrinkage=0.15,
     held_out_share=0.5,
+    fewest_scores=2_000,
+    least_share=0.55,
     concepts=(25, 25),
     concept_epochs=20,
     concept_radius=(9.0, 0.8),
@@ -143,6 +174,7 @@ PYRAMID = PyramidPreset(
     beta=0.05,
     epochs=10,
     known_share=0.95,
+    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.25, newcomer_log_error=1.7),
 )
 """The default. How it was chosen, and on whom, is said in benchmarks/recognition."""
 

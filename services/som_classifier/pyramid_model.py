@@ -12,7 +12,7 @@ from pydantic import Field
 from actum.node import SECOND_NS
 from actum.skeletons import JOINTS
 from actum.som import Som
-from som_classifier.codes import Code, FrameEncoder, left_handed, most_moved_part, seen_share, trail_of
+from som_classifier.codes import Code, FrameEncoder, left_handed, mean_log_error, most_moved_part, seen_share, trail_of
 from som_classifier.layers import ARM_INPUTS, Concepts, FirstMaps
 from som_classifier.model import Arrays, Description, Model
 from som_classifier.pyramid import Pyramid, Trail
@@ -42,7 +42,8 @@ class PyramidDescription(Description):
         log_duration_sd: their standard deviation.
         concept_contrast: of the second map's activity, in squared scores.
         gains: what makes cosines logits, by stage.
-        familiar: the familiarity below which an action may be none of those trained; None where that cannot be told.
+        familiar: the familiarity below which an action may be none of those trained.
+        usual_log_error: the mean logarithm of the posture map's quantization error to be expected of other people.
     """
 
     kind: Literal["pyramid"] = "pyramid"
@@ -58,7 +59,8 @@ class PyramidDescription(Description):
     log_duration_sd: Positive
     concept_contrast: Positive
     gains: list[Positive]
-    familiar: Annotated[float, Field(allow_inf_nan=False)] | None
+    familiar: Annotated[float, Field(allow_inf_nan=False)]
+    usual_log_error: Annotated[float, Field(allow_inf_nan=False)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,14 +146,14 @@ class PyramidModel(Model):
         cosines = self.layer3.cosines(self.concepts.activity(scores))
         winner = int(cosines.argmax())
         gain = sum(weight * gain for weight, gain in zip(weights, self.description.gains, strict=True))
-        familiarity = familiarity_of(scores)
+        familiarity = self.familiarity(codes, scores)
         return Recognition(
             label=self.labels[winner],
             confidence=_probability(cosines, winner, gain * seen_share(codes)),
             activations=dict(zip(self.labels, cosines.tolist(), strict=True)),
             part=most_moved_part(codes),
             familiarity=familiarity,
-            unknown=complete and self._is_strange(familiarity),
+            unknown=complete and familiarity < self.description.familiar,
         )
 
     def trail(self, codes: Sequence[Code]) -> Trail:
@@ -186,8 +188,10 @@ class PyramidModel(Model):
         first = {name: own.reshape(som.rows, som.cols) for name, som, own in layers}
         return first | {"actions": heard.reshape(self.concepts.layout.rows, self.concepts.layout.cols)}
 
-    def _is_strange(self, familiarity: float) -> bool:
-        return self.description.familiar is not None and familiarity < self.description.familiar
+    def familiarity(self, codes: Sequence[Code], scores: NDArray[np.float32]) -> float:
+        """Return how much a segment with these scores is like an action that was trained."""
+        log_error = mean_log_error(codes, self.reads_in_mirror(codes))
+        return familiarity_of(scores, log_error - self.description.usual_log_error)
 
     def scores(self, codes: Sequence[Code], weights: Sequence[float]) -> NDArray[np.float32]:
         """Return the actions' scores on the discriminant axes of the stages that the weights name."""

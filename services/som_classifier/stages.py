@@ -14,6 +14,8 @@ Floats = NDArray[Any]
 
 NEGLIGIBLE = 0.02
 SHORTEST_S = 1e-3
+LOG_ERROR_COST = 0.1
+"""What postures e times as far from the map as usual (squared) take off the familiarity."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,11 +58,11 @@ class Stages:
         return total
 
 
-def familiarity_of(scores: Floats) -> float:
-    """Return how much scores (actions,) are like those of an action that was trained.
+def familiarity_of(scores: Floats, log_error: float) -> float:
+    """Return how much a segment is like a trained action: its largest score, less how strange its postures are.
 
-    1 − ‖s − e‖, with e the scores that the likeliest action should have, 1 for itself and 0 for the others: 1 at best.
+    Args:
+        scores: (actions,).
+        log_error: the mean logarithm of the posture map's squared quantization error, less the usual one.
     """
-    off = scores.copy()
-    off[off.argmax()] -= 1
-    return 1 - math.sqrt(off @ off)
+    return float(scores.max()) - LOG_ERROR_COST * log_error

@@ -9,6 +9,7 @@ from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from actum.som import Som
 from model_trainer.answering import answer, encoded
+from model_trainer.confidence import familiar
 from model_trainer.description import TrainingError
 from model_trainer.discriminants import discriminant_axes, folds_of
 from model_trainer.hands import keep_to_one_hand
@@ -20,7 +21,6 @@ from recognisers import in_a_mirror
 from som_classifier.layers import arm_inputs, frame_inputs
 from som_classifier.presets import Others, PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
-from som_classifier.stages import familiarity_of
 
 NOBODY = Others(0, build_sd=0.0, tempo=1.0)
 PLAIN = replace(TINY, turns_deg=(), leans_deg=(), others=NOBODY, stages=((1.0,),))
@@ -55,28 +55,38 @@ def test_axes_are_fitted_to_what_the_recogniser_pools(samples: list[SegmentSampl
     vectors = np.stack([pooled(model, sample) for sample in samples])
     axes = discriminant_axes(vectors, wanted(model, samples), folds_of(samples), PLAIN.shrinkage)
     np.testing.assert_allclose(vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.own, atol=0.02)
-    familiar = np.quantile([familiarity_of(row) for row in axes.held_out], 1 - PLAIN.known_share)
-    assert model.description.familiar == pytest.approx(familiar, abs=0.02)
+    usual = familiar(axes.held_out, PLAIN.prior, len({sample.person for sample in samples}), PLAIN.known_share)
+    assert model.description.familiar == pytest.approx(usual, abs=0.02)
 
 
-def test_a_model_of_one_person_takes_nobody_for_unknown(samples: list[SegmentSample]) -> None:
+def test_a_model_of_one_person_knows_what_is_none_of_its_actions(samples: list[SegmentSample]) -> None:
     one = [replace(sample, person="1") for sample in samples]
-    model = trained(one, PLAIN)
-    still = replace(one[0], postures=one[0].postures * 3.0, velocities=one[0].velocities * -5.0)
-    assert model.description.familiar is None
-    assert not any(answer(model, encoded(model, sample)).unknown for sample in [*one, still])
+    model = trained(one)
+    assert not any(answer(model, encoded(model, sample)).unknown for sample in one)
+    lying = [replace(s, postures=s.postures[:, :, [1, 0, 2]], velocities=s.velocities[:, :, [1, 0, 2]]) for s in one]
+    assert all(answer(model, encoded(model, sample)).unknown for sample in lying)
 
 
-def test_one_persons_samples_are_shown_as_more_other_people(samples: list[SegmentSample]) -> None:
+def test_the_usual_error_is_that_of_the_samples_and_what_others_add(samples: list[SegmentSample]) -> None:
+    few = [replace(sample, person=str(k % 4)) for k, sample in enumerate(samples)]
+    for people, own in ((1, [replace(s, person="1") for s in few]), (4, few)):
+        model = trained(own, PLAIN)
+        errors = np.concatenate([model.first.log_errors(sample.postures) for sample in own])
+        added = PLAIN.prior.newcomer_log_error / np.sqrt(people)
+        assert model.description.usual_log_error == pytest.approx(errors.mean() + added, abs=1e-6)
+
+
+def test_few_peoples_samples_are_shown_as_more_other_people(samples: list[SegmentSample]) -> None:
     several = Others(3, build_sd=0.2, tempo=0.5)
-    of_one = replace(PLAIN, others_of_one=several)
-    one = [replace(sample, person="1") for sample in samples]
-    told = trained(one, of_one), trained(one, replace(PLAIN, others=several, others_of_one=several))
-    for name, array in told[0].arrays.items():
-        np.testing.assert_array_equal(array, told[1].arrays[name])
-    usual = trained(samples, of_one), trained(samples, PLAIN)
+    of_few = replace(PLAIN, others_of_few=several, few_people=2)
+    for names in ("11", "12"):
+        few = [replace(sample, person=names[k % 2]) for k, sample in enumerate(samples)]
+        told = trained(few, of_few), trained(few, replace(PLAIN, others=several, few_people=0))
+        np.testing.assert_array_equal(told[0].stages.axes, told[1].stages.axes)
+        assert not np.array_equal(told[0].stages.axes, trained(few, replace(PLAIN, few_people=0)).stages.axes)
+    usual = trained(samples, of_few), trained(samples, PLAIN)
+    assert len({sample.person for sample in samples}) > 2
     np.testing.assert_array_equal(usual[0].stages.axes, usual[1].stages.axes)
-    assert not np.array_equal(told[0].stages.axes, usual[0].stages.axes)
 
 
 def test_each_stage_is_fitted_to_that_share_of_the_action(samples: list[SegmentSample]) -> None:
@@ -249,11 +259,10 @@ def test_an_action_that_one_person_alone_did_is_judged_by_samples_left_out(
     mine = [replace(sample, person="me") for sample in samples if sample.person != "3"]
     lifts = [replace(sample, person="friend") for sample in samples if sample.person == "3" and sample.label == "lift"]
     model = trained(mine + lifts[:friends])
-    assert model.description.familiar is not None
     assert model.description.familiar < 0.7
     answers = [answer(model, encoded(model, sample)) for sample in samples]
     assert [found.label for found in answers] == [sample.label for sample in samples]
-    assert np.mean([found.confidence for found in answers]) > 0.9
+    assert np.mean([found.confidence for found in answers]) > 0.85
 
 
 @pytest.mark.parametrize("counts", [(1, 2), (2, 1), (1, 1)])

@@ -85,7 +85,6 @@ STAGES_OF_TRAINING = [
             ("discriminant axes", len(TINY.stages)),
             ("map of actions", TINY.concept_epochs),
             ("neurons", TINY.epochs),
-            ("calibration", 3),
         ],
     ),
     (

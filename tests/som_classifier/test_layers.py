@@ -11,7 +11,7 @@ from actum.skeletons import INDEX
 from actum.som import Som
 from people import STANDING
 from som_classifier.handedness import mirrored
-from som_classifier.layers import ARM_SPEED, Concepts, FirstMaps, arm_inputs, frame_inputs
+from som_classifier.layers import ARM_SPEED, SMALLEST_ERROR2, Concepts, FirstMaps, arm_inputs, frame_inputs
 
 SHARE = 0.4
 POSTURE = STANDING - STANDING[2]
@@ -48,6 +48,21 @@ def test_each_maps_activity_adds_up_to_its_share(missing: float) -> None:
     assert activities.shape == (30, maps.units) == (30, 60)
     assert activities.min() >= 0
     np.testing.assert_allclose(activities.reshape(30, 3, 20).sum(axis=2), [[1.0, 1.0, SHARE]] * 30, atol=1e-6)
+
+
+def test_the_log_error_by_hand() -> None:
+    """Of the winner's squared distance in units of the contrast, scaled up for what is missing."""
+    maps, (postures, _) = first_maps(posture_contrast=3.0), inputs(missing=0.3)
+    for posture, error in zip(postures, maps.log_errors(postures), strict=True):
+        off = posture.ravel() - maps.postures.weights
+        mean2 = np.nanmean(np.square(off), axis=1).min()
+        assert error == pytest.approx(np.log(45 * mean2 / 3.0), rel=1e-5)
+
+
+def test_a_log_error_has_a_bottom_and_is_none_of_nothing() -> None:
+    maps = first_maps()
+    postures = np.stack([maps.postures.weights[3].reshape(15, 3), np.full((15, 3), np.nan)])
+    np.testing.assert_allclose(maps.log_errors(postures), [np.log(SMALLEST_ERROR2), 0.0])
 
 
 def test_activity_by_hand() -> None:

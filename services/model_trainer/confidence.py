@@ -1,0 +1,60 @@
+"""How sure a new model's answers may be, and from when on an action counts as unknown.
+
+Both follow from people held out of training. Of few people that says little, of one alone nothing, so what was usual
+for models of other people's actions counts as well, as though it had been seen in `Prior.people` more people.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model_trainer.calibration import matched_gain
+from model_trainer.upper_layers import Scored, UpperLayers
+from som_classifier.presets import Prior
+
+Floats = NDArray[Any]
+
+
+def calibrated_gains(
+    stages: Sequence[Scored], upper: UpperLayers, prior: Prior, people: int, depth_inferred: bool
+) -> list[float]:
+    """Return what makes cosines logits at each stage: between the usual gain and the matched one, at most that.
+
+    People held out of training differ less from the others than strangers do, so the matched gain is rather too large.
+
+    Args:
+        people: how many were learnt from; the first of them says nothing of how people differ.
+        depth_inferred: whether some distances follow from a picture and a body's usual size, which are less exact.
+    """
+    usual = prior.gain_where_inferred if depth_inferred else prior.gain
+    matched = np.array([held_out_gain(stage, upper) for stage in stages])
+    drawn = np.exp(_drawn(np.log(usual), np.log(matched), prior, people))
+    return [float(gain) for gain in np.minimum(matched, drawn)]
+
+
+def held_out_gain(stage: Scored, upper: UpperLayers) -> float:
+    """Return the gain that makes the answers to held-out scores as sure as the largest of these scores is right.
+
+    Whether the cosines are right would say less: the upper layers have learnt these very scores. That all n are right
+    does not make the next one sure: as after Laplace, one right and one wrong answer are added.
+    """
+    right = int((stage.axes.held_out.argmax(axis=1) == stage.targets).sum())
+    return matched_gain(upper.cosines(stage.axes.held_out), (right + 1) / (len(stage.targets) + 2))
+
+
+def familiar(held_out: Floats, prior: Prior, people: int, known_share: float) -> float:
+    """Return the familiarity that most segments of known actions exceed.
+
+    Args:
+        held_out: (n, actions), scores on axes that were trained without the person.
+        people: how many were learnt from.
+        known_share: the share of segments that are to count as known.
+    """
+    exceeded = np.quantile(held_out.max(axis=1), 1 - known_share)
+    return float(_drawn(prior.familiar, exceeded, prior, people))
+
+
+def _drawn(usual: Any, seen: Any, prior: Prior, people: int) -> Any:
+    return (prior.people * usual + (people - 1) * seen) / (prior.people + people - 1)
