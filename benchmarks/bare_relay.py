@@ -10,8 +10,8 @@ import threading
 
 import zenoh
 
-from actum.runtime.serving import stop_on_signals, wait_for
 from actum.runtime.session import open_session
+from actum.runtime.waiting import stop_on_signals, wait_for
 from actum.settings import ServiceSettings
 
 

@@ -29,6 +29,7 @@ class Settings(ServiceSettings):
     path: Path | None = Field(
         None, description="the recording or data set: a file, or a folder played in order; a depth camera's recording"
     )
+    loop: bool = Field(False, description="files: play them again and again, a second between two rounds")
     actor: int = Field(0, ge=0, description="simulator: who acts")
     seed: int = Field(1, ge=0, description="simulator: which repetitions")
     repetitions: int = Field(0, ge=0, description="simulator: how often each action is done; 0 goes on for ever")

@@ -11,10 +11,12 @@ from sensor_gateway.calibrated import CalibratedSource
 from sensor_gateway.camera.beside import markers_camera_of
 from sensor_gateway.camera.source import CameraSource, camera_of
 from sensor_gateway.depth.source import openni2_of, realsense_of
+from sensor_gateway.described import description
 from sensor_gateway.msr_action3d import MsrAction3dSource
 from sensor_gateway.recording_source import RecordingSource
 from sensor_gateway.settings import Settings
 from sensor_gateway.simulator import Simulator, balanced_programme
+from sensor_gateway.takes import LoopedSource
 from sensor_gateway.utkinect import UtKinectSource
 
 ROUND = 4
@@ -48,6 +50,7 @@ def source_of(settings: Settings, start_ns: int) -> Source:
         DepthSourceError, RealSenseError, OpenNiError: a depth camera's library or recording is missing.
     """
     source = _calibrated(_named(settings, start_ns), settings.calibration)
+    source.tally.details["source"] = description(settings)
     if not settings.images:
         source = AmendedSource(source, without_image)
     return source if settings.up_in_camera is None else AmendedSource(source, tilted(settings.up_in_camera))
@@ -66,7 +69,8 @@ def _named(settings: Settings, start_ns: int) -> Source:
         return CAMERAS[settings.source](settings, start_ns)
     if settings.path is None:
         raise SourceError(f"source {settings.source} needs --path (ACTUM_PATH): the file or folder to play")
-    return AmendedSource(FROM_FILES[settings.source](settings.path, settings.sensor), played_anew(f"{start_ns:x}"))
+    played = AmendedSource(FROM_FILES[settings.source](settings.path, settings.sensor), played_anew(f"{start_ns:x}"))
+    return LoopedSource(played) if settings.loop else played
 
 
 class EndlessSimulator:

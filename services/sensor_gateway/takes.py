@@ -2,9 +2,9 @@
 
 import warnings
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from itertools import groupby
+from itertools import chain, groupby
 from operator import attrgetter
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from actum.joining import joined
 from actum.messages import Message, Segment, Skeleton
-from actum.node import SECOND_NS, Tally
+from actum.node import SECOND_NS, Source, Tally
 
 
 class DatasetError(ValueError):
@@ -58,6 +58,22 @@ class TakesSource:
         for kind, count in take.notes.items():
             self.tally.rejects[kind] += count
         return take.frames
+
+
+class LoopedSource:
+    """Another source from files, played again and again: stamps and numbers go on rising."""
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self.name, self.paced, self.tally = source.name, source.paced, source.tally
+
+    def frames(self) -> Iterator[list[Message]]:
+        """Yield the source's frames for ever; none where it has none."""
+        return instants(joined(self._rounds()))
+
+    def _rounds(self) -> Iterator[Iterable[Message]]:
+        while (first := next(frames := self._source.frames(), None)) is not None:
+            yield chain(first, chain.from_iterable(frames))
 
 
 def instants(messages: Iterator[Message]) -> Iterator[list[Message]]:

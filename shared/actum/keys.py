@@ -112,6 +112,36 @@ def alive(sensor: str, service: str, instance: str) -> str:
     return f"{BASE}/{chunk(sensor)}/alive/{chunk(service)}/{chunk(instance)}"
 
 
+@dataclass(frozen=True)
+class Claim:
+    """Who is a service of a sensor (`alive`), or is to be it: when nobody is, or in the other's place."""
+
+    role: Literal["alive", "candidate", "successor"]
+    instance: str
+    session: str = ""
+
+
+def wish(claim: Claim, sensor: str, service: str) -> str:
+    """Build the key of the token of one that is to be a service."""
+    return f"{BASE}/{chunk(sensor)}/{claim.role}/{chunk(service)}/{chunk(claim.instance)}/{chunk(claim.session)}"
+
+
+def claims(sensor: str, service: str) -> str:
+    """Build the key expression that matches the tokens of all that are a service or are to be."""
+    return f"{BASE}/{chunk(sensor)}/*/{chunk(service)}/**"
+
+
+def claim_of(text: str) -> Claim | None:
+    """Take the key of such a token apart; None where it is none."""
+    match text.split("/"):
+        case [_, _, "alive", _, instance]:
+            return Claim("alive", instance)
+        case [_, _, ("candidate" | "successor") as role, _, instance, session]:
+            return Claim(role, instance, session)
+        case _:
+            return None
+
+
 @lru_cache(CACHED_KEYS)
 def parse(text: str) -> Address:
     """Take a concrete key apart.

@@ -298,7 +298,10 @@ class Status(Message):
 
 
 class Info(Message):
-    """What a service is: answered on its queryable."""
+    """What a service is: answered on its queryable.
+
+    `host` is the machine it runs on. `source` tells what a gateway reads: a simulated scene, a file, a camera.
+    """
 
     SCHEMA = "actum.info"
     service: str
@@ -308,6 +311,8 @@ class Info(Message):
     joint_names: list[str]
     model: str | None = None
     calibration: str | None = None
+    host: str | None = None
+    source: str | None = None
 
 
 class Truth(Message):

@@ -25,7 +25,7 @@ class Tick:
 class Tally:
     """What a node counts: rejects by kind, the newest complaint, its state in one word or two.
 
-    `details` says what is in use (`model`, `calibration`), for `info`.
+    `details` says what is in use (`model`, `calibration`, `source`), for `info`.
     """
 
     rejects: Counter[str] = field(default_factory=Counter)

@@ -79,6 +79,9 @@ class ServiceSettings(BaseSettings):
     instance: str = Field(
         default_factory=default_instance, pattern=f"^{CHUNK.pattern}$", description="this process's name among its like"
     )
+    take_over: bool = Field(
+        False, description="where this service runs for this sensor already, have that one stop and go on in its place"
+    )
     zenoh_config: Path | None = Field(
         None, description="a JSON5 file laid under the session's configuration (TLS, users)"
     )

@@ -42,3 +42,16 @@ def test_a_sensor_outside_the_charset_is_refused(sensor: str) -> None:
 def test_what_is_no_key_of_ours_is_refused(text: str) -> None:
     with pytest.raises(keys.InvalidKeyError):
         keys.parse(text)
+
+
+@pytest.mark.parametrize("role", ["candidate", "successor"])
+def test_who_is_to_be_a_service_is_read_back_from_its_token(role):
+    claim = keys.Claim(role, "host-1", "ab12")
+    assert keys.claim_of(keys.wish(claim, "kinect0", "action_fusion")) == claim
+
+
+def test_who_is_a_service_is_read_back_from_its_token_and_other_tokens_are_none():
+    assert keys.claim_of(keys.alive("kinect0", "action_fusion", "host-1")) == keys.Claim("alive", "host-1")
+    assert keys.claim_of("actum/kinect0/candidate/action_fusion/host-1") is None
+    assert keys.claim_of("actum/kinect0/alive/action_fusion/host-1/more") is None
+    assert keys.claim_of("somebody/else/a/b/c") is None

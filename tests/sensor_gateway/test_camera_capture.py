@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
+from actum.joining import PAUSE_NS
 from actum.node import SECOND_NS
 from camera_videos import write_video
 from live import wait_until
@@ -90,6 +91,17 @@ def test_a_file_is_played_at_its_own_pace_and_each_picture_is_given_when_it_is_d
     assert [stamp_ns for _, stamp_ns in given] == [SECOND_NS + i * TENTH_NS for i in range(6)]
     assert all(0 <= at_ns - stamp_ns < 1000 for at_ns, stamp_ns in given)
     assert looks == 1 + 5 * 4 + 1
+
+
+def test_a_file_can_be_played_again_and_again_with_a_pause_between(tmp_path: Path) -> None:
+    clock = Clock()
+    path = write_video(tmp_path / "a.avi")
+    capture = FileCapture(path, now_ns=lambda: clock.now_ns, pause=clock.pause, loop=True)
+    given = [picture for _ in range(300) if (picture := capture.next(patience_s=0.03)) is not None]
+    stamps_ns = [picture.stamp_ns for picture in given]
+    assert stamps_ns[:6] == [SECOND_NS + i * TENTH_NS for i in range(6)]
+    assert stamps_ns[6:12] == [stamps_ns[5] + PAUSE_NS + i * TENTH_NS for i in range(6)]
+    assert all((one.image_bgr == other.image_bgr).all() for one, other in zip(given, given[6:], strict=False))
 
 
 def test_a_slow_reader_of_a_file_misses_nothing_and_catches_up(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """A recording played as a sensor is what the sensor put, under the configured name."""
 
+from itertools import islice
 from pathlib import Path
 
 import msgpack
@@ -11,7 +12,7 @@ from actum.messages import Message, Objects, Segment
 from actum.recording import Recorder, RecordingError
 from empty_messages import image, skeleton
 from sensor_gateway.recording_source import RecordingSource
-from sensor_gateway.takes import DatasetError
+from sensor_gateway.takes import DatasetError, LoopedSource
 
 
 def record(path: Path, *messages: Message) -> Path:
@@ -42,6 +43,18 @@ def test_a_folder_is_played_in_order_of_name_with_a_pause_between(tmp_path: Path
     record(tmp_path / "a.mcap", skeleton(100, 7))
     frames = [frame for instant in RecordingSource(tmp_path, "kinect0").frames() for frame in instant]
     assert [(frame.stamp_ns, frame.seq) for frame in frames] == [(100, 7), (100 + PAUSE_NS, 8)]
+
+
+def test_files_can_be_played_again_and_again_with_a_pause_between(tmp_path: Path) -> None:
+    record(tmp_path / "b.mcap", skeleton(5, 0))
+    record(tmp_path / "a.mcap", skeleton(100, 7))
+    looped = LoopedSource(RecordingSource(tmp_path, "kinect0")).frames()
+    frames = [frame for instant in islice(looped, 5) for frame in instant]
+    assert [(frame.stamp_ns, frame.seq) for frame in frames] == [(100 + i * PAUSE_NS, 7 + i) for i in range(5)]
+
+
+def test_what_holds_nothing_ends_also_when_it_is_to_be_played_again(tmp_path: Path) -> None:
+    assert list(LoopedSource(RecordingSource(record(tmp_path / "a.mcap"), "kinect0")).frames()) == []
 
 
 def test_bad_messages_of_a_file_are_counted(tmp_path: Path) -> None:

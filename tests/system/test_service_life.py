@@ -115,17 +115,6 @@ def test_numbers_that_are_missing_are_reported_as_drops(preprocessor_client: Cli
     collect(statuses, Status, lambda found: bool(found) and found[-1].drops == {key: 3})
 
 
-def test_two_of_a_kind_have_tokens_of_their_own(running: System) -> None:
-    running.start_router()
-    running.start("pose_preprocessor", "--instance", "one")
-    running.start("pose_preprocessor", "--instance", "two")
-    with running.client() as client:
-        wait_until(
-            lambda: client.alive() == [keys.alive("kinect0", "pose_preprocessor", n) for n in ("one", "two")],
-            "both tokens are there",
-        )
-
-
 def test_tokens_go_with_their_process(running: System) -> None:
     running.start_router()
     service = running.start("action_fusion")

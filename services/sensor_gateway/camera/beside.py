@@ -29,7 +29,13 @@ class MarkersPerceiver(Perceiver):
         return []
 
 
-def markers_camera_of(settings: Settings, start_ns: int) -> CameraSource:
+class MarkersCamera(CameraSource):
+    """A camera beside the gateway of the same sensor, and so a service of another name."""
+
+    name = "marker_camera"
+
+
+def markers_camera_of(settings: Settings, start_ns: int) -> MarkersCamera:
     """Build the source of a camera that sees markers only.
 
     Raises:
@@ -41,10 +47,10 @@ def markers_camera_of(settings: Settings, start_ns: int) -> CameraSource:
             "a camera that sees markers only needs --calibration (ACTUM_CALIBRATION), a file of "
             "'actum calibrate extrinsics': where it is from the camera that sees the people"
         )
-    return CameraSource(
+    return MarkersCamera(
         lambda: nullcontext(Nobody()),
         Optics(settings.field_of_view_deg, calibration, None, settings.mirrored),
-        open_capture=lambda: capture_of(settings.camera, size_of(settings)),
+        open_capture=lambda: capture_of(settings.camera, size_of(settings), settings.loop),
         sensor=settings.sensor,
         session_id=f"markers-{start_ns}",
         perceiver=MarkersPerceiver,

@@ -9,6 +9,7 @@ from typing import Protocol
 import cv2
 import numpy as np
 
+from actum.joining import PAUSE_NS
 from sensor_gateway.camera.video import Picture, VideoError, pictures_of
 
 SILENT_S = 2.0
@@ -155,7 +156,7 @@ def patience_with(device: int | str) -> list[int]:
 
 
 class FileCapture:
-    """A file of pictures played once, each when it is due; none is left out, however late.
+    """A file of pictures played once or for ever, each when it is due; none is left out, however late.
 
     `read` yields the file's pictures, the first with the stamp that it is given.
     """
@@ -168,8 +169,9 @@ class FileCapture:
         now_ns: Callable[[], int] = time.time_ns,
         read: Callable[[Path, int], Generator[Picture, None, None]] = pictures_of,
         pause: Callable[[float], None] = time.sleep,
+        loop: bool = False,
     ) -> None:
-        self._path = path
+        self._path, self._read, self._loop = path, read, loop
         self._now_ns, self._pause = now_ns, pause
         self._pictures = read(path, now_ns())
         self._waiting: Picture | None = None
@@ -182,9 +184,7 @@ class FileCapture:
             CaptureEndedError: it is over.
         """
         try:
-            self._waiting = self._waiting or next(self._pictures)
-        except StopIteration:
-            raise CaptureEndedError(str(self._path)) from None
+            self._waiting = self._waiting or self._following()
         except VideoError as error:
             raise CameraLostError(str(error)) from None
         ahead_s = (self._waiting.stamp_ns - self._now_ns()) / 1e9
@@ -195,14 +195,23 @@ class FileCapture:
         picture, self._waiting = self._waiting, None
         return picture
 
+    def _following(self) -> Picture:
+        following = next(self._pictures, None)
+        if following is None and self._loop:
+            self._pictures = self._read(self._path, self._now_ns() + PAUSE_NS)
+            following = next(self._pictures, None)
+        if following is None:
+            raise CaptureEndedError(str(self._path))
+        return following
+
     def close(self) -> None:
         """Let go of the file."""
         self._pictures.close()
 
 
-def capture_of(camera: str, size: tuple[int, int] | None) -> Capture:
+def capture_of(camera: str, size: tuple[int, int] | None, loop: bool = False) -> Capture:
     """Open what a setting names: a file that is there, a device's number or path, or a URL."""
     path = Path(camera)
     if path.is_file():
-        return FileCapture(path)
+        return FileCapture(path, loop=loop)
     return LiveCapture(int(camera) if camera.isdecimal() else camera, size)

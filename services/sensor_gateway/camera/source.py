@@ -69,7 +69,7 @@ def camera_of(settings: Settings, start_ns: int) -> "CameraSource":
     source = CameraSource(
         lambda: estimator_of(settings),
         optics_of(settings),
-        open_capture=lambda: capture_of(settings.camera, size_of(settings)),
+        open_capture=lambda: capture_of(settings.camera, size_of(settings), settings.loop),
         sensor=settings.sensor,
         session_id=f"camera-{start_ns}",
     )

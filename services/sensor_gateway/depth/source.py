@@ -77,17 +77,18 @@ def _source(
     return CameraSource(
         lambda: estimator_of(settings),
         DepthOptics(told.field_of_view_deg, told.calibration, told.person_height_m),
-        open_capture=_opener(settings.path, live, recorded),
+        open_capture=_opener(settings, live, recorded),
         sensor=settings.sensor,
         session_id=session_id,
     )
 
 
 def _opener(
-    path: Path | None, live: Callable[[], Capture], recorded: Callable[[Path, int], Generator[Picture, None, None]]
+    settings: Settings, live: Callable[[], Capture], recorded: Callable[[Path, int], Generator[Picture, None, None]]
 ) -> Callable[[], Capture]:
+    path = settings.path
     if path is None:
         return live
     if not path.is_file():
         raise DepthSourceError(f"{path}: no such recording; leave --path (ACTUM_PATH) out to use a camera")
-    return lambda: FileCapture(path, read=recorded)
+    return lambda: FileCapture(path, read=recorded, loop=settings.loop)

@@ -3,8 +3,9 @@
 from actum.runtime.client import Client, Listening, Received
 from actum.runtime.extras import needs_extra
 from actum.runtime.router import serve_router
-from actum.runtime.serving import Pace, run, run_source, stop_on_signals
+from actum.runtime.serving import run, run_source
 from actum.runtime.session import RouterUnreachableError
+from actum.runtime.waiting import Pace, stop_on_signals
 
 __all__ = [
     "Client",

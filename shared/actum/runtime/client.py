@@ -124,7 +124,8 @@ class Client:
 
     def infos(self) -> list[Info]:
         """Ask every service of this sensor what it is."""
-        replies = self._session.get(keys.pattern(keys.INFO, self.sensor), timeout=1.0)
+        every = zenoh.ConsolidationMode.NONE  # two of one service answer on one key
+        replies = self._session.get(keys.pattern(keys.INFO, self.sensor), timeout=1.0, consolidation=every)
         found = [_received(reply.ok).message for reply in replies if reply.ok is not None]
         return [info for info in found if isinstance(info, Info)]
 

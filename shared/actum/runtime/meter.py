@@ -1,11 +1,12 @@
 """What a service tells about itself once a second."""
 
+import socket
 import time
 from collections import Counter, deque
 
 import numpy as np
 
-from actum import __version__, keys
+from actum import __version__
 from actum.codec import schema_name
 from actum.messages import MESSAGES, Info, Message, Status
 from actum.node import Tally
@@ -97,16 +98,9 @@ class Meter:
             joint_names=list(JOINTS),
             model=self._tally.details.get("model"),
             calibration=self._tally.details.get("calibration"),
+            host=socket.gethostname(),
+            source=self._tally.details.get("source"),
         )
-
-    @property
-    def keys(self) -> dict[str, str]:
-        """The service's own keys, by what they carry."""
-        sensor, name = self._settings.sensor, self._name
-        return {
-            "alive": keys.alive(sensor, name, self._settings.instance),
-            "info": keys.key(keys.INFO, sensor, name),
-        }
 
 
 def _percentiles(values_ms: list[float]) -> dict[str, float]:

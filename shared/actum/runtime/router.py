@@ -7,8 +7,8 @@ from pathlib import Path
 
 import zenoh
 
-from actum.runtime.serving import wait_for
 from actum.runtime.session import TRANSPORT
+from actum.runtime.waiting import wait_for
 from actum.settings import SettingsError
 
 log = logging.getLogger("actum")

@@ -1,10 +1,8 @@
 """The life of a service: connect, subscribe, step, report, and leave cleanly."""
 
-import _thread
 import gc
 import logging
 import os
-import signal
 import sys
 import threading
 import time
@@ -15,35 +13,38 @@ from typing import TypeVar
 import zenoh
 from pydantic import ValidationError
 
+from actum import keys
 from actum.codec import DecodeError, decode, encode
-from actum.health import write_health
-from actum.keys import key_of
 from actum.messages import Message
 from actum.node import TICK_NS, Node, Source, Tally, Tick
 from actum.runtime.inbox import Inbox
 from actum.runtime.meter import Meter
 from actum.runtime.outbox import Outbox
-from actum.runtime.session import client_config, connected, open_session
+from actum.runtime.place import RETURNING_S, SETTLING_S, Place, PlaceTakenError
+from actum.runtime.reporting import Reporter, Told
+from actum.runtime.session import RETRY_S, client_config, open_session
+from actum.runtime.waiting import Pace, stop_on_signals, wait_for
 from actum.settings import ServiceSettings, complaint
 
 log = logging.getLogger("actum")
 S = TypeVar("S", bound=ServiceSettings)
 N = TypeVar("N")
 UNUSABLE = 2
-REPORT_S = 1.0
-SLICE_S = 0.1
+"""The code at the end of a process whose settings cannot be used …"""
+TAKEN = 3
+"""… and of one whose service another process does already."""
 
 
 def run(settings_type: type[S], build: Callable[[S], Node]) -> None:
     """Serve a node until SIGTERM or SIGINT; the process's whole life."""
     settings, node = _configured(settings_type, build)
-    _live(NodeService(node, settings), settings, node.name)
+    _live(NodeService(node, settings), settings)
 
 
 def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
     """Serve a source until SIGTERM or SIGINT; the process's whole life."""
     settings, source = _configured(settings_type, build)
-    _live(SourceService(source, settings), settings, source.name)
+    _live(SourceService(source, settings), settings)
 
 
 def _configured(settings_type: type[S], build: Callable[[S], N]) -> tuple[S, N]:
@@ -60,68 +61,65 @@ def _configured(settings_type: type[S], build: Callable[[S], N]) -> tuple[S, N]:
     sys.exit(UNUSABLE)
 
 
-def stop_on_signals() -> threading.Event:
-    """Return an event that SIGTERM and SIGINT set.
-
-    A thread of its own sets it: a handler runs in the main thread, perhaps while that holds the event's lock.
-    """
-    stop = threading.Event()
-    for number in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, lambda *_: _thread.start_new_thread(stop.set, ()))
-    return stop
-
-
-def wait_for(stop: threading.Event, seconds: float = float("inf")) -> bool:
-    """Wait until stopped or for so long; True if stopped.
-
-    The wait is cut into slices: a signal that the kernel hands to one of Zenoh's threads does not end a wait of the
-    main thread, and its handler runs only once that thread moves.
-    """
-    deadline_s = time.monotonic() + seconds
-    while (left_s := deadline_s - time.monotonic()) > 0:
-        if stop.wait(min(left_s, SLICE_S)):
-            return True
-    return stop.is_set()
-
-
-def _live(service: "Service", settings: ServiceSettings, name: str) -> None:
-    logging.basicConfig(level=os.environ.get("ACTUM_LOG", "INFO"), format=f"{name}: %(message)s")
+def _live(service: "Service", settings: ServiceSettings) -> None:
+    logging.basicConfig(level=os.environ.get("ACTUM_LOG", "INFO"), format=f"{service.name}: %(message)s")
     stop = stop_on_signals()
+    service.introduce()
+    asked_s = time.monotonic()
     session = open_session(settings, stop)
     if session is None:
         return
+    settling_s = SETTLING_S if time.monotonic() - asked_s < RETRY_S else RETURNING_S
     gc.freeze()  # what is there now stays; collections need not walk through it again
     try:
-        service.serve(session, stop)
+        service.serve(session, stop, settling_s)
+    except PlaceTakenError as error:
+        log.error("%s", error)
+        sys.exit(TAKEN)
     finally:
         session.close()
     sys.exit(1 if service.failed else 0)
 
 
 class Service(ABC):
-    """What nodes and sources share: the way out, the report, the token and the description."""
+    """What nodes and sources share: the way in and out, the place, the report and the description."""
 
     def __init__(self, name: str, tally: Tally, settings: ServiceSettings) -> None:
+        self.name = name
         self.failed = False
-        self._health_unwritable = False
         self._settings = settings
+        self._tally = tally
+        self._told = Told(tally)
         self._meter = Meter(name, tally, settings)
         self._lock = threading.Lock()
 
-    def serve(self, session: zenoh.Session, stop: threading.Event) -> None:
-        """Work until stopped."""
-        outbox = Outbox(session)
-        token = session.liveliness().declare_token(self._meter.keys["alive"])
-        queryable = session.declare_queryable(self._meter.keys["info"], self._answer_info)
-        reporter = threading.Thread(target=self._report, args=(session, outbox, stop), daemon=True)
-        reporter.start()
+    def introduce(self) -> None:
+        """Say what is read, and what is wrong already."""
+        if "source" in self._tally.details:
+            log.info("sensor %s: %s", self._settings.sensor, self._tally.details["source"])
+        self._told.tell()
+
+    def serve(self, session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
+        """Work until stopped, once no other does the same.
+
+        Raises:
+            PlaceTakenError: another does.
+        """
+        place = Place(session, self._settings, self.name)
+        if not place.take(stop, settling_s):
+            return
+        info = keys.key(keys.INFO, self._settings.sensor, self.name)
+        queryable = session.declare_queryable(info, self._answer_info)
+        reporter = Reporter(self._meter, self._told, self._settings, self._lock)
+        reporting = threading.Thread(target=reporter.report, args=(session, place, stop, self._healthy), daemon=True)
+        reporting.start()
         try:
-            self._work(session, outbox, stop)
+            self._work(session, Outbox(session), stop)
         finally:
             stop.set()
-            reporter.join(timeout=0.5)
+            reporting.join(timeout=0.5)
             queryable.undeclare()
-            token.undeclare()
+            place.leave()
 
     @abstractmethod
     def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event) -> None:
@@ -135,24 +133,6 @@ class Service(ABC):
             with self._lock:
                 frame = encode(self._meter.info())
             query.reply(frame.key, frame.payload, encoding=frame.encoding)
-
-    def _report(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event) -> None:
-        while not stop.wait(REPORT_S):
-            with self._lock:
-                status = self._meter.status()
-            outbox.put(status)
-            self._tell_health(self._healthy() and connected(session))
-
-    def _tell_health(self, healthy: bool) -> None:
-        """Write the health file if there is to be one; where it cannot be written, say so once and go on."""
-        if self._settings.health_file is None:
-            return
-        try:
-            write_health(self._settings.health_file, healthy)
-        except OSError as error:
-            if not self._health_unwritable:
-                log.warning("the health file cannot be written: %s", error)
-            self._health_unwritable = True
 
 
 class NodeService(Service):
@@ -222,25 +202,10 @@ class SourceService(Service):
             for message in messages:
                 outbox.put(message)
                 with self._lock:
-                    self._meter.put(key_of(message))
+                    self._meter.put(keys.key_of(message))
             if stop.is_set():
                 return
-        self._source.tally.state = "source ended"
-        log.info("the source has ended")
+        with self._lock:
+            self._source.tally.state = "source ended"
+            self._told.tell()
         wait_for(stop)
-
-
-class Pace:
-    """Lets stamps pass at the speed at which they were captured, or a multiple of it."""
-
-    def __init__(self, speed: float) -> None:
-        self._speed = speed
-        self._origin: tuple[int, int] | None = None
-
-    def wait(self, stamp_ns: int, stop: threading.Event) -> bool:
-        """Wait until the stamp is due; False if stopped meanwhile."""
-        if self._origin is None:
-            self._origin = stamp_ns, time.monotonic_ns()
-        first_stamp_ns, began_ns = self._origin
-        due_ns = began_ns + (stamp_ns - first_stamp_ns) / self._speed
-        return not wait_for(stop, (due_ns - time.monotonic_ns()) / 1e9)

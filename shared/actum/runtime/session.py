@@ -14,6 +14,8 @@ log = logging.getLogger("actum")
 
 OPEN_TIMEOUT_MS = 500
 RETRY_S = 0.2
+LEASE_S = 10.0
+"""How long Zenoh keeps the tokens of a session that has fallen silent, unless told otherwise."""
 
 TRANSPORT = {
     "transport/shared_memory/enabled": False,

@@ -1,0 +1,82 @@
+"""What a service says of itself: its status once a second, and a line on its output where something has changed."""
+
+import logging
+import threading
+from collections.abc import Callable
+
+import zenoh
+
+from actum.health import write_health
+from actum.node import Tally
+from actum.runtime.meter import Meter
+from actum.runtime.outbox import Outbox
+from actum.runtime.place import Place
+from actum.runtime.session import connected
+from actum.settings import ServiceSettings
+
+log = logging.getLogger("actum")
+
+REPORT_S = 1.0
+WELL = "running"
+"""How states begin that are as they should be."""
+
+
+class Told:
+    """Says each change of a service's state once; what is in use without trouble changes silently."""
+
+    def __init__(self, tally: Tally) -> None:
+        self._tally = tally
+        self._trouble: str | None = None
+
+    def tell(self) -> None:
+        """Say what is wrong if that is new, or that nothing is any more."""
+        trouble = None if self._tally.state.startswith(WELL) else self._tally.state
+        source = self._tally.details.get("source")
+        if trouble is not None and trouble != self._trouble:
+            log.warning("%s", f"{trouble} ({source})" if source else trouble)
+        elif trouble is None and self._trouble is not None:
+            log.info("running again")
+        self._trouble = trouble
+
+
+class Reporter:
+    """Reports while a service works, and stops it where another takes its place."""
+
+    def __init__(self, meter: Meter, told: Told, settings: ServiceSettings, lock: threading.Lock) -> None:
+        self._meter, self._told, self._settings, self._lock = meter, told, settings, lock
+        self._health_unwritable = False
+        self._connected = True
+
+    def report(self, session: zenoh.Session, place: Place, stop: threading.Event, healthy: Callable[[], bool]) -> None:
+        """Report once a second until stopped."""
+        outbox = Outbox(session)
+        while not stop.wait(REPORT_S):
+            with self._lock:
+                status = self._meter.status()
+                self._told.tell()
+            outbox.put(status)
+            self._tell_router(connected(session))
+            self._tell_health(healthy() and self._connected)
+            successor = place.lost_to()
+            if successor is not None:
+                log.warning("%s takes over for sensor %s: this one stops", successor, self._settings.sensor)
+                stop.set()
+
+    def _tell_router(self, now: bool) -> None:
+        """Say once that the router is lost, and once that it is back."""
+        if self._connected and not now:
+            log.warning("lost the router at %s: waiting for it", self._settings.connect)
+        elif now and not self._connected:
+            log.info("connected to %s again", self._settings.connect)
+        self._connected = now
+
+    def _tell_health(self, healthy: bool) -> None:
+        """Write the health file if there is to be one; where it cannot be written, say so once and go on."""
+        if self._settings.health_file is None:
+            return
+        try:
+            write_health(self._settings.health_file, healthy)
+        except OSError as error:
+            if not self._health_unwritable:
+                log.warning("the health file cannot be written: %s", error)
+            self._health_unwritable = True

@@ -1,0 +1,48 @@
+"""Waiting that a signal ends: for a while, or until a stamp is due."""
+
+import _thread
+import signal
+import threading
+import time
+
+SLICE_S = 0.1
+
+
+def stop_on_signals() -> threading.Event:
+    """Return an event that SIGTERM and SIGINT set.
+
+    A thread of its own sets it: a handler runs in the main thread, perhaps while that holds the event's lock.
+    """
+    stop = threading.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: _thread.start_new_thread(stop.set, ()))
+    return stop
+
+
+def wait_for(stop: threading.Event, seconds: float = float("inf")) -> bool:
+    """Wait until stopped or for so long; True if stopped.
+
+    The wait is cut into slices: a signal that the kernel hands to one of Zenoh's threads does not end a wait of the
+    main thread, and its handler runs only once that thread moves.
+    """
+    deadline_s = time.monotonic() + seconds
+    while (left_s := deadline_s - time.monotonic()) > 0:
+        if stop.wait(min(left_s, SLICE_S)):
+            return True
+    return stop.is_set()
+
+
+class Pace:
+    """Lets stamps pass at the speed at which they were captured, or a multiple of it."""
+
+    def __init__(self, speed: float) -> None:
+        self._speed = speed
+        self._origin: tuple[int, int] | None = None
+
+    def wait(self, stamp_ns: int, stop: threading.Event) -> bool:
+        """Wait until the stamp is due; False if stopped meanwhile."""
+        if self._origin is None:
+            self._origin = stamp_ns, time.monotonic_ns()
+        first_stamp_ns, began_ns = self._origin
+        due_ns = began_ns + (stamp_ns - first_stamp_ns) / self._speed
+        return not wait_for(stop, (due_ns - time.monotonic_ns()) / 1e9)
