@@ -19,6 +19,8 @@ STATUS_S = 2.5
 TABLE_WIDTH = 100
 ENDED = "source ended"
 NO_MODEL = "no model"
+OLD_MODEL = "model not renewed"
+SOURCES = {"sensor_gateway": "sensor", "marker_camera": "marker camera"}
 
 
 @dataclass(frozen=True)
@@ -27,6 +29,7 @@ class Finding:
 
     service: str
     instances: int
+    source: str
     version: str
     state: str
     rates: str
@@ -39,18 +42,28 @@ class Finding:
 def examine(client: Client) -> list[Finding]:
     """Look at every service that is expected or found alive."""
     statuses = _statuses(client)
-    tokens = [key.split("/")[-2] for key in client.alive()]
-    infos = {info.service: info for info in client.infos()}
-    names = [*EXPECTED, *sorted(set(tokens) - set(EXPECTED))]
-    return [_finding(name, tokens.count(name), infos.get(name), statuses.get(name)) for name in names]
+    tokens: dict[str, list[str]] = {}
+    for key in client.alive():
+        service, instance = key.split("/")[-2:]
+        tokens.setdefault(service, []).append(instance)
+    infos = client.infos()
+    names = [*EXPECTED, *sorted(tokens.keys() - set(EXPECTED))]
+    return [
+        _finding(name, tokens.get(name, []), [info for info in infos if info.service == name], statuses.get(name))
+        for name in names
+    ]
 
 
 def show(findings: list[Finding], console: Console) -> None:
-    """Print what was found, as wide as the console allows."""
+    """Print what was found, as wide as the console allows, and what the sensor is."""
     if console.width >= TABLE_WIDTH:
         console.print(table(findings))
     else:
         console.print("\n".join(paragraphs(findings)))
+    for finding in findings:
+        if finding.source:
+            label = SOURCES.get(finding.service, finding.service)
+            console.print(f"{label}: {finding.source}", markup=False, soft_wrap=True)
 
 
 def table(findings: list[Finding]) -> Table:
@@ -106,17 +119,18 @@ def _statuses(client: Client) -> dict[str, Status]:
     return found
 
 
-def _finding(name: str, instances: int, info: Info | None, status: Status | None) -> Finding:
+def _finding(name: str, instances: list[str], infos: list[Info], status: Status | None) -> Finding:
     return Finding(
         service=name,
-        instances=instances,
-        version=info.version if info else "",
+        instances=max(len(instances), len(infos) if instances else 0),
+        source=", ".join(dict.fromkeys(info.source for info in infos if info.source)),
+        version=", ".join(dict.fromkeys(info.version for info in infos)),
         state=status.state if status else "",
         rates=_rates(status) if status else "",
         rejects=", ".join(f"{kind} {n}" for kind, n in status.rejects.items()) if status else "",
         drops=", ".join(f"{_short(key, status)} {n}" for key, n in status.drops.items()) if status else "",
         latency=_latency(status.latency_ms) if status else "",
-        problems=tuple(_problems(name, instances, info, status)),
+        problems=tuple(_problems(name, instances, infos, status)),
     )
 
 
@@ -135,24 +149,38 @@ def _latency(latency_ms: Mapping[str, float]) -> str:
     return " / ".join(f"{latency_ms[name]:.2f}" if name in latency_ms else "-" for name in ("p50", "p99"))
 
 
-def _problems(name: str, instances: int, info: Info | None, status: Status | None) -> list[str]:
+def _problems(name: str, instances: list[str], infos: list[Info], status: Status | None) -> Iterator[str]:
     if not instances:
-        return [f"{name} is not running: start it with 'python -m {name}' or 'actum up'"]
-    problems = []
+        yield f"{name} is not running: start it with 'python -m {name}' or 'actum up'"
+        return
+    if len(instances) > 1 or len(infos) > 1:
+        who = _who(infos, instances)
+        yield f"{name} runs more than once, so everything is answered more than once: stop all but one of {who}"
     if status is None:
-        problems.append(f"{name} is alive but sent no status in {STATUS_S:g} s")
-    elif status.state.startswith("camera lost"):
-        problems.append(f"{name}: {status.state}; it tries again by itself")
-    elif status.state == ENDED:
-        problems.append(f"{name}: {status.state}; start it again for more")
-    elif status.state == NO_MODEL:
-        why = f" ({status.last_error})" if (status.last_error or "").startswith("bad_model") else ""
-        problems.append(f"{name}: no model, so every action is rejected{why}; name it in --model or ACTUM_MODEL")
-    if info is None:
-        problems.append(f"{name} does not answer on its info key")
+        yield f"{name} is alive but sent no status in {STATUS_S:g} s"
     else:
-        problems += _versions(info)
-    return problems
+        yield from _troubles(name, status, next((f" ({info.source})" for info in infos if info.source), ""))
+    if not infos:
+        yield f"{name} does not answer on its info key"
+    yield from dict.fromkeys(line for info in infos for line in _versions(info))
+
+
+def _who(infos: list[Info], instances: list[str]) -> str:
+    """Name each process and, where it tells, the machine it runs on."""
+    silent = sorted(set(instances) - {info.instance for info in infos})
+    return ", ".join([f"{info.instance} on {info.host}" if info.host else info.instance for info in infos] + silent)
+
+
+def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
+    """Say what is wrong by the service's own account; `source` names what it reads."""
+    if status.state.startswith("camera lost"):
+        yield f"{name}: {status.state}{source}; it tries again by itself"
+    elif status.state == ENDED:
+        yield f"{name}: {status.state}{source}; start it again for more, with --loop for more and more"
+    elif status.state.startswith(NO_MODEL):
+        yield f"{name}: {status.state}, so every action is rejected; name one in --model or ACTUM_MODEL"
+    elif status.state.startswith(OLD_MODEL):
+        yield f"{name}: {status.state}; it goes on with the model before"
 
 
 def _versions(info: Info) -> list[str]:

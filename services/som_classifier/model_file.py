@@ -13,22 +13,34 @@ class ModelFile:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._seen: tuple[int, int] | None = None
+        self._loaded = False
 
     def poll(self, tally: Tally) -> Model | None:
-        """Return the model if the file is new or changed and sound; count `bad_model` where it is not."""
+        """Return the model if the file is new or changed and sound.
+
+        Where it is not, `bad_model` is counted, and the state says so, as where there has been none yet.
+        """
         try:
             stat = self._path.stat()
         except FileNotFoundError:
+            if not self._loaded:
+                tally.state = f"no model: there is no {self._path} yet"
             return None
         except OSError as error:
-            tally.reject("bad_model", str(error))
+            self._refuse(tally, str(error))
             return None
         version = (stat.st_mtime_ns, stat.st_size)
         if version == self._seen:
             return None
         self._seen = version
         try:
-            return load_model(self._path)
+            model = load_model(self._path)
         except ModelError as error:
-            tally.reject("bad_model", str(error))
+            self._refuse(tally, str(error))
             return None
+        self._loaded = True
+        return model
+
+    def _refuse(self, tally: Tally, why: str) -> None:
+        tally.reject("bad_model", why)
+        tally.state = f"{'model not renewed' if self._loaded else 'no model'}: {why}"

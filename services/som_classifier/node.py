@@ -51,6 +51,8 @@ class SomClassifier:
     def configured(cls, settings: Settings) -> "SomClassifier":
         """Build the node as the settings say; the model file need not exist yet."""
         node = cls(source=ModelFile(settings.model) if settings.model else None, publish_maps=settings.publish_maps)
+        if settings.model is None:
+            node.tally.state = "no model: --model (ACTUM_MODEL) names none"
         node._reload()
         return node
 

@@ -27,12 +27,14 @@ def status(service: str, **fields: Any) -> Status:
     return Status(stamp_ns=1, sensor="kinect0", service=service, instance="a", uptime_s=1.0, **(said | fields))
 
 
-def info(service: str, version: str = __version__) -> Info:
+def info(service: str, version: str = __version__, instance: str = "a", source: str | None = None) -> Info:
     return Info(
         stamp_ns=1,
         sensor="kinect0",
         service=service,
-        instance="a",
+        instance=instance,
+        host="lab",
+        source=source,
         version=version,
         schemas=[schema_name(message) for message in MESSAGES],
         joint_names=[],
@@ -52,7 +54,9 @@ class System:
 
     sensor = "kinect0"
 
-    def __init__(self, changed: Status, version: str = __version__) -> None:
+    def __init__(self, changed: Status, version: str = __version__, source: str | None = None) -> None:
+        self.also: tuple[str, str] | None = None
+        self._sources = {changed.service: source}
         self._statuses: list[Message] = [status(name) for name in EXPECTED if name != changed.service]
         self._statuses.append(changed)
         self._versions = dict.fromkeys(EXPECTED, __version__) | {changed.service: version}
@@ -66,10 +70,12 @@ class System:
         return Listened(self._statuses)
 
     def alive(self) -> list[str]:
-        return [f"actum/kinect0/alive/{name}/a" for name in EXPECTED]
+        names = [(name, "a") for name in EXPECTED] + ([self.also] if self.also else [])
+        return sorted({f"actum/kinect0/alive/{name}/{instance}" for name, instance in names})
 
     def infos(self) -> list[Info]:
-        return [info(name, version) for name, version in self._versions.items()]
+        found = [info(name, version, source=self._sources.get(name)) for name, version in self._versions.items()]
+        return found + ([info(self.also[0], instance=self.also[1])] if self.also else [])
 
 
 @pytest.fixture(autouse=True)
@@ -115,14 +121,38 @@ def test_a_latency_that_is_not_told_is_a_dash(latency_ms: dict[str, float], show
     assert examined(latency_ms=latency_ms).latency == shown
 
 
-@pytest.mark.parametrize(
-    ("last_error", "why"),
-    [("bad_model: m.npz: damaged", "(bad_model: m.npz: damaged)"), ("rejected_segment: a: no model", "rejected;")],
-)
-def test_a_classifier_without_a_model_is_a_problem(last_error: str, why: str) -> None:
-    [problem] = examined(state="no model", last_error=last_error).problems
-    assert "som_classifier: no model" in problem
-    assert why in problem
+def test_a_classifier_without_a_model_is_a_problem_that_names_the_file() -> None:
+    [problem] = examined(state="no model: there is no m.npz yet").problems
+    assert problem.startswith("som_classifier: no model: there is no m.npz yet, so every action is rejected; name one")
+
+
+def test_a_model_that_could_not_be_renewed_is_a_problem() -> None:
+    [problem] = examined(state="model not renewed: m.npz: damaged").problems
+    assert problem == "som_classifier: model not renewed: m.npz: damaged; it goes on with the model before"
+
+
+@pytest.mark.parametrize("state", ["source ended", "camera lost: it cannot be opened"])
+def test_a_gateway_that_gives_nothing_is_told_with_what_it_reads(state: str) -> None:
+    gateway = System(status("sensor_gateway", state=state), source="file wave.mp4 (camera)")
+    [problem] = [p for finding in examine(gateway) for p in finding.problems]  # type: ignore[arg-type]
+    assert problem.startswith(f"sensor_gateway: {state} (file wave.mp4 (camera)); ")
+
+
+def test_a_simulated_sensor_is_said_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    code, output = diagnosed(monkeypatch, System(status("sensor_gateway"), source="simulated scene [a]"))
+    assert code == 0
+    assert "sensor: simulated scene [a]" in output
+
+
+@pytest.mark.parametrize("second", ["b", "a"])
+def test_two_of_one_identity_are_a_problem_that_names_both(monkeypatch: pytest.MonkeyPatch, second: str) -> None:
+    """Two of the same name share a token, but each describes itself."""
+    system = System(status("pose_preprocessor"))
+    system.also = ("pose_preprocessor", second)
+    code, output = diagnosed(monkeypatch, system)
+    assert code == 1
+    assert "pose_preprocessor runs more than once, so everything is answered more than once" in output
+    assert f"stop all but one of a on lab, {second} on lab" in output
 
 
 def test_where_there_is_no_room_for_a_table_there_are_lines_of_whole_words() -> None:
