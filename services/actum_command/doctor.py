@@ -29,7 +29,6 @@ class Finding:
 
     service: str
     instances: int
-    source: str
     version: str
     state: str
     rates: str
@@ -37,6 +36,7 @@ class Finding:
     drops: str
     latency: str
     problems: tuple[str, ...]
+    source: str = ""
 
 
 def examine(client: Client) -> list[Finding]:

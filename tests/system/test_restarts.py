@@ -48,3 +48,19 @@ def test_a_fusion_started_anew_does_not_answer_old_segments_again(running: Syste
         put_all(client, [later(m) for m in scene[:-1]] + [later(scene[-1]).model_copy(update={"segment_id": "s2"})])
         found = collect(events, Event, lambda found: any(event.segment_id == "s2" for event in found))
     assert [event.segment_id for event in found] == ["s2"]
+
+
+def test_who_takes_over_does_not_answer_again_what_was_just_answered(running: System) -> None:
+    running.start_router()
+    fusion = running.start("action_fusion", "--instance", "one")
+    with running.client() as client:
+        running.wait_for_services(client, "action_fusion")
+        events = client.listen(keys.pattern(keys.EVENT, client.sensor))
+        put_all(client, [*PUSH.postures(), *PUSH.sightings(), action("push")])
+        assert [event.segment_id for event in collect(events, Event, bool)] == ["s1"]
+        running.start("action_fusion", "--instance", "two", "--take-over")
+        wait_until(lambda: fusion.process.poll() is not None, "the first has left")
+        running.wait_for_services(client, "action_fusion")
+        there_s = time.monotonic()
+        wait_until(lambda: time.monotonic() > there_s + HISTORY_S + 0.5, "whatever it was told again is answered")
+        assert events.take() is None

@@ -102,7 +102,7 @@ class Client:
 
     def listen(self, key_expr: str, ring: int = DEEP_RING) -> Listening:
         """Subscribe to a key expression, without history."""
-        listening = Listening(subscribe(self._session, key_expr, ring, recovered=False))
+        listening = Listening(subscribe(self._session, key_expr, ring))
         self._listening.append(listening)
         return listening
 

@@ -16,26 +16,30 @@ HISTORY_S = 4.0
 """What is older was answered by whoever was there: two seconds of skew, two of waiting."""
 
 
-def subscribe(session: zenoh.Session, key_expr: str, ring: int, recovered: bool) -> Subscriber:
-    """Declare a subscriber; one that recovers asks publishers again for what it missed."""
+def subscribe(session: zenoh.Session, key_expr: str, ring: int, history_s: float | None = None) -> Subscriber:
+    """Declare a subscriber; one with a history asks publishers again for what it missed, and for what was before it."""
     channel: handlers.RingChannel[zenoh.Sample] = handlers.RingChannel(ring)
-    if not recovered:
+    if history_s is None:
         return session.declare_subscriber(key_expr, channel)
     return ext.declare_advanced_subscriber(
         session,
         key_expr,
         channel,
-        history=ext.HistoryConfig(detect_late_publishers=True, max_samples=HISTORY_DEPTH, max_age=HISTORY_S),
+        history=ext.HistoryConfig(detect_late_publishers=True, max_samples=HISTORY_DEPTH, max_age=history_s),
         recovery=ext.RecoveryConfig(heartbeat=True, periodic_queries=None),
     )
 
 
 class Inbox:
-    """The subscriptions of one node."""
+    """The subscriptions of one node; `history_s` is for how long nobody has answered, `HISTORY_S` at the most."""
 
-    def __init__(self, session: zenoh.Session, topics: Iterable[keys.Topic], sensor: str) -> None:
+    def __init__(
+        self, session: zenoh.Session, topics: Iterable[keys.Topic], sensor: str, history_s: float = HISTORY_S
+    ) -> None:
+        history_s = min(history_s, HISTORY_S)
         self._subscribers = [
-            subscribe(session, keys.pattern(topic, sensor), topic.ring, topic in RECOVERED) for topic in topics
+            subscribe(session, keys.pattern(topic, sensor), topic.ring, history_s if topic in RECOVERED else None)
+            for topic in topics
         ]
         self._threads: list[threading.Thread] = []
 

@@ -5,6 +5,7 @@ there: a router takes a session's token before its next question, so of two cand
 """
 
 import logging
+import math
 import threading
 import time
 from dataclasses import replace
@@ -44,6 +45,7 @@ class Place:
         self._session, self._settings, self._service = session, settings, service
         self._candidate = keys.Claim("candidate", settings.instance, str(session.zid()))
         self._own: dict[str, zenoh.LivelinessToken] = {}
+        self._held_s = -math.inf
 
     def take(self, stop: threading.Event, settling_s: float) -> bool:
         """Take the place as soon as nobody has it; False if stopped before.
@@ -59,6 +61,11 @@ class Place:
             taken = self._is_won(stop, settling_s)
         self._undeclare(successor)
         return taken
+
+    @property
+    def vacant_s(self) -> float:
+        """For how long nobody else has been seen to have it; infinite if nobody ever was."""
+        return time.monotonic() - self._held_s
 
     def leave(self) -> None:
         """Let others have it."""
@@ -117,7 +124,10 @@ class Place:
 
     def _rivals(self) -> list[keys.Claim]:
         """List who else has or is about to take the place; a successor comes later."""
-        return [other for other in self._others() if other.role != "successor"]
+        rivals = [other for other in self._others() if other.role != "successor"]
+        if any(rival.role == "alive" for rival in rivals):
+            self._held_s = time.monotonic()
+        return rivals
 
     def _others(self) -> list[keys.Claim]:
         expression = keys.claims(self._settings.sensor, self._service)

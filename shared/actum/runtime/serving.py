@@ -114,7 +114,7 @@ class Service(ABC):
         reporting = threading.Thread(target=reporter.report, args=(session, place, stop, self._healthy), daemon=True)
         reporting.start()
         try:
-            self._work(session, Outbox(session), stop)
+            self._work(session, Outbox(session), stop, place.vacant_s)
         finally:
             stop.set()
             reporting.join(timeout=0.5)
@@ -122,8 +122,8 @@ class Service(ABC):
             place.leave()
 
     @abstractmethod
-    def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event) -> None:
-        """Do what this kind of service does, until stopped."""
+    def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
+        """Do what this kind of service does, until stopped; nobody has done it for `vacant_s`."""
 
     def _healthy(self) -> bool:
         return True
@@ -143,8 +143,8 @@ class NodeService(Service):
         self._node = node
         self._inbox: Inbox | None = None
 
-    def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event) -> None:
-        self._inbox = Inbox(session, self._node.inputs, self._settings.sensor)
+    def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
+        self._inbox = Inbox(session, self._node.inputs, self._settings.sensor, vacant_s)
         self._inbox.start(lambda sample: self._receive(sample, outbox, stop))
         try:
             while not stop.wait(TICK_NS / 1e9):
@@ -194,7 +194,7 @@ class SourceService(Service):
         super().__init__(source.name, source.tally, settings)
         self._source = source
 
-    def _work(self, _session: zenoh.Session, outbox: Outbox, stop: threading.Event) -> None:
+    def _work(self, _session: zenoh.Session, outbox: Outbox, stop: threading.Event, _vacant_s: float) -> None:
         pace = Pace(speed=1.0)
         for messages in self._source.frames():
             if self._source.paced and messages and not pace.wait(messages[0].stamp_ns, stop):
