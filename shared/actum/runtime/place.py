@@ -8,6 +8,7 @@ import logging
 import math
 import threading
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 
 import zenoh
@@ -31,11 +32,37 @@ YIELDING_S = 10.0
 LOST_S = LEASE_S + 3.0
 """By then the token of one that was killed with its machine is gone."""
 POLL_S = 0.05
-ANSWER_S = 1.0
+ANSWER_S = 0.5
 
 
 class PlaceTakenError(RuntimeError):
     """Another process is the service that this one was to be."""
+
+
+class Alone:
+    """Whether a candidate has been the only one for long enough: a pure step over looks at who else is there."""
+
+    def __init__(self, settling_s: float) -> None:
+        self._settling_s = settling_s
+        self._alone_s: float | None = None
+        self._blind_s: float | None = None
+
+    def for_long(self, others: Sequence[keys.Claim] | None, connected: bool, now_s: float) -> bool:
+        """Take what one look has shown, None where nobody answered."""
+        if others is None:
+            self._alone_s, self._settling_s = None, RETURNING_S
+            return connected and self._is_denied(now_s)
+        self._blind_s = None
+        self._alone_s = None if others else self._alone_s or now_s
+        return self._alone_s is not None and now_s - self._alone_s >= self._settling_s
+
+    def _is_denied(self, now_s: float) -> bool:
+        """Whether a router that is there never answers, and so is not to."""
+        self._blind_s = self._blind_s or now_s
+        if now_s - self._blind_s < LOST_S:
+            return False
+        log.warning("nobody tells whether this runs twice: allow liveliness_query in the router's access control")
+        return True
 
 
 class Place:
@@ -74,7 +101,7 @@ class Place:
 
     def lost_to(self) -> str | None:
         """Tell who is to have the place instead: a successor, or the first by name of two that have it."""
-        for other in self._others():
+        for other in self._others() or ():
             if other.role == "successor" or (other.role == "alive" and other.instance < self._settings.instance):
                 return other.instance
         return None
@@ -86,7 +113,7 @@ class Place:
         while not stop.is_set():
             others = self._rivals()
             if not others:
-                return True
+                return True  # also where nobody can tell: a candidate waits until somebody does
             for other in others:
                 if other.role == "alive" and not self._may_leave(other, time.monotonic() - met_s, silent):
                     raise PlaceTakenError(self._refusal(other))
@@ -108,30 +135,30 @@ class Place:
         """Stand as a candidate; the first by name wins, unless somebody has the place already."""
         candidate = keys.wish(self._candidate, self._settings.sensor, self._service)
         self._declare(candidate)
-        settled_s = time.monotonic() + settling_s
+        alone = Alone(settling_s)
         won = beaten = False
         while not (won or beaten or stop.wait(POLL_S)):
-            if not connected(self._session):
-                settled_s = time.monotonic() + RETURNING_S
-                continue
             others = self._rivals()
-            beaten = any(other.role == "alive" or _name(other) < _name(self._candidate) for other in others)
-            won = not others and time.monotonic() >= settled_s
+            beaten = any(other.role == "alive" or _name(other) < _name(self._candidate) for other in others or ())
+            won = alone.for_long(others, connected(self._session), time.monotonic())
         if won:
             self._declare(keys.alive(self._settings.sensor, self._service, self._settings.instance))
         self._undeclare(candidate)
         return won
 
-    def _rivals(self) -> list[keys.Claim]:
-        """List who else has or is about to take the place; a successor comes later."""
-        rivals = [other for other in self._others() if other.role != "successor"]
-        if any(rival.role == "alive" for rival in rivals):
+    def _rivals(self) -> list[keys.Claim] | None:
+        """List who else has or is about to take the place, a successor comes later; None where nobody can tell."""
+        others = self._others()
+        rivals = None if others is None else [other for other in others if other.role != "successor"]
+        if any(rival.role == "alive" for rival in rivals or ()):
             self._held_s = time.monotonic()
         return rivals
 
-    def _others(self) -> list[keys.Claim]:
+    def _others(self) -> list[keys.Claim] | None:
         expression = keys.claims(self._settings.sensor, self._service)
-        replies = self._session.liveliness().get(expression, timeout=ANSWER_S)
+        replies = list(self._session.liveliness().get(expression, timeout=ANSWER_S))
+        if any(reply.ok is None for reply in replies) or not connected(self._session):
+            return None
         found = {str(reply.ok.key_expr) for reply in replies if reply.ok is not None}
         claims = [keys.claim_of(key) for key in sorted(found - self._own.keys())]
         return [claim for claim in claims if claim is not None]
