@@ -11,9 +11,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Self
 
-from actum.runtime.serving import UNUSABLE
+from actum.runtime.serving import TAKEN, UNUSABLE
 
 RESTART_S = (0.5, 1.0, 2.0, 4.0, 8.0)
+ELSEWHERE_S = 30.0
+"""How often it is tried whether what runs elsewhere has ended there."""
 STEADY_S = 30.0
 TERM_S = 5.0
 
@@ -81,6 +83,9 @@ class Supervisor:
         if child.process.returncode == UNUSABLE:  # started again, it would end so again
             where = f"in {self._log.name}" if self._log else "above"
             raise UnusableError(f"{child.program.name} cannot run as it is set: it says why {where}")
+        if child.process.returncode == TAKEN:
+            child.due_s = now_s + ELSEWHERE_S
+            return f"{child.program.name} runs elsewhere, and here again once it has ended there"
         steady = now_s - child.started_s > STEADY_S
         child.restarts = 0 if steady else child.restarts
         delay_s = RESTART_S[min(child.restarts, len(RESTART_S) - 1)]

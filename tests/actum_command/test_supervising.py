@@ -1,14 +1,15 @@
 """Programs that end are started again, unless they say that they cannot be used as they are set."""
 
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 import typer
 
-from actum.runtime.serving import UNUSABLE
-from actum_command.supervising import Program, Supervisor, UnusableError
+from actum.runtime.serving import TAKEN, UNUSABLE
+from actum_command.supervising import ELSEWHERE_S, Program, Supervisor, UnusableError
 from actum_command.system import supervise
 from live import wait_until
 
@@ -30,6 +31,22 @@ def test_what_ends_is_announced_and_started_again(ending: type[Program], tmp_pat
     with Supervisor(tmp_path / "log") as supervisor:
         supervisor.start(ending("worker", "ending", ["1"]))
         assert outcome(supervisor) == ["worker ended with code 1: restart in 0.5 s"]
+
+
+def test_what_runs_elsewhere_is_tried_again_now_and_then(
+    ending: type[Program], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with Supervisor(tmp_path / "log") as supervisor:
+        supervisor.start(ending("worker", "ending", [str(TAKEN)]))
+        assert outcome(supervisor) == ["worker runs elsewhere, and here again once it has ended there"]
+        now_s = time.monotonic()
+        monkeypatch.setattr(time, "monotonic", lambda: now_s + ELSEWHERE_S - 5)
+        assert supervisor.check() == []
+        assert (tmp_path / "log").read_text().count("\n") == 1
+        monkeypatch.setattr(time, "monotonic", lambda: now_s + ELSEWHERE_S + 5)
+        assert supervisor.check() == []
+        monkeypatch.undo()
+        wait_until(lambda: (tmp_path / "log").read_text().count("\n") == 2, "it was started again")
 
 
 def test_what_cannot_be_used_as_it_is_set_is_not_started_again(ending: type[Program], tmp_path: Path) -> None:
