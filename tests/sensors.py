@@ -19,10 +19,8 @@ def marker_camera(folder: Path, video: Path | None = None) -> list[str]:
     intrinsics = [60.0, 0.0, 31.5, 0.0, 60.0, 23.5, 0.0, 0.0, 1.0]
     aside = geometry.flat(np.eye(4))
     Calibration(image_size=SIZE, K=intrinsics, distortion=[], skeleton_from_image=aside).save(calibration)
-    played = (
-        ["--camera", str(video)] if video else ["--loop", "--camera", str(write_video(folder / "a.avi", size=SIZE))]
-    )
-    return ["--source", "marker-camera", "--calibration", str(calibration), *played]
+    played = video or write_video(folder / "a.avi", size=SIZE)
+    return ["--source", "marker-camera", "--calibration", str(calibration), "--camera", str(played), "--loop"]
 
 
 def recording(path: Path, *messages: Message) -> list[str]:

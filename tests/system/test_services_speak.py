@@ -76,6 +76,7 @@ def test_a_camera_file_that_is_not_there_is_named_and_that_it_came(running: Syst
     write_video(tmp_path / "arriving.avi").rename(missing)
     wait_for_line(gateway, "running again")
     wait_for_line(gateway, lost)
+    assert "ended" not in gateway.said(), "it is played again and again"
 
 
 def test_a_router_that_is_lost_and_comes_back_is_told(running: System) -> None:
