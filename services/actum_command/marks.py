@@ -6,7 +6,7 @@ import typer
 from pydantic import ValidationError
 
 from actum import keys
-from actum.messages import Segment
+from actum.messages import MANUAL, Segment
 from actum.runtime import Client
 from actum_command.context import connect, fail, say, settings
 
@@ -76,6 +76,7 @@ def _mark(
         "hand": hand,
         "label": label,
         "stamp_ns": stamp_ns,
+        "origin": MANUAL,
     }
     try:
         return Segment.model_validate(fields)

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from actum import keys
-from actum.messages import Segment, Truth
+from actum.messages import SIMULATOR, Segment, Truth
 from actum.recording import Recorder
 from actum.runtime import Client, stop_on_signals
 from actum_command.context import connect_whenever, fail, refuse_unwritable, say
@@ -58,4 +58,6 @@ def mark_truth(client: Client, stop: threading.Event) -> None:
 
 def mark_of(truth: Truth) -> Segment:
     """The mark that a switch would have put: no action, no object, no hand."""
-    return Segment(stamp_ns=truth.stamp_ns, sensor=truth.sensor, kind=truth.kind, segment_id=truth.segment_id)
+    return Segment(
+        stamp_ns=truth.stamp_ns, sensor=truth.sensor, kind=truth.kind, segment_id=truth.segment_id, origin=SIMULATOR
+    )
