@@ -23,6 +23,7 @@ with needs_extra("actum-command"):
         scene,
         streaming,
         system,
+        takes_commands,
         watching,
     )
     from actum_command.context import connect, console, fail, say
@@ -41,6 +42,7 @@ app.command("router")(system.router)
 app.add_typer(marks.app, name="segment")
 app.command("record")(streaming.record)
 app.command("play")(streaming.play)
+app.add_typer(takes_commands.app, name="takes")
 app.add_typer(importing_commands.app, name="import")
 app.add_typer(models.app, name="models")
 app.command("draw")(drawing.draw_command)

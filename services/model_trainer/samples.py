@@ -130,6 +130,14 @@ def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[Closed]:
     return collector.closed
 
 
+def why_unusable(closed: Closed) -> str | None:
+    """Say why no sample can be made of a segment's frames; None where one can."""
+    usable = sum(frame.valid for frame in closed.frames)
+    if closed.reason is None and usable < Model.min_frames:
+        return f"{usable} usable frames, at least {Model.min_frames} are needed"
+    return closed.reason
+
+
 class _Collector:
     """A node that keeps what the segmenter closes."""
 
@@ -160,11 +168,11 @@ def _collect(samples: Samples, recording: Recording, closed: Closed) -> None:
     if closed.label is None:
         return
     file = str(recording.path)
-    frames = [frame for frame in closed.frames if frame.valid]
-    if closed.reason or len(frames) < Model.min_frames:
-        reason = closed.reason or f"{len(frames)} usable frames, at least {Model.min_frames} are needed"
+    reason = why_unusable(closed)
+    if reason is not None:
         samples.unusable.append(Unusable(file, closed.segment_id, reason))
         return
+    frames = [frame for frame in closed.frames if frame.valid]
     samples.usable.append(_sample(closed.label, frames, recording.person, file, closed.segment_id))
 
 

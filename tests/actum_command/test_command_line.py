@@ -20,6 +20,7 @@ COMMANDS = (
     "demo", "up", "router", "watch", "doctor", "segment start", "segment end", "segment toggle", "record", "play",
     "import msr-action3d", "import utkinect", "train", "evaluate", "inspect", "simulate", "scene", "markers",
     "calibrate intrinsics", "calibrate extrinsics", "calibrate up", "import video", "models fetch", "draw",
+    "takes", "takes list", "takes relabel", "takes trim", "takes drop",
 )  # fmt: skip
 
 
