@@ -1,9 +1,7 @@
 """`actum`, or `python -m actum_command`."""
 
 import os
-from typing import Annotated
 
-from actum import keys
 from actum.runtime import needs_extra
 
 with needs_extra("actum-command"):
@@ -26,7 +24,7 @@ with needs_extra("actum-command"):
         takes_commands,
         watching,
     )
-    from actum_command.context import connect, console, fail, say
+    from actum_command.context import connect, console, say
     from actum_command.misspelt import misspelt
 
 app = typer.Typer(
@@ -53,24 +51,7 @@ app.command("evaluate")(learning.evaluate_command)
 app.command("inspect")(inspecting.inspect_command)
 app.command("simulate")(scene.simulate)
 app.command("scene")(scene.scene)
-
-WATCHABLE = {topic.leaf.removesuffix("/{}"): topic for topic in keys.TOPICS}
-
-
-@app.command("watch")
-def watch(
-    topics: Annotated[list[str] | None, typer.Argument(help=f"any of {', '.join(WATCHABLE)}; default: event")] = None,
-) -> None:
-    """Print what happens, one line per message, until Ctrl-C."""
-    unknown = [name for name in topics or [] if name not in WATCHABLE]
-    if unknown:
-        fail(f"no topic {unknown[0]!r}: use any of {', '.join(WATCHABLE)}")
-    with connect() as client:
-        try:
-            for line in watching.lines(client, [WATCHABLE[name] for name in topics or ["event"]]):
-                console.print(line, soft_wrap=True)
-        except KeyboardInterrupt:
-            return
+app.command("watch")(watching.watch)
 
 
 @app.command("doctor")

@@ -240,6 +240,7 @@ def test_a_system_that_has_no_model_says_so_when_it_starts(tmp_path: Path) -> No
 
 def test_a_switch_that_is_left_leaves_the_line_to_the_shell(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(marks, "connect", lambda: nullcontext(None))
+    monkeypatch.setattr(marks, "Answers", lambda _: None)
     left = CliRunner().invoke(app, ["segment", "toggle"], input="")
     assert left.exit_code == 0
     assert left.stdout == "Enter starts action 1, Ctrl-D leaves \n"
