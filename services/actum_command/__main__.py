@@ -1,8 +1,10 @@
 """`actum`, or `python -m actum_command`."""
 
 import os
+from typing import Annotated
 
-from actum.runtime import needs_extra
+from actum import __version__
+from actum.runtime import end_with_parent, needs_extra
 
 with needs_extra("actum-command"):
     import typer
@@ -34,6 +36,23 @@ app = typer.Typer(
     help="Online recognition of what a person does and to which object. ACTUM_CONNECT names the router, "
     "ACTUM_SENSOR the viewpoint.",
 )
+
+
+def _show_version(asked: bool) -> None:
+    if asked:
+        say(f"actum {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _actum(
+    _version: Annotated[
+        bool, typer.Option("--version", is_eager=True, callback=_show_version, help="print the version and end")
+    ] = False,
+) -> None:
+    """Take what goes before every command."""
+
+
 app.command("demo")(demo.demo)
 app.command("up")(system.up)
 app.command("router")(system.router)
@@ -70,6 +89,7 @@ def diagnose() -> None:
 
 def main() -> None:
     """Run the command line."""
+    end_with_parent()
     app()
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from actum import __version__
 from actum.recording import Recorder
 from actum.runtime import RouterUnreachableError
 from actum.settings import ServiceSettings
@@ -29,6 +30,10 @@ def test_every_command_explains_itself(command: str) -> None:
     asked = CliRunner().invoke(app, [*command.split(), "--help"])
     assert asked.exit_code == 0
     assert "Usage" in asked.output
+
+
+def test_the_version_is_told() -> None:
+    assert CliRunner().invoke(app, ["--version"]).stdout == f"actum {__version__}\n"
 
 
 def refusal(*arguments: str) -> str:

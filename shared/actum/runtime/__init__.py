@@ -2,6 +2,7 @@
 
 from actum.runtime.client import Client, Listening, Received
 from actum.runtime.extras import needs_extra
+from actum.runtime.parent import end_with_parent
 from actum.runtime.router import serve_router
 from actum.runtime.serving import Pace, run, run_source, stop_on_signals
 from actum.runtime.session import RouterUnreachableError
@@ -12,6 +13,7 @@ __all__ = [
     "Pace",
     "Received",
     "RouterUnreachableError",
+    "end_with_parent",
     "needs_extra",
     "run",
     "run_source",
