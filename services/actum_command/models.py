@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TransferSpeedColumn
 
-from actum_command.context import errors, fail, say
+from actum_command.context import errors, fail, refuse_ending, say
 from actum_command.model_download import FetchError, Published, fetch
 from sensor_gateway.camera.model_file import default_model
 
@@ -35,6 +35,8 @@ def fetch_command(
     url: Annotated[str, typer.Option(help="another place that has the same file")] = POSE.url,
 ) -> None:
     """Download MediaPipe's pose model (9 MB, Apache-2.0) and check its digest."""
+    if output is not None:
+        refuse_ending(output, ".task")
     path = output or default_model()
     published = replace(POSE, url=url)
     if published.is_at(path):

@@ -13,7 +13,7 @@ from actum.messages import MANUAL, Message, Skeleton
 from actum.node import SECOND_NS
 from actum.recording import Recorder, Recording, RecordingError
 from actum.runtime import Client, Listening, Pace, stop_on_signals
-from actum_command.context import connect, fail, refuse_unwritable, say
+from actum_command.context import connect, fail, refuse_ending, refuse_unwritable, say
 from actum_command.learning import AllOption, PersonOption, chosen, tell_unread
 from actum_command.playing import schedule
 from actum_command.recorder import IMAGES, STREAMS, StreamRecorder
@@ -39,6 +39,7 @@ def record(
 ) -> None:
     """Record a sensor's streams and your marks to a file."""
     refuse_unwritable(output)
+    refuse_ending(output, ".mcap")
     if output.exists():
         fail(f"{output} is there already: name another file, or remove it")
     stop = stop_on_signals()

@@ -48,6 +48,31 @@ def test_what_is_no_recording_is_refused_by_name(tmp_path: Path) -> None:
     assert "a.mcap" in refusal("train", str(tmp_path), "-o", str(tmp_path / "m.npz"))
 
 
+@pytest.mark.parametrize(
+    ("command", "name", "right"),
+    [
+        ("record {}", "push", "push.mcap"),
+        ("simulate {}", "scene.npz", "scene.mcap"),
+        ("train a.mcap -o {}", "model.pkl", "model.npz"),
+        ("evaluate m.npz a.mcap --json {}", "report.txt", "report.json"),
+        ("markers -o {}", "sheet.png", "sheet.pdf"),
+        ("calibrate intrinsics pictures -o {}", "camera.json", "camera.yaml"),
+        ("models fetch -o {}", "pose.npz", "pose.task"),
+    ],
+)
+def test_a_file_that_would_be_named_as_another_kind_is_refused_with_the_right_name(
+    command: str, name: str, right: str, tmp_path: Path
+) -> None:
+    said = refusal(*(word.format(tmp_path / name) for word in command.split()))
+    assert f"{tmp_path / name} does not end in {Path(right).suffix}" in said
+    assert said.endswith(f"name it {tmp_path / right}")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_would_be_named_as_a_picture_is_refused(tmp_path: Path) -> None:
+    assert "name the folder" in refusal("inspect", "model.npz", "-o", str(tmp_path / "map.png"))
+
+
 def test_a_folder_without_recordings_is_refused(tmp_path: Path) -> None:
     assert "no recordings" in refusal("train", str(tmp_path), "-o", str(tmp_path / "m.npz"))
 
