@@ -1,5 +1,7 @@
 """Programs that end are started again, unless they say that they cannot be used as they are set."""
 
+import os
+import signal
 import subprocess
 import sys
 import threading
@@ -85,11 +87,13 @@ def test_what_waits_for_a_router_ends_even_where_its_supervisor_is_killed(
         supervising = subprocess.Popen(
             [sys.executable, "-c", SUPERVISING, *program], stdout=output, stderr=subprocess.STDOUT
         )
+    wait_until(lambda: log.read_text().endswith("waiting for it\n"), "the child runs")
+    child = int(log.read_text().split()[0])
+    assert runs(child)
+    supervising.kill()
+    supervising.wait()
     try:
-        wait_until(lambda: "waiting for it" in log.read_text(), "the child runs")
-        child = int(log.read_text().split()[0])
-        assert runs(child)
+        wait_until(lambda: not runs(child), "the child has ended, too", patience_s=15)
     finally:
-        supervising.kill()
-        supervising.wait()
-    wait_until(lambda: not runs(child), "the child has ended, too", patience_s=15)
+        if runs(child):
+            os.kill(child, signal.SIGKILL)
