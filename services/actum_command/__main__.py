@@ -28,8 +28,9 @@ with needs_extra("actum-command"):
     )
     from actum_command.context import connect, console, say
     from actum_command.misspelt import misspelt
+    from actum_command.plain_help import PlainTyper
 
-app = typer.Typer(
+app = PlainTyper(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,

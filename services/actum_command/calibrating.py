@@ -12,6 +12,7 @@ from actum.keys import CHUNK
 from actum_command.context import console, fail, refuse_ending, say
 from actum_command.finding_up import up
 from actum_command.live_views import live_pairs, live_views
+from actum_command.plain_help import PlainTyper
 from calibrator.board import Board, PatternError
 from calibrator.coverage_picture import coverage_picture
 from calibrator.extrinsics import Extrinsics, find_extrinsics, with_extrinsics
@@ -20,7 +21,7 @@ from calibrator.pairs import Pair, PairingError, pair_files, pictures_in
 from calibrator.pictures import UnusablePictureError, complaints, read_picture
 from calibrator.views import BoardFinder, View
 
-app = typer.Typer(no_args_is_help=True, help="Calibrate cameras; most need the board of actum markers --board.")
+app = PlainTyper(no_args_is_help=True, help="Calibrate cameras; most need the board of actum markers --board.")
 app.command("up")(up)
 
 Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration to write (YAML)")]

@@ -12,10 +12,11 @@ from actum.messages import MANUAL, Segment
 from actum.runtime import Client
 from actum_command.answers import Answers
 from actum_command.context import connect, fail, say, settings
+from actum_command.plain_help import PlainTyper
 
 WAIT_S = 5.0
 
-app = typer.Typer(no_args_is_help=True, help="Mark the start and the end of an action.")
+app = PlainTyper(no_args_is_help=True, help="Mark the start and the end of an action.")
 
 Id = Annotated[str, typer.Argument(help="any name, new for each action")]
 AgentOption = Annotated[int | None, typer.Option(min=1, help="whose action; default: who is nearest to the camera")]

@@ -9,6 +9,7 @@ from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, Trans
 
 from actum_command.context import errors, fail, refuse_ending, say
 from actum_command.model_download import FetchError, Published, fetch
+from actum_command.plain_help import PlainTyper
 from sensor_gateway.camera.model_file import default_model
 
 POSE = Published(
@@ -19,7 +20,7 @@ POSE = Published(
 )
 """MediaPipe's full pose landmarker, revision 1, Apache-2.0."""
 
-app = typer.Typer(no_args_is_help=True, help="Get the model that finds people's poses in a camera's images.")
+app = PlainTyper(no_args_is_help=True, help="Get the model that finds people's poses in a camera's images.")
 
 
 @app.callback()

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
 
 from actum.node import SECOND_NS
 from actum.recording import Recording, RecordingError
@@ -14,13 +13,14 @@ from actum.rewriting import Change, rewrite
 from actum_command.context import fail, say
 from actum_command.learning import AllOption, PersonOption, chosen, tell_unread
 from actum_command.marked_actions import MarkedAction, bounds_ns, dropped, marked_actions, relabelled, trimmed
+from actum_command.plain_help import PlainGroup, PlainTyper
 
 LISTS = "list"
 LONGEST_LABEL = 200
 """Characters that the field holds."""
 
 
-class _ListsByDefault(TyperGroup):
+class _ListsByDefault(PlainGroup):
     """`actum takes REC…` is `actum takes list REC…`."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
@@ -29,7 +29,7 @@ class _ListsByDefault(TyperGroup):
         return super().parse_args(ctx, args)
 
 
-app = typer.Typer(
+app = PlainTyper(
     cls=_ListsByDefault,
     no_args_is_help=True,
     help="List the marked actions of recordings, actum takes REC…, and mend them.",

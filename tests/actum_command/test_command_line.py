@@ -1,3 +1,4 @@
+import re
 import signal
 import socket
 import tempfile
@@ -30,6 +31,17 @@ def test_every_command_explains_itself(command: str) -> None:
     asked = CliRunner().invoke(app, [*command.split(), "--help"])
     assert asked.exit_code == 0
     assert "Usage" in asked.output
+
+
+@pytest.mark.parametrize("command", ["", "segment", "import", "calibrate", "models", "import bimacs", *COMMANDS])
+def test_help_is_without_pythons_types(command: str) -> None:
+    asked = CliRunner().invoke(app, [*command.split(), "--help"], env={"COLUMNS": "200"})
+    assert (
+        re.findall(
+            r"default factory|typing|pathlib|<class|\bNone\b|<(?:str|int|float|bool|path|file)\b|list\[", asked.output
+        )
+        == []
+    )
 
 
 def test_the_version_is_told() -> None:
