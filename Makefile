@@ -10,12 +10,12 @@ export OPENBLAS_NUM_THREADS ?= 1
 install: $(STAMP)  ## make .venv with everything
 
 $(STAMP): pyproject.toml
-	$(PYTHON) -c 'import sys; sys.exit("actum needs Python 3.11 or newer: make PYTHON=python3.12 …" if sys.version_info < (3, 11) else 0)'
+	@$(PYTHON) -c 'import sys; sys.exit("actum needs Python 3.11 or newer: make PYTHON=python3.12 …" if sys.version_info < (3, 11) else 0)'
 	@echo "everything goes into $(VENV), which takes a minute or more"
 	$(PYTHON) -m venv $(VENV)
 	@# PEP 517: without it an older pip warns of how openni is built
 	$(BIN)/pip install --quiet --disable-pip-version-check --use-pep517 -e ".[dev]"
-	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[camera]" \
+	@$(BIN)/pip install --quiet --disable-pip-version-check -e ".[camera]" \
 	  || echo "MediaPipe cannot be installed here: without it there is no source camera, and its tests are skipped" >&2
 	@# MediaPipe's OpenCV has windows and needs libGL; it shares its files with the one that has none and needs nothing.
 	$(BIN)/pip uninstall --quiet --yes opencv-contrib-python

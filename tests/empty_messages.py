@@ -9,10 +9,15 @@ def skeleton(stamp_ns: int, seq: int | None = None, session_id: str = "then") ->
     return Skeleton(stamp_ns=stamp_ns, seq=seq, sensor="kinect0", agents=[], session_id=session_id)
 
 
-def mark(kind: str, stamp_ns: int | None = None, segment_id: str = "one", label: str | None = None) -> Segment:
-    return Segment.model_validate(
-        {"stamp_ns": stamp_ns, "sensor": "kinect0", "kind": kind, "segment_id": segment_id, "label": label}
-    )
+def mark(
+    kind: str,
+    stamp_ns: int | None = None,
+    segment_id: str = "one",
+    label: str | None = None,
+    origin: str | None = None,
+) -> Segment:
+    fields = {"stamp_ns": stamp_ns, "sensor": "kinect0", "kind": kind, "segment_id": segment_id}
+    return Segment.model_validate({**fields, "label": label, "origin": origin})
 
 
 def image(stamp_ns: int, seq: int | None = None) -> Image:

@@ -3,8 +3,8 @@
 import os
 from typing import Annotated
 
-from actum import keys
-from actum.runtime import needs_extra
+from actum import __version__
+from actum.runtime import end_with_parent, needs_extra
 
 with needs_extra("actum-command"):
     import typer
@@ -23,24 +23,44 @@ with needs_extra("actum-command"):
         scene,
         streaming,
         system,
+        takes_commands,
         watching,
     )
-    from actum_command.context import connect, console, fail, say
+    from actum_command.context import connect, console, say
     from actum_command.misspelt import misspelt
+    from actum_command.plain_help import PlainTyper
 
-app = typer.Typer(
+app = PlainTyper(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     help="Online recognition of what a person does and to which object. ACTUM_CONNECT names the router, "
     "ACTUM_SENSOR the viewpoint.",
 )
+
+
+def _show_version(asked: bool) -> None:
+    if asked:
+        say(f"actum {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _actum(
+    _version: Annotated[
+        bool, typer.Option("--version", is_eager=True, callback=_show_version, help="print the version and end")
+    ] = False,
+) -> None:
+    """Take what goes before every command."""
+
+
 app.command("demo")(demo.demo)
 app.command("up")(system.up)
 app.command("router")(system.router)
 app.add_typer(marks.app, name="segment")
 app.command("record")(streaming.record)
 app.command("play")(streaming.play)
+app.add_typer(takes_commands.app, name="takes")
 app.add_typer(importing_commands.app, name="import")
 app.add_typer(models.app, name="models")
 app.command("draw")(drawing.draw_command)
@@ -51,24 +71,7 @@ app.command("evaluate")(learning.evaluate_command)
 app.command("inspect")(inspecting.inspect_command)
 app.command("simulate")(scene.simulate)
 app.command("scene")(scene.scene)
-
-WATCHABLE = {topic.leaf.removesuffix("/{}"): topic for topic in keys.TOPICS}
-
-
-@app.command("watch")
-def watch(
-    topics: Annotated[list[str] | None, typer.Argument(help=f"any of {', '.join(WATCHABLE)}; default: event")] = None,
-) -> None:
-    """Print what happens, one line per message, until Ctrl-C."""
-    unknown = [name for name in topics or [] if name not in WATCHABLE]
-    if unknown:
-        fail(f"no topic {unknown[0]!r}: use any of {', '.join(WATCHABLE)}")
-    with connect() as client:
-        try:
-            for line in watching.lines(client, [WATCHABLE[name] for name in topics or ["event"]]):
-                console.print(line, soft_wrap=True)
-        except KeyboardInterrupt:
-            return
+app.command("watch")(watching.watch)
 
 
 @app.command("doctor")
@@ -87,6 +90,7 @@ def diagnose() -> None:
 
 def main() -> None:
     """Run the command line."""
+    end_with_parent()
     app()
 
 

@@ -9,18 +9,19 @@ import typer
 
 from actum.calibration import Calibration, CalibrationError
 from actum.keys import CHUNK
-from actum_command.context import console, fail, say
+from actum_command.context import console, fail, refuse_ending, say
 from actum_command.finding_up import up
 from actum_command.live_views import live_pairs, live_views
+from actum_command.plain_help import PlainTyper
 from calibrator.board import Board, PatternError
 from calibrator.coverage_picture import coverage_picture
 from calibrator.extrinsics import Extrinsics, find_extrinsics, with_extrinsics
 from calibrator.intrinsics import GOOD_COVERAGE, Intrinsics, PoorSetError, calibration_of, find_intrinsics
-from calibrator.pairs import PICTURES, Pair, PairingError, pair_files, pictures_in
+from calibrator.pairs import Pair, PairingError, pair_files, pictures_in
 from calibrator.pictures import UnusablePictureError, complaints, read_picture
 from calibrator.views import BoardFinder, View
 
-app = typer.Typer(no_args_is_help=True, help="Calibrate cameras; most need the board of actum markers --board.")
+app = PlainTyper(no_args_is_help=True, help="Calibrate cameras; most need the board of actum markers --board.")
 app.command("up")(up)
 
 Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration to write (YAML)")]
@@ -83,7 +84,7 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     """
     if (live is not None) == bool(pairs):
         fail("name pairs of pictures, or use --live MARKERS,PEOPLE")
-    _check_output(output)
+    refuse_ending(output, ".yaml", ".yml")
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
     try:
         cameras = Calibration.load(markers_camera), Calibration.load(people_camera)
@@ -123,14 +124,9 @@ def _files(paths: Sequence[Path]) -> list[Path]:
     return [file for path in paths for file in (pictures_in(path) if path.is_dir() else [path])]
 
 
-def _check_output(output: Path) -> None:
-    if output.suffix.lower() in PICTURES:
-        fail(f"-o {output}: the calibration is YAML, no picture; name it {output.stem}.yaml")
-
-
 def _coverage_picture_of(output: Path, pictures: Sequence[Path]) -> Path:
     """Name the picture of the coverage that is written beside the calibration, over none of those it is made from."""
-    _check_output(output)
+    refuse_ending(output, ".yaml", ".yml")
     picture = output.with_name(f"{output.stem}-coverage.png")
     inputs = {file.resolve() for file in pictures}
     for written in (output, picture):

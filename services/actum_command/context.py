@@ -57,6 +57,13 @@ def connect_whenever() -> Client:
     return connect(wait_s=float("inf"))
 
 
+def refuse_ending(file: Path, *endings: str) -> None:
+    """Fail where a file's name does not end as what is to be written into it does."""
+    if file.suffix.lower() not in endings:
+        name = file.name.removesuffix(file.suffix) + endings[0]
+        fail(f"{file} does not end in {' or '.join(endings)}: name it {file.with_name(name) if file.name else name}")
+
+
 def refuse_unwritable(file: Path) -> None:
     """Fail now where a file could not be written after long work; folders that are missing will be made."""
     try:

@@ -6,8 +6,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from actum.messages import Event, Truth
+from actum_command.describing import describe_event
 from actum_command.paper import TABLE_2
-from actum_command.watching import describe_event
 from model_trainer.evaluation import Evaluation, wilson_interval
 
 

@@ -17,13 +17,14 @@ from actum_command.importing import (
     import_utkinect,
     import_video,
 )
+from actum_command.plain_help import PlainTyper
 from actum_command.progress import bars
 from sensor_gateway.camera.clips import DEFAULT_PATTERN, Naming
 from sensor_gateway.camera.source import estimator_of, optics_of
 from sensor_gateway.settings import Settings
 from sensor_gateway.takes import DatasetError
 
-app = typer.Typer(no_args_is_help=True, help="Turn public data sets and video clips into recordings.")
+app = PlainTyper(no_args_is_help=True, help="Turn public data sets and video clips into recordings.")
 
 Source = Annotated[Path, typer.Argument(help="the folder of the data set", exists=True)]
 Out = Annotated[Path, typer.Argument(help="the folder to write to")]

@@ -15,6 +15,8 @@ from som_classifier.model import Model
 from som_classifier.storage import ModelError, load_model
 
 FORMATS = ("png", "svg")
+FILES = (".png", ".svg", ".html", ".pdf")
+"""Endings of what is written into the folder, or what might be looked for."""
 
 
 def inspect_command(
@@ -31,6 +33,8 @@ def inspect_command(
     began_s = time.monotonic()
     if picture_format not in FORMATS:
         fail(f"--format is {picture_format!r}: use one of {', '.join(FORMATS)}")
+    if output.suffix.lower() in FILES:
+        fail(f"{output} is named as a file: name the folder to write pictures and index.html to")
     if output.exists() and not output.is_dir():
         fail(f"{output} is no folder: name the one to write pictures to")
     if find_spec("matplotlib") is None:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from actum.recording import Recording, RecordingError
-from actum_command.context import console, fail, refuse_unwritable, say
+from actum_command.context import console, fail, refuse_ending, refuse_unwritable, say
 from actum_command.progress import bars
 from model_trainer.evaluation import Evaluation, evaluate
 from model_trainer.leaving_out import leave_one_person_out
@@ -38,6 +38,7 @@ def train_command(
     """Train a model on labelled recordings."""
     began_s = time.monotonic()
     _refuse_place(output)
+    refuse_ending(output, ".npz")
     recordings = chosen(files, person, with_excluded)
     try:
         with bars() as progress:
@@ -73,6 +74,7 @@ def evaluate_command(
     began_s = time.monotonic()
     if json_file is not None:
         _refuse_place(json_file)
+        refuse_ending(json_file, ".json")
     if not by_person and len(files) == 1:
         fail(f"{files[0]} alone cannot be evaluated: name a model and then recordings, or use --leave-one-person-out")
     try:

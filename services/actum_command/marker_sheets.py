@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from actum_command.context import fail, say
+from actum_command.context import fail, refuse_ending, say
 from calibrator.board import Board, Paper, PatternError
 
 MOST_IDS = 1000
@@ -23,6 +23,7 @@ def markers(
     from calibrator.board_sheet import board_sheet  # the PDF library is needed here alone
     from calibrator.marker_sheet import marker_sheet
 
+    refuse_ending(output, ".pdf")
     try:
         pdf = board_sheet(Board(), paper) if board else marker_sheet(family, _numbers(ids), size_mm, paper)
         output.write_bytes(pdf)

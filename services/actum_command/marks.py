@@ -1,18 +1,22 @@
 """`actum segment`: start and end marks from the command line."""
 
+import select
+import sys
 from typing import Annotated, Literal
 
 import typer
 from pydantic import ValidationError
 
 from actum import keys
-from actum.messages import Segment
+from actum.messages import MANUAL, Segment
 from actum.runtime import Client
+from actum_command.answers import Answers
 from actum_command.context import connect, fail, say, settings
+from actum_command.plain_help import PlainTyper
 
 WAIT_S = 5.0
 
-app = typer.Typer(no_args_is_help=True, help="Mark the start and the end of an action.")
+app = PlainTyper(no_args_is_help=True, help="Mark the start and the end of an action.")
 
 Id = Annotated[str, typer.Argument(help="any name, new for each action")]
 AgentOption = Annotated[int | None, typer.Option(min=1, help="whose action; default: who is nearest to the camera")]
@@ -45,15 +49,16 @@ def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
 
 @app.command()
 def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOption = None) -> None:
-    """Switch by keyboard: Enter starts, Enter ends, Ctrl-D leaves."""
+    """Switch by keyboard: Enter starts, Enter ends and shows the answer, Ctrl-D leaves."""
     with connect() as client:
-        number = 0
+        answers, number = Answers(client), 0
         while _waits_for_enter(f"Enter starts action {number + 1}, Ctrl-D leaves "):
             number += 1
             segment_id = f"toggle-{client.run}-{number}"
             _put(client, _mark("start", segment_id, agent, hand, label))
             ended = _waits_for_enter("Enter ends it ")
             _put(client, _mark("end", segment_id))
+            answers.say(segment_id, interrupted=_enter_was_pressed)
             if not ended:
                 return
 
@@ -76,6 +81,7 @@ def _mark(
         "hand": hand,
         "label": label,
         "stamp_ns": stamp_ns,
+        "origin": MANUAL,
     }
     try:
         return Segment.model_validate(fields)
@@ -88,6 +94,11 @@ def _put(client: Client, mark: Segment) -> None:
         fail(f"nobody listens on {keys.key_of(mark)} within {WAIT_S:g} s: is the classifier running? See actum doctor")
     client.put(mark)
     say(f"{mark.kind} {mark.segment_id}")
+
+
+def _enter_was_pressed() -> bool:
+    """Whether somebody at a terminal wants to go on; a script's lines lie there all the time."""
+    return sys.stdin.isatty() and bool(select.select([sys.stdin], [], [], 0)[0])
 
 
 def _waits_for_enter(prompt: str) -> bool:

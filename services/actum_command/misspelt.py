@@ -5,18 +5,13 @@ from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 
-import action_fusion.settings
-import marker_tracker.settings
-import pose_preprocessor.settings
-import sensor_gateway.settings
-import som_classifier.settings
+from actum_command.service_flags import DECLARED
 
 PREFIX = "ACTUM_"
 FILE = PREFIX + "CONFIG"
-OTHERS = ("camera_device", "config", "data", "log", "models", "videos")
+OTHERS = ("camera_device", "config", "data", "log", "models", "parent", "videos")
 """What the runtime, the compose files and the tests are told in the environment."""
-SERVICES = (action_fusion, marker_tracker, pose_preprocessor, sensor_gateway, som_classifier)
-KNOWN = sorted({name for service in SERVICES for name in service.settings.Settings.model_fields})
+KNOWN = sorted({name for settings in DECLARED.values() for name in settings.model_fields})
 
 
 def misspelt(environment: Mapping[str, str]) -> Iterator[str]:

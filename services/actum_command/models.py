@@ -7,8 +7,9 @@ from typing import Annotated
 import typer
 from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TransferSpeedColumn
 
-from actum_command.context import errors, fail, say
+from actum_command.context import errors, fail, refuse_ending, say
 from actum_command.model_download import FetchError, Published, fetch
+from actum_command.plain_help import PlainTyper
 from sensor_gateway.camera.model_file import default_model
 
 POSE = Published(
@@ -19,7 +20,7 @@ POSE = Published(
 )
 """MediaPipe's full pose landmarker, revision 1, Apache-2.0."""
 
-app = typer.Typer(no_args_is_help=True, help="Get the model that finds people's poses in a camera's images.")
+app = PlainTyper(no_args_is_help=True, help="Get the model that finds people's poses in a camera's images.")
 
 
 @app.callback()
@@ -35,6 +36,8 @@ def fetch_command(
     url: Annotated[str, typer.Option(help="another place that has the same file")] = POSE.url,
 ) -> None:
     """Download MediaPipe's pose model (9 MB, Apache-2.0) and check its digest."""
+    if output is not None:
+        refuse_ending(output, ".task")
     path = output or default_model()
     published = replace(POSE, url=url)
     if published.is_at(path):

@@ -5,7 +5,7 @@ from typing import Any
 
 from actum import keys
 from actum.joining import joined
-from actum.messages import Message, Segment
+from actum.messages import REPLAY, Message, Segment
 from actum.recording import Recording
 
 IMAGES = frozenset({keys.COLOR, keys.DEPTH})
@@ -22,8 +22,8 @@ def schedule(
 
     Stamps rise by a second or more between recordings; intervals and gaps in the numbers inside a recording are
     exact. Streams carry the play's session; marks keep their ids, with `#2` … where an earlier recording has used
-    them, lose their labels (nothing live may know them) and their numbers (they are put by this player). `sensor`
-    renames the viewpoint. `topics` are played, by default `playable_topics` of each recording.
+    them, have the origin `replay`, lose their labels (nothing live may know them) and their numbers (they are put by
+    this player). `sensor` renames the viewpoint. `topics` are played, by default `playable_topics` of each recording.
 
     Raises:
         RecordingError: a recording is damaged.
@@ -60,7 +60,9 @@ class _Names:
     def renamed(self, message: Message) -> Message:
         update: dict[str, Any] = {} if self._sensor is None else {"sensor": self._sensor}
         if isinstance(message, Segment):
-            update |= {"segment_id": self._segment(message.segment_id), "label": None, "seq": None}
+            update |= {
+                "segment_id": self._segment(message.segment_id), "label": None, "origin": REPLAY, "seq": None,
+            }  # fmt: skip
         elif hasattr(message, "session_id"):
             update["session_id"] = self._session(message.session_id)
         return message.model_copy(update=update)

@@ -3,8 +3,10 @@
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 from actum.settings import ServiceSettings
+from actum_command.service_flags import Given, arguments_of
 from actum_command.supervising import Program
 from sensor_gateway.simulator.parameters import load_parameters
 
@@ -29,12 +31,17 @@ def simulated_objects() -> dict[str, str]:
     return {"ACTUM_OBJECTS": json.dumps(specs)}
 
 
-def services(settings: ServiceSettings, model: Path | None, objects: Mapping[str, str]) -> list[Program]:
-    """The four services behind the sensor; `objects` is environment that tells the tracker what it may see."""
+def services(
+    settings: ServiceSettings, model: Path | None, objects: Mapping[str, str], given: Given = MappingProxyType({})
+) -> list[Program]:
+    """The four services behind the sensor, told what is given of their settings.
+
+    `objects` is environment that tells the tracker what it may see.
+    """
     environment = {**common(settings), **objects}
     if model is not None:
         environment["ACTUM_MODEL"] = str(model)
-    return [Program(name, name, (), environment) for name in SERVICES]
+    return [Program(name, name, arguments_of(name, given), environment) for name in SERVICES]
 
 
 def gateway(settings: ServiceSettings, arguments: Sequence[str]) -> Program:

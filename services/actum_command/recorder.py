@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from actum import keys
 from actum.codec import DecodeError
-from actum.messages import Action, Message, Posture, Segment, Skeleton
+from actum.messages import MANUAL, Action, Message, Posture, Segment, Skeleton
 from actum.node import SECOND_NS, Tally
 from actum.recording import Recorder
 
@@ -16,6 +16,11 @@ STREAMS = frozenset(
 IMAGES = frozenset({keys.COLOR, keys.DEPTH})
 SKEW_NS = 2 * SECOND_NS
 """How much later than a segment's final action its mark may still arrive."""
+
+
+def origin_of(mark: Segment) -> str:
+    """Tell who put a mark; one that does not say so is the user's."""
+    return mark.origin or MANUAL
 
 
 @dataclass(frozen=True)
@@ -37,25 +42,37 @@ class _Answer:
 
 
 class StreamRecorder:
-    """Stores the messages of the given topics.
+    """Stores the messages of the given topics, of the marks only those of the given origins.
 
     A mark without a stamp waits for its segment's final action, which says where the classifier put it; at the end
     those left get the stamp of the frame that was newest when they came. `label` is given to start marks without one.
 
     Attributes:
         stored: how many messages are in the file.
-        starts: how many of them mark the start of an action.
+        actions: how many of them mark the start of an action, by origin and label.
+        unended: the segments that have a start and no end so far.
+        left_out: how many actions were marked by others, by origin.
         undecodable: payloads that are no message, by kind.
         tally: marks that were thrown away.
     """
 
-    def __init__(self, recorder: Recorder, topics: Collection[keys.Topic] = STREAMS, label: str | None = None) -> None:
-        self.stored = self.starts = 0
+    def __init__(
+        self,
+        recorder: Recorder,
+        topics: Collection[keys.Topic] = STREAMS,
+        label: str | None = None,
+        origins: Collection[str] | None = (MANUAL,),
+    ) -> None:
+        self.stored = 0
+        self.actions: Counter[tuple[str, str | None]] = Counter()
+        self.unended: set[str] = set()
+        self.left_out: Counter[str] = Counter()
         self.undecodable: Counter[str] = Counter()
         self.tally = Tally()
         self._recorder = recorder
         self._topics = topics
         self._label = label
+        self._origins = origins
         self._newest_ns: int | None = None
         self._held: list[_Held] = []
         self._answers: dict[str, _Answer] = {}
@@ -84,6 +101,10 @@ class StreamRecorder:
         self._held = []
 
     def _mark(self, mark: Segment, received_ns: int) -> None:
+        origin = origin_of(mark)
+        if self._origins is not None and origin not in self._origins:
+            self.left_out[origin] += mark.kind == "start"
+            return
         if mark.kind == "start" and mark.label is None:
             mark = mark.model_copy(update={"label": self._label})
         if mark.stamp_ns is not None:
@@ -124,4 +145,12 @@ class StreamRecorder:
     def _store(self, message: Message, received_ns: int) -> None:
         self._recorder.write(message, received_ns)
         self.stored += 1
-        self.starts += isinstance(message, Segment) and message.kind == "start"
+        if isinstance(message, Segment):
+            self._count(message)
+
+    def _count(self, mark: Segment) -> None:
+        if mark.kind == "start":
+            self.actions[origin_of(mark), mark.label] += 1
+            self.unended.add(mark.segment_id)
+        else:
+            self.unended.discard(mark.segment_id)

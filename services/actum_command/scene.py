@@ -7,10 +7,10 @@ from typing import Annotated
 import typer
 
 from actum import keys
-from actum.messages import Segment, Truth
+from actum.messages import SIMULATOR, Segment, Truth
 from actum.recording import Recorder
 from actum.runtime import Client, stop_on_signals
-from actum_command.context import connect_whenever, fail, refuse_unwritable, say
+from actum_command.context import connect_whenever, fail, refuse_ending, refuse_unwritable, say
 from sensor_gateway.simulator import Simulator, balanced_programme, labelled_stream
 
 POLL_S = 0.005
@@ -24,6 +24,7 @@ def simulate(
 ) -> None:
     """Write labelled examples of the simulated scene, without images."""
     refuse_unwritable(output)
+    refuse_ending(output, ".mcap")
     try:
         write_examples(output, repetitions, actor, seed)
     except OSError as error:
@@ -58,4 +59,6 @@ def mark_truth(client: Client, stop: threading.Event) -> None:
 
 def mark_of(truth: Truth) -> Segment:
     """The mark that a switch would have put: no action, no object, no hand."""
-    return Segment(stamp_ns=truth.stamp_ns, sensor=truth.sensor, kind=truth.kind, segment_id=truth.segment_id)
+    return Segment(
+        stamp_ns=truth.stamp_ns, sensor=truth.sensor, kind=truth.kind, segment_id=truth.segment_id, origin=SIMULATOR
+    )

@@ -9,11 +9,11 @@ from typing import Annotated
 import typer
 
 from actum import keys
-from actum.messages import Message, Skeleton
+from actum.messages import MANUAL, Message, Skeleton
 from actum.node import SECOND_NS
 from actum.recording import Recorder, Recording, RecordingError
 from actum.runtime import Client, Listening, Pace, stop_on_signals
-from actum_command.context import connect, fail, refuse_unwritable, say
+from actum_command.context import connect, fail, refuse_ending, refuse_unwritable, say
 from actum_command.learning import AllOption, PersonOption, chosen, tell_unread
 from actum_command.playing import schedule
 from actum_command.recorder import IMAGES, STREAMS, StreamRecorder
@@ -21,6 +21,8 @@ from actum_command.recorder import IMAGES, STREAMS, StreamRecorder
 LEAD_IN_S = 0.3
 WAIT_S = 5.0
 POLL_S = 0.005
+ALL = "all"
+"""Marks of every origin."""
 ON_ITS_WAY_S = 0.3
 """How long a message may take to come that was put before the recording was stopped."""
 
@@ -29,18 +31,22 @@ def record(
     output: Annotated[Path, typer.Argument(help="the file to write")],
     person: Annotated[str, typer.Option(help="who acts; kept in the file, used to split training from test")] = "",
     label: Annotated[str | None, typer.Option(help="what is done in the segments marked while recording")] = None,
+    marks: Annotated[
+        str, typer.Option(help="whose marks are stored: manual (yours and your programs'), simulator, replay; or all")
+    ] = MANUAL,
     images: Annotated[bool, typer.Option(help="also store images (faces are personal data)")] = False,
     seconds: Annotated[float | None, typer.Option(min=0, help="stop by itself; default: at Ctrl-C")] = None,
 ) -> None:
-    """Record a sensor's streams and marks to a file."""
+    """Record a sensor's streams and your marks to a file."""
     refuse_unwritable(output)
+    refuse_ending(output, ".mcap")
     if output.exists():
         fail(f"{output} is there already: name another file, or remove it")
     stop = stop_on_signals()
     deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
     try:
         with connect() as client, Recorder(output, person=person, source=client.sensor) as recorder:
-            stream = StreamRecorder(recorder, STREAMS | IMAGES if images else STREAMS, label)
+            stream = StreamRecorder(recorder, STREAMS | IMAGES if images else STREAMS, label, _origins(marks))
             _store_all(client, stream, output, stop, deadline_s)
     except OSError as error:
         fail(f"{output} cannot be written ({error.strerror}); what there is lies in {output}.part")
@@ -72,16 +78,27 @@ def _store(listening: Listening, stream: StreamRecorder) -> bool:
     return True
 
 
+def _origins(marks: str) -> list[str] | None:
+    """Read which origins are meant, None for all."""
+    return None if marks == ALL else [origin.strip() for origin in marks.split(",")]
+
+
 def _report(stream: StreamRecorder, output: Path, label: str | None) -> None:
     """Say what the file holds and what it lacks."""
-    say(f"{stream.stored} messages, {stream.starts} marked actions, written to {output}")
+    say(f"{stream.stored} messages, {stream.actions.total()} marked actions, written to {output}")
+    for (origin, named), count in stream.actions.items():
+        say(f"  {count} marked by {origin}, {'without a label' if named is None else f'labelled {named!r}'}")
+    if stream.unended:
+        say(f"  without an end, so nothing is learnt from them: {', '.join(sorted(stream.unended))}", style="yellow")
+    for origin, count in (+stream.left_out).items():
+        say(f"  {count} marked by {origin} left out: --marks {origin} or --marks {ALL} takes such")
     if stream.tally.rejects:
         say(f"not stored: {_listed(stream.tally.rejects)} (the last: {stream.tally.last_error})", style="yellow")
     if stream.undecodable:
         say(f"not decodable: {stream.undecodable.total()} ({_listed(stream.undecodable)})", style="yellow")
     if not stream.stored:
         say("nothing was stored: does the sensor's gateway run, on this sensor? See actum doctor", style="yellow")
-    elif label is not None and not stream.starts:
+    elif label is not None and not stream.actions:
         say(f"nothing of it is labelled {label!r}: mark starts and ends with actum segment toggle", style="yellow")
 
 

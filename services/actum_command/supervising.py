@@ -11,6 +11,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Self
 
+from actum.runtime.parent import PARENT
 from actum.runtime.serving import TAKEN, UNUSABLE
 
 RESTART_S = (0.5, 1.0, 2.0, 4.0, 8.0)
@@ -46,6 +47,7 @@ class _Child:
 class Supervisor:
     """Starts programs, restarts those that end by themselves, and stops all at the end.
 
+    They end with this process, even where it is killed.
     Their output goes to `log`, or to this process's own.
     """
 
@@ -109,7 +111,7 @@ class Supervisor:
     def _spawn(self, program: Program) -> subprocess.Popen[bytes]:
         return subprocess.Popen(
             [sys.executable, "-m", program.module, *program.arguments],
-            env={**os.environ, **program.environment},
+            env={**os.environ, **program.environment, PARENT: str(os.getpid())},
             stdin=subprocess.DEVNULL,
             stdout=self._log,
             stderr=subprocess.STDOUT if self._log else None,

@@ -14,6 +14,7 @@ from actum.runtime import Client, RouterUnreachableError, serve_router, stop_on_
 from actum.settings import DEFAULT_ENDPOINT, ServiceSettings, SettingsError, host_and_port
 from actum_command import processes
 from actum_command.context import fail, say, settings
+from actum_command.service_flags import DECLARED, Given, arguments_of, flag_of, with_service_flags
 from actum_command.supervising import Program, Supervisor, UnusableError
 from som_classifier.storage import ModelError, load_model
 
@@ -24,6 +25,7 @@ NO_FILES = {
     "none": "--source recording",
     "camera": "a video file in ACTUM_CAMERA",
 }
+NO_CAMERA = ("simulator", "recording", "msr-action3d", "utkinect")
 NO_MARKS = "nobody marks actions here: 'actum segment toggle' does, and 'actum play' beside --source none"
 NO_MODEL = (
     "no --model: every action is answered with 'no model'. For the simulated scene: "
@@ -46,26 +48,33 @@ def router(
         fail(str(error))
 
 
+@with_service_flags
 def up(
     source: Annotated[
-        str, typer.Option(help="simulator, camera, realsense, openni2, recording, msr-action3d, utkinect or none")
-    ] = "simulator",
+        str | None,
+        typer.Option(
+            help="simulator, camera, realsense, openni2, recording, msr-action3d, utkinect or none; default: camera "
+            "where --camera names one, else simulator"
+        ),
+    ] = None,
     path: Annotated[Path | None, typer.Option(help="what a source from files plays")] = None,
     model: Annotated[
         Path | None, typer.Option(help="the model; it may come or change later", envvar="ACTUM_MODEL")
     ] = None,
-    actor: Annotated[int, typer.Option(min=0, help="simulator: who acts")] = 0,
+    *,
+    given: Given,
 ) -> None:
     """Run router and all services here, restart what ends, until Ctrl-C."""
     here = settings()
+    source = _source(source, given)
     refuse_taken(here.connect)
     if path is not None and source in NO_FILES:
         fail(f"source {source} takes no --path: to have {path} played, name {NO_FILES[source]}")
-    arguments = ["--source", source, "--actor", str(actor), *(["--path", str(path)] if path else [])]
     objects = processes.simulated_objects() if source == "simulator" else {}
-    programs = processes.services(here, model, objects)
+    programs = processes.services(here, model, objects, given)
     if source != "none":
-        programs.append(processes.gateway(here, arguments))
+        play = ["--path", str(path)] if path else []
+        programs.append(processes.gateway(here, ["--source", source, *play, *arguments_of("sensor_gateway", given)]))
     if source == "simulator":
         programs.append(processes.scene(here))
     say(f"actum starts on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
@@ -77,6 +86,22 @@ def up(
         supervisor.start(processes.router(here))
         _wait_for_router(here, stop)
         supervise(supervisor, programs, stop)
+
+
+def _source(named: str | None, given: Given) -> str:
+    """Tell which source is meant, or fail where what is given would be told to nobody."""
+    if named is None:
+        return "camera" if "camera" in given else "simulator"
+    unheard = [name for name in given if not any(name in DECLARED[service].model_fields for service in _started(named))]
+    if unheard:
+        fail(f"{flag_of(unheard[0])} is a setting of sensor_gateway, which --source none does not start")
+    if "camera" in given and named in NO_CAMERA:
+        fail(f"source {named} takes no --camera: leave --source out, or name camera")
+    return named
+
+
+def _started(source: str) -> list[str]:
+    return [*processes.SERVICES, *(() if source == "none" else ("sensor_gateway",))]
 
 
 def supervise(supervisor: Supervisor, programs: list[Program], stop: threading.Event) -> None:

@@ -1,70 +1,63 @@
 """`actum watch`: what happens on a sensor's keys, one line per message."""
 
 from collections.abc import Iterator
+from typing import Annotated
 
+import typer
+from pydantic_core import to_json
 from rich.markup import escape
 
 from actum import keys
-from actum.messages import Action, Event, Message, Objects, Segment, Skeleton, Status, TrackedObject
+from actum.codec import schema_name
 from actum.runtime import Client, Received
+from actum_command.context import connect, console, fail
+from actum_command.describing import describe, time_of
+
+WATCHABLE = {topic.leaf.removesuffix("/{}"): topic for topic in keys.TOPICS}
 
 
-def lines(client: Client, topics: list[keys.Topic]) -> Iterator[str]:
-    """Yield a line for each message on the topics, from now on."""
+def watch(
+    topics: Annotated[list[str] | None, typer.Argument(help=f"any of {', '.join(WATCHABLE)}; default: event")] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="one JSON object a line, with all fields; bytes are URL-safe base64")
+    ] = False,
+) -> None:
+    """Print what happens, one line per message: when, on which key, in which segment, what; until Ctrl-C."""
+    unknown = [name for name in topics or [] if name not in WATCHABLE]
+    if unknown:
+        fail(f"no topic {unknown[0]!r}: use any of {', '.join(WATCHABLE)}")
+    with connect() as client:
+        try:
+            for received in heard(client, [WATCHABLE[name] for name in topics or ["event"]]):
+                if as_json:
+                    print(json_line(received), flush=True)
+                else:
+                    console.print(line(received), soft_wrap=True)
+        except KeyboardInterrupt:
+            return
+
+
+def heard(client: Client, topics: list[keys.Topic]) -> Iterator[Received]:
+    """Yield what comes on the topics, from now on."""
     leaves = {topic.leaf for topic in topics}
     only = keys.pattern(topics[0], client.sensor) if len(topics) == 1 else keys.everything(client.sensor)
-    for received in client.listen(only):
-        if _leaf(received.key) in leaves:
-            yield line(received)
+    return (received for received in client.listen(only) if _leaf(received.key) in leaves)
 
 
 def line(received: Received) -> str:
     """Describe one received message."""
     if received.message is None:
         return f"[red]{escape(received.key)} {escape(str(received.error))}[/red]"
-    return f"[dim]{escape(received.key)}[/dim] {describe(received.message)}"
+    return f"[dim]{time_of(received.message)} {escape(received.key)}[/dim] {describe(received.message)}"
 
 
-def describe(message: Message) -> str:
-    """Say the gist of a message in one line."""
-    if isinstance(message, Event):
-        return describe_event(message)
-    if isinstance(message, Action):
-        return _describe_action(message)
-    if not message.valid:
-        return f"[yellow]not valid: {escape(message.reason or '')}[/yellow]"
-    return _describe_stream(message)
-
-
-def _describe_action(action: Action) -> str:
-    if not action.valid:
-        return f"[yellow]{escape(action.segment_id)} rejected: {escape(action.reason or '')}[/yellow]"
-    kind = "final" if action.final else "so far"
-    answer = f"{escape(str(action.action))} {action.confidence:.2f}, {action.frames} frames"
-    return f"{escape(action.segment_id)} {kind}: {answer}"
-
-
-def _describe_stream(message: Message) -> str:
-    match message:
-        case Skeleton():
-            gist = f"{len(message.agents)} agents"
-        case Objects():
-            gist = ", ".join(f"{o.id} {escape(o.name)}{_hidden(o)}" for o in message.objects)
-        case Segment():
-            gist = f"{message.kind} {escape(message.segment_id)}"
-        case Status():
-            return f"{escape(message.state)}, {sum(message.rates.values()):.0f} messages/s"
-        case _:
-            gist = message.SCHEMA
-    stamp = "" if message.stamp_ns is None else f" at {message.stamp_ns / 1e9:.3f} s"
-    return f"{gist}{stamp}"
-
-
-def describe_event(event: Event) -> str:
-    """Say an event: the sentence, or why there is none."""
-    if not event.valid:
-        return f"[yellow]{escape(event.segment_id)} rejected: {escape(event.reason or '')}[/yellow]"
-    return f"[bold]{escape(event.sentence)}[/bold]"
+def json_line(received: Received) -> str:
+    """Write one received message as JSON: key, schema and every field, or why it is no message."""
+    if received.message is None:
+        fields = {"key": received.key, "error": str(received.error)}
+    else:
+        fields = {"key": received.key, "schema": schema_name(received.message), **received.message.model_dump()}
+    return to_json(fields, bytes_mode="base64", inf_nan_mode="null").decode()
 
 
 def _leaf(key: str) -> str | None:
@@ -72,9 +65,3 @@ def _leaf(key: str) -> str | None:
         return keys.parse(key).topic.leaf
     except keys.InvalidKeyError:
         return None
-
-
-def _hidden(found: TrackedObject) -> str:
-    if found.seen:
-        return ""
-    return " (covered, followed)" if found.followed else " (hidden)"

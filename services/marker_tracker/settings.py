@@ -28,7 +28,7 @@ class Settings(ServiceSettings):
     marker_size_m: float = Field(0.08, gt=0, le=10, description="side of a marker's black square")
     objects: dict[int, ObjectSpec] = Field(
         default_factory=dict,
-        description='what carries which marker, as {"3": {"name": "cup", "size_m": 0.06}}; empty: every marker counts',
+        description='what carries which marker, as {"3": {"name": "cup", "size_m": 0.05}}; empty: every marker counts',
     )
     memory_s: float = Field(1.0, gt=0, le=60, description="how long a hidden object stays listed, by stamps")
     calibrated_size_px: tuple[Annotated[int, Field(gt=0)], Annotated[int, Field(gt=0)]] | None = Field(

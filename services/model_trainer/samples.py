@@ -141,6 +141,14 @@ def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[Closed]:
     return collector.closed
 
 
+def why_unusable(closed: Closed) -> str | None:
+    """Say why no sample can be made of a segment's frames; None where one can."""
+    usable = sum(frame.valid for frame in closed.frames)
+    if closed.reason is None and usable < Model.min_frames:
+        return f"{usable} usable frames, at least {Model.min_frames} are needed"
+    return closed.reason
+
+
 class _Collector:
     """A node that keeps what the segmenter closes."""
 
@@ -168,10 +176,10 @@ def _files(path: Path) -> list[Path]:
 
 
 def _cut(recording: Recording, sensor: str, closed: Closed, label: str) -> SegmentSample | Unusable:
-    frames = [frame for frame in closed.frames if frame.valid]
-    if closed.reason or len(frames) < Model.min_frames:
-        reason = closed.reason or f"{len(frames)} usable frames, at least {Model.min_frames} are needed"
+    reason = why_unusable(closed)
+    if reason is not None:
         return Unusable(str(recording.path), closed.segment_id, reason, sensor)
+    frames = [frame for frame in closed.frames if frame.valid]
     movements = [frame.movement for frame in frames if frame.movement is not None]
     return SegmentSample(
         label,

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from actum.messages import Hand, Posture, Segment
-from actum.node import Tally, Tick
+from actum.node import SECOND_NS, Tally, Tick
 from actum.stamps import Order
 from som_classifier.streams import LONGEST_NS, SKEW_NS, Encode, Frame, Streams
 
@@ -115,10 +115,17 @@ class Segmenter:
                 segment.waiting_since_ns = tick.monotonic_ns
             waited_ns = tick.monotonic_ns - segment.waiting_since_ns
             if segment.end_ns is None and waited_ns > LONGEST_NS + SKEW_NS:
-                closed.append(self._reject(segment, NO_END))
+                closed.append(self._reject(segment, self._why_no_end(segment)))
             elif segment.end_ns is not None and waited_ns > SKEW_NS:
                 closed.append(self._close(segment))
         return closed
+
+    def _why_no_end(self, segment: OpenSegment) -> str:
+        """Say when the stream ended that an end has been waited for in."""
+        newest_ns = self._streams.newest_ns
+        if newest_ns is None or segment.start_ns is None or newest_ns < segment.start_ns:
+            return "start without end: no frame came after the start"
+        return f"start without end: the frames ended {(newest_ns - segment.start_ns) / SECOND_NS:.1f} s after the start"
 
     def open_at(self, agent: int, stamp_ns: int) -> list[OpenSegment]:
         """List the segments of an agent that hold this instant."""

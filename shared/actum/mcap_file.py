@@ -50,7 +50,7 @@ class McapFile:
         Raises:
             RecordingError: the file cannot be opened, is no MCAP, or is damaged.
         """
-        for record in self._records():
+        for record in self.records():
             if isinstance(record, Metadata) and record.name == name:
                 return dict(record.metadata)
         return {}
@@ -63,7 +63,7 @@ class McapFile:
         """
         schemas: dict[int, str] = {}
         channels: dict[int, Channel] = {}
-        for record in self._records():
+        for record in self.records():
             match record:
                 case Schema():
                     schemas[record.id] = record.name
@@ -73,10 +73,15 @@ class McapFile:
                     channel = channels.get(record.channel_id)
                     if channel is None:
                         raise self._damaged(f"a message of the unknown channel {record.channel_id}")
-                    encoding = channel.metadata.get("encoding", _encoding(schemas.get(channel.schema_id, "")))
+                    encoding = encoding_of(channel, schemas.get(channel.schema_id, ""))
                     yield StoredMessage(record.publish_time, channel.topic, record.data, encoding)
 
-    def _records(self) -> Iterator[McapRecord]:
+    def records(self) -> Iterator[McapRecord]:
+        """Yield every record of the file, those of its chunks among them, up to its end or to where it breaks off.
+
+        Raises:
+            RecordingError: as `metadata`.
+        """
         with self._opened() as file:
             reader = StreamReader(cast(BinaryIO, _Exact(file)), validate_crcs=True)
             try:
@@ -115,6 +120,6 @@ class _Exact:
         return self._file.read(length)
 
 
-def _encoding(schema: str) -> str:
-    """Name the encoding by the channel's schema, where no metadata of ours does."""
-    return f"application/msgpack;{schema}" if schema else ""
+def encoding_of(channel: Channel, schema: str) -> str:
+    """Tell the encoding of a channel's messages; where no metadata of ours names it, its schema does."""
+    return channel.metadata.get("encoding", f"application/msgpack;{schema}" if schema else "")

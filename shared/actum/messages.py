@@ -26,6 +26,9 @@ Reason = Annotated[str, Field(max_length=1000)]
 Deviation = Annotated[FiniteFloat, Field(ge=0)]
 Hand = Literal["left", "right"]
 
+MANUAL, SIMULATOR, REPLAY = "manual", "simulator", "replay"
+"""Who puts marks: a person, the simulated scene, a recording that is played."""
+
 MOST_AGENTS = 64
 MOST_OBJECTS = 1024
 _SHORTEST = 1e-3
@@ -171,7 +174,11 @@ class Objects(Message):
 
 
 class Segment(Message):
-    """A start or end mark; anyone may put one with just `kind` and `segment_id`."""
+    """A start or end mark; anyone may put one with just `kind` and `segment_id`.
+
+    `origin` tells who put it: `manual` for a person at a switch, `simulator` for the simulated scene, `replay` for a
+    recording that is played. A mark without it is the user's, by a program of theirs.
+    """
 
     SCHEMA = "actum.segment"
     stamp_ns: Stamp | None = None  # type: ignore[assignment]
@@ -180,6 +187,7 @@ class Segment(Message):
     agent: Annotated[int, Field(ge=1, lt=2**31)] | None = None
     hand: Hand | None = None
     label: Name | None = None
+    origin: Name | None = None
 
 
 class Action(Message):

@@ -1,10 +1,13 @@
 """Settings that cannot be used are refused, naming what is wrong."""
 
+import importlib
+import re
 from pathlib import Path
 
 import pytest
 from pydantic import ValidationError
 
+from actum.command_line import from_command_line
 from actum.runtime.session import client_config
 from actum.settings import ServiceSettings, SettingsError, complaint, host_and_port
 
@@ -60,3 +63,32 @@ def test_a_zenoh_configuration_that_cannot_be_used_is_refused_by_name(content: s
     with pytest.raises(SettingsError, match=r"zenoh\.json5 is no Zenoh configuration") as refused:
         client_config(ServiceSettings(zenoh_config=file))
     assert "\n" not in str(refused.value)
+
+
+PYTHONS_WORDS = re.compile(
+    r"default factory|typing|pathlib|<class|None|\\b(str|int|float|bool|list|dict|tuple|frozenset)\\b[\\[(]?"
+)
+
+
+@pytest.mark.parametrize(
+    "service", ["sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion"]
+)
+def test_a_service_explains_its_flags_without_pythons_types(
+    service: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", [service, "--help"])
+    monkeypatch.setenv("COLUMNS", "200")
+    with pytest.raises(SystemExit) as ended:
+        from_command_line(importlib.import_module(f"{service}.settings").Settings, service)
+    assert ended.value.code == 0
+    shown = capsys.readouterr().out
+    assert "--connect TEXT" in shown
+    assert PYTHONS_WORDS.findall(shown) == []
+
+
+def test_flags_come_before_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ACTUM_SENSOR", "door")
+    monkeypatch.setattr("sys.argv", ["service"])
+    assert from_command_line(ServiceSettings, "service").sensor == "door"
+    monkeypatch.setattr("sys.argv", ["service", "--sensor", "window"])
+    assert from_command_line(ServiceSettings, "service").sensor == "window"

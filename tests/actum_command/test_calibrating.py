@@ -91,7 +91,7 @@ def test_a_calibration_named_as_a_picture_is_refused(folder: Path, tmp_path: Pat
     any_file.write_text("")
     cameras = ["--markers-camera", any_file, "--people-camera", any_file] if command == "extrinsics" else []
     said = run("calibrate", command, *cameras, folder, "-o", tmp_path / name, code=1)
-    assert "the calibration is YAML, no picture; name it result.yaml" in said
+    assert f"does not end in .yaml or .yml: name it {tmp_path / 'result.yaml'}" in said
     assert not (tmp_path / name).exists()
 
 

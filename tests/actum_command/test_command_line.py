@@ -1,3 +1,4 @@
+import re
 import signal
 import socket
 import tempfile
@@ -8,6 +9,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from actum import __version__
 from actum.recording import Recorder
 from actum.runtime import RouterUnreachableError
 from actum.settings import ServiceSettings
@@ -20,7 +22,7 @@ COMMANDS = (
     "demo", "up", "router", "watch", "doctor", "segment start", "segment end", "segment toggle", "record", "play",
     "import msr-action3d", "import utkinect", "import msrc12", "train", "evaluate", "inspect", "simulate",
     "scene", "markers", "calibrate intrinsics", "calibrate extrinsics", "calibrate up", "import video", "models fetch",
-    "draw",
+    "draw", "takes", "takes list", "takes relabel", "takes trim", "takes drop",
 )  # fmt: skip
 
 
@@ -29,6 +31,21 @@ def test_every_command_explains_itself(command: str) -> None:
     asked = CliRunner().invoke(app, [*command.split(), "--help"])
     assert asked.exit_code == 0
     assert "Usage" in asked.output
+
+
+@pytest.mark.parametrize("command", ["", "segment", "import", "calibrate", "models", "import bimacs", *COMMANDS])
+def test_help_is_without_pythons_types(command: str) -> None:
+    asked = CliRunner().invoke(app, [*command.split(), "--help"], env={"COLUMNS": "200"})
+    assert (
+        re.findall(
+            r"default factory|typing|pathlib|<class|\bNone\b|<(?:str|int|float|bool|path|file)\b|list\[", asked.output
+        )
+        == []
+    )
+
+
+def test_the_version_is_told() -> None:
+    assert CliRunner().invoke(app, ["--version"]).stdout == f"actum {__version__}\n"
 
 
 def refusal(*arguments: str) -> str:
@@ -41,6 +58,31 @@ def refusal(*arguments: str) -> str:
 def test_what_is_no_recording_is_refused_by_name(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_text("nothing of the kind")
     assert "a.mcap" in refusal("train", str(tmp_path), "-o", str(tmp_path / "m.npz"))
+
+
+@pytest.mark.parametrize(
+    ("command", "name", "right"),
+    [
+        ("record {}", "push", "push.mcap"),
+        ("simulate {}", "scene.npz", "scene.mcap"),
+        ("train a.mcap -o {}", "model.pkl", "model.npz"),
+        ("evaluate m.npz a.mcap --json {}", "report.txt", "report.json"),
+        ("markers -o {}", "sheet.png", "sheet.pdf"),
+        ("calibrate intrinsics pictures -o {}", "camera.json", "camera.yaml"),
+        ("models fetch -o {}", "pose.npz", "pose.task"),
+    ],
+)
+def test_a_file_that_would_be_named_as_another_kind_is_refused_with_the_right_name(
+    command: str, name: str, right: str, tmp_path: Path
+) -> None:
+    said = refusal(*(word.format(tmp_path / name) for word in command.split()))
+    assert f"{tmp_path / name} does not end in {Path(right).suffix}" in said
+    assert said.endswith(f"name it {tmp_path / right}")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_would_be_named_as_a_picture_is_refused(tmp_path: Path) -> None:
+    assert "name the folder" in refusal("inspect", "model.npz", "-o", str(tmp_path / "map.png"))
 
 
 def test_a_folder_without_recordings_is_refused(tmp_path: Path) -> None:
@@ -241,6 +283,7 @@ def test_a_system_that_has_no_model_says_so_when_it_starts(tmp_path: Path) -> No
 
 def test_a_switch_that_is_left_leaves_the_line_to_the_shell(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(marks, "connect", lambda: nullcontext(None))
+    monkeypatch.setattr(marks, "Answers", lambda _: None)
     left = CliRunner().invoke(app, ["segment", "toggle"], input="")
     assert left.exit_code == 0
     assert left.stdout == "Enter starts action 1, Ctrl-D leaves \n"

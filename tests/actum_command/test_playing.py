@@ -7,7 +7,7 @@ import pytest
 
 from actum import keys
 from actum.joining import PAUSE_NS
-from actum.messages import Image, Message, Objects, Posture, Segment, Skeleton
+from actum.messages import REPLAY, Image, Message, Objects, Posture, Segment, Skeleton
 from actum.recording import Recorder, Recording
 from actum_command.playing import playable_topics, schedule
 from empty_messages import action, image, mark, skeleton
@@ -124,3 +124,8 @@ def test_the_viewpoint_can_be_renamed(record: Record) -> None:
     recording = record("first", skeleton(1), mark("start", 1))
     played = schedule([recording], "play", start_ns=0, sensor="door")
     assert [keys.key_of(message) for message in played] == ["actum/door/segment", "actum/door/skeleton"]
+
+
+def test_a_played_mark_says_that_it_is_one(record: Record) -> None:
+    played = schedule([record("first", mark("start", 1, origin="manual"), mark("end", 2))], "play", start_ns=0)
+    assert [message.origin for message in played if isinstance(message, Segment)] == [REPLAY, REPLAY]

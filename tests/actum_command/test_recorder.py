@@ -6,11 +6,14 @@ import pytest
 from mcap.reader import make_reader
 
 from actum import keys
-from actum.messages import Image, Message, Segment, Skeleton
+from actum.messages import MANUAL, REPLAY, SIMULATOR, Image, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS, Tally
 from actum.recording import Recorder, Recording
+from actum_command import marks
 from actum_command.recorder import IMAGES, SKEW_NS, STREAMS, StreamRecorder
+from actum_command.scene import mark_of
 from empty_messages import action, image, mark, skeleton, status
+from sensor_gateway.simulator import Simulator, balanced_programme, labelled_stream
 
 
 class Take:
@@ -133,3 +136,35 @@ def test_the_time_of_receipt_is_kept(tmp_path: Path) -> None:
     with (tmp_path / "a.mcap").open("rb") as file:
         times = {(m.publish_time, m.log_time) for _, _, m in make_reader(file).iter_messages()}
     assert times == {(10, 500), (10, 600), (20, 700)}
+
+
+def test_marks_of_others_are_left_out_and_counted(tmp_path: Path) -> None:
+    of_the_scene = [mark("start", 1, "s1", origin=SIMULATOR), mark("end", 2, "s1", origin=SIMULATOR)]
+    own = [mark("start", 3, "mine", origin=MANUAL), mark("end", 4, "mine", origin=MANUAL)]
+    of_a_program = [mark("start", 5, "robot"), mark("end", 6, "robot")]
+    with Recorder(tmp_path / "a.mcap", person="1", source="live") as recorder:
+        stream = StreamRecorder(recorder, label="push")
+        for message in (*of_the_scene, *own, *of_a_program, mark("start", 7, "played", origin=REPLAY)):
+            stream.take(message, received_ns=0)
+    stored = [m for m in Recording(tmp_path / "a.mcap").messages() if isinstance(m, Segment)]
+    assert [(m.segment_id, m.label) for m in stored if m.kind == "start"] == [("mine", "push"), ("robot", "push")]
+    assert len(stored) == 4
+    assert stream.actions == {(MANUAL, "push"): 2}
+    assert stream.left_out == {SIMULATOR: 1, REPLAY: 1}
+
+
+@pytest.mark.parametrize(("origins", "stored"), [((SIMULATOR,), ["s1"]), (None, ["s1", "mine"])])
+def test_marks_of_others_are_stored_where_asked_for(origins: object, stored: list[str], take: Take) -> None:
+    recorded = take.record(mark("start", 1, "s1", origin=SIMULATOR), mark("start", 2, "mine"), origins=origins)
+    assert [m.segment_id for m in recorded if isinstance(m, Segment)] == stored
+
+
+def test_the_scene_and_the_switch_say_that_marks_are_theirs() -> None:
+    truth = Truth(
+        stamp_ns=1, sensor="kinect0", kind="start", segment_id="s1", agent=1, hand="left", action="lift", object_id=1,
+        object_name="cup", displacement_m=None,
+    )  # fmt: skip
+    assert mark_of(truth).origin == SIMULATOR
+    assert marks._mark("start", "a").origin == MANUAL
+    labelled = labelled_stream(Simulator(balanced_programme(1, 0), image_hz=0))
+    assert next(m for m in labelled if isinstance(m, Segment)).origin == SIMULATOR

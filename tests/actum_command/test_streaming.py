@@ -10,7 +10,7 @@ from mcap.writer import Writer
 from typer.testing import CliRunner
 
 from actum import codec, keys
-from actum.messages import Message
+from actum.messages import MANUAL, SIMULATOR, Message
 from actum.recording import Recorder, Recording
 from actum.runtime import Received
 from actum_command import streaming
@@ -88,6 +88,21 @@ def test_only_what_is_stored_is_counted(live: Live, tmp_path: Path) -> None:
     assert len(list(Recording(tmp_path / "a.mcap").messages())) == 3
     assert "not stored" not in recorded.stdout
     assert "not decodable" not in recorded.stdout
+
+
+def test_whose_actions_are_stored_and_whose_are_not_is_told(live: Live, tmp_path: Path) -> None:
+    scene = [mark("start", 2, "s1", origin=SIMULATOR), mark("end", 3, "s1", origin=SIMULATOR)]
+    own = [mark("start", 4, "mine", origin=MANUAL), mark("end", 5, "mine", origin=MANUAL), mark("start", 6, "robot")]
+    live.comes(skeleton(1), *scene, *own)
+    told = actum("record", tmp_path / "a.mcap", "--label", "push").stdout
+    assert "2 marked by manual, labelled 'push'" in told
+    assert "1 marked by simulator left out: --marks simulator or --marks all takes such" in told
+    assert "without an end, so nothing is learnt from them: robot" in told
+    live.comes(skeleton(1), *scene, *own)
+    told = actum("record", tmp_path / "b.mcap", "--marks", "manual, simulator").stdout
+    assert "3 marked actions" in told
+    assert "1 marked by simulator, without a label" in told
+    assert "left out" not in told
 
 
 def test_what_came_before_the_stop_is_stored(live: Live, tmp_path: Path) -> None:

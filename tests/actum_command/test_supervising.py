@@ -1,5 +1,9 @@
 """Programs that end are started again, unless they say that they cannot be used as they are set."""
 
+import os
+import signal
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -11,7 +15,7 @@ import typer
 from actum.runtime.serving import TAKEN, UNUSABLE
 from actum_command.supervising import ELSEWHERE_S, Program, Supervisor, UnusableError
 from actum_command.system import supervise
-from live import wait_until
+from live import free_endpoint, wait_until
 
 
 @pytest.fixture
@@ -67,3 +71,46 @@ def test_a_system_ends_with_the_line_of_the_program_that_cannot_be_used(
     assert ended.value.exit_code == 1
     assert told.out == "mode: no such thing\n"
     assert "worker cannot run as it is set" in told.err
+
+
+SUPERVISING = """
+import sys, time
+from actum_command.supervising import Program, Supervisor
+
+with Supervisor() as supervisor:
+    supervisor.start(Program(sys.argv[1], sys.argv[1], sys.argv[2:]))
+    print(supervisor._children[0].process.pid, flush=True)
+    time.sleep(600)
+"""
+
+
+def runs(pid: int) -> bool:
+    """Whether a process is there and not merely waiting to be collected."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+@pytest.mark.system
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks for processes in /proc")
+@pytest.mark.parametrize("program", [["pose_preprocessor"], ["actum_command", "scene"]])
+def test_what_waits_for_a_router_ends_even_where_its_supervisor_is_killed(
+    program: list[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("ACTUM_CONNECT", free_endpoint())
+    log = tmp_path / "log"
+    with log.open("w") as output:
+        supervising = subprocess.Popen(
+            [sys.executable, "-c", SUPERVISING, *program], stdout=output, stderr=subprocess.STDOUT
+        )
+    wait_until(lambda: log.read_text().endswith("waiting for it\n"), "the child runs")
+    child = int(log.read_text().split()[0])
+    assert runs(child)
+    supervising.kill()
+    supervising.wait()
+    try:
+        wait_until(lambda: not runs(child), "the child has ended, too", patience_s=15)
+    finally:
+        if runs(child):
+            os.kill(child, signal.SIGKILL)

@@ -22,7 +22,7 @@ def test_the_example_can_be_used() -> None:
     catalogue = load(EXAMPLE)
     assert catalogue.names == {1: "cup", 2: "book", 3: "box"}
     assert catalogue.wanted() == {"DICT_4X4_50": {1, 7}, "DICT_APRILTAG_36H11": {10, 11, 12}}
-    assert [catalogue.find(*key).size_m for key in (("DICT_4X4_50", 7), ("DICT_APRILTAG_36H11", 12))] == [0.05, 0.04]
+    assert [catalogue.find(*key).size_m for key in (("DICT_4X4_50", 7), ("DICT_APRILTAG_36H11", 12))] == [0.08, 0.04]
 
 
 def test_what_an_object_leaves_out_is_the_files() -> None:

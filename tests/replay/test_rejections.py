@@ -21,6 +21,8 @@ FAR = 10**7
 """A frame of days ahead."""
 
 NO_END = "start without end: no end within 60 s"
+FRAMES_ENDED = "start without end: the frames ended 1.9 s after the start"
+NO_FRAME = "start without end: no frame came after the start"
 
 
 def frames() -> list[Skeleton]:
@@ -62,9 +64,9 @@ def reasons(messages: list[Message]) -> list[tuple[str, str | None]]:
 
 REJECTED: dict[str, tuple[tuple[Segment, ...], str]] = {
     "end without start": ((mark("end", 9),), "end without start"),
-    "start never ended": ((mark("start", 2),), NO_END),
-    "start never ended, of an agent": ((mark("start", 2, agent=1),), NO_END),
-    "start in a far future": ((mark("start", FAR),), NO_END),
+    "start never ended": ((mark("start", 2),), FRAMES_ENDED),
+    "start never ended, of an agent": ((mark("start", 2, agent=1),), FRAMES_ENDED),
+    "start in a far future": ((mark("start", FAR),), NO_FRAME),
     "longer than a minute": ((mark("start", 0), mark("end", 61 * 30)), NO_END),
     "end before start": ((mark("start", 12), mark("end", 3)), "end before start"),
     "nobody there": ((mark("start", NOBODY_FROM + 1), mark("end", NOBODY_TO - 2)), "no person"),
@@ -149,5 +151,5 @@ def test_a_start_from_the_future_is_given_up_while_frames_go_on(agent: int | Non
     frames = [(posture.stamp_ns, posture) for frame in slow_minute() for posture in preprocessor.handle(frame)]
     put = replayed(SomClassifier(tiny_model()), [(0, mark("start", FAR, agent=agent)), *frames])
     ((given_up_ns, action),) = put
-    assert action.reason == NO_END
+    assert action.reason == NO_FRAME
     assert 62 * SECOND_NS < given_up_ns < frames[-1][0]

@@ -119,9 +119,15 @@ def test_start_without_end_is_given_up_when_no_end_can_come_any_more() -> None:
 
 
 def test_start_without_end_is_given_up_when_the_stream_has_fallen_silent() -> None:
-    run = Run().feed(*postures(5), mark("start", 0)).wait(61)
+    run = Run().feed(*postures(31), mark("start", 10 * FRAME_NS)).wait(61)
     assert run.closed == []
-    assert run.wait(3).reasons == ["start without end: no end within 60 s"]
+    assert run.wait(3).reasons == ["start without end: the frames ended 0.7 s after the start"]
+
+
+@pytest.mark.parametrize("frames", [0, 5])
+def test_start_without_end_and_without_frames_says_so(frames: int) -> None:
+    run = Run().feed(*postures(frames), mark("start", 10 * FRAME_NS)).wait(64)
+    assert run.reasons == ["start without end: no frame came after the start"]
 
 
 def test_a_segment_of_more_than_sixty_seconds_is_rejected_at_its_end() -> None:

@@ -83,6 +83,14 @@ def test_up_runs_everything_that_watch_shows_restarts_what_dies_and_leaves_nothi
     wait_until(lambda: pids_of(running) == set(), "no process is left")
 
 
+def test_up_that_is_killed_leaves_nothing(running: System) -> None:
+    up = running.start("actum_command", "up")
+    with running.client() as client:
+        running.wait_for_services(client, *SERVICES)
+    up.process.kill()
+    wait_until(lambda: pids_of(running) == set(), "no process is left")
+
+
 def test_up_refuses_an_endpoint_that_a_router_has(running: System) -> None:
     running.start("actum_command", "router", "--listen", running.settings.connect)
     with running.client():

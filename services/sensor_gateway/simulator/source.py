@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import cv2
 import numpy as np
 
-from actum.messages import Agent, Image, Message, Segment, Skeleton, Truth
+from actum.messages import SIMULATOR, Agent, Image, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS, Tally
 from sensor_gateway.simulator.chance import stream
 from sensor_gateway.simulator.conditions import PLAIN, Conditions
@@ -146,4 +146,5 @@ def labelled_stream(simulator: Simulator) -> Iterator[Message]:
                     agent=message.agent,
                     hand=message.hand,
                     label=message.action,
+                    origin=SIMULATOR,
                 )

@@ -2,6 +2,7 @@
 
 from actum.runtime.client import Client, Listening, Received
 from actum.runtime.extras import needs_extra
+from actum.runtime.parent import end_with_parent
 from actum.runtime.router import serve_router
 from actum.runtime.serving import run, run_source
 from actum.runtime.session import RouterUnreachableError
@@ -13,6 +14,7 @@ __all__ = [
     "Pace",
     "Received",
     "RouterUnreachableError",
+    "end_with_parent",
     "needs_extra",
     "run",
     "run_source",

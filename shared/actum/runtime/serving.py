@@ -15,11 +15,13 @@ from pydantic import ValidationError
 
 from actum import keys
 from actum.codec import DecodeError, decode, encode
+from actum.command_line import from_command_line
 from actum.messages import Message
 from actum.node import TICK_NS, Node, Source, Tally, Tick
 from actum.runtime.inbox import Inbox
 from actum.runtime.meter import Meter
 from actum.runtime.outbox import Outbox
+from actum.runtime.parent import end_with_parent
 from actum.runtime.place import RETURNING_S, SETTLING_S, Place, PlaceTakenError
 from actum.runtime.reporting import Reporter, Told
 from actum.runtime.session import RETRY_S, client_config, open_session
@@ -49,9 +51,10 @@ def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
 
 def _configured(settings_type: type[S], build: Callable[[S], N]) -> tuple[S, N]:
     """Read the settings and build what they describe; what cannot be used ends the process with a line, code 2."""
+    end_with_parent()
     service = settings_type.__module__.partition(".")[0]
     try:
-        settings = settings_type(_cli_parse_args=True, _cli_prog_name=f"python -m {service}")
+        settings = from_command_line(settings_type, f"python -m {service}")
         client_config(settings)  # refused now, not after what takes long to build
         return settings, build(settings)
     except ValidationError as error:

@@ -1,0 +1,129 @@
+"""Messages in words, one line each, as console markup."""
+
+from datetime import datetime
+from functools import singledispatch
+
+import numpy as np
+from rich.markup import escape
+
+from actum.messages import (
+    Action,
+    Agent,
+    Event,
+    Image,
+    Message,
+    Objects,
+    Posture,
+    Segment,
+    Skeleton,
+    Status,
+    TrackedObject,
+    Truth,
+)
+from actum.node import SECOND_NS
+from actum.skeletons import INDEX
+
+EPOCH_NS = 10**18
+"""Stamps from here on, September 2001, count from 1970; smaller ones from when the sensor's clock was started."""
+
+
+def time_of(message: Message) -> str:
+    """Say when a message was captured: the time of day, or seconds on a clock that does not tell it."""
+    if message.stamp_ns is None:
+        return "now"
+    if message.stamp_ns < EPOCH_NS:
+        return f"{message.stamp_ns / SECOND_NS:.3f} s"
+    return f"{datetime.fromtimestamp(message.stamp_ns / SECOND_NS):%H:%M:%S.%f}"[:-3]
+
+
+def describe(message: Message) -> str:
+    """Say the gist of a message in one line, after the segment it belongs to."""
+    if isinstance(message, Event):
+        return f"{escape(message.segment_id)}: {describe_event(message)}" if message.valid else describe_event(message)
+    if isinstance(message, Action):
+        return describe_action(message)
+    if not message.valid:
+        return f"[yellow]not valid: {escape(message.reason or '')}[/yellow]"
+    return _gist(message)
+
+
+def describe_event(event: Event) -> str:
+    """Say an event: the sentence, or why there is none."""
+    if not event.valid:
+        return f"[yellow]{escape(event.segment_id)} rejected: {escape(event.reason or '')}[/yellow]"
+    return f"[bold]{escape(event.sentence)}[/bold]"
+
+
+def describe_action(action: Action) -> str:
+    """Say an action, final or so far, or why there is none."""
+    if not action.valid:
+        return f"[yellow]{escape(action.segment_id)} rejected: {escape(action.reason or '')}[/yellow]"
+    kind = "final" if action.final else "so far"
+    answer = f"{escape(str(action.action))} {action.confidence:.2f}, {action.frames} frames"
+    return f"{escape(action.segment_id)} {kind}: {answer}"
+
+
+@singledispatch
+def _gist(message: Message) -> str:
+    return message.SCHEMA
+
+
+@_gist.register
+def _skeleton(message: Skeleton) -> str:
+    return "; ".join(map(_agent, message.agents)) or "nobody"
+
+
+@_gist.register
+def _posture(message: Posture) -> str:
+    """Say where the person's hips are in the camera frame, and the hands seen from there."""
+    if message.ego_from_camera is None or message.joints_m is None:
+        return f"agent {message.agent}: no joints"
+    ego_from_camera = np.reshape(message.ego_from_camera, (4, 4))
+    hips = -ego_from_camera[:3, :3].T @ ego_from_camera[:3, 3]
+    left, right = (message.joints_m[INDEX[name]] for name in ("left_hand", "right_hand"))
+    return (
+        f"agent {message.agent}: hips {_point(hips.tolist())}; "
+        f"from there (left, up, forward) left hand {_point(left)}, right hand {_point(right)}"
+    )
+
+
+@_gist.register
+def _objects(message: Objects) -> str:
+    return "; ".join(map(_object, message.objects)) or "no object"
+
+
+@_gist.register
+def _image(message: Image) -> str:
+    return f"{message.format} {message.width}x{message.height}, {len(message.data)} bytes"
+
+
+@_gist.register
+def _mark(message: Segment) -> str:
+    label = "" if message.label is None else f", label {escape(message.label)}"
+    origin = "" if message.origin is None else f", by {escape(message.origin)}"
+    return f"{message.kind} {escape(message.segment_id)}{label}{origin}"
+
+
+@_gist.register
+def _truth(message: Truth) -> str:
+    done = f'{message.action} {message.object_id} "{message.object_name}"'
+    return f"{message.kind} {escape(message.segment_id)}: {escape(done)}"
+
+
+@_gist.register
+def _status(message: Status) -> str:
+    return f"{escape(message.state)}, {sum(message.rates.values()):.0f} messages/s"
+
+
+def _agent(agent: Agent) -> str:
+    known = sum(joint is not None for joint in agent.joints)
+    return f"agent {agent.agent}: torso {_point(agent.joints[INDEX['torso']])}, {known} of {len(agent.joints)} joints"
+
+
+def _object(found: TrackedObject) -> str:
+    hidden = "" if found.seen else " (covered, followed)" if found.followed else " (hidden)"
+    return f"{found.id} {escape(found.name)} {_point(found.position_m)}{hidden}"
+
+
+def _point(position_m: list[float] | None) -> str:
+    return "unknown" if position_m is None else f"({', '.join(f'{metres:.2f}' for metres in position_m)}) m"

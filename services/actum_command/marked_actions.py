@@ -1,0 +1,110 @@
+"""The marked actions of recordings, as `actum takes` lists and changes them."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+from actum import codec, keys
+from actum.mcap_file import StoredMessage
+from actum.messages import Action, Event, Message, Segment, Truth
+from actum.node import SECOND_NS
+from actum.recording import Recording
+from actum.rewriting import Change
+from model_trainer.samples import classifier_input, closed_segments, sensors, why_unusable
+from som_classifier.segments import Closed
+
+Edit = Callable[[Segment | Action | Event | Truth], Message | None]
+"""What becomes of a message that names the segment; None for nothing."""
+
+
+@dataclass(frozen=True)
+class MarkedAction:
+    """One marked action: `frames` can be learnt from, unless `problem` says why none can."""
+
+    segment_id: str
+    label: str | None
+    duration_s: float
+    frames: int
+    problem: str | None
+
+
+def marked_actions(recording: Recording) -> Iterator[MarkedAction]:
+    """Yield a recording's marked actions as training would get them.
+
+    Raises:
+        RecordingError: the file is damaged.
+    """
+    for sensor in sensors(recording):
+        for closed in closed_segments(classifier_input(recording, sensor)):
+            yield MarkedAction(
+                closed.segment_id,
+                closed.label,
+                (closed.end_ns - closed.start_ns) / SECOND_NS,
+                sum(frame.valid for frame in closed.frames),
+                _problem(closed),
+            )
+
+
+def bounds_ns(recording: Recording, segment_id: str) -> tuple[int | None, int | None]:
+    """Return the stamps of a segment's first start and end mark, None for one that is not there."""
+    stamps_ns: dict[str, int] = {}
+    for mark in recording.messages((keys.SEGMENT,)):
+        if isinstance(mark, Segment) and mark.segment_id == segment_id and mark.stamp_ns is not None:
+            stamps_ns.setdefault(mark.kind, mark.stamp_ns)
+    return stamps_ns.get("start"), stamps_ns.get("end")
+
+
+def relabelled(segment_id: str, label: str) -> Change:
+    """Give a segment another label."""
+
+    def edit(message: Message) -> Message:
+        is_start = isinstance(message, Segment) and message.kind == "start"
+        return message.model_copy(update={"label": label}) if is_start else message
+
+    return _of_segment(segment_id, edit)
+
+
+def trimmed(segment_id: str, later_start_ns: int, later_end_ns: int) -> Change:
+    """Move a segment's start and end; what was answered of it when it was recorded stays as it is."""
+
+    def edit(message: Message) -> Message:
+        if not isinstance(message, Segment):
+            return message
+        assert message.stamp_ns is not None
+        later_ns = later_start_ns if message.kind == "start" else later_end_ns
+        return message.model_copy(update={"stamp_ns": message.stamp_ns + later_ns})
+
+    return _of_segment(segment_id, edit)
+
+
+def dropped(segment_id: str) -> Change:
+    """Leave out a segment's marks and all that was answered of it."""
+    return _of_segment(segment_id, lambda _: None)
+
+
+def _of_segment(segment_id: str, edit: Edit) -> Change:
+    def change(stored: StoredMessage) -> StoredMessage | None:
+        message = _message(stored)
+        if not isinstance(message, Segment | Action | Event | Truth) or message.segment_id != segment_id:
+            return stored
+        edited = edit(message)
+        if edited is None or edited is message:
+            return None if edited is None else stored
+        return replace(stored, payload=codec.encode(edited).payload, publish_ns=edited.stamp_ns)
+
+    return change
+
+
+def _message(stored: StoredMessage) -> Message | None:
+    """Decode what may name a segment; a mark that says "now" was put when it was stored."""
+    try:
+        if keys.parse(stored.key).topic not in (keys.SEGMENT, keys.ACTION, keys.EVENT, keys.TRUTH):
+            return None
+        message = codec.decode(stored.key, stored.payload, stored.encoding)
+    except (keys.InvalidKeyError, codec.DecodeError):
+        return None
+    return message if message.stamp_ns is not None else message.model_copy(update={"stamp_ns": stored.publish_ns})
+
+
+def _problem(closed: Closed) -> str | None:
+    problem = why_unusable(closed)
+    return "no label" if problem is None and closed.label is None else problem

@@ -1,0 +1,67 @@
+"""A service's settings as flags, explained in plain words where pydantic-settings writes Python's types and values."""
+
+import json
+import types
+from pathlib import Path
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+from pydantic_settings import CliSettingsSource
+
+from actum.settings import ServiceSettings
+
+S = TypeVar("S", bound=ServiceSettings)
+
+PLACEHOLDERS: dict[Any, str] = {bool: "", int: "INTEGER", float: "NUMBER", str: "TEXT", Path: "PATH"}
+STRUCTURED = "JSON"
+"""Lists, maps and what is made of them."""
+
+
+def from_command_line(settings_type: type[S], program: str) -> S:
+    """Read settings from this process's flags, then from all that settings are read from.
+
+    Raises:
+        ValueError: they cannot be used.
+    """
+    source = CliSettingsSource[Any](settings_type, cli_prog_name=program)
+    for action in source.root_parser._actions:
+        field = settings_type.model_fields.get(action.dest)
+        if field is not None:
+            action.metavar = placeholder(field) or None
+            action.help = explained(field).replace("%", "%%")
+    return settings_type(_cli_settings_source=source(args=True))
+
+
+def explained(field: FieldInfo) -> str:
+    """Say what a setting is for, and what it is where nobody sets it."""
+    default = field.get_default(call_default_factory=True)
+    if default is None or default in ({}, [], ""):
+        return field.description or ""
+    return f"{field.description} (default: {_worded(default)})"
+
+
+def placeholder(field: FieldInfo) -> str:
+    """Say what is to stand behind a setting's flag; "" for one that is only on or off."""
+    annotation = _without_none(field.annotation)
+    if get_origin(annotation) is Literal:
+        return f"{{{','.join(map(str, get_args(annotation)))}}}"
+    return PLACEHOLDERS.get(annotation, STRUCTURED)
+
+
+def _without_none(annotation: Any) -> Any:
+    """Look into what may also be left out."""
+    if get_origin(annotation) in (Union, types.UnionType):
+        (annotation,) = (part for part in get_args(annotation) if part is not type(None))
+    return annotation
+
+
+def _worded(default: Any) -> str:
+    match default:
+        case bool():
+            return "on" if default else "off"
+        case frozenset():
+            return json.dumps(sorted(default))
+        case dict():
+            return json.dumps(default)
+        case _:
+            return str(default)

@@ -1,0 +1,92 @@
+"""Recordings written anew, with some messages changed or left out and all else as it lies in the file."""
+
+import os
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from typing import BinaryIO, cast
+
+from mcap.records import Attachment, Channel, Header, McapRecord, Message, Metadata, Schema
+from mcap.writer import Writer
+
+from actum.mcap_file import McapFile, StoredMessage, encoding_of
+from actum.recording import CHUNK_BYTES
+
+Change = Callable[[StoredMessage], StoredMessage | None]
+"""What is written in place of a message, of its payload and its stamp; None for nothing."""
+
+
+def rewrite(path: Path, change: Change) -> None:
+    """Write a recording anew beside itself, and put it in place once it is whole.
+
+    Raises:
+        RecordingError: the file is no recording, or damaged.
+        OSError: the new one cannot be written. In either case the file is left as it was.
+    """
+    place = path.resolve()
+    with NamedTemporaryFile("wb", dir=place.parent, prefix=f"{place.name}.", suffix=".part", delete=False) as file:
+        beside = Path(file.name)
+        try:
+            _copy(McapFile(path), cast(BinaryIO, file), change)
+            file.flush()
+            os.fsync(file.fileno())
+            shutil.copymode(place, beside)
+            beside.replace(place)
+        except BaseException:
+            beside.unlink(missing_ok=True)
+            raise
+
+
+def _copy(source: McapFile, file: BinaryIO, change: Change) -> None:
+    writer = Writer(file, chunk_size=CHUNK_BYTES)
+    copying = _Copying(writer, change)
+    for record in source.records():
+        copying.take(record)
+    writer.finish()  # type: ignore[no-untyped-call]
+
+
+class _Copying:
+    """Hands one record after the other to the writer; schemas and channels stand twice in a whole file."""
+
+    def __init__(self, writer: Writer, change: Change) -> None:
+        self._writer = writer
+        self._change = change
+        self._schemas: dict[int, int] = {0: 0}
+        self._schema_names: dict[int, str] = {}
+        self._channels: dict[int, int] = {}
+        self._channel_records: dict[int, Channel] = {}
+
+    def take(self, record: McapRecord) -> None:
+        match record:
+            case Header():
+                self._writer.start(record.profile)
+            case Schema() if record.id not in self._schemas:
+                self._schemas[record.id] = self._writer.register_schema(record.name, record.encoding, record.data)
+                self._schema_names[record.id] = record.name
+            case Channel() if record.id not in self._channels:
+                self._channel_records[record.id] = record
+                self._channels[record.id] = self._writer.register_channel(
+                    record.topic, record.message_encoding, self._schemas[record.schema_id], record.metadata
+                )
+            case Message():
+                self._message(record)
+            case Metadata():
+                self._writer.add_metadata(record.name, record.metadata)
+            case Attachment():
+                self._writer.add_attachment(
+                    record.create_time, record.log_time, record.name, record.media_type, record.data
+                )
+
+    def _message(self, record: Message) -> None:
+        channel = self._channel_records[record.channel_id]
+        encoding = encoding_of(channel, self._schema_names.get(channel.schema_id, ""))
+        changed = self._change(StoredMessage(record.publish_time, channel.topic, record.data, encoding))
+        if changed is not None:
+            self._writer.add_message(
+                channel_id=self._channels[record.channel_id],
+                log_time=record.log_time,
+                data=changed.payload,
+                publish_time=changed.publish_ns,
+                sequence=record.sequence,
+            )

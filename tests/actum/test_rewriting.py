@@ -1,0 +1,132 @@
+"""A recording written anew holds what it held but for what was changed, and is never left half written."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mcap.reader import make_reader
+from mcap.writer import Writer
+
+from actum.mcap_file import RecordingError, StoredMessage
+from actum.recording import Recorder, Recording
+from actum.rewriting import rewrite
+from empty_messages import image, mark, skeleton
+
+SKELETON = "actum/kinect0/skeleton"
+
+
+def same(stored: StoredMessage) -> StoredMessage:
+    return stored
+
+
+def content(path: Path) -> dict[str, Any]:
+    """All that a foreign reader finds in the file."""
+    with path.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        return {
+            "messages": [
+                (
+                    schema and schema.name,
+                    channel.topic,
+                    channel.metadata,
+                    m.log_time,
+                    m.publish_time,
+                    m.sequence,
+                    m.data,
+                )
+                for schema, channel, m in reader.iter_messages()
+            ],
+            "metadata": [(found.name, found.metadata) for found in reader.iter_metadata()],
+            "attachments": [(found.name, found.data) for found in reader.iter_attachments()],
+        }
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    with Recorder(tmp_path / "a.mcap", person="anna", source="test", lens="60") as recorder:
+        for message in (
+            skeleton(1),
+            image(1),
+            mark("start", 1),
+            *(skeleton(i) for i in range(2, 3000)),
+            mark("end", 9),
+        ):
+            recorder.write(message, log_time_ns=7)
+    return tmp_path / "a.mcap"
+
+
+def beside(path: Path) -> Iterable[str]:
+    return [other.name for other in path.parent.iterdir() if other != path]
+
+
+def test_what_is_not_changed_stays_as_it_is(path: Path) -> None:
+    before = content(path)
+    rewrite(path, same)
+    assert content(path) == before
+    assert Recording(path).metadata == {"person": "anna", "source": "test", "lens": "60"}
+    assert beside(path) == []
+
+
+def test_what_others_put_into_the_file_stays(tmp_path: Path) -> None:
+    path = tmp_path / "foreign.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        writer.add_attachment(1, 2, "notes.txt", "text/plain", b"by hand")
+        channel = writer.register_channel("robot/odometry", "json", 0)
+        writer.add_message(channel, log_time=9, data=b"{}", publish_time=5, sequence=3)
+        writer.finish()
+    before = content(path)
+    rewrite(path, same)
+    assert content(path) == before
+
+
+def test_messages_are_changed_and_left_out(path: Path) -> None:
+    rewrite(path, lambda stored: None if stored.key == SKELETON else replace(stored, publish_ns=stored.publish_ns + 1))
+    assert sorted(message[4] for message in content(path)["messages"]) == [2, 2, 10]
+
+
+def test_a_damaged_recording_is_left_as_it_is(path: Path) -> None:
+    damaged = bytearray(path.read_bytes())
+    damaged[damaged.index(b"zstd") + 40] ^= 0xFF
+    path.write_bytes(damaged)
+    with pytest.raises(RecordingError, match="damaged"):
+        rewrite(path, same)
+    assert path.read_bytes() == damaged
+    assert beside(path) == []
+
+
+def test_a_recording_whose_new_one_cannot_be_written_is_left_as_it_is(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(_: Writer) -> None:
+        raise OSError(28, "No space left on device")
+
+    before = path.read_bytes()
+    monkeypatch.setattr(Writer, "finish", full)
+    with pytest.raises(OSError, match="No space left"):
+        rewrite(path, same)
+    assert path.read_bytes() == before
+    assert beside(path) == []
+
+
+def test_a_link_stays_one_and_who_may_read_the_file_stays_so(path: Path) -> None:
+    path.chmod(0o640)
+    link = path.with_name("link.mcap")
+    link.symlink_to(path)
+    rewrite(link, lambda _: None)
+    assert link.is_symlink()
+    assert path.stat().st_mode & 0o777 == 0o640
+    assert content(path)["messages"] == []
+
+
+def test_of_a_recording_that_breaks_off_all_that_can_be_read_is_kept(path: Path) -> None:
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    readable = len(list(Recording(path).messages()))
+    rewrite(path, same)
+    kept = Recording(path)
+    assert len(list(kept.messages())) == readable > 100
+    assert not kept.truncated

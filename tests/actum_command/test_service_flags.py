@@ -1,0 +1,95 @@
+"""What the services can be told can be told to `actum up`, which starts them."""
+
+import pytest
+from typer.testing import CliRunner
+
+from actum.command_line import from_command_line
+from actum.settings import ServiceSettings
+from actum_command import processes, system
+from actum_command.__main__ import app
+from actum_command.service_flags import DECLARED
+from actum_command.supervising import Program
+
+BY_NAME = dict[str, list[str]]
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> BY_NAME:
+    """The arguments of the programs that would run, by name, where none does."""
+    arguments: BY_NAME = {}
+
+    def supervise(_: object, programs: list[Program], __: object) -> None:
+        arguments.update({program.name: list(program.arguments) for program in programs})
+
+    monkeypatch.setattr(system, "refuse_taken", lambda _: None)
+    monkeypatch.setattr(system, "stop_on_signals", lambda: None)
+    monkeypatch.setattr(system, "_wait_for_router", lambda *_: None)
+    monkeypatch.setattr(system, "supervise", supervise)
+    monkeypatch.setattr(system.Supervisor, "start", lambda *_: None)
+    return arguments
+
+
+def up(*arguments: str) -> None:
+    done = CliRunner().invoke(app, ["up", *arguments])
+    assert done.exit_code == 0, done.output
+
+
+def refusal(*arguments: str) -> str:
+    refused = CliRunner().invoke(app, ["up", *arguments])
+    assert refused.exit_code in (1, 2), refused.output
+    return " ".join(refused.stderr.split())
+
+
+def test_each_service_is_told_its_own_settings(started: BY_NAME) -> None:
+    up("--camera", "1", "--no-images", "--scene", "a.yaml", "--pointing-labels", "point", "--pointing-labels", "at")
+    assert started == {
+        "sensor_gateway": ["--source", "camera", "--camera=1", "--no-images"],
+        "pose_preprocessor": [],
+        "som_classifier": [],
+        "marker_tracker": ["--scene=a.yaml"],
+        "action_fusion": ["--pointing-labels=point", "--pointing-labels=at"],
+    }
+
+
+def test_a_service_understands_what_it_is_told(started: BY_NAME, monkeypatch: pytest.MonkeyPatch) -> None:
+    up("--up-in-camera", "[0, -1, 0.2]", "--person-height-m", "1.8", "--mirrored", "--camera", "0")
+    monkeypatch.setattr("sys.argv", ["sensor_gateway", *started["sensor_gateway"]])
+    told = from_command_line(DECLARED["sensor_gateway"], "sensor_gateway").model_dump()
+    wanted = {"up_in_camera": [0, -1, 0.2], "person_height_m": 1.8, "mirrored": True, "camera": "0", "source": "camera"}
+    assert {name: told[name] for name in wanted} == wanted
+    up("--pointing-labels", "point", "--pointing-labels", "show", "--expected-outcomes", '{"toss": "lifted"}')
+    monkeypatch.setattr("sys.argv", ["action_fusion", *started["action_fusion"]])
+    told = from_command_line(DECLARED["action_fusion"], "action_fusion").model_dump()
+    assert told["pointing_labels"] == {"point", "show"}
+    assert told["expected_outcomes"] == {"toss": "lifted"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (("--camrea", "1"), "--camera"),
+        (("--scenes", "a.yaml"), "--scene"),
+        (
+            ("--source", "none", "--people", "2"),
+            "--people is a setting of sensor_gateway, which --source none does not",
+        ),
+        (("--source", "simulator", "--camera", "1"), "source simulator takes no --camera"),
+    ],
+)
+def test_what_nobody_would_heed_is_refused(arguments: tuple[str, ...], reason: str, started: BY_NAME) -> None:
+    assert reason in refusal(*arguments)
+    assert started == {}
+
+
+def test_without_any_the_simulated_scene_is_started(started: BY_NAME) -> None:
+    up()
+    assert set(started) == {"sensor_gateway", *processes.SERVICES, "scene"}
+    assert started["sensor_gateway"] == ["--source", "simulator"]
+
+
+def test_every_setting_of_every_service_stands_in_the_help() -> None:
+    shown = CliRunner().invoke(app, ["up", "--help"], env={"COLUMNS": "200"}).output
+    for service, settings in DECLARED.items():
+        assert f"Settings of {service}" in shown
+        for name in settings.model_fields.keys() - ServiceSettings.model_fields.keys():
+            assert f"--{name.replace('_', '-')} " in shown
