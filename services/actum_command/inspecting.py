@@ -19,7 +19,9 @@ FORMATS = ("png", "svg")
 
 def inspect_command(
     model_file: Annotated[Path, typer.Argument(metavar="MODEL", help="the model file to look into")],
-    output: Annotated[Path, typer.Option("-o", "--output", help="the folder to write pictures and index.html to")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="the folder for pictures and index.html; those of an earlier run go")
+    ],
     files: Annotated[
         list[Path] | None, typer.Argument(metavar="[REC]...", help="recordings to try it on, or folders of them")
     ] = None,
