@@ -169,6 +169,13 @@ def test_no_stream_at_all() -> None:
     assert Run().feed(mark("start"), mark("end")).wait(2.3).reasons == ["no person"]
 
 
+@pytest.mark.parametrize("fields", [{"valid": False}, {"joints": None}, {"motion": None}])
+def test_a_posture_without_joints_or_motion_or_that_says_so_itself_is_no_valid_frame(fields: dict[str, object]) -> None:
+    spoiled = [p.model_copy(update=fields) if i % 2 else p for i, p in enumerate(postures(10))]
+    run = Run().feed(mark("start", 0), mark("end", 9 * FRAME_NS), *spoiled)
+    assert [frame.valid for frame in run.closed[0].frames] == [True, False] * 5
+
+
 def test_the_agent_nearest_to_the_camera_at_the_first_valid_frame() -> None:
     near, far = STANDING, STANDING + np.array([0.8, 0.0, 1.0])
     node = PosePreprocessor()
