@@ -176,6 +176,15 @@ def test_a_posture_without_joints_or_motion_or_that_says_so_itself_is_no_valid_f
     assert [frame.valid for frame in run.closed[0].frames] == [True, False] * 5
 
 
+def test_whose_a_segment_is_waits_two_seconds_for_the_postures_of_others() -> None:
+    """Each frame names a second agent, nobody of whom ever comes."""
+    alone = [p.model_copy(update={"agents": [1, 2]}) for p in postures(70)]
+    run = Run().feed(mark("start", 0), mark("end", 9 * FRAME_NS), *alone[:60])
+    assert run.closed == []
+    run.feed(*alone[60:])
+    assert [(closed.agent, len(closed.frames)) for closed in run.closed] == [(1, 10)]
+
+
 def test_the_agent_nearest_to_the_camera_at_the_first_valid_frame() -> None:
     near, far = STANDING, STANDING + np.array([0.8, 0.0, 1.0])
     node = PosePreprocessor()
