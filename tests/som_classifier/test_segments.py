@@ -239,3 +239,17 @@ def test_frames_without_a_posture_belong_to_the_segment_but_not_to_the_recogniti
     mixed = [p for frame in frames for p in node.handle(frame) if isinstance(p, Posture)]
     run = Run().feed(*mixed, mark("start", 0), mark("end", 9 * FRAME_NS))
     assert [frame.valid for frame in run.closed[0].frames] == [False, True] * 5
+
+
+def test_of_very_many_answered_segments_the_newest_are_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A mark that comes again is answered anew only where it is one of the oldest."""
+    monkeypatch.setattr("som_classifier.segments.REMEMBERED", 2)
+    run = Run().feed(*postures(10))
+    marks = {name: [mark("start", 0, name), mark("end", 5 * FRAME_NS, name)] for name in "abc"}
+    run.feed(*marks["a"], *marks["b"], *marks["c"]).wait(2.3)
+    assert sorted(closed.segment_id for closed in run.closed) == ["a", "b", "c"]
+    run.feed(*marks["c"], *marks["b"]).wait(2.3)
+    assert len(run.closed) == 3
+    run.feed(*marks["a"]).wait(2.3)
+    assert run.closed[-1].segment_id == "a"
+    assert len(run.closed) == 4
