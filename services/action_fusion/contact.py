@@ -66,7 +66,7 @@ def gives_way_m(pair: Comotion) -> float:
     if len(places) < FEWEST_PLACES:
         return 0.0
     noise_m = float(np.linalg.norm(np.median(np.abs(np.diff(places, 2, axis=0)), axis=0))) / (GAUSSIAN * np.sqrt(6))
-    nudge_m = float(np.linalg.norm((places - np.median(places, axis=0)).std(axis=0)))
+    nudge_m = float(np.linalg.norm(places.std(axis=0)))
     return nudge_m if nudge_m >= max(NUDGE_M, NUDGE_TO_NOISE * noise_m) else 0.0
 
 

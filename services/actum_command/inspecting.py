@@ -21,7 +21,9 @@ FILES = (".png", ".svg", ".html", ".pdf")
 
 def inspect_command(
     model_file: Annotated[Path, typer.Argument(metavar="MODEL", help="the model file to look into")],
-    output: Annotated[Path, typer.Option("-o", "--output", help="the folder to write pictures and index.html to")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="the folder for pictures and index.html; those of an earlier run go")
+    ],
     files: Annotated[
         list[Path] | None, typer.Argument(metavar="[REC]...", help="recordings to try it on, or folders of them")
     ] = None,
@@ -54,6 +56,7 @@ def _inspect(model: Model, recordings: list[Recording], folder: Path, ending: st
     """Write pictures and page, and return how many pictures there are."""
     from model_inspector.anatomy import anatomy_of  # Matplotlib takes its time and need not be installed
     from model_inspector.answered import answered_segments
+    from model_inspector.folder import note
     from model_inspector.inspection import pictures, write
     from model_inspector.page import page
     from model_trainer.evaluation import evaluate
@@ -68,5 +71,7 @@ def _inspect(model: Model, recordings: list[Recording], folder: Path, ending: st
         evaluation = evaluate(model, recordings, progress) if labelled else None
         planned = list(pictures(anatomy, segments, evaluation))
         written = write(planned, folder, ending, progress)
-    (folder / "index.html").write_text(page(model, segments, evaluation, planned, written), encoding="utf-8")
+    index = folder / "index.html"
+    index.write_text(page(model, segments, evaluation, planned, written), encoding="utf-8")
+    note(index)
     return len(planned)

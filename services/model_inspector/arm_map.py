@@ -1,4 +1,4 @@
-"""The map of arms: which ways of holding and moving the acting arm the default recogniser knows."""
+"""The map of arms: which ways of holding and moving an arm the default recogniser knows."""
 
 from dataclasses import dataclass
 
@@ -64,8 +64,11 @@ class ArmsOnBodies:
 
 
 @in_house_style
-def arm_map(arms: Som) -> Figure:
-    """Draw each unit's weights as the right arm of somebody who stands and arrows at its joints, on the U-matrix."""
+def arm_map(arms: Som, mirrors: bool) -> Figure:
+    """Draw each unit's weights as the right arm of somebody who stands and arrows at its joints, on the U-matrix.
+
+    Where the model `mirrors`, they stand for a left arm that acts, too.
+    """
     title = f"The map of arms: {arms.rows} × {arms.cols} units, each standing for where the arm is and where it goes"
     figure = canvas(*map_size(arms), title)
     axes = figure.add_subplot()
@@ -75,8 +78,9 @@ def arm_map(arms: Som) -> Figure:
     fastest = fastest_m(arms)
     drawn = ArmsOnBodies.of(arms.weights[units], np.tile(_BUST, (len(units), 1, 1)))
     drawn.draw(axes, places, CLOSER * every, CLOSE_UP_ARROW_M / fastest)
+    left = ", in a mirror a left one that acts" if mirrors else ""
     axes.set_title(
-        f"{which_are_drawn(every)}the acting arm, a left one in the mirror; arrows: where it goes, the longest at "
+        f"{which_are_drawn(every)}the right arm{left}; arrows: where it goes, the longest at "
         f"{fastest / LAG_TIME_CONSTANT_S:.1f} m/s"
     )
     name_sides(axes)

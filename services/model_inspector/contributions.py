@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from actum.messages import Hand
 from model_inspector.anatomy import Floats, complete_weights
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.streams import Frame
@@ -22,9 +23,12 @@ class Contributions:
         scores: of these two.
         units: (cells, first maps, units of each), fourth root of the mean activity × (axis of the winner − axis of
             the second).
-        level: the difference of their offsets, what the score is before anything is seen.
+        level: the difference of their offsets, the same for every segment. Training sets it so that a segment as it
+            had them on average leads to neither, or a little to the one that it had more often: then the units add up
+            to about −level.
         activities: (cells, first maps, units of each), their mean activity in each cell.
         in_mirror: whether the segment was read in a mirror, because the left arm acts.
+        left_moves: whether the left arm is the part that moves most.
     """
 
     winner: int
@@ -34,6 +38,7 @@ class Contributions:
     level: float
     activities: Floats
     in_mirror: bool
+    left_moves: bool
 
     @property
     def cells(self) -> Floats:
@@ -45,6 +50,11 @@ class Contributions:
     def difference(self) -> float:
         """By how much the winner's score is above the second's."""
         return self.scores[0] - self.scores[1]
+
+    @property
+    def arm(self) -> Hand:
+        """Which arm the map of arms sees."""
+        return "left" if self.in_mirror else "right"
 
 
 def contributions(model: PyramidModel, frames: Sequence[Frame], instead: str | None = None) -> Contributions:
@@ -71,5 +81,5 @@ def contributions(model: PyramidModel, frames: Sequence[Frame], instead: str | N
     return Contributions(
         winner, second, (float(scores[winner]), float(scores[second])), units * vector,
         float(offsets[winner] - offsets[second]), vector**4,
-        model.reads_in_mirror(codes),
+        model.reads_in_mirror(codes), recognition.part == "left_arm",
     )  # fmt: skip

@@ -39,7 +39,7 @@ class Course:
     """What the model says while a segment goes on.
 
     Attributes:
-        seconds: (n,), since its start, the last at its end.
+        seconds: (n,), since its start, the last at its end: that one answers to the complete action.
         activations: (n, actions), the neurons' cosines.
         winners: (n,), the action decided for.
         confidences: (n,), in it.
@@ -52,12 +52,11 @@ class Course:
 
 
 def course(model: Model, answered: Answered) -> Course:
-    """Let the model answer after each frame, or after some of very many, and once more at the end."""
+    """Let the model answer after each frame, or after some of very many, the last of them as to a complete action."""
     frames = encoded(model, answered.frames)
     counts = np.unique(np.linspace(model.min_frames, len(frames), MOST_INSTANTS).astype(int))
-    said: list[Recognition] = [model.recognise(frames[:count], complete=False) for count in counts]
-    said.append(model.recognise(frames, complete=True))
-    ends = np.array([frames[count - 1].stamp_ns for count in [*counts, len(frames)]])
+    said: list[Recognition] = [model.recognise(frames[:count], complete=count == len(frames)) for count in counts]
+    ends = np.array([frames[count - 1].stamp_ns for count in counts])
     return Course(
         (ends - frames[0].stamp_ns) / SECOND_NS,
         np.array([[recognition.activations[label] for label in model.labels] for recognition in said]),
@@ -83,7 +82,7 @@ def course_picture(model: Model, answered: Answered) -> Figure:
 
 
 def _draw_lines(axes: Axes, told: Course, labels: Sequence[str], done: str | None) -> None:
-    seconds, activations = told.seconds[:-1], told.activations[:-1]
+    seconds, activations = told.seconds, told.activations
     named = _named(told, labels, done)
     colours = action_colours(len(labels))
     dot = "o" if len(seconds) == 1 else ""
@@ -120,11 +119,11 @@ def _name_line(axes: Axes, name: str, end: tuple[float, float], place: float, co
 
 
 def _draw_decision(axes: Axes, told: Course, labels: Sequence[str]) -> None:
-    """Draw the confidence as an area in the colour of the action decided for, named where it is broad enough."""
+    """Draw each answer's confidence as a bar, since the answer before, in its action's colour, named where it fits."""
     colours = action_colours(len(labels))
-    seconds, winners = told.seconds, told.winners[:-1]
+    seconds, winners = np.concatenate([[0.0], told.seconds]), told.winners
     axes.bar(
-        seconds[:-1], told.confidences[:-1], np.diff(seconds), align="edge", color=colours[winners],
+        seconds[:-1], told.confidences, np.diff(seconds), align="edge", color=colours[winners],
         edgecolor=colours[winners], linewidth=0.6,
     )  # fmt: skip
     begins = np.flatnonzero(np.concatenate([[True], winners[1:] != winners[:-1]]))

@@ -14,6 +14,7 @@ from model_inspector.arm_map import arm_map
 from model_inspector.confusion import confusion_picture
 from model_inspector.course import course_picture
 from model_inspector.examples import examples, file_names, mistake_name, mistakes
+from model_inspector.folder import clear, note
 from model_inspector.movement_map import movement_map
 from model_inspector.posture_map import posture_map
 from model_inspector.reasons import reasons_picture
@@ -56,15 +57,17 @@ def pictures(anatomy: Anatomy, segments: Sequence[Answered], evaluation: Evaluat
 
 
 def write(planned: Sequence[Picture], folder: Path, ending: str, progress: Progress = silent) -> Mapping[str, str]:
-    """Make the pictures and return the name of each one's file.
+    """Make the pictures, in the place of those of an earlier run, and return the name of each one's file.
 
     Raises:
-        OSError: one cannot be written.
+        OSError: one cannot be written, or one of an earlier run not be removed.
     """
+    clear(folder)
     files = {picture.name: f"{picture.name}.{ending}" for picture in planned}
     for done, picture in enumerate(planned):
         progress("drawing pictures", done, len(planned))
         save(picture.make(), folder / files[picture.name])
+        note(folder / files[picture.name])
     progress("drawing pictures", len(planned), len(planned))
     return files
 
@@ -87,8 +90,9 @@ def _of_maps(anatomy: Anatomy, segments: Sequence[Answered]) -> Iterator[Picture
         yield Picture(
             section, "arm-map",
             "The first layer's third map. Every unit stands for where the right arm is, seen from its shoulder, and "
-            "where it is going." + (" Who acts with the left arm is read in a mirror." if mirrors else ""),
-            partial(arm_map, anatomy.model.first.arms),
+            "where it is going."
+            + (" Who acts with the left arm is read in a mirror." if mirrors else " Left arms are not seen by it."),
+            partial(arm_map, anatomy.model.first.arms, mirrors),
         )  # fmt: skip
     yield Picture(
         section, "action-map",
@@ -125,13 +129,15 @@ def _of_segment(anatomy: Anatomy, section: str, name: str, answered: Answered) -
     yield Picture(
         section, f"time-{name}",
         "How the answer came about while it went on: each action's neuron, the decision with its confidence, and the "
-        "actor. Where the thick line is above all others for good, the action was recognised.",
+        "actor. Where the thick line is above all others for good, the action was recognised. Until the end more may "
+        "come; the last bar and the last points are the answer to the complete action, and may jump.",
         partial(course_picture, anatomy.model, answered),
     )  # fmt: skip
     if isinstance(anatomy, PyramidAnatomy):
         yield Picture(
             section, f"why-{name}",
             "What decided: each box is a part of the action, from the whole at the top to its shortest parts beneath; "
-            "the stronger its colour, the more it tipped the balance.",
+            "the stronger its colour, the more it tipped the balance. The bars above add the boxes up and take off "
+            "what they come to in an average segment of the training.",
             partial(reasons_picture, anatomy.model, answered),
         )  # fmt: skip

@@ -38,21 +38,27 @@ def draw_postures(axes: Axes, anatomy: Anatomy, strength: float = 1.0) -> int:
     som = anatomy.postures
     draw_ground(axes, som, strength)
     units, every = drawn_units(som)
-    draw_units(axes, anatomy, units, every, strength)
+    draw_units(axes, anatomy, anatomy.unit_points(), units, every, strength)
     return every
 
 
 def draw_units(
-    axes: Axes, anatomy: Anatomy, units: NDArray[np.intp], size: float, strength: float = 1.0, zorder: float = 2.0
+    axes: Axes,
+    anatomy: Anatomy,
+    points: Floats,
+    units: NDArray[np.intp],
+    size: float,
+    strength: float = 1.0,
+    zorder: float = 2.0,
 ) -> None:
-    """Draw some units' figures; where they are three joints only, with the body they belong to."""
+    """Draw some units' figures, given all units' points; where those are three joints, with the body they belong to."""
     places = anatomy.postures.coordinates[units][:, ::-1]
     whole = anatomy.figure is WHOLE
     if not whole:
         pen = Pen(0.6, FAINT, 0.5 * strength, zorder)
         draw_bodies(axes, rest(len(units)), places, FILLED * size, pen=pen)
     pen = Pen(1.2 if whole else 1.8, strength=strength, zorder=zorder)
-    draw_bodies(axes, anatomy.unit_points()[units], places, FILLED * size, anatomy.figure, pen)
+    draw_bodies(axes, points[units], places, FILLED * size, anatomy.figure, pen)
 
 
 def drawn_units(som: Som) -> tuple[NDArray[np.intp], int]:

@@ -1,5 +1,6 @@
 """Why this and not that: which part of a segment, and which of the first maps, decided between the two best answers."""
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from model_inspector.answered import Answered, encoded
 from model_inspector.arm_map import ArmsOnBodies, fastest_m
+from model_inspector.balance import AGAINST, FOR, TERM_IN, Term, draw_balance
 from model_inspector.bodies import LONGEST_ARROW_M, Pen, draw_arrows, draw_bodies
 from model_inspector.contributions import Contributions, contributions
 from model_inspector.lettering import shortened
@@ -20,19 +22,15 @@ from som_classifier.handedness import mirrored
 from som_classifier.pyramid_model import PyramidModel
 
 Floats = NDArray[Any]
+Draw = Callable[[Axes, PyramidModel, Contributions], None]
 
-FOR, AGAINST = "#4d9221", "#9a4fa8"
 SHADES = LinearSegmentedColormap.from_list("for and against", [AGAINST, PAPER, FOR])
 _STRONGEST = 0.65
+MAPS = 3
 FIGURE_UNITS = 5
 """How many units a figure is the mean of."""
 WIDTH_IN, GAP_IN, ROW_IN, SCALE_IN = 5.2, 0.4, 1.35, 0.28
 FIGURE_IN = 0.95 * ROW_IN
-TITLES = (
-    "POSTURES, in the whole action and in its parts",
-    "MOVEMENTS: where the joints are going",
-    "THE ACTING ARM as seen from its shoulder",
-)
 NARROWEST_IN = 0.5
 """A cell that is narrower gets no figure."""
 
@@ -46,12 +44,17 @@ def reasons_picture(model: PyramidModel, answered: Answered) -> Figure:
     done = answered.label if answered.label in model.labels and not answered.correct else None
     found = contributions(model, encoded(model, answered.frames), done)
     winner, second = (shortened(model.labels[index], 30) for index in (found.winner, found.second))
-    lines = _sum(found, winner, second)
-    height_in = ROW_IN * len(model.pyramid.levels) + SCALE_IN
+    lines, (*terms, total) = _remarks(found, winner, second), _terms(found, winner, second)
+    height_in, width_in = ROW_IN * len(model.pyramid.levels) + SCALE_IN, MAPS * (WIDTH_IN + GAP_IN)
+    balance_in = TERM_IN * len([*terms, total])
     title = f"Why {winner} and not {second}" + (", which was done" if done else "")
-    figure = board(len(TITLES) * (WIDTH_IN + GAP_IN), height_in + 0.8 + 0.2 * len(lines), title)
-    figure.text(0.005, (height_in + 0.42) / figure.get_figheight(), "\n".join(lines), linespacing=1.35, va="bottom")
-    for which, (heading, draw) in enumerate(zip(TITLES, (_draw_postures, _draw_movements, _draw_arms), strict=True)):
+    figure = board(width_in, height_in + balance_in + 0.9 + 0.2 * len(lines), title)
+    above_in = (height_in + balance_in + 0.52) / figure.get_figheight()
+    figure.text(0.005, above_in, "\n".join(lines), linespacing=1.35, va="bottom")
+    balance = axes_at(figure, 0.1, height_in + 0.44, width_in - 0.2, balance_in)
+    balance.set_xlim(0.0, width_in - 0.2)
+    draw_balance(balance, terms, total)
+    for which, (heading, draw) in enumerate(_columns(found)):
         axes = axes_at(figure, 0.1 + which * (WIDTH_IN + GAP_IN), 0.1, WIDTH_IN, height_in)
         _draw_cells(axes, model, found, which)
         draw(axes, model, found)
@@ -67,17 +70,39 @@ def leading(units: Floats) -> tuple[NDArray[np.intp], Floats]:
     return chosen, weights / weights.sum() if weights.sum() > 0 else np.full(len(chosen), 1 / len(chosen))
 
 
-def _sum(found: Contributions, winner: str, second: str) -> list[str]:
-    postures, movements, arm = found.cells.sum(axis=0)
-    lines = [
-        f"green speaks for {winner}, purple for {second}; the figures: what the units hold that say so most",
-        f"scores {found.scores[0]:.2f} and {found.scores[1]:.2f}: {found.difference:+.2f} = {postures:+.2f} by postures"
-        f" {movements:+.2f} by movements {arm:+.2f} by the acting arm {found.level:+.2f} before anything is seen",
-    ]
+def _columns(found: Contributions) -> Sequence[tuple[str, Draw]]:
+    """Return each column's heading and what draws its figures."""
+    return (
+        ("POSTURES, in the whole action and in its parts", _draw_postures),
+        ("MOVEMENTS: where the joints are going", _draw_movements),
+        (f"THE {found.arm.upper()} ARM as seen from its shoulder", _draw_arms),
+    )
+
+
+def _terms(found: Contributions, winner: str, second: str) -> list[Term]:
+    """Return what the difference of the scores is made of, and last the difference."""
+    postures, movements, arm = found.cells.sum(axis=0).tolist()
+    return [
+        Term("postures", postures, "the boxes on the left, added up"),
+        Term("movements", movements, "the boxes in the middle"),
+        Term(f"{found.arm} arm", arm, "the boxes on the right"),
+        Term(
+            "less average", found.level,
+            "the same for every segment: what the boxes add up to in an average one is taken off, so that only what is "
+            "special about this one counts",
+        ),
+        Term("together", found.difference, f"{winner} scores {found.scores[0]:.2f}, {second} {found.scores[1]:.2f}"),
+    ]  # fmt: skip
+
+
+def _remarks(found: Contributions, winner: str, second: str) -> list[str]:
+    lines = [f"green speaks for {winner}, purple for {second}; the figures: what the units hold that say so most"]
     if found.difference < 0:
         lines.append(f"the scores lean to {second}: the place on the map of actions decided otherwise")
     if found.in_mirror:
         lines.append("the left arm acts: the model reads this in a mirror; it is drawn as it was")
+    elif found.left_moves:
+        lines.append("the left arm moves most, but this was not read in a mirror: the map of arms sees the right one")
     return lines
 
 

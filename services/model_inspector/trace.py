@@ -17,6 +17,7 @@ from model_inspector.posture_map import draw_postures, draw_units, map_size, nam
 from model_inspector.style import HALO, PAPER, canvas, in_house_style
 from model_inspector.wording import headline
 from som_classifier.attention import UNSEEN
+from som_classifier.handedness import mirrored
 
 PALE = 0.28
 CARD, ASIDE = 0.94, 0.07
@@ -38,8 +39,10 @@ def trace_picture(anatomy: Anatomy, answered: Answered) -> Figure:
     draw_postures(axes, anatomy, PALE)
     when = answered.shares[seen[first]]
     _draw_way(axes, anatomy.postures.coordinates[units][:, ::-1], when)
-    _draw_cards(axes, anatomy, units, when)
-    mirror = "; the left arm acts: read in a mirror" if anatomy.in_mirror(frames) else ""
+    in_mirror = anatomy.in_mirror(frames)
+    points = mirrored(anatomy.unit_points()) if in_mirror else anatomy.unit_points()
+    _draw_cards(axes, anatomy, points, units, when)
+    mirror = "; the left arm acts: read in a mirror, drawn as it was" if in_mirror else ""
     axes.set_title(f"{len(units)} stays on {len(np.unique(units))} units, framed in the colour of the first{mirror}")
     name_sides(axes)
     seconds = (answered.frames[-1].stamp_ns - answered.frames[0].stamp_ns) / SECOND_NS
@@ -73,7 +76,7 @@ def _kept_right(steps: Floats) -> Floats:
     return moved
 
 
-def _draw_cards(axes: Axes, anatomy: Anatomy, units: Indices, when: Floats) -> None:
+def _draw_cards(axes: Axes, anatomy: Anatomy, points: Floats, units: Indices, when: Floats) -> None:
     """Draw each unit of the trace on white, in a frame of the colour of its first stay, and name start and end."""
     visited, first = np.unique(units, return_index=True)
     places = anatomy.postures.coordinates[:, ::-1]
@@ -84,7 +87,7 @@ def _draw_cards(axes: Axes, anatomy: Anatomy, units: Indices, when: Floats) -> N
             linewidth=2.0, zorder=4,
         )  # fmt: skip
         axes.add_patch(card)
-    draw_units(axes, anatomy, visited, CARD, zorder=5)
+    draw_units(axes, anatomy, points, visited, CARD, zorder=5)
     start, end = units[0], units[-1]
     above, below = (free_side(anatomy.postures, unit, visited, side) for unit, side in ((start, -1), (end, 1)))
     if start == end:

@@ -40,6 +40,8 @@ _CHILDREN = np.array([child for _, child, _ in BONES])
 _LENGTHS_M = np.array([length for _, _, length in BONES])
 SMALLEST_M = 1e-3
 """What is shorter has no direction."""
+ROUNDING = float(np.finfo(np.float64).eps)
+"""What is smaller beside 1 may be nothing but rounding, and has no direction either."""
 
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 
@@ -153,15 +155,22 @@ def untilted_from_camera(up_in_camera: Sequence[float]) -> Array:
     """Return the rotation (3, 3) after which up (3,), of any length, is -y, as for a level camera.
 
     It undoes the roll about the line of sight, then the pitch about x: the line of sight stays forward, x = 0 and
-    z > 0, however the camera hangs. One that looks straight up or down has no roll; none is undone.
+    z > 0, however the camera hangs. One that looks straight up or down, but for rounding, has no roll; none is undone.
     """
-    x, y, z = np.asarray(up_in_camera) / math.hypot(*up_in_camera)
+    x, y, z = _unit_of_any_length(up_in_camera)
     across = math.hypot(x, y)
-    sin_roll, cos_roll = (-x / across, -y / across) if across > 0 else (0.0, 1.0)
+    sin_roll, cos_roll = (-x / across, -y / across) if across > ROUNDING else (0.0, 1.0)
     unrolled = np.array([[cos_roll, -sin_roll, 0.0], [sin_roll, cos_roll, 0.0], [0.0, 0.0, 1.0]])
     unpitched = np.array([[1.0, 0.0, 0.0], [0.0, across, -z], [0.0, z, across]])
     untilted: Array = unpitched @ unrolled
     return untilted
+
+
+def _unit_of_any_length(vector: Sequence[float]) -> Array:
+    """Return a vector's direction, also where its squares or its length are too large or too small for a float."""
+    _, exponent = math.frexp(max(map(abs, vector)))
+    near_1 = [math.ldexp(component, -exponent) for component in vector]
+    return np.array(near_1) / math.hypot(*near_1)
 
 
 def _walked_where_known(bones: Array) -> Array:

@@ -1,6 +1,8 @@
+from fractions import Fraction
+
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from actum import geometry
@@ -197,16 +199,31 @@ def test_however_a_camera_hangs_its_line_of_sight_stays_forward(pitch_deg: float
     np.testing.assert_allclose(level_from_camera @ camera_from_level, np.eye(3), atol=1e-9)
 
 
-@given(AXES)
+TINIEST, LARGEST = 5e-324, np.finfo(np.float64).max
+
+
+@given(st.tuples(*[st.floats(allow_nan=False, allow_infinity=False)] * 3).filter(any))
+@example((TINIEST, TINIEST, 1.0))
+@example((-TINIEST, 3 * TINIEST, -1.0))
+@example((0.0, TINIEST, TINIEST))
+@example((TINIEST, -2 * TINIEST, 3 * TINIEST))
+@example((LARGEST, LARGEST, -LARGEST))
+@example((TINIEST, LARGEST, 1.0))
+@example((1e-17, -1e-16, 1.0))
+@example((1e-16, 3e-16, 1.0))
+@example((1e-160, -1e-160, 1e-160))
 def test_untilting_is_a_rotation_that_brings_up_to_where_a_level_camera_has_it(up: tuple[float, float, float]) -> None:
     level_from_camera = geometry.untilted_from_camera(up)
-    np.testing.assert_allclose(level_from_camera @ up, [0, -np.linalg.norm(up), 0], atol=1e-12)
+    of_length_1 = np.array([float(Fraction(component) / Fraction(max(map(abs, up)))) for component in up])
+    of_length_1 /= np.linalg.norm(of_length_1)
+    np.testing.assert_allclose(level_from_camera @ of_length_1, [0, -1, 0], atol=1e-12)
     np.testing.assert_allclose(level_from_camera @ level_from_camera.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(level_from_camera) == pytest.approx(1)
 
 
-@pytest.mark.parametrize("up", [(0.0, 0.0, 1.0), (-0.0, -0.0, -1.0)])
+@pytest.mark.parametrize("up", [(0.0, 0.0, 1.0), (-0.0, -0.0, -1.0), (TINIEST, TINIEST, 1.0), (1e-17, 1e-17, -1.0)])
 def test_a_camera_that_looks_straight_up_or_down_is_only_pitched(up: tuple[float, float, float]) -> None:
+    """Also where rounding has left something across, which tells nothing of the roll."""
     level_from_camera = geometry.untilted_from_camera(up)
-    np.testing.assert_array_equal(level_from_camera @ up, [0, -1, 0])
+    np.testing.assert_allclose(level_from_camera @ up, [0, -1, 0], rtol=0, atol=1e-16)
     np.testing.assert_array_equal(level_from_camera @ [1, 0, 0], [1, 0, 0])

@@ -1,3 +1,4 @@
+import hashlib
 import re
 from pathlib import Path
 
@@ -7,6 +8,7 @@ from typer.testing import CliRunner, Result
 
 from actum.recording import Recorder
 from actum_command.__main__ import app
+from model_inspector.folder import LIST
 from people import FRAME_NS
 from performers import HAND_PATHS, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
 from recognisers import tiny_model
@@ -63,6 +65,51 @@ def test_a_recording_shows_how_and_why_it_is_recognised(tmp_path: Path) -> None:
     assert inspect(model, recording, "-o", tmp_path / "out").exit_code == 0
     names = {file.stem for file in linked(tmp_path / "out") if file.is_file()}
     assert {"confusion", "trace-push", "time-push", "why-push"} <= names
+
+
+def files_of(folder: Path) -> set[Path]:
+    return {file for file in folder.iterdir() if file.suffix in {".png", ".svg", ".html"}}
+
+
+@pytest.mark.parametrize("ending", ["png", "svg"])
+def test_pictures_of_an_earlier_run_leave_the_folder(tmp_path: Path, ending: str) -> None:
+    """Another model, another recording, another format: every picture that is there belongs to the page."""
+    out, pyramid, paper = (tmp_path / name for name in ("out", "pyramid.npz", "paper.npz"))
+    tiny_model().save(pyramid)
+    tiny_model(TINY_PAPER).save(paper)
+    assert inspect(pyramid, recorded(tmp_path / "a.mcap", ["push"]), "-o", out).exit_code == 0
+    assert (out / "why-push.png").exists()
+    done = inspect(paper, recorded(tmp_path / "b.mcap", ["lift"]), "-o", out, "--format", ending)
+    assert done.exit_code == 0
+    assert files_of(out) == {*linked(out), out / "index.html"}
+
+
+def test_what_a_run_has_not_written_stays_whatever_its_name(tmp_path: Path) -> None:
+    out, model = tmp_path / "out", tmp_path / "model.npz"
+    tiny_model(TINY_PAPER).save(model)
+    out.mkdir()
+    mine = out / "time-holiday.png"
+    mine.write_bytes(b"mine")
+    assert inspect(model, recorded(tmp_path / "a.mcap", ["push"]), "-o", out).exit_code == 0
+    edited = out / "time-push.png"
+    edited.write_bytes(b"drawn upon")
+    with (out / LIST).open("a") as listed:
+        listed.write(f"{hashlib.sha256(b'far').hexdigest()}  ../far.png\nno line of a list\n")
+    (tmp_path / "far.png").write_bytes(b"far")
+    assert inspect(model, "-o", out).exit_code == 0
+    assert (mine.read_bytes(), edited.read_bytes()) == (b"mine", b"drawn upon")
+    assert (tmp_path / "far.png").exists()
+    assert files_of(out) == {*linked(out), out / "index.html", mine, edited}
+
+
+def test_a_run_that_is_refused_leaves_the_earlier_pictures(tmp_path: Path) -> None:
+    out, model = tmp_path / "out", tmp_path / "model.npz"
+    tiny_model(TINY_PAPER).save(model)
+    assert inspect(model, "-o", out).exit_code == 0
+    before = files_of(out)
+    model.write_bytes(b"no model")
+    refusal(model, "-o", out)
+    assert files_of(out) == before
 
 
 def test_only_the_chosen_person_is_shown(tmp_path: Path) -> None:

@@ -161,6 +161,27 @@ def test_beyond_the_images_edge_there_is_next_to_nothing_to_see(middle_px, scale
     assert min(view.levels.shape) <= 1
 
 
+@pytest.mark.parametrize("scale", [0.2, 0.5, 1.0])
+def test_what_is_in_the_middle_of_the_image_s_pixels_is_in_the_middle_of_the_view_s(scale) -> None:
+    """A pixel of the view is 1 / scale of the image's, from edge to edge."""
+    view, beside = View(np.zeros((9, 9)), 100 + 40j, scale), (1 / scale - 1) / 2 * (1 + 1j)
+    assert view.inside(100 + 40j + beside) == pytest.approx(0)
+    assert view.inside(100 + 40j + beside + (3 + 2j) / scale) == pytest.approx(3 + 2j)
+    assert view.outside(3 + 2j) == pytest.approx(100 + 40j + beside + (3 + 2j) / scale)
+
+
+@pytest.mark.parametrize("scale", [0.2, 0.5, 1.0])
+@pytest.mark.parametrize("middle_px", [320 + 240j, 333.3 + 217.9j, 20 + 30j])
+def test_a_view_shows_a_spot_where_it_says(scale, middle_px) -> None:
+    columns, rows = np.meshgrid(np.arange(640), np.arange(480))
+    spot = np.exp(-((columns - middle_px.real) ** 2 + (rows - middle_px.imag) ** 2) / (2 * 8.0**2))
+    view = View.around((200 * spot).astype(np.uint8), middle_px, 48.0, scale)
+    columns, rows = np.meshgrid(*map(np.arange, view.levels.shape[::-1]))
+    weights = np.clip(view.levels - view.levels.max() / 2, 0, None)
+    shown = complex(np.average(columns, weights=weights), np.average(rows, weights=weights))
+    assert view.inside(middle_px) == pytest.approx(shown, abs=0.06)
+
+
 def test_images_of_another_size_begin_anew(image_of, pose_at) -> None:
     tracker = MarkerTracker(Settings(marker_size_m=SIZE_M))
     image = image_of([(3, SIZE_M, pose_at(REST))])

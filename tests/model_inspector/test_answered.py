@@ -60,8 +60,9 @@ def test_the_course_ends_with_the_answer(anatomy: Anatomy, segments: list[Answer
         assert segment.recognition is not None
         assert anatomy.model.labels[told.winners[-1]] == segment.recognition.label
         assert told.confidences[-1] == segment.recognition.confidence
-        assert (np.diff(told.seconds) >= 0).all()
-        assert len(told.seconds) == len(segment.frames) - anatomy.model.min_frames + 2
+        assert dict(zip(anatomy.model.labels, told.activations[-1], strict=True)) == segment.recognition.activations
+        assert (np.diff(told.seconds) > 0).all()
+        assert len(told.seconds) == len(segment.frames) - anatomy.model.min_frames + 1
 
 
 def test_the_neurons_answer_at_each_unit_as_if_the_input_lay_there() -> None:

@@ -49,8 +49,15 @@ def test_the_fastest_unit_is_named_by_its_speed() -> None:
     units[4, 9] = ARM_SPEED * LAG_TIME_CONSTANT_S * 2.0
     arms = Som(2, 3, units)
     assert fastest_m(arms) == pytest.approx(LAG_TIME_CONSTANT_S * 2.0)
-    assert "the longest at 2.0 m/s" in arm_map(arms).axes[0].get_title(loc="left")
+    assert "the longest at 2.0 m/s" in arm_map(arms, mirrors=True).axes[0].get_title(loc="left")
 
 
 def test_a_map_of_arms_at_rest_is_drawn() -> None:
-    assert "0.0 m/s" in arm_map(Som(2, 3, np.zeros((6, 12)))).axes[0].get_title(loc="left")
+    assert "0.0 m/s" in arm_map(Som(2, 3, np.zeros((6, 12))), mirrors=True).axes[0].get_title(loc="left")
+
+
+@pytest.mark.parametrize("mirrors", [True, False])
+def test_left_arms_are_named_only_where_the_model_reads_them_in_a_mirror(mirrors: bool) -> None:
+    title = arm_map(Som(2, 3, np.zeros((6, 12))), mirrors).axes[0].get_title(loc="left")
+    assert title.startswith("the right arm")
+    assert ("in a mirror a left one" in title) == mirrors

@@ -1,16 +1,21 @@
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
+from matplotlib.colors import to_rgba
 
 from actum.node import SECOND_NS
 from actum.som import Som
 from model_inspector.anatomy import anatomy_of
 from model_inspector.answered import Answered
+from model_inspector.style import LEFT, RIGHT
 from model_inspector.trace import COURSE, free_side, trace_picture
 from model_trainer.answering import encoded
 from model_trainer.samples import SegmentSample
 from recognisers import in_a_mirror, tiny_model, tiny_samples
 
 ABOVE, BELOW = -1, 1
+BONES_OF_A_SIDE = ["elbow", "hand", "knee", "foot"]
+"""By their farther end, in the order in which they are drawn."""
 
 
 @pytest.mark.parametrize(
@@ -48,6 +53,22 @@ def test_the_way_of_a_left_hander_is_that_of_the_mirror_image_and_says_so(
     title = trace_picture(anatomy_of(model), answered).axes[0].get_title(loc="left")
     assert title.startswith(f"{len(model.trace(encoded(model, sample)))} stays")
     assert ("read in a mirror" in title) == left_handed
+
+
+@pytest.mark.parametrize(("sample", "moving"), [(tiny_samples()[0], RIGHT), (in_a_mirror(tiny_samples()[0]), LEFT)])
+def test_the_framed_figures_move_the_arm_that_the_actor_moved(sample: SegmentSample, moving: str) -> None:
+    model = tiny_model()
+    answered = Answered("file", "1", "a", sample.label, encoded(model, sample))
+    axes = trace_picture(anatomy_of(model), answered).axes[0]
+    (figures,) = (drawn for drawn in axes.collections if isinstance(drawn, LineCollection) and drawn.get_zorder() == 5)
+    spread = {}
+    for side in (RIGHT, LEFT):
+        own = (figures.get_colors() == to_rgba(side)).all(axis=1)
+        bones = np.array([bone for bone, of_side in zip(figures.get_segments(), own, strict=True) if of_side])
+        lengthwise = bones.reshape(-1, len(BONES_OF_A_SIDE), 2, 2)
+        forearms = lengthwise[:, BONES_OF_A_SIDE.index("hand")]
+        spread[side] = np.ptp(forearms[:, 1] - forearms[:, 0], axis=0).max()
+    assert spread[moving] > 2 * min(spread.values())
 
 
 def test_stays_are_framed_in_the_colour_of_their_time_whatever_frames_were_lost() -> None:

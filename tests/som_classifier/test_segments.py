@@ -175,6 +175,22 @@ def test_no_stream_at_all() -> None:
     assert Run().feed(mark("start"), mark("end")).wait(2.3).reasons == ["no person"]
 
 
+@pytest.mark.parametrize("fields", [{"valid": False}, {"joints": None}, {"motion": None}])
+def test_a_posture_without_joints_or_motion_or_that_says_so_itself_is_no_valid_frame(fields: dict[str, object]) -> None:
+    spoiled = [p.model_copy(update=fields) if i % 2 else p for i, p in enumerate(postures(10))]
+    run = Run().feed(mark("start", 0), mark("end", 9 * FRAME_NS), *spoiled)
+    assert [frame.valid for frame in run.closed[0].frames] == [True, False] * 5
+
+
+def test_whose_a_segment_is_waits_two_seconds_for_the_postures_of_others() -> None:
+    """Each frame names a second agent, nobody of whom ever comes."""
+    alone = [p.model_copy(update={"agents": [1, 2]}) for p in postures(70)]
+    run = Run().feed(mark("start", 0), mark("end", 9 * FRAME_NS), *alone[:60])
+    assert run.closed == []
+    run.feed(*alone[60:])
+    assert [(closed.agent, len(closed.frames)) for closed in run.closed] == [(1, 10)]
+
+
 def test_the_agent_nearest_to_the_camera_at_the_first_valid_frame() -> None:
     near, far = STANDING, STANDING + np.array([0.8, 0.0, 1.0])
     node = PosePreprocessor()
@@ -229,3 +245,17 @@ def test_frames_without_a_posture_belong_to_the_segment_but_not_to_the_recogniti
     mixed = [p for frame in frames for p in node.handle(frame) if isinstance(p, Posture)]
     run = Run().feed(*mixed, mark("start", 0), mark("end", 9 * FRAME_NS))
     assert [frame.valid for frame in run.closed[0].frames] == [False, True] * 5
+
+
+def test_of_very_many_answered_segments_the_newest_are_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A mark that comes again is answered anew only where it is one of the oldest."""
+    monkeypatch.setattr("som_classifier.segments.REMEMBERED", 2)
+    run = Run().feed(*postures(10))
+    marks = {name: [mark("start", 0, name), mark("end", 5 * FRAME_NS, name)] for name in "abc"}
+    run.feed(*marks["a"], *marks["b"], *marks["c"]).wait(2.3)
+    assert sorted(closed.segment_id for closed in run.closed) == ["a", "b", "c"]
+    run.feed(*marks["c"], *marks["b"]).wait(2.3)
+    assert len(run.closed) == 3
+    run.feed(*marks["a"]).wait(2.3)
+    assert run.closed[-1].segment_id == "a"
+    assert len(run.closed) == 4
