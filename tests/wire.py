@@ -24,8 +24,11 @@ SMOOTHED: dict[type[Message], dict[str, object]] = {
 
 
 def lasting(messages: list[Message]) -> list[bytes]:
-    """What of messages does not hang on how long their stream has gone on."""
-    return without_seq([message.model_copy(update=SMOOTHED.get(type(message), {})) for message in messages])
+    """What of messages does not hang on how long their stream has gone on: early on not even the likeliest action."""
+    blank = [message.model_copy(update=SMOOTHED.get(type(message), {})) for message in messages]
+    return without_seq(
+        [m.model_copy(update={"action": None}) if isinstance(m, Action) and not m.final else m for m in blank]
+    )
 
 
 class Wire:
