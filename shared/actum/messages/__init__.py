@@ -1,0 +1,87 @@
+"""Every message that crosses a Zenoh key, as frozen models; the JSON Schemas are generated from here.
+
+Units are SI and named in the field where not obvious. Positions are in the sensor's camera frame (metres,
+x right, y down, z forward) unless the field says otherwise. Transforms are 4x4, row-major, 16 numbers.
+"""
+
+from actum.messages.base import (
+    MOST_AGENTS,
+    MOST_OBJECTS,
+    AgentId,
+    Count,
+    Deviation,
+    Direction,
+    FinitePoint,
+    Hand,
+    Intrinsics,
+    Joint,
+    Joints,
+    Message,
+    Model,
+    Name,
+    Point,
+    Quaternion,
+    Reason,
+    SegmentId,
+    Seq,
+    Stamp,
+    Transform,
+)
+from actum.messages.recognised import ActedObject, Action, Event, HeldObject, Motion, Pointing, Segment, Tensor
+from actum.messages.reported import Info, Status, Truth
+from actum.messages.seen import Agent, Image, Objects, Posture, Skeleton, TrackedObject
+
+MESSAGES: tuple[type[Message], ...] = (
+    Skeleton,
+    Image,
+    Posture,
+    Objects,
+    Segment,
+    Action,
+    Event,
+    Status,
+    Info,
+    Truth,
+)
+
+__all__ = [
+    "MESSAGES",
+    "MOST_AGENTS",
+    "MOST_OBJECTS",
+    "ActedObject",
+    "Action",
+    "Agent",
+    "AgentId",
+    "Count",
+    "Deviation",
+    "Direction",
+    "Event",
+    "FinitePoint",
+    "Hand",
+    "HeldObject",
+    "Image",
+    "Info",
+    "Intrinsics",
+    "Joint",
+    "Joints",
+    "Message",
+    "Model",
+    "Motion",
+    "Name",
+    "Objects",
+    "Point",
+    "Pointing",
+    "Posture",
+    "Quaternion",
+    "Reason",
+    "Segment",
+    "SegmentId",
+    "Seq",
+    "Skeleton",
+    "Stamp",
+    "Status",
+    "Tensor",
+    "TrackedObject",
+    "Transform",
+    "Truth",
+]
