@@ -21,6 +21,9 @@ OUT_OF_REACH = "no object within reach"
 LEFT_ALONE = "no object within reach was acted on"
 OFF_THE_LINE = "no object along the arm"
 
+MOST_NAMED = 3
+"""More objects that another moved are not named."""
+
 CLEARLY = 0.5
 """One line fits clearly better than another where an object is off it by less than this part of the angle."""
 
@@ -98,23 +101,34 @@ def _jointly(
     applies = action.action not in settings.expected_outcomes
     decision = decide(paths, [e.track for e in near], hands, applies, settings)
     if decision is None:
-        return Choice(why=LEFT_ALONE if any(e.distance_m <= settings.reach_m for e in near) else OUT_OF_REACH)
+        return Choice(why=_why_none(near, settings))
     of_track = {e.track.id: e for e in near}
     rivals = tuple(of_track[track.id] for track in decision.rivals)
     return Choice(of_track[decision.track.id], decision.hand, decision.held, rivals)
 
 
+def _why_none(near: Sequence[Evidence], settings: Settings) -> str:
+    """Say why nothing was acted on; what moved all the same was moved by another, and is named."""
+    why = LEFT_ALONE if any(e.distance_m <= settings.reach_m for e in near) else OUT_OF_REACH
+    moved = [e.track for e in near if _moved(e, settings)]
+    named = " and ".join(f'object {track.id} "{track.name}"' for track in moved[:MOST_NAMED])
+    return f"{why}; another moved {named}" if moved else why
+
+
 def _nearest(near: Sequence[Evidence], settings: Settings) -> Choice:
-    """Take the object with the smallest distance among those that were reached or moved (paper, section 2.2)."""
-    candidates = [
-        e
-        for e in near
-        if e.distance_m <= settings.reach_m or float(np.linalg.norm(e.track.shift())) >= settings.moved_m
-    ]
-    if not candidates:
-        return Choice(why=OUT_OF_REACH)
-    best = min(candidates, key=lambda e: e.distance_m)
+    """Take the object with the smallest distance (paper, section 2.2), if it was reached.
+
+    One that moved may have been reached with something.
+    """
+    reached = [e for e in near if e.distance_m <= (settings.reach_with_m if _moved(e, settings) else settings.reach_m)]
+    if not reached:
+        return Choice(why=_why_none(near, settings))
+    best = min(reached, key=lambda e: e.distance_m)
     return Choice(best, best.near_hand)
+
+
+def _moved(of: Evidence, settings: Settings) -> bool:
+    return float(np.linalg.norm(of.track.shift())) >= settings.moved_m
 
 
 def _pointed_at(found: Sequence[Evidence], settings: Settings) -> Choice:

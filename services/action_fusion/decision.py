@@ -44,7 +44,8 @@ def decide(
 
     What a hand carries comes first, or what it works at with that if the action is such (`applies`); then what moved
     while the hand was at it, for things do not move by themselves; then what the hand reached for and left where it
-    is, what it has just let go of, and last what moved without a hand at it: thrown, or pushed with something.
+    is, what it has just let go of, and last what moved away from it: thrown, or pushed with something. What moves
+    where the hands never were is another's.
 
     Args:
         paths: both hands, and others' too, from some time before the segment to its end: what another moves is not
@@ -68,7 +69,8 @@ def decide(
     free = [pair for pair in own if pair.track.id not in carrier or _carries(carrier, pair)]
     displaced = [pair for pair in free if float(np.linalg.norm(pair.track.shift())) >= settings.moved_m]
     at_hand = [pair for pair in displaced if (pair.near & pair.moving & (pair.path.stamps_ns >= 0)).any()]
-    return _nearest(at_hand) or _reached(acting, free, settings) or _released(own, carrier) or _nearest(displaced)
+    sent = [pair for pair in displaced if pair.near.any() or _is_pushed_along(pair, settings)]
+    return _nearest(at_hand) or _reached(acting, free, settings) or _released(own, carrier) or _nearest(sent)
 
 
 def _carries(carrier: Carriers, pair: Comotion) -> bool:
@@ -82,8 +84,13 @@ def _concerned(paths: Mapping[Hand, HandPath], tracks: Sequence[Track], settings
         for track in tracks
     ]
     nearest = sorted(zip(distances_m, tracks, strict=True), key=lambda near: near[0])[:MOST_OBJECTS]
-    furthest_m = settings.reach_m + settings.grasp_m
-    return [t for d, t in nearest if d <= furthest_m or float(np.linalg.norm(t.shift())) >= settings.moved_m]
+    return [t for d, t in nearest if d <= settings.reach_with_m or float(np.linalg.norm(t.shift())) >= settings.moved_m]
+
+
+def _is_pushed_along(pair: Comotion, settings: Settings) -> bool:
+    """Whether the object went as the hand did, as far from it as a thing in the hand reaches that may not be marked."""
+    with_tool = comotion(pair.path, pair.track, settings.reach_with_m, settings.moved_m)
+    return with_tool.is_carried(settings.moved_m)
 
 
 def _is_kept(pair: Comotion, settings: Settings) -> bool:

@@ -41,3 +41,8 @@ class Settings(ServiceSettings):
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description="what an action is to do to its object; it applies no held thing to another",
     )
+
+    @property
+    def reach_with_m(self) -> float:
+        """How far a hand reaches with a thing in it, which may have no marker."""
+        return self.reach_m + self.grasp_m
