@@ -37,23 +37,27 @@ Direction = Annotated[FinitePoint, AfterValidator(_nonzero)]
 
 
 class Message(BaseModel):
-    """What every message carries: capture time on the sensor's clock, number per key, viewpoint, validity.
+    """What every message carries."""
 
-    `seq` is filled in by the runtime where a node leaves it out.
-    """
-
-    model_config = ConfigDict(frozen=True, extra="ignore", strict=True, ser_json_inf_nan="constants")
+    model_config = ConfigDict(
+        frozen=True, extra="ignore", strict=True, ser_json_inf_nan="constants", use_attribute_docstrings=True
+    )
     SCHEMA: ClassVar[str]
     VERSION: ClassVar[int] = 1
 
     stamp_ns: Stamp
+    """Capture time on the sensor's clock, in nanoseconds; carried unchanged from the frame to what follows from it."""
     seq: Seq | None = None
+    """The message's number on its key, from 0 with the process that puts it; null before the runtime fills it in."""
     sensor: str
+    """The viewpoint: the chunk after `actum/` in the key."""
     valid: bool = True
+    """Whether the content can be used; if not, `reason` says why."""
     reason: Reason | None = None
+    """Why the message is not valid; null where it is."""
 
 
 class Model(BaseModel):
     """A part of a message."""
 
-    model_config = ConfigDict(frozen=True, extra="ignore", strict=True)
+    model_config = ConfigDict(frozen=True, extra="ignore", strict=True, use_attribute_docstrings=True)
