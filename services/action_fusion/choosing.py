@@ -50,6 +50,11 @@ class Choice:
     pointing: Pointing | None = None
     why: str | None = None
 
+    @property
+    def likely(self) -> tuple[Evidence, ...]:
+        """The object and its rivals, the likeliest first."""
+        return () if self.evidence is None else (self.evidence, *self.rivals)
+
 
 def evidence(tracks: Sequence[Track], actor: Actor, hands: Sequence[Hand]) -> list[Evidence]:
     """Measure how near each hand came to each object, and how the arm that is out points at it."""

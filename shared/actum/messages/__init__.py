@@ -27,7 +27,17 @@ from actum.messages.base import (
     Stamp,
     Transform,
 )
-from actum.messages.recognised import ActedObject, Action, Event, HeldObject, Motion, Pointing, Segment, Tensor
+from actum.messages.recognised import (
+    ActedObject,
+    Action,
+    Event,
+    HeldObject,
+    Motion,
+    ObjectPose,
+    Pointing,
+    Segment,
+    Tensor,
+)
 from actum.messages.reported import Info, Status, Truth
 from actum.messages.seen import Agent, Image, Objects, Posture, Skeleton, TrackedObject
 
@@ -68,6 +78,7 @@ __all__ = [
     "Model",
     "Motion",
     "Name",
+    "ObjectPose",
     "Objects",
     "Point",
     "Pointing",

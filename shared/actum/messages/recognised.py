@@ -4,7 +4,19 @@ from typing import Annotated, Literal
 
 from pydantic import Field, FiniteFloat
 
-from actum.messages.base import AgentId, Count, FinitePoint, Hand, Message, Model, Name, Reason, SegmentId, Stamp
+from actum.messages.base import (
+    AgentId,
+    Count,
+    FinitePoint,
+    Hand,
+    Message,
+    Model,
+    Name,
+    Quaternion,
+    Reason,
+    SegmentId,
+    Stamp,
+)
 
 
 class Tensor(Model):
@@ -76,6 +88,18 @@ class Action(Message):
     """The way over the first map, a row and a column per step; null unless asked for."""
 
 
+class ObjectPose(Model):
+    """Where an object is at the end of an action, in one frame."""
+
+    frame: Name
+    """The frame: `camera`, that of the skeletons, or the fixed frame's name, as `action_fusion` was told."""
+    position_m: FinitePoint
+    """Where its middle is (m)."""
+    quaternion_xyzw: Quaternion | None
+    """The rotation from its own axes to the frame's, as a unit quaternion; null where a hand has moved it since it was
+    seen last, so that only its place is known."""
+
+
 class ActedObject(Model):
     """The object an action is applied to, and how close the hand came to it."""
 
@@ -87,7 +111,20 @@ class ActedObject(Model):
     """The smallest distance from the hand's joint to it during the segment (m)."""
     carried: bool = False
     """How its motion is known: true where, for a while, a hand covered it and its place was taken from that hand.
-    A thing that is seen all the way is false here though it was lifted."""
+    A thing that is seen all the way is false here though it was lifted: see `taken_along`."""
+    taken_along: bool = False
+    """Whether the hand that acted moved it during the segment, it going as the hand went: lifted, put, pushed …, seen
+    or covered."""
+    in_hand_at_end: bool = False
+    """Whether, as the segment ends, it is still in the hand that had it: where it was in it, within a decimetre. That
+    the fingers are closed is not seen, so that a hand that rests on what it has put down counts too."""
+    last_seen_ns: Stamp | None = None
+    """When it was seen last, up to the segment's end (ns); null where it was not."""
+    pose: ObjectPose | None = None
+    """Where it is at the segment's end, in the camera frame of the skeletons: where it was seen last, or in the hand
+    that has covered it since; null where the sender does not tell."""
+    fixed_pose: ObjectPose | None = None
+    """The same in the fixed frame that `action_fusion` was told of; null where it was told of none."""
 
 
 class HeldObject(Model):
