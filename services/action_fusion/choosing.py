@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from action_fusion import proximity
-from action_fusion.decision import decide
+from action_fusion.decision import decide, moved_by_others
 from action_fusion.hands import Hands
 from action_fusion.proximity import Actor
 from action_fusion.samples import Array
@@ -96,7 +96,7 @@ def choose(
     if not near:
         return Choice(why=NO_HAND)
     if settings.measure == "proximity":
-        return _nearest(near, settings)
+        return _nearest(near, paths, settings)
     return _jointly(action, near, paths, hands, settings)
 
 
@@ -106,28 +106,28 @@ def _jointly(
     applies = action.action not in settings.expected_outcomes
     decision = decide(paths, [e.track for e in near], hands, applies, settings)
     if decision is None:
-        return Choice(why=_why_none(near, settings))
+        return Choice(why=_why_none(near, paths, settings))
     of_track = {e.track.id: e for e in near}
     rivals = tuple(of_track[track.id] for track in decision.rivals)
     return Choice(of_track[decision.track.id], decision.hand, decision.held, rivals)
 
 
-def _why_none(near: Sequence[Evidence], settings: Settings) -> str:
-    """Say why nothing was acted on; what moved all the same was moved by another, and is named."""
+def _why_none(near: Sequence[Evidence], paths: Hands, settings: Settings) -> str:
+    """Say why nothing was acted on, and name what another moved."""
     why = LEFT_ALONE if any(e.distance_m <= settings.reach_m for e in near) else OUT_OF_REACH
-    moved = [e.track for e in near if _moved(e, settings)]
+    moved = moved_by_others(paths, [e.track for e in near], settings)
     named = " and ".join(f'object {track.id} "{track.name}"' for track in moved[:MOST_NAMED])
     return f"{why}; another moved {named}" if moved else why
 
 
-def _nearest(near: Sequence[Evidence], settings: Settings) -> Choice:
+def _nearest(near: Sequence[Evidence], paths: Hands, settings: Settings) -> Choice:
     """Take the object with the smallest distance (paper, section 2.2), if it was reached.
 
     One that moved may have been reached with something.
     """
     reached = [e for e in near if e.distance_m <= (settings.reach_with_m if _moved(e, settings) else settings.reach_m)]
     if not reached:
-        return Choice(why=_why_none(near, settings))
+        return Choice(why=_why_none(near, paths, settings))
     best = min(reached, key=lambda e: e.distance_m)
     return Choice(best, best.near_hand)
 

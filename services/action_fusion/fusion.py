@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from action_fusion import displacement, proximity
+from action_fusion.buffers import LOOK_BACK_NS
 from action_fusion.carrying import carried_tracks
 from action_fusion.choosing import NO_HAND, Choice, choose, evidence
 from action_fusion.ending import acted_object
@@ -124,7 +125,8 @@ def _tracks(
     action: Action, frames: Sequence[ObjectsSample], paths: Hands, std_m: float, settings: Settings
 ) -> list[Track]:
     """Follow the objects; the paper's measure takes what was seen alone."""
-    known = aligned(tracks(frames, action.start_ns), paths.own.values(), std_m, settings)
+    seen = [t for t in tracks(frames, action.start_ns) if t.stamps_ns[-1] >= -LOOK_BACK_NS]
+    known = aligned(seen, paths.own.values(), std_m, settings)
     if settings.measure == "proximity" or action.end_ns is None:
         return [track.only(track.seen) for track in known if track.seen.any()]
     return carried_tracks(known, paths.everybodys, action.end_ns - action.start_ns, settings)

@@ -48,6 +48,13 @@ def test_what_a_hand_reaches_for_is_acted_on_though_another_moves_a_thing_elsewh
     assert (event.object and event.object.name, event.why) == ("cup", None)
 
 
+def test_what_the_other_hand_of_the_same_person_moves_is_not_anothers() -> None:
+    left = moving((0.5, (-0.4, 0.08, 0.5)), (1.2, (-0.4, 0.3, 0.5)))
+    scene = Scene(left_hand=left, objects={1: moving((0.5, BOOK), (1.2, (-0.4, 0.22, 0.5)))})
+    event = event_of(scene, "act")
+    assert (event.hand, event.object, event.why) == ("right", None, "no object within reach")
+
+
 def test_what_is_thrown_is_acted_on() -> None:
     thrown = moving((0.8, CUP), (1.1, (0.1, 0.3, 0.6)), (1.3, (0.1, 0.5, 1.6)), (1.5, (0.1, 0.0, 2.6)))
     hand = moving((0.2, REST_RIGHT), (0.8, AT_CUP), (1.1, (0.1, 0.38, 0.55)), (1.6, REST_RIGHT))
