@@ -71,9 +71,10 @@ class Comotion:
     def _is_held_since(self, moved_m: float) -> bool:
         """Whether the hand moved the object before the segment, and has had it at the same place in it up to there."""
         before = np.flatnonzero(self.path.stamps_ns < 0)
-        if not len(before):
+        recent = before[self.recent[before]]
+        if not len(recent):
             return False
-        place = np.median(self.relative_m[before[self.recent[before]]], axis=0)
+        place = np.median(self.relative_m[recent], axis=0)
         strayed = np.linalg.norm(self.relative_m[before] - place, axis=1) > STEADY_M
         held = before[np.flatnonzero(strayed)[-1] + 1 :] if strayed.any() else before
         return float(self.steps_m[held][self.with_hand[held]].sum()) >= moved_m
