@@ -1,7 +1,8 @@
 """Which object the hands of the OptiTrack takes act on: the plain proximity measure and the joint one, as Markdown.
 
-python benchmarks/bimacs.py DIR, the folder of the takes (see sensor_gateway.bimacs). Fusion gets the hands, objects
-and the bounds of each segment; what is done in it, and to what, is compared afterwards.
+python benchmarks/bimacs.py DIR [--varied], the folder of the takes (see sensor_gateway.bimacs). Fusion gets the hands,
+objects and the bounds of each segment; what is done in it, and to what, is compared afterwards. With --varied it gets
+them also as another person, other things or poorer cameras would have given them (see bimacs_variations).
 """
 
 import sys
@@ -13,6 +14,10 @@ from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
 
+import numpy as np
+from bimacs_tracks import read, written
+from bimacs_variations import VARIATIONS
+
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
 from actum.messages import Action, Event, Message, Segment, Truth
@@ -20,11 +25,16 @@ from actum.node import replay
 from actum.recording import Recording
 from actum_command.importing import import_bimacs
 from model_trainer.evaluation import wilson_interval
+from sensor_gateway.bimacs import read_take, take_files
 
 ACTIONS = ("lift", "place", "hold", "approach", "retreat", "pour", "stir", "idle")
 APPLIED = ("pour", "stir")
 NAMELESS = "act"
 MEASURES = {"proximity": Settings(measure="proximity"), "joint": Settings(measure="joint")}
+
+
+SEEDS = {True: 0, False: 100}
+"""Of variations that were looked at while the fusion was made, and of those that were not."""
 
 
 @dataclass(frozen=True)
@@ -49,18 +59,25 @@ class Trial:
         return self.events["joint"].outcome == outcome
 
 
+VARIED_LINES: Mapping[str, tuple[str, Callable[[Trial, str], bool]]] = {
+    **{label: (label, Trial.object_right) for label in ACTIONS},
+    **{f"{label}: in the hand": (label, Trial.held_right) for label in APPLIED},
+}
+
+
 def trials(folder: Path) -> Iterator[Trial]:
+    """Take what `actum import bimacs` writes."""
     with tempfile.TemporaryDirectory() as out:
         import_bimacs(folder, Path(out), lambda done, total: None)
         for file in sorted(Path(out).glob("*.mcap")):
             yield from _trials(list(Recording(file).messages()))
 
 
-def _trials(messages: Sequence[Message]) -> Iterator[Trial]:
-    starts = {m.segment_id: m for m in messages if isinstance(m, Segment) and m.kind == "start"}
-    ends = {m.segment_id: m for m in messages if isinstance(m, Segment) and m.kind == "end"}
-    truths = {m.segment_id: m for m in messages if isinstance(m, Truth)}
-    events = {name: _events(messages, starts, ends, settings) for name, settings in MEASURES.items()}
+def _trials(heard: Sequence[Message], measures: Mapping[str, Settings] = MEASURES) -> Iterator[Trial]:
+    starts = {m.segment_id: m for m in heard if isinstance(m, Segment) and m.kind == "start"}
+    ends = {m.segment_id: m for m in heard if isinstance(m, Segment) and m.kind == "end"}
+    truths = {m.segment_id: m for m in heard if isinstance(m, Truth)}
+    events = {name: _events(heard, starts, ends, settings) for name, settings in measures.items()}
     tools = _tools(starts, truths)
     for number, start in starts.items():
         target = truths[number].object_id if number in truths else None
@@ -145,10 +162,36 @@ def table(done: Sequence[Trial]) -> Iterator[str]:
     yield f"\nOf {total:.0f} s idle an object is claimed for: {claimed}. Intervals are Wilson's, 95 %."
 
 
+def variations_table(folder: Path) -> Iterator[str]:
+    """Tell of each variation how many of each line stay right, by the joint measure."""
+    takes = [read_take(file, "optitrack") for file in take_files(folder)]
+    yield f"\n| variation | | {' | '.join(VARIED_LINES)} |"
+    yield f"|---|---|{'---|' * len(VARIED_LINES)}"
+    for variation in VARIATIONS:
+        for chosen_on, amounts in ((True, variation.chosen_on), (False, variation.looked_at)):
+            for amount, change in amounts.items():
+                rngs = [np.random.default_rng([SEEDS[chosen_on], number]) for number in range(len(takes))]
+                varied = [written(take, change(read(take), rng)) for take, rng in zip(takes, rngs, strict=True)]
+                done = [trial for of_take in varied for trial in _trials(of_take, {"joint": MEASURES["joint"]})]
+                shares = [_right_of(done, label, right) for label, right in VARIED_LINES.values()]
+                how = "" if chosen_on else "*"
+                yield f"| {variation.what} | {amount}{how} | {' | '.join(shares)} |"
+    yield "\nAmounts without an asterisk were looked at while the fusion was made, those with one after."
+
+
+def _right_of(done: Sequence[Trial], label: str, right: Callable[[Trial, str], bool]) -> str:
+    of_label = [trial for trial in done if trial.label == label]
+    return f"{sum(right(trial, 'joint') for trial in of_label)}/{len(of_label)}"
+
+
 def main() -> None:
-    if len(sys.argv) != 2:
+    folder, varied = sys.argv[1:2], sys.argv[2:] == ["--varied"]
+    if len(sys.argv) != 2 + varied:
         sys.exit(__doc__)
-    print("\n".join(table(list(trials(Path(sys.argv[1]))))))
+    print("\n".join(table(list(trials(Path(folder[0]))))), flush=True)
+    if varied:
+        for line in variations_table(Path(folder[0])):
+            print(line, flush=True)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """The recent past of one stream, long enough for the longest segment and the latest action."""
 
 from collections import deque
+from itertools import pairwise
 from typing import Generic, TypeVar
 
 from action_fusion.samples import Sample
@@ -11,13 +12,16 @@ LONGEST_SEGMENT_NS = 60 * SECOND_NS
 LOOK_BACK_NS = 9 * SECOND_NS // 10
 """How long before a segment an object may have been seen last; recordings played in a row are a second apart."""
 
+MEMORY_NS = 10 * SECOND_NS
+"""How long before a segment a hand may have taken what it has held since, or come to where it has rested since."""
+
 LATEST_ACTION_NS = 4 * SECOND_NS
 """An action may come this long after its segment's end: two seconds of waiting, two of skew."""
 
 ANSWERED = 16
 """How many of the last answered segments are remembered, to tell what comes too late for them."""
 
-HELD_NS = LONGEST_SEGMENT_NS + LOOK_BACK_NS + LATEST_ACTION_NS
+HELD_NS = LONGEST_SEGMENT_NS + MEMORY_NS + LATEST_ACTION_NS
 
 
 S = TypeVar("S", bound=Sample)
@@ -60,7 +64,17 @@ class Buffer(Generic[S]):
         """Tell whether a sample belongs to a segment that has been answered without it."""
         return any(stamp_ns in segment for segment in self._answered)
 
-    def between(self, start_ns: int, end_ns: int) -> list[S]:
-        """List the samples with start <= stamp <= end that are of the same session as the last of them."""
-        window = [sample for sample in self._samples if start_ns <= sample.stamp_ns <= end_ns]
-        return [sample for sample in window if sample.session_id == window[-1].session_id]
+    def of_segment(self, start_ns: int, end_ns: int) -> list[S]:
+        """List the samples of a segment and of the time before it, of the same session as the last of them.
+
+        Nothing is listed of before a gap of `LOOK_BACK_NS` or more that ends before the segment.
+        """
+        window = [sample for sample in self._samples if start_ns - MEMORY_NS <= sample.stamp_ns <= end_ns]
+        listed = [sample for sample in window if sample.session_id == window[-1].session_id]
+        stamps_ns = [sample.stamp_ns for sample in listed]
+        after_gap = [
+            i
+            for i, (before_ns, then_ns) in enumerate(pairwise([*stamps_ns, end_ns]), start=1)
+            if before_ns < start_ns and min(then_ns, start_ns) - before_ns >= LOOK_BACK_NS
+        ]
+        return listed[after_gap[-1] if after_gap else 0 :]

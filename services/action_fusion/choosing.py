@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from action_fusion import proximity
-from action_fusion.decision import decide
+from action_fusion.decision import decide, moved_by_others
 from action_fusion.hands import Hands
 from action_fusion.proximity import Actor
 from action_fusion.samples import Array
@@ -20,6 +20,9 @@ NO_OBJECT = "no object in sight"
 OUT_OF_REACH = "no object within reach"
 LEFT_ALONE = "no object within reach was acted on"
 OFF_THE_LINE = "no object along the arm"
+
+MOST_NAMED = 3
+"""More objects that another moved are not named."""
 
 CLEARLY = 0.5
 """One line fits clearly better than another where an object is off it by less than this part of the angle."""
@@ -46,6 +49,11 @@ class Choice:
     rivals: tuple[Evidence, ...] = ()
     pointing: Pointing | None = None
     why: str | None = None
+
+    @property
+    def likely(self) -> tuple[Evidence, ...]:
+        """The object and its rivals, the likeliest first."""
+        return () if self.evidence is None else (self.evidence, *self.rivals)
 
 
 def evidence(tracks: Sequence[Track], actor: Actor, hands: Sequence[Hand]) -> list[Evidence]:
@@ -88,7 +96,7 @@ def choose(
     if not near:
         return Choice(why=NO_HAND)
     if settings.measure == "proximity":
-        return _nearest(near, settings)
+        return _nearest(near, paths, settings)
     return _jointly(action, near, paths, hands, settings)
 
 
@@ -98,23 +106,34 @@ def _jointly(
     applies = action.action not in settings.expected_outcomes
     decision = decide(paths, [e.track for e in near], hands, applies, settings)
     if decision is None:
-        return Choice(why=LEFT_ALONE if any(e.distance_m <= settings.reach_m for e in near) else OUT_OF_REACH)
+        return Choice(why=_why_none(near, paths, settings))
     of_track = {e.track.id: e for e in near}
     rivals = tuple(of_track[track.id] for track in decision.rivals)
     return Choice(of_track[decision.track.id], decision.hand, decision.held, rivals)
 
 
-def _nearest(near: Sequence[Evidence], settings: Settings) -> Choice:
-    """Take the object with the smallest distance among those that were reached or moved (paper, section 2.2)."""
-    candidates = [
-        e
-        for e in near
-        if e.distance_m <= settings.reach_m or float(np.linalg.norm(e.track.shift())) >= settings.moved_m
-    ]
-    if not candidates:
-        return Choice(why=OUT_OF_REACH)
-    best = min(candidates, key=lambda e: e.distance_m)
+def _why_none(near: Sequence[Evidence], paths: Hands, settings: Settings) -> str:
+    """Say why nothing was acted on, and name what another moved."""
+    why = LEFT_ALONE if any(e.distance_m <= settings.reach_m for e in near) else OUT_OF_REACH
+    moved = moved_by_others(paths, [e.track for e in near], settings)
+    named = " and ".join(f'object {track.id} "{track.name}"' for track in moved[:MOST_NAMED])
+    return f"{why}; another moved {named}" if moved else why
+
+
+def _nearest(near: Sequence[Evidence], paths: Hands, settings: Settings) -> Choice:
+    """Take the object with the smallest distance (paper, section 2.2), if it was reached.
+
+    One that moved may have been reached with something.
+    """
+    reached = [e for e in near if e.distance_m <= (settings.reach_with_m if _moved(e, settings) else settings.reach_m)]
+    if not reached:
+        return Choice(why=_why_none(near, paths, settings))
+    best = min(reached, key=lambda e: e.distance_m)
     return Choice(best, best.near_hand)
+
+
+def _moved(of: Evidence, settings: Settings) -> bool:
+    return float(np.linalg.norm(of.track.shift())) >= settings.moved_m
 
 
 def _pointed_at(found: Sequence[Evidence], settings: Settings) -> Choice:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from action_fusion.buffers import LOOK_BACK_NS
 from action_fusion.hands import HandPath, furthest
 from action_fusion.samples import Array, Mask
 from action_fusion.tracks import Track
@@ -12,6 +13,9 @@ from actum.node import SECOND_NS
 
 RECENT_NS = 1 * SECOND_NS
 """Steps are taken over this long: a joint's noise is small beside them, and what moves no further is at rest."""
+
+STEADY_M = 0.05
+"""What is in a hand stays within a hand's breadth of its place there."""
 
 EXPLAINED = 0.5
 """The hand's step explains the object's where it takes away more than half of its square."""
@@ -41,14 +45,39 @@ class Comotion:
         distances: Array = np.linalg.norm(self.relative_m, axis=1)
         return distances
 
-    def moved_by_hand_m(self, since_ns: float = -np.inf) -> float:
-        """Sum the object's way in the hand from an instant on."""
+    @property
+    def recent(self) -> Mask:
+        """Which instants are of the segment or of just before it (n,)."""
+        recent: Mask = self.path.stamps_ns >= -LOOK_BACK_NS
+        return recent
+
+    @property
+    def moved_nearby(self) -> bool:
+        """Whether the object moved noticeably within reach during the segment."""
+        return bool((self.near & self.moving & (self.path.stamps_ns >= 0)).any())
+
+    def moved_by_hand_m(self, since_ns: float = -LOOK_BACK_NS) -> float:
+        """Sum the object's way in the hand from an instant on, by default from just before the segment."""
         return float(self.steps_m[self.with_hand & (self.path.stamps_ns >= since_ns)].sum())
 
     def is_carried(self, moved_m: float) -> bool:
-        """Whether the hand moved the object noticeably, and for more of its way near the hand than not."""
-        otherwise_m = float(self.steps_m[self.moving & self.near & ~self.with_hand].sum())
-        return self.moved_by_hand_m() >= max(moved_m, otherwise_m)
+        """Whether the hand moved the object noticeably, and for more of its way near the hand than not.
+
+        What it did before counts where it has held the object since; else only the segment and the time just before.
+        """
+        otherwise_m = float(self.steps_m[self.recent & self.moving & self.near & ~self.with_hand].sum())
+        return self.moved_by_hand_m() >= max(moved_m, otherwise_m) or self._is_held_since(moved_m)
+
+    def _is_held_since(self, moved_m: float) -> bool:
+        """Whether the hand moved the object before the segment, and has had it at the same place in it up to there."""
+        before = np.flatnonzero(self.path.stamps_ns < 0)
+        recent = before[self.recent[before]]
+        if not len(recent):
+            return False
+        place = np.median(self.relative_m[recent], axis=0)
+        strayed = np.linalg.norm(self.relative_m[before] - place, axis=1) > STEADY_M
+        held = before[np.flatnonzero(strayed)[-1] + 1 :] if strayed.any() else before
+        return float(self.steps_m[held][self.with_hand[held]].sum()) >= moved_m
 
 
 def comotion(path: HandPath, track: Track, reach_m: float, moved_m: float) -> Comotion:
@@ -59,6 +88,8 @@ def comotion(path: HandPath, track: Track, reach_m: float, moved_m: float) -> Co
     """
     object_m = track.at(path.stamps_ns)
     since = furthest(object_m, path.stamps_ns, RECENT_NS)
+    first_recent = np.searchsorted(path.stamps_ns, -LOOK_BACK_NS)
+    since[first_recent:] = np.maximum(since[first_recent:], first_recent)
     object_step = object_m - object_m[since]
     moving: Mask = np.linalg.norm(object_step, axis=1) >= moved_m
     difference = object_step - (path.positions_m - path.positions_m[since])

@@ -25,6 +25,10 @@ TOUCHED_M = 0.13
 """A hand that has acted elsewhere is at a thing only if it touches it: from the palm to the fingertips, and half of a
 small thing."""
 
+RIM_M = 0.10
+"""A hand that stops further from a thing's middle than a grasp is at its rim if it went for it: its way passes within
+half of a thing of two decimetres."""
+
 AIMED = 0.5
 """A reach heads at an object where at least half of its last step brought the hand nearer to it: within 60 degrees."""
 
@@ -35,9 +39,9 @@ def misses_m(path: HandPath, pairs: Sequence[Comotion], settings: Settings) -> M
     A reach ends on a line to its goal. With c = (r' - r) / s the share of the hand's last step s by which the
     distance r fell, the line of the step passes the object at r sqrt(1 - c^2); a hand that made no such step, or
     moved away, misses it by r. The median over the instants at which the hand rests where it works last, with the
-    object in grasp, is taken: those to which a reach for any object has led or, where none was seen to, all, if they
-    are most of the segment. A hand that has stopped elsewhere before has acted there, and on nothing, for nothing was
-    moved: it has to touch what it is to have reached for.
+    object in grasp, or at its rim if it went for it, is taken: those to which a reach for any object has led or, where
+    none was seen to, all, if they are most of the segment. A hand that has stopped elsewhere before has acted there,
+    and on nothing, for nothing was moved: it has to touch what it is to have reached for.
     """
     if not pairs:
         return {}
@@ -45,11 +49,12 @@ def misses_m(path: HandPath, pairs: Sequence[Comotion], settings: Settings) -> M
     closings = np.stack([_closing(path, pair, since) for pair in pairs])
     distances = np.stack([pair.distances_m for pair in pairs])
     stopped = stops(path)
-    at_hand = distances <= (TOUCHED_M if stopped.acted_before else settings.grasp_m)
-    aimed = at_hand & (closings >= AIMED)
-    arrived: Mask = stopped.last & np.asarray(aimed.any(axis=0))
     missed = distances * np.sqrt(1 - closings**2)
-    counted = at_hand & (arrived if arrived.any() else stopped.last)
+    at_hand = distances <= (TOUCHED_M if stopped.acted_before else settings.grasp_m)
+    at_rim = (distances <= settings.reach_m) & (missed <= RIM_M) & (not stopped.acted_before)
+    aimed = (at_hand | at_rim) & (closings >= AIMED)
+    arrived: Mask = stopped.last & np.asarray(aimed.any(axis=0))
+    counted = (at_hand | aimed) & arrived if arrived.any() else at_hand & stopped.last
     fewest = 1 if arrived.any() else max(1, np.count_nonzero(path.stamps_ns >= 0) / 2)
     touched: Mask = counted.sum(axis=1) >= fewest
     return {

@@ -6,15 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from action_fusion.application import applied_to
-from action_fusion.comotion import Comotion, carriers, comotion
+from action_fusion.comotion import STEADY_M, Comotion, carriers, comotion
 from action_fusion.contact import gives_way_m, misses_m
 from action_fusion.hands import HandPath, Hands
 from action_fusion.settings import Settings
 from action_fusion.tracks import Track
 from actum.messages import Hand
-
-STEADY_M = 0.05
-"""What is in a hand stays within a hand's breadth of its place there."""
 
 STEADY_SHARE = 0.75
 
@@ -44,7 +41,8 @@ def decide(
 
     What a hand carries comes first, or what it works at with that if the action is such (`applies`); then what moved
     while the hand was at it, for things do not move by themselves; then what the hand reached for and left where it
-    is, what it has just let go of, and last what moved without a hand at it: thrown, or pushed with something.
+    is, what it has just let go of, and last what moved away from it: thrown, or pushed with something. What moves
+    where the hands never were is another's.
 
     Args:
         paths: both hands, and others' too, from some time before the segment to its end: what another moves is not
@@ -67,8 +65,20 @@ def decide(
         return _with_held(best, pairs, carrier, applies, settings)
     free = [pair for pair in own if pair.track.id not in carrier or _carries(carrier, pair)]
     displaced = [pair for pair in free if float(np.linalg.norm(pair.track.shift())) >= settings.moved_m]
-    at_hand = [pair for pair in displaced if (pair.near & pair.moving & (pair.path.stamps_ns >= 0)).any()]
-    return _nearest(at_hand) or _reached(acting, free, settings) or _released(own, carrier) or _nearest(displaced)
+    at_hand = [pair for pair in displaced if pair.moved_nearby]
+    sent = [pair for pair in displaced if (pair.near & pair.recent).any() or _is_pushed_along(pair, settings)]
+    return _nearest(at_hand) or _reached(acting, free, settings) or _released(own, carrier) or _nearest(sent)
+
+
+def moved_by_others(paths: Hands, tracks: Sequence[Track], settings: Settings) -> list[Track]:
+    """List what moved in the segment, not in the actor's hands nor, where no hand was seen to have it, near them."""
+    moved = [track for track in tracks if float(np.linalg.norm(track.shift())) >= settings.moved_m]
+    pairs = [comotion(path, track, settings.reach_m, settings.moved_m) for path in paths.everybodys for track in moved]
+    carrier = carriers(pairs, settings.moved_m)
+    own = [pair for pair in pairs if any(pair.path is path for path in paths.own.values())]
+    near = {pair.track.id for pair in own if pair.moved_nearby and pair.track.id not in carrier}
+    in_hand = {pair.track.id for pair in own if _carries(carrier, pair)}
+    return [track for track in moved if track.id not in near | in_hand]
 
 
 def _carries(carrier: Carriers, pair: Comotion) -> bool:
@@ -82,8 +92,13 @@ def _concerned(paths: Mapping[Hand, HandPath], tracks: Sequence[Track], settings
         for track in tracks
     ]
     nearest = sorted(zip(distances_m, tracks, strict=True), key=lambda near: near[0])[:MOST_OBJECTS]
-    furthest_m = settings.reach_m + settings.grasp_m
-    return [t for d, t in nearest if d <= furthest_m or float(np.linalg.norm(t.shift())) >= settings.moved_m]
+    return [t for d, t in nearest if d <= settings.reach_with_m or float(np.linalg.norm(t.shift())) >= settings.moved_m]
+
+
+def _is_pushed_along(pair: Comotion, settings: Settings) -> bool:
+    """Whether the object went as the hand did, as far from it as a thing in the hand reaches that may not be marked."""
+    with_tool = comotion(pair.path, pair.track, settings.reach_with_m, settings.moved_m)
+    return with_tool.is_carried(settings.moved_m)
 
 
 def _is_kept(pair: Comotion, settings: Settings) -> bool:

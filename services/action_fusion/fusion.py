@@ -8,15 +8,17 @@ from typing import Any
 import numpy as np
 
 from action_fusion import displacement, proximity
+from action_fusion.buffers import LOOK_BACK_NS
 from action_fusion.carrying import carried_tracks
-from action_fusion.choosing import NO_HAND, Choice, Evidence, choose, evidence
+from action_fusion.choosing import NO_HAND, Choice, choose, evidence
+from action_fusion.ending import acted_object
 from action_fusion.hands import HandPath, Hands, hand_path
 from action_fusion.samples import ObjectsSample, PostureSample
 from action_fusion.settings import Settings
 from action_fusion.sightline import aligned, depth_std_m
 from action_fusion.tracks import Track, tracks
 from action_fusion.wording import sentence
-from actum.messages import ActedObject, Action, Event, Hand, HeldObject, Motion
+from actum.messages import Action, Event, Hand, HeldObject, Motion
 from actum.node import SECOND_NS
 
 PART_HANDS: dict[str | None, Hand] = {"right_arm": "right", "left_arm": "left"}
@@ -51,15 +53,16 @@ def fuse(
     found = [] if actor is None else evidence(seen, actor, hands)
     choice = Choice(why=NO_HAND) if actor is None and seen else choose(action, found, paths, hands, settings)
     became = _became(action, choice, inside, settings)
+    likely = [acted_object(e, choice, paths.own, frames, action.start_ns, settings) for e in choice.likely]
     return Event(
         **_common(action),
         **became,
-        object=_acted_object(choice.evidence),
+        object=likely[0] if likely else None,
         held=None if choice.held is None else HeldObject(id=choice.held.id, name=choice.held.name),
         hand=hands[0] if len(hands) == 1 else choice.hand,
         objects_present=[track.id for track in seen],
         distances_m={str(e.track.id): e.distance_m for e in found if math.isfinite(e.distance_m)},
-        candidates=_candidates(choice),
+        candidates=[candidate for candidate in likely if candidate is not None] if choice.rivals else [],
         pointing=choice.pointing,
         why=choice.why,
         sentence=sentence(action, choice, became["result"]),
@@ -122,7 +125,8 @@ def _tracks(
     action: Action, frames: Sequence[ObjectsSample], paths: Hands, std_m: float, settings: Settings
 ) -> list[Track]:
     """Follow the objects; the paper's measure takes what was seen alone."""
-    known = aligned(tracks(frames, action.start_ns), paths.own.values(), std_m, settings)
+    seen = [t for t in tracks(frames, action.start_ns) if t.stamps_ns[-1] >= -LOOK_BACK_NS]
+    known = aligned(seen, paths.own.values(), std_m, settings)
     if settings.measure == "proximity" or action.end_ns is None:
         return [track.only(track.seen) for track in known if track.seen.any()]
     return carried_tracks(known, paths.everybodys, action.end_ns - action.start_ns, settings)
@@ -149,21 +153,6 @@ def _became(action: Action, choice: Choice, postures: Sequence[PostureSample], s
         "outcome": outcome,
         "agrees": displacement.agrees(outcome, expected),
     }
-
-
-def _acted_object(chosen: Evidence | None) -> ActedObject | None:
-    if chosen is None or not math.isfinite(chosen.distance_m):
-        return None
-    track = chosen.track
-    return ActedObject(id=track.id, name=track.name, distance_m=chosen.distance_m, carried=track.carried)
-
-
-def _candidates(choice: Choice) -> list[ActedObject]:
-    """List the object and its rivals, where it has any."""
-    if choice.evidence is None or not choice.rivals:
-        return []
-    listed = [_acted_object(e) for e in (choice.evidence, *choice.rivals)]
-    return [candidate for candidate in listed if candidate is not None]
 
 
 def _gaps(postures: Sequence[PostureSample]) -> int:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from action_fusion.buffers import LATEST_ACTION_NS, LOOK_BACK_NS, Buffer, S
+from action_fusion.buffers import LATEST_ACTION_NS, Buffer, S
 from action_fusion.fusion import fuse, rejected
 from action_fusion.samples import ObjectsSample, PostureSample, objects_sample, posture_sample
 from action_fusion.settings import Settings
@@ -135,8 +135,7 @@ class ActionFusion:
         return all(buffer is not None and buffer.newest_ns >= last_ns for buffer, last_ns in others)
 
     def _own(self, pending: Pending) -> list[PostureSample]:
-        first_ns = pending.action.start_ns - LOOK_BACK_NS
-        return self._buffer(pending.action.agent).between(first_ns, pending.end_ns)
+        return self._buffer(pending.action.agent).of_segment(pending.action.start_ns, pending.end_ns)
 
     def _others(self, agent: int, postures: Sequence[PostureSample]) -> list[tuple[Buffer[PostureSample] | None, int]]:
         """List the streams of the others who are there, and when each is there last."""
@@ -145,16 +144,16 @@ class ActionFusion:
 
     def _answer(self, pending: Pending) -> Event:
         self._pending.remove(pending)
-        action, end_ns, first_ns = pending.action, pending.end_ns, pending.action.start_ns - LOOK_BACK_NS
+        action, start_ns, end_ns = pending.action, pending.action.start_ns, pending.end_ns
         postures = self._own(pending)
         others = [buffer for buffer, _ in self._others(action.agent, postures) if buffer is not None]
         for buffer in (self._buffer(action.agent), self._objects):
-            buffer.answered(action.start_ns, end_ns)
+            buffer.answered(start_ns, end_ns)
         return fuse(
             action,
             postures,
-            [buffer.between(first_ns, end_ns) for buffer in others],
-            self._objects.between(first_ns, end_ns),
+            [buffer.of_segment(start_ns, end_ns) for buffer in others],
+            self._objects.of_segment(start_ns, end_ns),
             self._settings,
         )
 

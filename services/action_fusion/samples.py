@@ -1,7 +1,7 @@
 """What fusion keeps of a posture and of an objects message: the few numbers it needs, checked once."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ Indices = NDArray[np.int64]
 
 FURTHEST_M = 100.0
 RIGID_TOLERANCE = 1e-3
+UNIT_TOLERANCE = 0.1
 MISSING = [math.nan] * 3
 LEVEL = (0.0, -1.0, 0.0)
 
@@ -56,12 +57,13 @@ class PostureSample(Sample):
 class ObjectsSample(Sample):
     """The objects known in one image: positions (3,) in the camera frame, and names, by id.
 
-    Those `followed` were not seen: what covers them was.
+    Those `followed` were not seen: what covers them was. `quaternions_xyzw` (4,) are of those that were seen.
     """
 
     positions_m: dict[int, Array]
     names: dict[int, str]
     followed: frozenset[int] = frozenset()
+    quaternions_xyzw: dict[int, Array] = field(default_factory=dict)
 
 
 def posture_sample(posture: Posture, tally: Tally) -> PostureSample:
@@ -84,7 +86,14 @@ def objects_sample(message: Objects, tally: Tally) -> ObjectsSample:
         {found.id: np.array(found.position_m, dtype=np.float64) for found in near},
         {found.id: found.name for found in near},
         frozenset(found.id for found in near if not found.seen),
+        {found.id: turned for found in near if found.seen and (turned := _unit(found.quaternion_xyzw)) is not None},
     )
+
+
+def _unit(quaternion: list[float]) -> Array | None:
+    """Make an orientation a unit quaternion (4,); None where it is far from one."""
+    length = math.hypot(*quaternion)
+    return np.array(quaternion) / length if abs(length - 1) <= UNIT_TOLERANCE else None
 
 
 def _body(posture: Posture, tally: Tally) -> Body | None:

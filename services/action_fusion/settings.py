@@ -1,9 +1,11 @@
 """Settings of the fusion."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
+from action_fusion.fixed_frame import as_text, from_text
+from action_fusion.samples import Array
 from actum.settings import ServiceSettings
 
 
@@ -41,3 +43,19 @@ class Settings(ServiceSettings):
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description="what an action is to do to its object; it applies no held thing to another",
     )
+    world_from_camera: Annotated[str | None, BeforeValidator(as_text)] = Field(
+        None,
+        description="maps the skeletons' camera frame to a fixed one, in which events then also give the object's pose:"
+        " 16 numbers, row-major, or a file of them",
+    )
+    world_frame: str = Field("world", min_length=1, max_length=200, description="what events call that fixed frame")
+
+    @property
+    def fixed_from_camera(self) -> Array | None:
+        """The fixed frame's transform (4, 4); None where there is no such frame."""
+        return None if self.world_from_camera is None else from_text(self.world_from_camera)
+
+    @property
+    def reach_with_m(self) -> float:
+        """How far a hand reaches with a thing in it, which may have no marker."""
+        return self.reach_m + self.grasp_m

@@ -37,7 +37,8 @@ def aligned(tracks: Sequence[Track], paths: Iterable[HandPath], std_m: float, se
     if std_m == 0:
         return list(tracks)
     taken = list(paths)
-    return [replace(track, positions_m=track.positions_m + _shift(track, taken, std_m, settings)) for track in tracks]
+    shifts = [_shift(track, taken, std_m, settings) for track in tracks]
+    return [replace(t, positions_m=t.positions_m + by, brought_m=by) for t, by in zip(tracks, shifts, strict=True)]
 
 
 def _shift(track: Track, paths: Sequence[HandPath], std_m: float, settings: Settings) -> Array:

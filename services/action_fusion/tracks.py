@@ -1,7 +1,7 @@
 """Where each object was at any instant of a segment, from the frames in which it was seen or followed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -22,7 +22,8 @@ RESTING_M = 0.05
 class Track:
     """An object's places: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera frame.
 
-    `seen` (n,) tells the sightings; the others are places in the hand that covered it, or of what did.
+    `seen` (n,) tells the sightings; the others are places in the hand that covered it, or of what did. `brought_m` (3,)
+    is how far all places were brought along the line of sight, to the hand of a body whose distance is uncertain.
     """
 
     id: int
@@ -30,6 +31,7 @@ class Track:
     stamps_ns: Array
     positions_m: Array
     seen: Mask
+    brought_m: Array = field(default_factory=lambda: np.zeros(3))
 
     @property
     def carried(self) -> bool:
@@ -47,17 +49,10 @@ class Track:
 
     def shift(self) -> Array:
         """Measure the displacement (3,) from the segment's start to the last place, camera frame."""
-        shift: Array = self._end() - self._start()
+        shift: Array = self.end() - self._start()
         return shift
 
-    def _start(self) -> Array:
-        """Find the place at the segment's start, by the sightings around it."""
-        away_ns = np.abs(self.stamps_ns[self.seen])
-        nearest = np.argsort(away_ns, kind="stable")[:SETTLED_SAMPLES]
-        around = nearest[away_ns[nearest] <= SETTLED_NS]
-        return _middle(self.positions_m[self.seen][around]) if len(around) else self.at(np.zeros(1))[0]
-
-    def _end(self) -> Array:
+    def end(self) -> Array:
         """Find the last place, by the last sightings or, where the object is in a hand, by where that rests."""
         latest = self.stamps_ns >= self.stamps_ns[-1] - SETTLED_NS
         if self.seen[-1]:
@@ -68,6 +63,13 @@ class Track:
         since = np.flatnonzero(gone | self.seen)
         rest: Array = self.positions_m[since[-1] + 1 if len(since) else 0 :].mean(axis=0)
         return rest
+
+    def _start(self) -> Array:
+        """Find the place at the segment's start, by the sightings around it."""
+        away_ns = np.abs(self.stamps_ns[self.seen])
+        nearest = np.argsort(away_ns, kind="stable")[:SETTLED_SAMPLES]
+        around = nearest[away_ns[nearest] <= SETTLED_NS]
+        return _middle(self.positions_m[self.seen][around]) if len(around) else self.at(np.zeros(1))[0]
 
 
 def _middle(places_m: Array) -> Array:

@@ -15,7 +15,7 @@ def sentence(action: Action, choice: Choice, result: str | None) -> str:
 def _objects(choice: Choice) -> str:
     if choice.evidence is None:
         return ""
-    named = " or ".join(_name(e.track) for e in (choice.evidence, *choice.rivals))
+    named = " or ".join(_name(e.track) for e in choice.likely)
     used = choice.held is not None and choice.held.id != choice.evidence.track.id
     return f" {named} with {_name(choice.held)}" if used and choice.held is not None else f" {named}"
 

@@ -34,7 +34,7 @@ def simulate(
 
 def write_examples(output: Path, repetitions: int, actor: int, seed: int) -> None:
     """Record a balanced programme with its labels."""
-    simulator = Simulator(balanced_programme(repetitions, seed), actor, seed, image_hz=0)
+    simulator = Simulator(balanced_programme(repetitions, seed, actor), actor, seed, image_hz=0)
     with Recorder(output, person=f"simulated {actor}", source="simulator", seed=str(seed)) as recorder:
         for message in labelled_stream(simulator):
             recorder.write(message)

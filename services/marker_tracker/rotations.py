@@ -1,4 +1,4 @@
-"""Rotations as matrices (3, 3) and as quaternions."""
+"""Rotations as matrices (3, 3)."""
 
 import math
 
@@ -7,22 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-
-
-def quaternion_xyzw(rotation: Array) -> list[float]:
-    """Turn a rotation matrix (3, 3) into a unit quaternion with w >= 0 (Bar-Itzhack 2000)."""
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation
-    symmetric = np.array(
-        [
-            [xx - yy - zz, yx + xy, zx + xz, zy - yz],
-            [yx + xy, yy - xx - zz, zy + yz, xz - zx],
-            [zx + xz, zy + yz, zz - xx - yy, yx - xy],
-            [zy - yz, xz - zx, yx - xy, xx + yy + zz],
-        ]
-    )
-    quaternion = np.linalg.eigh(symmetric).eigenvectors[:, -1]
-    listed: list[float] = (np.copysign(1.0, quaternion[3]) * quaternion).tolist()
-    return listed
 
 
 def apart_rad(one: Array, other: Array) -> float:

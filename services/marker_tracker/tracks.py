@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from actum.geometry import quaternion_xyzw
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
 from marker_tracker import kalman
 from marker_tracker.facing import Facing
 from marker_tracker.poses import Pose
-from marker_tracker.rotations import Array, apart_rad, between, quaternion_xyzw
+from marker_tracker.rotations import Array, apart_rad, between
 
 REJOIN_S = 0.5
 """What has been hidden for longer starts anew where it is seen again."""

@@ -97,7 +97,7 @@ class EndlessSimulator:
 
 def _scene(settings: Settings, start_ns: int, session_id: str | None = None) -> Simulator:
     return Simulator(
-        balanced_programme(settings.repetitions, settings.seed),
+        balanced_programme(settings.repetitions, settings.seed, settings.actor),
         actor_seed=settings.actor,
         seed=settings.seed,
         sensor=settings.sensor,

@@ -77,6 +77,30 @@ def apply(b_from_a: Array, points_a: Array) -> Array:
     return mapped + (offset if mapped.ndim == 1 else offset[..., None, :])
 
 
+def quaternion_xyzw(rotation: Array) -> list[float]:
+    """Turn a rotation matrix (3, 3) into a unit quaternion with w >= 0 (Bar-Itzhack 2000)."""
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation
+    symmetric = np.array(
+        [
+            [xx - yy - zz, yx + xy, zx + xz, zy - yz],
+            [yx + xy, yy - xx - zz, zy + yz, xz - zx],
+            [zx + xz, zy + yz, zz - xx - yy, yx - xy],
+            [zy - yz, xz - zx, yx - xy, xx + yy + zz],
+        ]
+    )
+    quaternion = np.linalg.eigh(symmetric).eigenvectors[:, -1]
+    listed: list[float] = (np.copysign(1.0, quaternion[3]) * quaternion).tolist()
+    return listed
+
+
+def rotated_xyzw(b_from_a: Array, quaternion_xyzw_a: Array) -> Array:
+    """Turn an orientation (4,), a unit quaternion, from frame a to frame b by a rigid transform (4, 4)."""
+    x, y, z, w = quaternion_xyzw(b_from_a[:3, :3])
+    by = np.array([[w, -z, y, x], [z, w, -x, y], [-y, x, w, z], [-x, -y, -z, w]])
+    turned: Array = by @ quaternion_xyzw_a
+    return turned
+
+
 def flat(transform: Array) -> list[float]:
     """Write a transform (4, 4) as its 16 numbers, row-major."""
     numbers: list[float] = transform.ravel().tolist()

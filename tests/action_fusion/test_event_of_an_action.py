@@ -85,13 +85,6 @@ def test_nothing_within_reach_and_nothing_moved_is_a_pantomime() -> None:
     assert event.sentence == "push, no object within reach, 0.94"
 
 
-def test_an_object_that_moved_out_of_reach_was_acted_on() -> None:
-    scene = Scene(objects={1: moving((1.0, (0.2, 0.1, 0.7)), (1.5, (0.2, 0.1, 0.9))), 2: still((0.2, 0.1, 0.6))})
-    event = event_of(scene, action("push"), reach_m=0.3)
-    assert event.distances_m["2"] < event.distances_m["1"]
-    assert event.object is not None and event.object.id == 1
-
-
 def test_without_objects_the_sentence_is_the_action_alone() -> None:
     event = event_of(Scene(), action("high arm wave"))
     assert (event.object, event.distances_m, event.objects_present) == (None, {}, [])

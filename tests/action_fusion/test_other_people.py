@@ -32,7 +32,7 @@ def test_what_another_moves_is_not_acted_on(others_first) -> None:
     watching, pushing = postures(WATCHING, 1, [1, 2]), postures(PUSHING, 2, [1, 2])
     streams = [pushing, watching] if others_first else [watching, pushing]
     (event,) = events_of([action("act")], WATCHING.sightings(), *streams)
-    assert (event.object, event.why) == (None, "no object within reach was acted on")
+    assert (event.object, event.why) == (None, 'no object within reach was acted on; another moved object 1 "cup"')
 
 
 def test_alone_beside_a_thing_that_moves_it_is_acted_on() -> None:

@@ -211,3 +211,24 @@ def test_what_both_hands_lift_is_lifted_by_either(hand) -> None:
     scene = Scene(left_hand=left, right_hand=right, objects={1: moving((0.6, CUP), (1.6, (0.1, 0.25, 0.45)))})
     event = event_of(scene, "lift", marked=hand)
     assert (names(event), event.hand, event.outcome) == (("cup", "cup"), hand, "lifted")
+
+
+def test_a_reach_that_ends_at_a_large_things_rim_is_for_it() -> None:
+    """Its middle is further away than a grasp; the way there passes within half of a thing of two decimetres."""
+    scene = Scene(
+        right_hand=moving((0.3, (0.1, 0.05, 0.0)), (1.0, (0.1, 0.05, 0.25))),
+        objects={1: still((0.12, 0.0, 0.47)), 2: still((-0.3, 0.0, 0.3))},
+    )
+    event = event_of(scene, "hold")
+    assert 0.2 < event.distances_m["1"] < 0.25
+    assert names(event) == ("cup", None)
+
+
+def test_a_reach_past_a_things_rim_is_not_for_it() -> None:
+    scene = Scene(
+        right_hand=moving((0.3, (-0.05, 0.05, 0.0)), (1.0, (-0.05, 0.05, 0.31))),
+        objects={1: still((0.12, 0.0, 0.45))},
+    )
+    event = event_of(scene, "hold")
+    assert 0.2 < event.distances_m["1"] < 0.25
+    assert names(event) == (None, None)

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from actum.geometry import quaternion_xyzw
 from actum.messages import Image, Objects
 from actum.node import SECOND_NS
 from marker_tracker.node import MarkerTracker
-from marker_tracker.rotations import quaternion_xyzw
 from marker_tracker.settings import ObjectSpec, Settings
 from rotation_of import rotation_of
 

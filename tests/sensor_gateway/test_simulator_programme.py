@@ -17,6 +17,17 @@ def test_every_action_is_repeated_equally_and_the_objects_take_turns(repetitions
         assert max(counts) - min(counts) <= 1
 
 
+@given(st.integers(1, 5), st.integers(0, 1000), st.integers(0, 100))
+def test_no_action_tells_its_object_over_people(repetitions: int, seed: int, first: int) -> None:
+    programmes = [balanced_programme(repetitions, seed, person) for person in range(first, first + 3)]
+    pairs = Counter((sample.action, sample.object_id) for programme in programmes for sample in programme)
+
+    assert pairs == {(action, number): repetitions for action in ACTIONS for number in (1, 2, 3)}
+    for programme in programmes:
+        assert Counter(sample.action for sample in programme) == dict.fromkeys(ACTIONS, repetitions)
+        assert {sample.object_id for sample in programme} == {1, 2, 3}
+
+
 def test_the_order_comes_from_the_seed() -> None:
     assert balanced_programme(4, 7) == balanced_programme(4, 7)
     assert balanced_programme(4, 7) != balanced_programme(4, 8)

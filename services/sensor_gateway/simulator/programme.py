@@ -43,12 +43,15 @@ def object_ids() -> tuple[int, ...]:
     return tuple(item.id for item in load_parameters().objects.items)
 
 
-def balanced_programme(repetitions: int, seed: int) -> list[Sample]:
-    """Shuffle `repetitions` of each action; the objects take turns within every action."""
+def balanced_programme(repetitions: int, seed: int, actor_seed: int = 0) -> list[Sample]:
+    """Shuffle `repetitions` of each action; the objects take turns within every action, and from person to person.
+
+    Of people numbered in a row, any three do each action to each object as often, so that no action tells its object.
+    """
     rng = stream("programme", seed)
     ids = rng.permutation(object_ids())
     samples = [
-        Sample(action, int(ids[(row + repetition) % len(ids)]))
+        Sample(action, int(ids[(row + repetition + actor_seed) % len(ids)]))
         for row, action in enumerate(ACTIONS)
         for repetition in range(repetitions)
     ]

@@ -1,0 +1,62 @@
+"""The fixed frame in which events also say where objects ended: a transform from the camera's, given as a setting."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from action_fusion.samples import RIGID_TOLERANCE, Array
+from actum import geometry
+
+FORM = "16 numbers of a rigid 4x4 transform (rows one after the other, metres), or a file that holds just these"
+MOST_CHARACTERS = 10_000
+FURTHEST_M = 1e6
+SEPARATORS = re.compile(r"[\s,;\[\]]+")
+
+
+def as_text(given: object) -> str | None:
+    """Write a rigid transform as its 16 numbers, from numbers, from text that lists them, or from the file it names.
+
+    Raises:
+        ValueError: it is no such transform, or the file cannot be read.
+    """
+    if given is None:
+        return None
+    text = given if isinstance(given, str) else str(given)
+    numbers = _numbers(text)
+    if numbers is None:
+        numbers = _numbers(_content(text))
+    if numbers is None or len(numbers) != 16:
+        raise ValueError(f"{text!r} is not {FORM}")
+    if not _is_rigid(np.array(numbers).reshape(4, 4)):
+        raise ValueError(f"{text!r} is no rigid transform: a rotation, a position, and 0 0 0 1 below them")
+    return " ".join(map(repr, numbers))
+
+
+def from_text(text: str) -> Array:
+    """Read the transform (4, 4) that `as_text` wrote."""
+    return geometry.from_flat([float(number) for number in text.split()])
+
+
+def _numbers(text: str) -> list[float] | None:
+    """Read what a text lists; None where it lists anything but numbers."""
+    try:
+        return [float(word) for word in SEPARATORS.split(text) if word]
+    except ValueError:
+        return None
+
+
+def _content(name: str) -> str:
+    try:
+        with Path(name).open(encoding="utf-8") as file:
+            return file.read(MOST_CHARACTERS)
+    except (OSError, ValueError) as error:
+        raise ValueError(f"{name!r} is not {FORM}: {error}") from None
+
+
+def _is_rigid(transform: Array) -> bool:
+    rotation = transform[:3, :3]
+    if not np.isfinite(transform).all() or np.abs(rotation).max() > 2 or np.abs(transform[:3, 3]).max() > FURTHEST_M:
+        return False
+    orthogonal = np.allclose(rotation @ rotation.T, np.eye(3), atol=RIGID_TOLERANCE)
+    return bool(orthogonal and np.linalg.det(rotation) > 0 and np.array_equal(transform[3], (0, 0, 0, 1)))

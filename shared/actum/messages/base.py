@@ -1,0 +1,63 @@
+"""What every message is made of: the kinds of its fields, and the header."""
+
+import math
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat
+
+Stamp = Annotated[int, Field(ge=0, lt=2**62)]
+Seq = Annotated[int, Field(ge=0, lt=2**40)]
+Count = Annotated[int, Field(ge=0, lt=2**62)]
+AgentId = Annotated[int, Field(ge=0, lt=2**31)]
+Point = Annotated[list[float], Field(min_length=3, max_length=3)]
+Joint = Point | None
+Joints = Annotated[list[Joint], Field(min_length=15, max_length=15)]
+FinitePoint = Annotated[list[FiniteFloat], Field(min_length=3, max_length=3)]
+Quaternion = Annotated[list[FiniteFloat], Field(min_length=4, max_length=4)]
+Transform = Annotated[list[FiniteFloat], Field(min_length=16, max_length=16)]
+Intrinsics = Annotated[list[FiniteFloat], Field(min_length=9, max_length=9)]
+SegmentId = Annotated[str, Field(min_length=1, max_length=200)]
+Name = Annotated[str, Field(max_length=200)]
+Reason = Annotated[str, Field(max_length=1000)]
+Deviation = Annotated[FiniteFloat, Field(ge=0)]
+Hand = Literal["left", "right"]
+
+MOST_AGENTS = 64
+MOST_OBJECTS = 1024
+_SHORTEST = 1e-3
+
+
+def _nonzero(direction: list[float]) -> list[float]:
+    if not _SHORTEST < math.hypot(*direction) < 1 / _SHORTEST:
+        raise ValueError(f"{direction} has no direction: [0, -1, 0] is up for a level camera")
+    return direction
+
+
+Direction = Annotated[FinitePoint, AfterValidator(_nonzero)]
+
+
+class Message(BaseModel):
+    """What every message carries."""
+
+    model_config = ConfigDict(
+        frozen=True, extra="ignore", strict=True, ser_json_inf_nan="constants", use_attribute_docstrings=True
+    )
+    SCHEMA: ClassVar[str]
+    VERSION: ClassVar[int] = 1
+
+    stamp_ns: Stamp
+    """Capture time on the sensor's clock, in nanoseconds; carried unchanged from the frame to what follows from it."""
+    seq: Seq | None = None
+    """The message's number on its key, from 0 with the process that puts it; null before the runtime fills it in."""
+    sensor: str
+    """The viewpoint: the chunk after `actum/` in the key."""
+    valid: bool = True
+    """Whether the content can be used; if not, `reason` says why."""
+    reason: Reason | None = None
+    """Why the message is not valid; null where it is."""
+
+
+class Model(BaseModel):
+    """A part of a message."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore", strict=True, use_attribute_docstrings=True)

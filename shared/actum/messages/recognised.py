@@ -1,0 +1,216 @@
+"""What is recognised of a segment: its marks, its action, its event."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, FiniteFloat
+
+from actum.messages.base import (
+    AgentId,
+    Count,
+    FinitePoint,
+    Hand,
+    Message,
+    Model,
+    Name,
+    Quaternion,
+    Reason,
+    SegmentId,
+    Stamp,
+)
+
+
+class Tensor(Model):
+    """A dense array."""
+
+    dtype: str
+    """The kind of number in NumPy's notation with byte order, such as `<f4`."""
+    shape: list[int]
+    """The lengths of the axes."""
+    data: bytes
+    """The numbers, last axis fastest (C order)."""
+
+
+MANUAL, SIMULATOR, REPLAY = "manual", "simulator", "replay"
+"""Who puts marks: a person, the simulated scene, a recording that is played."""
+
+
+class Segment(Message):
+    """A start or end mark; anyone may put one with just `kind` and `segment_id`."""
+
+    SCHEMA = "actum.segment"
+    stamp_ns: Stamp | None = None  # type: ignore[assignment]
+    """When the action starts or ends, on the sensor's clock (ns); null means now."""
+    kind: Literal["start", "end"]
+    """Which of the two it marks."""
+    segment_id: SegmentId
+    """The segment's name, the same in its start and its end, new for each action."""
+    agent: Annotated[int, Field(ge=1, lt=2**31)] | None = None
+    """Who acts; null where the classifier is to find out."""
+    hand: Hand | None = None
+    """Which hand acts; null where it is not known."""
+    label: Name | None = None
+    """What is done, in recordings to learn from; it is never used to recognise."""
+    origin: Name | None = None
+    """Who put it: manual, a person at a switch; simulator, the simulated scene; replay, a recording; null, a program."""
+
+
+class Action(Message):
+    """What the classifier sees in a segment: partial per frame while it is open, `final` once at its end."""
+
+    SCHEMA = "actum.action"
+    agent: AgentId
+    """Who acts; 0 where nobody is sure who it is."""
+    segment_id: SegmentId
+    """The segment's name, as it was marked."""
+    start_ns: Stamp
+    """The stamp of the segment's start (ns)."""
+    end_ns: Stamp | None
+    """The stamp of its end (ns); null while it is open."""
+    final: bool
+    """Whether the segment has ended, so that this is its only answer; partial ones come per frame before."""
+    action: Name | None
+    """The likeliest action; null where there is none."""
+    confidence: FiniteFloat
+    """The probability that `action` is right, calibrated on people held out, 0 to 1."""
+    activations: dict[str, FiniteFloat]
+    """The activity of each trained action's neuron, by the action's name."""
+    part: Name | None
+    """The body part that moved most: right_arm, left_arm, right_leg, left_leg or body; null where none is known."""
+    frames: Count
+    """How many valid postures it rests on."""
+    missed: Count
+    """How many frames of the segment were lost on the way."""
+    hand: Hand | None = None
+    """The hand that was marked; null where none was."""
+    unknown: bool = False
+    """Whether it may be none of the trained actions: `familiarity` is too low."""
+    familiarity: FiniteFloat | None = None
+    """How much it resembles what was trained, on the model's own scale; null where the model cannot tell."""
+    missing_joints: list[Name] = Field([])
+    """The names of the joints that some frame lacked."""
+    maps: dict[str, Tensor] | None = None
+    """The mean activity of each map over the segment, rows by columns, by the map's name; null unless asked for."""
+    trace: Tensor | None = None
+    """The way over the first map, a row and a column per step; null unless asked for."""
+
+
+class ObjectPose(Model):
+    """Where an object is at the end of an action, in one frame."""
+
+    frame: Name
+    """The frame: `camera`, that of the skeletons, or the fixed frame's name, as `action_fusion` was told."""
+    position_m: FinitePoint
+    """Where its middle is (m)."""
+    quaternion_xyzw: Quaternion | None
+    """The rotation from its own axes to the frame's, as a unit quaternion; null where a hand has moved it since it was
+    seen last, so that only its place is known."""
+
+
+class ActedObject(Model):
+    """The object an action is applied to, and how close the hand came to it."""
+
+    id: int
+    """The object's number."""
+    name: str
+    """What it is called."""
+    distance_m: FiniteFloat
+    """The smallest distance from the hand's joint to it during the segment (m)."""
+    carried: bool = False
+    """How its motion is known: true where, for a while, a hand covered it and its place was taken from that hand.
+    A thing that is seen all the way is false here though it was lifted: see `taken_along`."""
+    taken_along: bool = False
+    """Whether the hand that acted moved it during the segment, it going as the hand went: lifted, put, pushed …, seen
+    or covered."""
+    in_hand_at_end: bool = False
+    """Whether, as the segment ends, it is still in the hand that had it: where it was in it, within a decimetre. That
+    the fingers are closed is not seen, so that a hand that rests on what it has put down counts too."""
+    last_seen_ns: Stamp | None = None
+    """When it was seen last, up to the segment's end (ns); null where it was not."""
+    pose: ObjectPose | None = None
+    """Where it is at the segment's end, in the camera frame of the skeletons: where it was seen last, or in the hand
+    that has covered it since; null where the sender does not tell."""
+    fixed_pose: ObjectPose | None = None
+    """The same in the fixed frame that `action_fusion` was told of; null where it was told of none."""
+
+
+class HeldObject(Model):
+    """The object in the hand: what is acted on itself, or the tool that is applied to it."""
+
+    id: int
+    """The object's number."""
+    name: str
+    """What it is called."""
+
+
+class Pointing(Model):
+    """How well the arm points at the object."""
+
+    angle_deg: FiniteFloat
+    """How far off the line of the arm the object is (degrees)."""
+    margin_deg: FiniteFloat | None
+    """How much further off the next object is (degrees); null where there is no other."""
+
+
+class Motion(Model):
+    """How the object moved over the segment, in the level frame of its first posture: right, up, forward."""
+
+    displacement_m: FinitePoint
+    """From its place at the segment's start to that at its end (m): right, up, forward of the person."""
+    direction: Name | None = None
+    """The word for the axis on which it moved most: right, left, up, down, away, towards, or sideways where the
+    person's forward is not known; null where it did not move."""
+
+
+class Event(Message):
+    """The product: what was done, to which object, and what became of it."""
+
+    SCHEMA = "actum.event"
+    agent: AgentId
+    """Who acted; 0 where nobody is sure who it is."""
+    segment_id: SegmentId
+    """The segment's name, as it was marked."""
+    start_ns: Stamp
+    """The stamp of the segment's start (ns)."""
+    end_ns: Stamp
+    """The stamp of its end (ns)."""
+    action: str | None
+    """What was done; null where it was not recognised."""
+    confidence: FiniteFloat
+    """The probability that `action` is right, 0 to 1."""
+    activations: dict[str, FiniteFloat]
+    """The activity of each trained action's neuron, by the action's name."""
+    object: ActedObject | None
+    """What it was done to; null where it was nothing, see `why`."""
+    held: HeldObject | None
+    """What was in the hand: the object itself or a tool; null where nothing was."""
+    hand: Hand | None
+    """Which hand acted; null where it is not known."""
+    objects_present: list[int]
+    """The numbers of the objects seen during the segment."""
+    distances_m: dict[str, FiniteFloat]
+    """The smallest distance (m) of a hand that may have acted to each object, by its number."""
+    motion: Motion | None
+    """How the object moved; null where there is none."""
+    result: str | None
+    """The motion in words, such as `0.18 m up` or `unmoved`; null where there is no object."""
+    sentence: str
+    """All of it in one line, for people."""
+    frames: Count
+    """How many valid postures the action rests on."""
+    missed: Annotated[int, Field(ge=0, lt=2**63)]
+    """How many frames were lost on the way, to the classifier and to the fusion."""
+    unknown: bool = False
+    """Whether it may be none of the trained actions."""
+    missing_joints: list[Name] = Field([])
+    """The names of the joints that some frame lacked."""
+    candidates: list[ActedObject] = Field([])
+    """Two or more objects that are as likely, the likeliest first; empty where one is."""
+    pointing: Pointing | None = None
+    """How well the arm points at the object; null where nothing is pointed at."""
+    outcome: Name | None = None
+    """What became of the object: lifted, put down, pushed, pulled, moved or unmoved; null where there is none."""
+    agrees: bool | None = None
+    """Whether `outcome` is what the action is to do; null where it is not to do something of the kind, or where what
+    was to be pushed or pulled went sideways."""
+    why: Reason | None = None
+    """Why there is no object, and which ones another moved; null where there is one."""
