@@ -51,7 +51,7 @@ class Segment(Message):
     label: Name | None = None
     """What is done, in recordings to learn from; it is never used to recognise."""
     origin: Name | None = None
-    """Who put it: manual, a person at a switch; simulator, the simulated scene; replay, a recording; null, a program."""
+    """Who put it: manual, a person at a switch; simulator, the scene; replay, a recording; null, a program of yours."""
 
 
 class Action(Message):
