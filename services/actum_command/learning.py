@@ -55,7 +55,7 @@ def train_command(
         f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
         f"{time.monotonic() - began_s:.1f} s, written to {output}"
     )
-    for warning in warnings_of(samples.usable, held_out=()):
+    for warning in warnings_of(samples.usable, model.about.held_out_answers):
         say(warning, style="yellow")
 
 

@@ -146,6 +146,7 @@ def _assembled(
         "concept_contrast": upper.concepts.contrast,
         "gains": calibrated_gains(fitted, upper, prior, people, any(sample.depth_inferred for sample in samples)),
         "familiar": familiar(fitted[-1].axes.held_out, prior, people, preset.known_share),
+        "held_out": _held_out(fitted[-1], origin["labels"]),
         "usual_log_error": _usual_log_error(first, shown) + prior.newcomer_log_error / math.sqrt(people),
     }
     return PyramidModel(first, stages, upper.concepts, upper.layer3, PyramidDescription.model_validate(about))
@@ -154,3 +155,13 @@ def _assembled(
 def _usual_log_error(first: FirstMaps, shown: Sequence[Sequence[View]]) -> float:
     """Return the mean logarithm of the posture map's quantization error over all frames of all samples."""
     return float(np.concatenate([first.log_errors(views_of_one[0].postures) for views_of_one in shown]).mean())
+
+
+def _held_out(stage: Scored, labels: Sequence[str]) -> dict[str, dict[str, int]]:
+    """Count, of each sample's first view, the action done (outer) and the one of the largest held-out score (inner)."""
+    first = np.unique(stage.owners, return_index=True)[1]
+    counts: dict[str, dict[str, int]] = {}
+    for done, answered in zip(stage.targets[first], stage.axes.held_out[first].argmax(axis=1), strict=True):
+        of_done = counts.setdefault(labels[done], {})
+        of_done[labels[answered]] = of_done.get(labels[answered], 0) + 1
+    return counts

@@ -26,6 +26,8 @@ class Description(BaseModel):
     Attributes:
         kind: which of the recognisers it is.
         data_digest: SHA-256 over the training samples.
+        held_out: of samples scored without their person, or without themselves where that was the only one: by action
+            done how many were taken for which. Empty where the kind of recogniser holds nothing out.
     """
 
     model_config = ConfigDict(frozen=True, extra="ignore", strict=True)
@@ -41,6 +43,17 @@ class Description(BaseModel):
     samples: int
     data_digest: str
     actum_version: str
+    held_out: dict[str, dict[str, int]] = {}
+
+    @property
+    def held_out_answers(self) -> list[tuple[str, str]]:
+        """The same as one pair of action done and action answered for each sample."""
+        return [
+            (done, answered)
+            for done, answers in self.held_out.items()
+            for answered, n in answers.items()
+            for _ in range(n)
+        ]
 
 
 class Encoder(Protocol):

@@ -67,6 +67,18 @@ def test_a_model_of_one_person_knows_what_is_none_of_its_actions(samples: list[S
     assert all(answer(model, encoded(model, sample)).unknown for sample in lying)
 
 
+def test_a_model_remembers_what_left_out_samples_were_taken_for(samples: list[SegmentSample]) -> None:
+    told = trained(samples).description.held_out_answers
+    assert sorted(done for done, _ in told) == sorted(sample.label for sample in samples)
+    assert np.mean([done == answered for done, answered in told]) > 0.9
+    rng = np.random.default_rng(0)
+    drawn = rng.choice(["a", "b"], len(samples))
+    mixed_up = [replace(s, label=str(name)) if s.label == "lift" else s for s, name in zip(samples, drawn, strict=True)]
+    told = trained(mixed_up).description.held_out_answers
+    assert {("a", "b"), ("b", "a")} & set(told)
+    assert not {answered for done, answered in told if done in "ab"} - {"a", "b"}
+
+
 def test_the_usual_error_is_that_of_the_samples_and_what_others_add(samples: list[SegmentSample]) -> None:
     few = [replace(sample, person=str(k % 4)) for k, sample in enumerate(samples)]
     for people, own in ((1, [replace(s, person="1") for s in few]), (4, few)):
