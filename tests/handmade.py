@@ -13,7 +13,7 @@ from som_classifier.supervised import SupervisedLayer
 POINTS = 3
 LEVELS = [1, 2]
 FRACTIONS = [0.5, 1.0]
-UNITS = 3 * 9
+UNITS = 4 * 9
 PROVENANCE: dict[str, object] = {
     "labels": ["pull", "push"],
     "preset": "handmade",
@@ -38,7 +38,8 @@ def paper_model(**changes: object) -> PaperModel:
 def pyramid_model(**changes: object) -> PyramidModel:
     """Three maps of 3×3 units, two stages, a 3×3 map of actions, all drawn at random."""
     about = {
-        "posture_contrast": 0.5, "velocity_contrast": 0.1, "arm_contrast": 0.2, "arm_share": 0.4, "mirrors": True,
+        "posture_contrast": 0.5, "velocity_contrast": 0.1, "arm_contrast": 0.2, "arm_shares": [0.4, 0.1],
+        "mirrors": True,
         "levels": LEVELS, "overlap": 0.25, "fractions": FRACTIONS, "log_duration_mean": 0.5, "log_duration_sd": 0.4,
         "concept_contrast": 2.0, "gains": [4.0, 8.0], "familiar": 0.3, "usual_log_error": 0.2,
     }  # fmt: skip
@@ -47,7 +48,7 @@ def pyramid_model(**changes: object) -> PyramidModel:
     maps = [Som(3, 3, rng.normal(size=(9, dim)).astype(np.float32)) for dim in (45, 45, 12, 2)]
     axes = rng.normal(size=(2, sum(LEVELS) * UNITS, 2)).astype(np.float32)
     contrasts = description.posture_contrast, description.velocity_contrast, description.arm_contrast
-    first = FirstMaps(maps[0], maps[1], maps[2], contrasts, description.arm_share)
+    first = FirstMaps(maps[0], maps[1], maps[2], contrasts, (0.4, 0.1))
     stages = Stages(
         axes,
         rng.normal(size=(2, 2)).astype(np.float32),

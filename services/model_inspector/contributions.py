@@ -7,6 +7,7 @@ import numpy as np
 
 from actum.messages import Hand
 from model_inspector.anatomy import Floats, complete_weights
+from som_classifier.layers import HEARD
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.streams import Frame
 
@@ -15,18 +16,19 @@ from som_classifier.streams import Frame
 class Contributions:
     """Why one action's score is as much above another's as it is.
 
-    score[winner] − score[second] = Σ units + level. The first maps are those of postures, velocities and arms.
+    score[winner] − score[second] = Σ units + level. What is heard is the maps of postures and of velocities, and that
+    of arms for both arms.
 
     Attributes:
         winner: index of the action decided for.
         second: index of the other one.
         scores: of these two.
-        units: (cells, first maps, units of each), fourth root of the mean activity × (axis of the winner − axis of
+        units: (cells, heard, units of each), fourth root of the mean activity × (axis of the winner − axis of
             the second).
         level: the difference of their offsets, the same for every segment. Training sets it so that a segment as it
             had them on average leads to neither, or a little to the one that it had more often: then the units add up
             to about −level.
-        activities: (cells, first maps, units of each), their mean activity in each cell.
+        activities: (cells, heard, units of each), their mean activity in each cell.
         in_mirror: whether the segment was read in a mirror, because the left arm acts.
         left_moves: whether the left arm is the part that moves most.
     """
@@ -42,7 +44,7 @@ class Contributions:
 
     @property
     def cells(self) -> Floats:
-        """What each cell adds through each of the first maps, shape (cells, first maps)."""
+        """What each cell adds through each map that is heard, shape (cells, heard)."""
         added: Floats = self.units.sum(axis=2)
         return added
 
@@ -72,7 +74,7 @@ def contributions(model: PyramidModel, frames: Sequence[Frame], instead: str | N
     codes = [frame.code for frame in frames]
     weights = complete_weights(model, frames)
     scores = model.scores(codes, weights)
-    units = np.zeros((model.pyramid.cells, len(model.first.maps), len(model.first.postures.weights)))
+    units = np.zeros((model.pyramid.cells, len(HEARD), len(model.first.postures.weights)))
     for axes, weight in zip(model.stages.axes, weights, strict=True):
         if weight:
             units += weight * (axes[:, winner] - axes[:, second]).reshape(units.shape)

@@ -81,11 +81,13 @@ def _columns(found: Contributions) -> Sequence[tuple[str, Draw]]:
 
 def _terms(found: Contributions, winner: str, second: str) -> list[Term]:
     """Return what the difference of the scores is made of, and last the difference."""
-    postures, movements, arm = found.cells.sum(axis=0).tolist()
+    postures, movements, arm, other_arm = found.cells.sum(axis=0).tolist()
+    other = "right" if found.arm == "left" else "left"
     return [
         Term("postures", postures, "the boxes on the left, added up"),
         Term("movements", movements, "the boxes in the middle"),
         Term(f"{found.arm} arm", arm, "the boxes on the right"),
+        Term(f"{other} arm", other_arm, "counts less and is not drawn"),
         Term(
             "less average", found.level,
             "the same for every segment: what the boxes add up to in an average one is taken off, so that only what is "

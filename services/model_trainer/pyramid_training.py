@@ -77,7 +77,7 @@ def _first_maps(
         )
     )
     (posture_map, posture), (velocity_map, velocity), (arm_map, arm) = trained
-    return FirstMaps(posture_map, velocity_map, arm_map, (posture, velocity, arm), preset.arm_share)
+    return FirstMaps(posture_map, velocity_map, arm_map, (posture, velocity, arm), preset.arm_shares)
 
 
 def _first_map(inputs: Floats, preset: PyramidPreset, report: Callable[[int, int], None]) -> tuple[Som, float]:
@@ -137,7 +137,7 @@ def _assembled(
         "posture_contrast": first.contrasts[0],
         "velocity_contrast": first.contrasts[1],
         "arm_contrast": first.contrasts[2],
-        "arm_share": first.arm_share,
+        "arm_shares": list(first.arm_shares),
         "levels": list(preset.levels),
         "overlap": preset.overlap,
         "fractions": list(stages.fractions),

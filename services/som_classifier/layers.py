@@ -18,6 +18,8 @@ Floats = NDArray[Any]
 ARM_SPEED = 3.0
 """What a joint's velocity counts beside its position in the map of arms: both then spread about alike."""
 ARM_INPUTS = 12
+HEARD = ("postures", "velocities", "acting arm", "other arm")
+"""Whose activity a frame gives, in this order; the map of arms is asked for both arms."""
 SMALLEST_ERROR2 = 1e-3
 """Squared quantization errors below this, in units of the contrast, count as this: a logarithm knows no bottom."""
 
@@ -35,6 +37,12 @@ def frame_inputs(postures: Floats, velocities: Floats) -> Floats:
     return np.concatenate([postures.reshape(-1, _SIZE), velocities.reshape(-1, _SIZE)], axis=1)
 
 
+def in_a_mirror(rows: Floats) -> Floats:
+    """Return such rows (…, 90) as the actor's mirror image has them."""
+    mirrored_rows: Floats = rows[..., _MIRROR] * _SIGNS
+    return mirrored_rows
+
+
 def arm_inputs(rows: Floats) -> Floats:
     """Return the right elbow and hand as seen from the shoulder, where and how fast, shape (n, 12), of (n, 90).
 
@@ -46,18 +54,19 @@ def arm_inputs(rows: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class FirstMaps:
-    """The first layer: a map of postures, one of velocities, one of the acting arm, each with a soft activity.
+    """The first layer: a map of postures, one of velocities, one of arms, each with a soft activity.
 
     Attributes:
         contrasts: of each map's activity, in its squared distance.
-        arm_share: what the activity of the map of arms adds up to; that of the others adds up to 1.
+        arm_shares: what the activity of the map of arms adds up to, for the acting arm and for the other one; that of
+            the others adds up to 1.
     """
 
     postures: Som
     velocities: Som
     arms: Som
     contrasts: tuple[float, float, float]
-    arm_share: float
+    arm_shares: tuple[float, float]
 
     @property
     def maps(self) -> tuple[Som, Som, Som]:
@@ -66,14 +75,14 @@ class FirstMaps:
 
     @property
     def units(self) -> int:
-        """How many units there are in all, as many in each."""
-        return sum(len(som.weights) for som in self.maps)
+        """How many activities there are in all, as many of each map, those of the map of arms twice."""
+        return len(HEARD) * len(self.postures.weights)
 
     def activities(self, postures: Floats, velocities: Floats) -> Floats:
         """Return y = share × exp(−(d² − d²_min) / contrast) / Σ of each map for (n, 15, 3) inputs, shape (n, units)."""
         rows = frame_inputs(postures, velocities)
-        excess2s = [_excess2s(som, inputs) for som, inputs in zip(self.maps, _of_maps(rows), strict=True)]
-        return self._shared(np.concatenate(excess2s, axis=1))
+        heard = [*zip(self.maps, _of_maps(rows), strict=True), (self.arms, arm_inputs(in_a_mirror(rows)))]
+        return self._shared(np.concatenate([_excess2s(som, inputs) for som, inputs in heard], axis=1))
 
     def log_errors(self, postures: Floats) -> Floats:
         """Return log(d²_min / contrast) of the map of postures for (n, 15, 3), its quantization error, shape (n,).
@@ -95,20 +104,22 @@ class FirstMaps:
         By a product of always the same shape, so that it never depends on other frames.
         """
         row = np.concatenate([posture, velocity]).ravel()
-        rows = np.array([row, row[_MIRROR] * _SIGNS])
+        rows = np.array([row, in_a_mirror(row)])
         if math.isnan(row.sum()):
-            return self._shared(self._partly_known(rows))
-        inputs = np.concatenate([rows, arm_inputs(rows)], axis=1)
-        return self._shared(self._together.excess2s(inputs).reshape(2, -1))
+            excess2s = self._partly_known(rows)
+        else:
+            excess2s = self._together.excess2s(np.concatenate([rows, arm_inputs(rows)], axis=1))
+        other_arm = excess2s[::-1, -1:]
+        return self._shared(np.concatenate([excess2s, other_arm], axis=1).reshape(2, -1))
 
     def _partly_known(self, rows: Floats) -> Floats:
         inputs = _of_maps(rows)
         excess2s = [_excess2(som, own[side]) for side in (0, 1) for som, own in zip(self.maps, inputs, strict=True)]
-        return np.concatenate(excess2s).reshape(2, -1)
+        return np.concatenate(excess2s).reshape(2, len(self.maps), -1)
 
     def _shared(self, excess2s: Floats) -> Floats:
         """Make activities of d² − d²_min (n, units)."""
-        activities = excess2s.reshape(len(excess2s), len(self.contrasts), -1)
+        activities = excess2s.reshape(len(excess2s), len(HEARD), -1)
         activities *= self._slopes
         np.exp(activities, out=activities)
         activities *= self._shares / activities.sum(axis=2, keepdims=True)
@@ -120,11 +131,11 @@ class FirstMaps:
 
     @cached_property
     def _slopes(self) -> NDArray[np.float32]:
-        return (-1 / np.array(self.contrasts))[:, None].astype(np.float32)
+        return (-1 / np.array([*self.contrasts, self.contrasts[-1]]))[:, None].astype(np.float32)
 
     @cached_property
     def _shares(self) -> NDArray[np.float32]:
-        return np.array([[1.0], [1.0], [self.arm_share]], np.float32)
+        return np.array([1.0, 1.0, *self.arm_shares], np.float32)[:, None]
 
 
 def _of_maps(rows: Floats) -> tuple[Floats, Floats, Floats]:

@@ -80,7 +80,8 @@ class PyramidPreset:
     Attributes:
         units: rows and columns of the maps of posture, velocity and arm, trained for `unit_epochs` over `unit_radius`.
         relative_contrast: of their activity, in units of the median squared distance to the winner.
-        arm_share: what the activity of the map of arms adds up to, that of the others adding up to 1.
+        arm_shares: what the activity of the map of arms adds up to, for the acting arm and for the other one, that of
+            the other maps adding up to 1.
         levels: the pyramid's cells on each level.
         overlap: how far each reaches over its borders, in parts of its length.
         turns_deg: the turns about the vertical in which each sample is also shown.
@@ -108,7 +109,7 @@ class PyramidPreset:
     unit_epochs: int
     unit_radius: tuple[float, float]
     relative_contrast: float
-    arm_share: float
+    arm_shares: tuple[float, float]
     levels: tuple[int, ...]
     overlap: float
     turns_deg: tuple[float, ...]
@@ -154,7 +155,7 @@ PYRAMID = PyramidPreset(
     unit_epochs=12,
     unit_radius=(7.0, 0.6),
     relative_contrast=0.3,
-    arm_share=0.36,
+    arm_shares=(0.36, 0.05),
     levels=(1, 2, 4),
     overlap=0.25,
     turns_deg=(-15.0, 15.0),

@@ -13,7 +13,7 @@ from actum.node import SECOND_NS
 from actum.skeletons import JOINTS
 from actum.som import Som
 from som_classifier.codes import Code, FrameEncoder, left_handed, mean_log_error, most_moved_part, seen_share, trail_of
-from som_classifier.layers import ARM_INPUTS, Concepts, FirstMaps
+from som_classifier.layers import ARM_INPUTS, HEARD, Concepts, FirstMaps
 from som_classifier.model import Arrays, Description, Model
 from som_classifier.pyramid import Pyramid, Trail
 from som_classifier.recognition import Recognition
@@ -33,7 +33,7 @@ class PyramidDescription(Description):
         posture_contrast: of the posture map's activity, in squared metres.
         velocity_contrast: of the velocity map's activity.
         arm_contrast: of the activity of the map of arms.
-        arm_share: what the latter adds up to.
+        arm_shares: what the latter adds up to, for the acting arm and for the other one.
         mirrors: whether an action of the left arm is read in a mirror.
         levels: the pyramid's cells on each level.
         overlap: how far each reaches over its borders, in parts of its length.
@@ -50,7 +50,7 @@ class PyramidDescription(Description):
     posture_contrast: Positive
     velocity_contrast: Positive
     arm_contrast: Positive
-    arm_share: Positive
+    arm_shares: Annotated[list[Positive], Field(min_length=2, max_length=2)]
     mirrors: bool
     levels: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=1)]
     overlap: Annotated[float, Field(ge=0, le=1)]
@@ -116,7 +116,7 @@ class PyramidModel(Model):
         contrasts = about.posture_contrast, about.velocity_contrast, about.arm_contrast
         durations = about.log_duration_mean, about.log_duration_sd
         return cls(
-            FirstMaps(postures, velocities, arms, contrasts, about.arm_share),
+            FirstMaps(postures, velocities, arms, contrasts, (about.arm_shares[0], about.arm_shares[1])),
             Stages(arrays["axes"], arrays["offsets"], tuple(about.fractions), *durations),
             Concepts(layout, about.concept_contrast, arrays["concept_mean"]),
             SupervisedLayer(arrays["layer3"]),
@@ -180,7 +180,7 @@ class PyramidModel(Model):
         codes: list[Code] = [frame.code for frame in frames]
         scores = self.scores(codes, self.stages.weights(0.0, complete=True))
         seen = self.trail(codes)
-        sums = seen.gained([len(seen)]).reshape(len(self.first.maps), -1)
+        sums = seen.gained([len(seen)]).reshape(len(HEARD), -1)[: len(self.first.maps)]
         heard = activity(self.concepts.layout.excess2(scores), self.concepts.contrast)
         layers = zip(
             ("postures", "velocities", "arms"), self.first.maps, sums / sums.max(axis=1, keepdims=True), strict=True

@@ -9,6 +9,7 @@ from model_inspector.anatomy import PyramidAnatomy, anatomy_of
 from model_inspector.answered import Answered, answered_segments, encoded
 from model_inspector.contributions import contributions
 from model_inspector.reasons import leading
+from som_classifier.layers import HEARD
 from som_classifier.pyramid_model import PyramidModel
 
 
@@ -60,7 +61,7 @@ def test_a_segment_of_the_left_arm_is_known_to_be_read_in_a_mirror(pyramid: Pyra
 def test_each_cell_s_activities_are_shares_of_each_map(pyramid: PyramidModel, recording: Recording) -> None:
     (segment, *_) = answered_segments(PyramidAnatomy(pyramid), [recording])
     found = contributions(pyramid, encoded(pyramid, segment.frames))
-    shares = [1.0, 1.0, pyramid.description.arm_share]
+    shares = [1.0, 1.0, *pyramid.description.arm_shares]
     np.testing.assert_allclose(found.activities.sum(axis=2), [shares] * 7, atol=1e-3)
 
 
@@ -73,15 +74,15 @@ def test_the_activities_of_the_whole_are_the_mean_of_its_frames(pyramid: Pyramid
     np.testing.assert_allclose(whole.ravel(), np.mean(sides, axis=0), atol=1e-5)
 
 
-@pytest.mark.parametrize("which", range(3))
+@pytest.mark.parametrize("which", range(len(HEARD)))
 def test_each_map_adds_what_its_own_axes_make_of_it(model: PyramidModel, segments: list[Answered], which: int) -> None:
     """Where only the axes of one map are not zero, the others add nothing."""
-    parts = model.pyramid.cells, len(model.first.maps), len(model.first.arms.weights), len(model.labels)
+    parts = model.pyramid.cells, len(HEARD), len(model.first.arms.weights), len(model.labels)
     axes = np.zeros((len(model.stages.axes), *parts), np.float32)
     axes[:, :, which] = model.stages.axes.reshape(axes.shape)[:, :, which]
     of_one = replace(model, stages=replace(model.stages, axes=axes.reshape(model.stages.axes.shape)))
     found = contributions(of_one, encoded(of_one, segments[0].frames))
-    assert found.cells.any(axis=0).tolist() == [index == which for index in range(3)]
+    assert found.cells.any(axis=0).tolist() == [index == which for index in range(len(HEARD))]
     assert found.cells[:, which].sum() + found.level == pytest.approx(found.difference, abs=1e-4)
 
 

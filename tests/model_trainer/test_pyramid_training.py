@@ -186,7 +186,7 @@ def test_the_map_of_arms_learns_the_arm_that_acts(samples: list[SegmentSample]) 
     arms = arm_inputs(frame_inputs(postures, velocities))
     distances2 = [model.first.arms.distances2(row).min() for row in arms]
     assert model.description.arm_contrast == pytest.approx(0.5 * np.median(distances2), rel=1e-3)
-    assert model.description.arm_share == model.first.arm_share == PLAIN.arm_share
+    assert tuple(model.description.arm_shares) == model.first.arm_shares == PLAIN.arm_shares
     assert model.first.arms.weights.mean(axis=0) == pytest.approx(arms.mean(axis=0), abs=0.1)
 
 
@@ -194,8 +194,9 @@ def test_where_no_arm_was_ever_seen_from_its_shoulder_its_map_says_nothing(sampl
     armless = [without_arms(sample) for sample in samples]
     model = trained(armless, PLAIN)
     assert all(np.isfinite(array).all() for array in model.arrays.values())
-    activities = model.first.activities(armless[0].postures, armless[0].velocities).reshape(-1, 3, 36)
-    np.testing.assert_allclose(activities[:, 2], PLAIN.arm_share / 36, rtol=1e-5)
+    activities = model.first.activities(armless[0].postures, armless[0].velocities).reshape(-1, 4, 36)
+    for arm, share in zip((2, 3), PLAIN.arm_shares, strict=True):
+        np.testing.assert_allclose(activities[:, arm], share / 36, rtol=1e-5)
     assert [answer(model, encoded(model, sample)).label for sample in armless] == [s.label for s in armless]
 
 

@@ -13,7 +13,7 @@ from people import STANDING
 from som_classifier.handedness import mirrored
 from som_classifier.layers import ARM_SPEED, SMALLEST_ERROR2, Concepts, FirstMaps, arm_inputs, frame_inputs
 
-SHARE = 0.4
+SHARES = 0.4, 0.1
 POSTURE = STANDING - STANDING[2]
 
 
@@ -23,7 +23,7 @@ def map_of(rows: int, cols: int, dim: int, seed: int = 0) -> Som:
 
 def first_maps(posture_contrast: float = 3.0, velocity_contrast: float = 2.0) -> FirstMaps:
     contrasts = posture_contrast, velocity_contrast, 1.0
-    return FirstMaps(map_of(5, 4, 45), map_of(5, 4, 45, 1), map_of(5, 4, 12, 2), contrasts, SHARE)
+    return FirstMaps(map_of(5, 4, 45), map_of(5, 4, 45, 1), map_of(5, 4, 12, 2), contrasts, SHARES)
 
 
 def inputs(frames: int = 30, missing: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -45,9 +45,9 @@ def test_a_frame_alone_answers_as_among_others_on_either_side(missing: float) ->
 def test_each_maps_activity_adds_up_to_its_share(missing: float) -> None:
     maps = first_maps()
     activities = maps.activities(*inputs(missing=missing))
-    assert activities.shape == (30, maps.units) == (30, 60)
+    assert activities.shape == (30, maps.units) == (30, 80)
     assert activities.min() >= 0
-    np.testing.assert_allclose(activities.reshape(30, 3, 20).sum(axis=2), [[1.0, 1.0, SHARE]] * 30, atol=1e-6)
+    np.testing.assert_allclose(activities.reshape(30, 4, 20).sum(axis=2), [[1.0, 1.0, *SHARES]] * 30, atol=1e-6)
 
 
 def test_the_log_error_by_hand() -> None:
@@ -66,14 +66,20 @@ def test_a_log_error_has_a_bottom_and_is_none_of_nothing() -> None:
 
 
 def test_activity_by_hand() -> None:
-    """y is share × exp(−(d² − d²_min) / contrast) over its sum, each map with its own contrast."""
+    """y is share × exp(−(d² − d²_min) / contrast) over its sum, each map with its own contrast.
+
+    The left arm is asked of the map of arms as the right one of the mirror image.
+    """
     maps, (postures, velocities) = first_maps(), inputs(1)
-    arms = arm_inputs(frame_inputs(postures, velocities))
+    right, left = (
+        arm_inputs(frame_inputs(*both)) for both in ((postures, velocities), (mirrored(postures), mirrored(velocities)))
+    )
     expected = []
     for som, x, contrast, share in (
         (maps.postures, postures, 3.0, 1.0),
         (maps.velocities, velocities, 2.0, 1.0),
-        (maps.arms, arms, 1.0, SHARE),
+        (maps.arms, right, 1.0, SHARES[0]),
+        (maps.arms, left, 1.0, SHARES[1]),
     ):
         y = np.exp(-som.distances2(x.reshape(-1)) / contrast)
         expected.append(share * y / y.sum())
@@ -117,12 +123,15 @@ def test_the_arm_is_seen_from_its_shoulder() -> None:
     np.testing.assert_allclose(arm_inputs(elsewhere), arms)
 
 
-def test_where_the_acting_arm_is_hidden_its_map_says_nothing() -> None:
+def test_where_one_arm_is_hidden_its_map_says_nothing_of_it() -> None:
     postures, velocities = inputs(1)
     postures[:, INDEX["right_shoulder"]] = velocities[:, INDEX["right_shoulder"]] = np.nan
     sides = first_maps().sides(postures[0], velocities[0])
-    np.testing.assert_allclose(sides[0, 40:], SHARE / 20, rtol=1e-6)
-    assert np.ptp(sides[1, 40:]) > 0
+    hidden, seen, of_the_mirror, hidden_in_it = sides[:, 40:].reshape(4, 20)
+    np.testing.assert_allclose(hidden, SHARES[0] / 20, rtol=1e-6)
+    np.testing.assert_allclose(hidden_in_it, SHARES[1] / 20, rtol=1e-6)
+    np.testing.assert_allclose(seen / SHARES[1], of_the_mirror / SHARES[0], rtol=1e-5)
+    assert np.ptp(seen) > 0
 
 
 def concepts(mean: np.ndarray | None = None) -> Concepts:

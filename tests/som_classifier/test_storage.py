@@ -217,7 +217,7 @@ OF_PYRAMID: list[tuple[dict[str, object], str]] = [
     ({"posture_contrast": 0.0}, "posture_contrast"),
     ({"velocity_contrast": NAN}, "velocity_contrast"),
     ({"arm_contrast": -1.0}, "arm_contrast"),
-    ({"arm_share": 0.0}, "arm_share"),
+    ({"arm_shares": [0.0, 0.1]}, "arm_shares"),
     ({"concept_contrast": INFINITE}, "concept_contrast"),
     ({"levels": []}, "levels"),
     ({"levels": [0]}, "levels"),
