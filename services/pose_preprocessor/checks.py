@@ -25,24 +25,28 @@ class BadFrameError(ValueError):
         self.kind = kind
 
 
-def missing_joints(joints: list[Joint]) -> list[str]:
-    """Name the joints that the source lacks."""
-    return [name for name, joint in zip(JOINTS, joints, strict=True) if joint is None]
+def missing_joints(joints: list[Joint]) -> list[int]:
+    """Tell which joints the source lacks."""
+    return [index for index, joint in enumerate(joints) if joint is None]
 
 
-def measured(
-    joints: list[Joint], missing: Sequence[str], reach_limit_m: float, bone_limit_m: float
-) -> NDArray[np.float64]:
-    """Return usable joints as an array of shape (15, 3), camera frame, metres; NaN where one is missing.
+def as_array(joints: list[Joint]) -> NDArray[np.float64]:
+    """Return joints as an array of shape (15, 3), NaN where one is missing."""
+    return np.array([_UNKNOWN if joint is None else joint for joint in joints], dtype=np.float64)
+
+
+def check(array: NDArray[np.float64], missing: Sequence[int], reach_limit_m: float, bone_limit_m: float) -> None:
+    """Refuse joints (15, 3), camera frame, metres, that cannot be used.
+
+    Args:
+        missing: which of them are not known; the others must be finite.
 
     Raises:
         BadFrameError: of kind `missing_joint` (no torso, no neck, or neither both hips nor both shoulders),
             `not_finite`, `absurd_joint` or `absurd_bone`.
     """
     if missing:
-        _require_trunk(missing)
-        joints = [_UNKNOWN if joint is None else joint for joint in joints]
-    array = np.array(joints, dtype=np.float64)
+        _require_trunk([JOINTS[index] for index in missing])
     if not (np.abs(array) <= reach_limit_m).all():
         _require_near(array, missing, reach_limit_m)
     bones = array[_CHILDREN] - array[_PARENTS]
@@ -50,7 +54,6 @@ def measured(
     if np.fmax.reduce(lengths2) > bone_limit_m**2:
         child = JOINTS[int(_CHILDREN[int(np.nanargmax(lengths2))])]
         raise BadFrameError("absurd_bone", f"the bone to {child} is longer than {bone_limit_m:g} m")
-    return array
 
 
 def _require_trunk(missing: Sequence[str]) -> None:
@@ -58,8 +61,8 @@ def _require_trunk(missing: Sequence[str]) -> None:
         raise BadFrameError("missing_joint", f"no {', '.join(missing)}")
 
 
-def _require_near(array: NDArray[np.float64], missing: Sequence[str], reach_limit_m: float) -> None:
-    given = [i for i, name in enumerate(JOINTS) if name not in missing]
+def _require_near(array: NDArray[np.float64], missing: Sequence[int], reach_limit_m: float) -> None:
+    given = [i for i in range(len(JOINTS)) if i not in missing]
     for i in given:
         if not np.isfinite(array[i]).all():
             raise BadFrameError("not_finite", f"{JOINTS[i]} is not a finite position")

@@ -9,11 +9,16 @@ from numpy.typing import NDArray
 from actum import geometry, keys
 from actum.messages import Agent, Joint, Message, Posture, Skeleton
 from actum.node import Tally, Tick
+from actum.skeletons import INDEX, JOINTS
 from actum.stamps import Order, StampGuard
-from pose_preprocessor.checks import BadFrameError, measured, missing_joints
+from pose_preprocessor.checks import BadFrameError, as_array, check, missing_joints
 from pose_preprocessor.missing import MissingLately
 from pose_preprocessor.person import Person
 from pose_preprocessor.settings import Settings
+
+_TORSO = INDEX["torso"]
+ALWAYS = (_TORSO, INDEX["neck"])
+"""The joints that every valid posture has, if only from a moment before."""
 
 
 class PosePreprocessor:
@@ -88,12 +93,16 @@ class PosePreprocessor:
     def _valid(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
         missing = missing_joints(agent.joints)
         person = self._persons.setdefault(agent.agent, Person())
-        joints = self._usable(agent, person, missing)
-        both = np.stack([joints, geometry.scaled(joints)])
+        measured = as_array(agent.joints)
+        bridged = self._usable(frame.stamp_ns, agent, person, measured, missing)
+        both = np.stack([bridged, geometry.scaled(bridged)])
         egos = geometry.ego_from_camera(both)
         metric_ego, scaled_ego = geometry.apply(egos, both)
         person.joints = agent.joints
-        self._missing.note(frame.stamp_ns, missing)
+        person.bridge.keep(frame.stamp_ns, bridged, missing)
+        self._missing.note(frame.stamp_ns, [JOINTS[index] for index in missing])
+        metric_ego[[index for index in missing if index not in ALWAYS]] = np.nan
+        measured[_TORSO] = bridged[_TORSO]
         return Posture(
             stamp_ns=frame.stamp_ns,
             sensor=frame.sensor,
@@ -102,7 +111,7 @@ class PosePreprocessor:
             joints=_listed(scaled_ego),
             upright=_listed(person.upright(frame.stamp_ns, *_untilted(both, frame.up_in_camera))),
             ego_from_camera=geometry.flat(egos[0]),
-            motion=person.motion.step(frame.stamp_ns, joints),
+            motion=person.motion.step(frame.stamp_ns, measured),
             depth_std_m=agent.depth_std_m,
             up_in_camera=frame.up_in_camera,
             agents=present,
@@ -111,11 +120,15 @@ class PosePreprocessor:
             session_id=frame.session_id,
         )
 
-    def _usable(self, agent: Agent, person: Person, missing: list[str]) -> NDArray[np.float64]:
-        joints = measured(agent.joints, missing, self._settings.reach_limit_m, self._settings.bone_limit_m)
+    def _usable(
+        self, stamp_ns: int, agent: Agent, person: Person, measured: NDArray[np.float64], missing: list[int]
+    ) -> NDArray[np.float64]:
+        bridged = person.bridge.over(stamp_ns, measured, missing) if missing else measured
+        unknown = [index for index in missing if np.isnan(bridged[index, 0])]
+        check(bridged, unknown, self._settings.reach_limit_m, self._settings.bone_limit_m)
         if agent.joints == person.joints:
             raise BadFrameError("repeated_joints", "the same joints as in the frame before")
-        return joints
+        return bridged
 
     def _invalid(self, frame: Skeleton, agent: int, reason: str, missed: int, present: list[int]) -> Posture:
         return Posture(

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from actum import geometry
 from actum.messages import Joint
+from pose_preprocessor.bridging import Bridge
 from pose_preprocessor.heading import HeadingFilter
 from pose_preprocessor.motion import MotionFilter
 
@@ -18,6 +19,7 @@ class Person:
     """An agent's last usable joints as they came, and their filters."""
 
     joints: list[Joint] | None = None
+    bridge: Bridge = field(default_factory=Bridge)
     motion: MotionFilter = field(default_factory=MotionFilter)
     heading: HeadingFilter = field(default_factory=HeadingFilter)
 
