@@ -18,9 +18,11 @@ from .calibration import calibration
 from .cost import cost
 from .datasets import Datasets
 from .early import early
+from .few import few
 from .missing import missing_joints
 from .ours import OURS
 from .peers import DTW_BAND, DTW_INSTANTS, INSTANTS
+from .sets import errors_over_sets
 from .splits import SEED
 from .unknown import unknown_actions
 
@@ -36,6 +38,8 @@ PARTS: Mapping[str, tuple[str, Callable[[Bench], Iterator[str]]]] = {
     "unknown": ("Actions that were never trained", unknown_actions),
     "calibration": ("Calibration", calibration),
     "missing": ("Missing joints", missing_joints),
+    "sets": ("Errors over all development sets", errors_over_sets),
+    "few": ("Learning from few examples", few),
     "cost": ("Cost", cost),
 }
 

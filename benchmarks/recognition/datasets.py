@@ -2,16 +2,19 @@
 
 import os
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from importlib import import_module
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from actum import geometry, keys
-from actum.messages import Agent, Skeleton
+from actum.messages import Agent, Message, Segment, Skeleton
+from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum.skeletons import INDEX
 from actum_command.importing import (
@@ -33,12 +36,19 @@ Import = Callable[[Path, Path, Progress], ImportReport]
 MSRC12_SEGMENTS = 5
 """How many segments of each gesture and person of MSRC-12 are drawn of the ten or more: 900 instead of 3105."""
 
+MSRC12_SEGMENTS_OF_FEW = 10
+"""How many there are to learn few examples from; the five are among them."""
+
 MSRC12_SEED = 0
 
 FLORENCE_NAMING = Naming.of(
     r".*actor(?P<person>\d+)idAction\d+category(?P<action>\d+)",
     "1=wave,2=drink,3=answer phone,4=clap,5=tight lace,6=sit down,7=stand up,8=read watch,9=bow",
 )
+
+EXERCISE_NAMING = Naming.of(r"(?P<action>exercise)", "")
+PIECE_NS = 3 * SECOND_NS
+"""How long the pieces are that the video of exercises is cut into."""
 
 _NOBODY = "no person"
 _HIPS = [INDEX["left_hip"], INDEX["right_hip"]]
@@ -50,7 +60,8 @@ class Example:
 
     Attributes:
         sample: what our recogniser learns from.
-        camera_m: (n, 15, 3), the same frames in camera axes, bones of standard length, from the middle of the hips.
+        camera_m: (n, 15, 3), the same frames in camera axes, bones of standard length, from the middle of the hips;
+            missing joints interpolated over time, NaN where one was never seen.
     """
 
     sample: SegmentSample
@@ -100,16 +111,46 @@ class Datasets:
     @cached_property
     def msrc12(self) -> list[Example]:
         """At most `MSRC12_SEGMENTS` segments of each gesture and person of MSRC-12, of those with anybody in them."""
-        recordings = self._recordings("msrc12", import_msrc12)
-        samples = samples_from(recordings)
+        names = {sample.segment_id for sample in drawn(self._msrc12_samples, MSRC12_SEGMENTS, MSRC12_SEED)}
+        return [example for example in self.msrc12_of_few if example.name in names]
+
+    @cached_property
+    def msrc12_of_few(self) -> list[Example]:
+        """The same, at most `MSRC12_SEGMENTS_OF_FEW` of each."""
+        samples = drawn(self._msrc12_samples, MSRC12_SEGMENTS_OF_FEW, MSRC12_SEED)
+        return with_joints(samples, self._msrc12_recordings)
+
+    @cached_property
+    def _msrc12_samples(self) -> list[SegmentSample]:
+        samples = samples_from(self._msrc12_recordings)
         if unusable := [left_out for left_out in samples.unusable if left_out.reason != _NOBODY]:
             raise ValueError(f"unusable: {unusable}")
-        return _examples(drawn(samples.usable, MSRC12_SEGMENTS, MSRC12_SEED), recordings)
+        return samples.usable
+
+    @cached_property
+    def _msrc12_recordings(self) -> list[Recording]:
+        return self._recordings("msrc12", import_msrc12)
 
     @cached_property
     def florence(self) -> list[Example]:
         """The RGB clips of Florence 3D Actions, people 1 to 6, seen by the pose model that ACTUM_POSE_MODEL names."""
         return examples_of(self._recordings("florence3d_rgb", import_florence))
+
+    @cached_property
+    def exercise(self) -> list[Example]:
+        """Pieces of a video of somebody who does exercises, those in which anybody was seen by the same pose model."""
+        pieces = [Pieces(recording.path) for recording in self._recordings("people_video", import_exercise)]
+        return with_joints(samples_from(pieces).usable, pieces)
+
+    def why_no_camera(self) -> str | None:
+        """Say why the video sets cannot be seen here; None where they can."""
+        if not Path(os.environ.get("ACTUM_POSE_MODEL") or "/").is_file():
+            return "ACTUM_POSE_MODEL names no pose model"
+        try:
+            import_module("mediapipe")
+        except (ImportError, OSError) as error:
+            return f"MediaPipe cannot be imported ({error})"
+        return None
 
     def action_set(self, number: int) -> list[Example]:
         """Return the sequences of AS1, AS2 or AS3 that are among the 557."""
@@ -130,7 +171,7 @@ def examples_of(recordings: Sequence[Recording]) -> list[Example]:
     samples = samples_from(recordings)
     if samples.unusable:
         raise ValueError(f"unusable: {samples.unusable}")
-    return _examples(samples.usable, recordings)
+    return with_joints(samples.usable, recordings)
 
 
 def import_florence(src: Path, out: Path, progress: Progress) -> ImportReport:
@@ -138,6 +179,31 @@ def import_florence(src: Path, out: Path, progress: Progress) -> ImportReport:
     settings = Settings(people=1, mirrored=True)
     opened = partial(estimator_of, settings)
     return import_video(src, out, progress, naming=FLORENCE_NAMING, optics=optics_of(settings), opened=opened)
+
+
+def import_exercise(src: Path, out: Path, progress: Progress) -> ImportReport:
+    """Import the video of exercises in the same way."""
+    settings = Settings(people=1)
+    opened = partial(estimator_of, settings)
+    return import_video(src, out, progress, naming=EXERCISE_NAMING, optics=optics_of(settings), opened=opened)
+
+
+class Pieces(Recording):
+    """A recording of one sensor cut into segments of equal length, the last one shorter."""
+
+    def messages(self, topics: Collection[keys.Topic] | None = None) -> Iterator[Message]:
+        """Yield its skeletons, and marks of the pieces instead of its own, whatever is asked for."""
+        skeletons = [message for message in super().messages((keys.SKELETON,)) if isinstance(message, Skeleton)]
+        first_ns = skeletons[0].stamp_ns
+        for number, piece in groupby(skeletons, lambda skeleton: (skeleton.stamp_ns - first_ns) // PIECE_NS):
+            yield from _marked(list(piece), f"{self.path.stem}-{number:02d}")
+
+
+def _marked(frames: Sequence[Skeleton], name: str) -> Iterator[Message]:
+    sensor = frames[0].sensor
+    yield Segment(stamp_ns=frames[0].stamp_ns, sensor=sensor, kind="start", segment_id=name, label="exercise")
+    yield from frames
+    yield Segment(stamp_ns=frames[-1].stamp_ns, sensor=sensor, kind="end", segment_id=name)
 
 
 def drawn(samples: Sequence[SegmentSample], at_most: int, seed: int) -> list[SegmentSample]:
@@ -150,7 +216,8 @@ def drawn(samples: Sequence[SegmentSample], at_most: int, seed: int) -> list[Seg
     return [samples[index] for index in sorted(chosen)]
 
 
-def _examples(samples: Sequence[SegmentSample], recordings: Sequence[Recording]) -> list[Example]:
+def with_joints(samples: Sequence[SegmentSample], recordings: Sequence[Recording]) -> list[Example]:
+    """Put beside each sample its joints in camera axes, from the recordings that it was cut out of."""
     by_file = {str(recording.path): _by_stamp(recording) for recording in recordings}
     return [Example(sample, _camera_m(sample, by_file[sample.file])) for sample in samples]
 
@@ -167,6 +234,18 @@ def _array(agent: Agent) -> Array:
 
 
 def _camera_m(sample: SegmentSample, joints_m: dict[int, Array]) -> Array:
-    scaled = np.stack([geometry.scaled(joints_m[int(stamp_ns)]) for stamp_ns in sample.stamps_ns])
+    seen = np.stack([joints_m[int(stamp_ns)] for stamp_ns in sample.stamps_ns])
+    scaled = np.stack([geometry.scaled(frame) for frame in interpolated(seen.reshape(-1, 45)).reshape(seen.shape)])
     relative: Array = scaled - scaled[:, _HIPS].mean(axis=1, keepdims=True)
     return relative
+
+
+def interpolated(rows: Array) -> Array:
+    """Interpolate over time what is missing (NaN) of each component; what is never there stays missing."""
+    if not np.isnan(rows).any():
+        return rows
+    complete = rows.copy()
+    for component, known in enumerate(~np.isnan(rows.T)):
+        if known.any():
+            complete[:, component] = np.interp(np.arange(len(rows)), np.flatnonzero(known), rows[known, component])
+    return complete
