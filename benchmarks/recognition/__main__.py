@@ -14,12 +14,14 @@ from benchmarks.page import measure_page, part_asked_for
 
 from .accuracy import action_sets, authors, cross_subject, random_halves, utkinect
 from .bench import Bench
+from .bodies import bodies
 from .calibration import calibration
 from .cost import cost
 from .datasets import Datasets
 from .early import early
 from .few import few
 from .missing import missing_joints
+from .one_person import one_person
 from .ours import OURS
 from .peers import DTW_BAND, DTW_INSTANTS, INSTANTS
 from .sets import errors_over_sets
@@ -40,6 +42,8 @@ PARTS: Mapping[str, tuple[str, Callable[[Bench], Iterator[str]]]] = {
     "missing": ("Missing joints", missing_joints),
     "sets": ("Errors over all development sets", errors_over_sets),
     "few": ("Learning from few examples", few),
+    "one-person": ("What a model of one person says of everything else", one_person),
+    "bodies": ("Any body, any camera", bodies),
     "cost": ("Cost", cost),
 }
 

@@ -106,7 +106,11 @@ class Datasets:
     @cached_property
     def utkinect(self) -> list[Example]:
         """The labelled segments of UTKinect-Action3D."""
-        return examples_of(self._recordings("utkinect", import_utkinect))
+        return examples_of(self.utkinect_recordings)
+
+    @cached_property
+    def utkinect_recordings(self) -> list[Recording]:
+        return self._recordings("utkinect", import_utkinect)
 
     @cached_property
     def msrc12(self) -> list[Example]:
