@@ -91,7 +91,7 @@ class Datasets:
         """Find the folder that ACTUM_DATA names."""
         folder = os.environ.get("ACTUM_DATA")
         if not folder or not Path(folder).is_dir():
-            raise SystemExit("set ACTUM_DATA to the folder that holds msr_action3d/ and utkinect/")
+            raise SystemExit("set ACTUM_DATA to the folder that holds msr_action3d/, utkinect/ and msrc12/")
         return cls(Path(folder), imported)
 
     @cached_property
@@ -193,14 +193,15 @@ def import_exercise(src: Path, out: Path, progress: Progress) -> ImportReport:
 
 
 class Pieces(Recording):
-    """A recording of one sensor cut into segments of equal length, the last one shorter."""
+    """A recording of one sensor cut into segments of equal length; what remains at its end is in none."""
 
     def messages(self, topics: Collection[keys.Topic] | None = None) -> Iterator[Message]:
         """Yield its skeletons, and marks of the pieces instead of its own, whatever is asked for."""
         skeletons = [message for message in super().messages((keys.SKELETON,)) if isinstance(message, Skeleton)]
-        first_ns = skeletons[0].stamp_ns
-        for number, piece in groupby(skeletons, lambda skeleton: (skeleton.stamp_ns - first_ns) // PIECE_NS):
-            yield from _marked(list(piece), f"{self.path.stem}-{number:02d}")
+        first_ns, last_ns = skeletons[0].stamp_ns, skeletons[-1].stamp_ns
+        for number, group in groupby(skeletons, lambda skeleton: (skeleton.stamp_ns - first_ns) // PIECE_NS):
+            piece, is_whole = list(group), first_ns + (number + 1) * PIECE_NS <= last_ns
+            yield from _marked(piece, f"{self.path.stem}-{number:02d}") if is_whole else piece
 
 
 def _marked(frames: Sequence[Skeleton], name: str) -> Iterator[Message]:
