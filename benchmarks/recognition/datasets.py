@@ -2,19 +2,16 @@
 
 import os
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
-from importlib import import_module
-from itertools import groupby
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from actum import geometry, keys
-from actum.messages import Agent, Message, Segment, Skeleton
-from actum.node import SECOND_NS
+from actum.messages import Agent, Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
 from actum_command.importing import (
@@ -23,12 +20,10 @@ from actum_command.importing import (
     import_msr_action3d,
     import_msrc12,
     import_utkinect,
-    import_video,
 )
 from model_trainer.samples import SegmentSample, samples_from, select
-from sensor_gateway.camera.clips import Naming
-from sensor_gateway.camera.source import estimator_of, optics_of
-from sensor_gateway.settings import Settings
+
+from .videos import Pieces, import_exercise, import_florence
 
 Array = NDArray[np.float64]
 Import = Callable[[Path, Path, Progress], ImportReport]
@@ -40,15 +35,6 @@ MSRC12_SEGMENTS_OF_FEW = 10
 """How many there are to learn few examples from; the five are among them."""
 
 MSRC12_SEED = 0
-
-FLORENCE_NAMING = Naming.of(
-    r".*actor(?P<person>\d+)idAction\d+category(?P<action>\d+)",
-    "1=wave,2=drink,3=answer phone,4=clap,5=tight lace,6=sit down,7=stand up,8=read watch,9=bow",
-)
-
-EXERCISE_NAMING = Naming.of(r"(?P<action>exercise)", "")
-PIECE_NS = 3 * SECOND_NS
-"""How long the pieces are that the video of exercises is cut into."""
 
 _NOBODY = "no person"
 _HIPS = [INDEX["left_hip"], INDEX["right_hip"]]
@@ -146,16 +132,6 @@ class Datasets:
         pieces = [Pieces(recording.path) for recording in self._recordings("people_video", import_exercise)]
         return with_joints(samples_from(pieces).usable, pieces)
 
-    def why_no_camera(self) -> str | None:
-        """Say why the video sets cannot be seen here; None where they can."""
-        if not Path(os.environ.get("ACTUM_POSE_MODEL") or "/").is_file():
-            return "ACTUM_POSE_MODEL names no pose model"
-        try:
-            import_module("mediapipe")
-        except (ImportError, OSError) as error:
-            return f"MediaPipe cannot be imported ({error})"
-        return None
-
     def action_set(self, number: int) -> list[Example]:
         """Return the sequences of AS1, AS2 or AS3 that are among the 557."""
         names = set((self._originals / "msr_action3d" / f"ActionSet{number}.txt").read_text().split())
@@ -176,39 +152,6 @@ def examples_of(recordings: Sequence[Recording]) -> list[Example]:
     if samples.unusable:
         raise ValueError(f"unusable: {samples.unusable}")
     return with_joints(samples.usable, recordings)
-
-
-def import_florence(src: Path, out: Path, progress: Progress) -> ImportReport:
-    """Import the clips as `actum import video` does; they are mirror images, as the writing on a shirt shows."""
-    settings = Settings(people=1, mirrored=True)
-    opened = partial(estimator_of, settings)
-    return import_video(src, out, progress, naming=FLORENCE_NAMING, optics=optics_of(settings), opened=opened)
-
-
-def import_exercise(src: Path, out: Path, progress: Progress) -> ImportReport:
-    """Import the video of exercises in the same way."""
-    settings = Settings(people=1)
-    opened = partial(estimator_of, settings)
-    return import_video(src, out, progress, naming=EXERCISE_NAMING, optics=optics_of(settings), opened=opened)
-
-
-class Pieces(Recording):
-    """A recording of one sensor cut into segments of equal length; what remains at its end is in none."""
-
-    def messages(self, topics: Collection[keys.Topic] | None = None) -> Iterator[Message]:
-        """Yield its skeletons, and marks of the pieces instead of its own, whatever is asked for."""
-        skeletons = [message for message in super().messages((keys.SKELETON,)) if isinstance(message, Skeleton)]
-        first_ns, last_ns = skeletons[0].stamp_ns, skeletons[-1].stamp_ns
-        for number, group in groupby(skeletons, lambda skeleton: (skeleton.stamp_ns - first_ns) // PIECE_NS):
-            piece, is_whole = list(group), first_ns + (number + 1) * PIECE_NS <= last_ns
-            yield from _marked(piece, f"{self.path.stem}-{number:02d}") if is_whole else piece
-
-
-def _marked(frames: Sequence[Skeleton], name: str) -> Iterator[Message]:
-    sensor = frames[0].sensor
-    yield Segment(stamp_ns=frames[0].stamp_ns, sensor=sensor, kind="start", segment_id=name, label="exercise")
-    yield from frames
-    yield Segment(stamp_ns=frames[-1].stamp_ns, sensor=sensor, kind="end", segment_id=name)
 
 
 def drawn(samples: Sequence[SegmentSample], at_most: int, seed: int) -> list[SegmentSample]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from .datasets import Datasets, Example
 from .splits import DRAWS, Split, folds_of_people, halves, leave_one_person_out
+from .videos import why_no_camera
 
 MSRC12_FOLDS = 5
 VIDEOS = "Florence, camera"
@@ -31,16 +32,16 @@ def development_sets(data: Datasets) -> list[DevelopmentSet]:
     sets = [
         _of("MSR Action3D", f"{DRAWS} draws of five and five people", data.msr, list(halves(data.msr))),
         _one_out("UTKinect", data.utkinect),
-        *([_one_out(VIDEOS, data.florence)] if data.why_no_camera() is None else []),
+        *([_one_out(VIDEOS, data.florence)] if why_no_camera() is None else []),
     ]
     folds = list(folds_of_people(data.msrc12, MSRC12_FOLDS))
     protocol = f"people with odd numbers in {MSRC12_FOLDS} folds of {len({e.person for e in folds[0].test})}"
     return [*sets, DevelopmentSet("MSRC-12", protocol, data.msrc12, data.msrc12_of_few, folds)]
 
 
-def said_of_videos(data: Datasets) -> str:
+def said_of_videos() -> str:
     """Say why the videos are left out; nothing where they are not."""
-    reason = data.why_no_camera()
+    reason = why_no_camera()
     return "" if reason is None else f" {VIDEOS}, was left out: {reason}."
 
 

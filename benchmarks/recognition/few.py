@@ -68,12 +68,13 @@ def few(bench: Bench) -> Iterator[str]:
 tested on everybody but the two people of the draw, on at most {FEW_TESTED} sequences drawn once a draw.
 {FEW_DRAWS} draws of people of whom there is every action, each first in turn; fewer examples are the first of more, and
 one person the first of two. Where people have fewer examples they give what they have; a dash stands where that is what
-the row before had.{said_of_videos(bench.data)} Mean accuracy (%) over the draws; ours minus the peer with the highest
+the row before had.{said_of_videos()} Mean accuracy (%) over the draws; ours minus the peer with the highest
 mean in that row, in points ± the standard error of the paired draws (as if they were independent). Axes alone: how
 often the largest score on our discriminant axes is right, without the map of actions and the third layer. ECE: of our
 confidence, all draws pooled."""
-    curves = [_curve(list(few_examples(each.examples, each.of_few))) for each in sets]
-    for each, curve in zip(sets, curves, strict=True):
+    curves = []
+    for each in sets:
+        curves.append(curve := _curve(list(few_examples(each.examples, each.of_few))))
         rows = (_row(people, count, curve.get((people, count))) for people in PEOPLE for count in COUNTS)
         yield table((each.name, *HEADER), rows)
     yield """The mean over the sets; one that has no more examples takes part with what it gave before. The best peer is

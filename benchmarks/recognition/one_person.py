@@ -10,12 +10,13 @@ from actum.node import SECOND_NS
 from som_classifier.recognition import Recognition
 
 from .bench import Bench
-from .datasets import PIECE_NS, Datasets, Example
+from .datasets import Datasets, Example
 from .development import DevelopmentSet, development_sets, said_of_videos
 from .ours import OURS
 from .peers import MINIROCKET, MINIROCKET_UPRIGHT
 from .scores import Floats, expected_calibration_error, percent, table
 from .splits import FEW_DRAWS, FEW_TESTED, SEED, FewExamples, few_examples
+from .videos import PIECE_NS, why_no_camera
 
 COUNTS = (5, 1)
 LEFT_OUT_SHARE = 0.25
@@ -81,7 +82,7 @@ def one_person(bench: Bench) -> Iterator[str]:
     yield f"""One person taught (up to 5 examples of each action, or 1), about a quarter of the actions left out of
 training, other people asked: {FEW_DRAWS} draws of person and actions, at most {FEW_TESTED} sequences of the set a draw.
 "Other sets" are at most {STRANGE_TESTED} sequences a draw, as many of each, without those that may be the same movement
-as one that was taught, as a table in the code says.{said_of_videos(bench.data)} AUROC: how often an action that was
+as one that was taught, as a table in the code says.{said_of_videos()} AUROC: how often an action that was
 taught scores higher than one that was not (0.5 is chance); mean over the draws. Margin: largest minus second value of
 the ridge."""
     measured = [(each.name, count, _asked(each, sets, count)) for each in sets for count in COUNTS]
@@ -93,19 +94,19 @@ of the answers to actions that were taught."""
     header = ["right %", "confidence %", "ECE", *(f"unknown: {name}" for name in (KNOWN, LEFT_OUT, ELSEWHERE))]
     header += [f"sure: {name}" for name in (LEFT_OUT, ELSEWHERE)]
     yield table(("set, examples", *header), ([f"{name}, {count}", *_told(own)] for name, count, own in measured))
-    if bench.data.why_no_camera() is None:
+    if why_no_camera() is None:
         yield from _exercises(bench.data)
 
 
 def _asked(own: DevelopmentSet, sets: Sequence[DevelopmentSet], count: int) -> Asked:
-    rng, asked = np.random.default_rng(SEED), Asked()
+    of_actions, of_strangers, asked = np.random.default_rng(SEED), np.random.default_rng(SEED), Asked()
     labels = sorted({example.label for example in own.examples})
     others = [other for other in sets if other is not own]
     for draw in few_examples(own.examples, own.of_few):
-        chosen = rng.choice(len(labels), round(LEFT_OUT_SHARE * len(labels)), replace=False).tolist()
+        chosen = of_actions.choice(len(labels), round(LEFT_OUT_SHARE * len(labels)), replace=False).tolist()
         left_out = {labels[i] for i in chosen}
         taught = [example for example in draw.training(1, count) if example.label not in left_out]
-        asked.add(taught, _groups(draw, left_out, _strange(others, set(labels) - left_out, rng)))
+        asked.add(taught, _groups(draw, left_out, _strange(others, set(labels) - left_out, of_strangers)))
     return asked
 
 

@@ -49,7 +49,7 @@ def errors_over_sets(bench: Bench) -> Iterator[str]:
     """Count the errors of each recogniser on each set."""
     measured = [_measured(bench, each) for each in development_sets(bench.data)]
     protocols = "; ".join(f"{own.of.name}, {own.of.protocol}" for own in measured)
-    yield f"""{protocols}.{said_of_videos(bench.data)} Errors of so many answers, in brackets their share (%) with
+    yield f"""{protocols}.{said_of_videos()} Errors of so many answers, in brackets their share (%) with
 Wilson's 95 % interval, as if sequences were independent, where one that is tested in several draws counts once."""
     names = [recogniser.name for recogniser in (OURS, *PEERS)]
     rows = ([name, *(_cell(own, row) for own in measured)] for row, name in enumerate(names))

@@ -1,6 +1,6 @@
 from pathlib import Path
 
-from benchmarks.recognition.datasets import PIECE_NS, Pieces
+from benchmarks.recognition.videos import PIECE_NS, Pieces
 
 from actum.messages import Agent, Segment, Skeleton
 from actum.recording import Recorder
