@@ -66,8 +66,8 @@ bench-maps: $(STAMP)  ## the map library beside MiniSom
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
 	$(BIN)/python benchmarks/som.py
 
-bench-recognition: $(STAMP)  ## the recogniser beside its peers on public recordings, about ten minutes
-	@test -d "$$ACTUM_DATA" || { echo "bench-recognition needs ACTUM_DATA: the folder that holds msr_action3d/ and utkinect/" >&2; exit 1; }
+bench-recognition: $(STAMP)  ## the recogniser beside its peers on public recordings, about three quarters of an hour
+	@test -d "$$ACTUM_DATA" || { echo "bench-recognition needs ACTUM_DATA: the folder that holds msr_action3d/, utkinect/ and msrc12/" >&2; exit 1; }
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
 	$(BIN)/python -m benchmarks.recognition
 

@@ -14,11 +14,12 @@ from pathlib import Path
 
 from model_trainer.samples import select
 
-from ..recognition.datasets import Example, examples_of, import_florence
+from ..recognition.datasets import Example, examples_of
 from ..recognition.ours import OURS, PAPERS
 from ..recognition.peers import DTW, MINIROCKET, MINIROCKET_UPRIGHT, MULTIROCKET, Recogniser
 from ..recognition.scores import Score, percent, table
 from ..recognition.splits import SEED, Split, leave_one_person_out
+from ..recognition.videos import import_florence
 
 PAGE = Path(__file__).with_name("results.md")
 LIBRARIES = ("mediapipe", "numpy", "aeon", "scikit-learn")

@@ -4,7 +4,7 @@ import os
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -20,12 +20,10 @@ from actum_command.importing import (
     import_msr_action3d,
     import_msrc12,
     import_utkinect,
-    import_video,
 )
 from model_trainer.samples import SegmentSample, samples_from, select
-from sensor_gateway.camera.clips import Naming
-from sensor_gateway.camera.source import estimator_of, optics_of
-from sensor_gateway.settings import Settings
+
+from .videos import Pieces, import_exercise, import_florence
 
 Array = NDArray[np.float64]
 Import = Callable[[Path, Path, Progress], ImportReport]
@@ -33,12 +31,10 @@ Import = Callable[[Path, Path, Progress], ImportReport]
 MSRC12_SEGMENTS = 5
 """How many segments of each gesture and person of MSRC-12 are drawn of the ten or more: 900 instead of 3105."""
 
-MSRC12_SEED = 0
+MSRC12_SEGMENTS_OF_FEW = 10
+"""How many there are to learn few examples from; the five are among them."""
 
-FLORENCE_NAMING = Naming.of(
-    r".*actor(?P<person>\d+)idAction\d+category(?P<action>\d+)",
-    "1=wave,2=drink,3=answer phone,4=clap,5=tight lace,6=sit down,7=stand up,8=read watch,9=bow",
-)
+MSRC12_SEED = 0
 
 _NOBODY = "no person"
 _HIPS = [INDEX["left_hip"], INDEX["right_hip"]]
@@ -50,7 +46,8 @@ class Example:
 
     Attributes:
         sample: what our recogniser learns from.
-        camera_m: (n, 15, 3), the same frames in camera axes, bones of standard length, from the middle of the hips.
+        camera_m: (n, 15, 3), the same frames in camera axes, bones of standard length, from the middle of the hips;
+            missing joints interpolated over time, NaN where one was never seen.
     """
 
     sample: SegmentSample
@@ -80,7 +77,7 @@ class Datasets:
         """Find the folder that ACTUM_DATA names."""
         folder = os.environ.get("ACTUM_DATA")
         if not folder or not Path(folder).is_dir():
-            raise SystemExit("set ACTUM_DATA to the folder that holds msr_action3d/ and utkinect/")
+            raise SystemExit("set ACTUM_DATA to the folder that holds msr_action3d/, utkinect/ and msrc12/")
         return cls(Path(folder), imported)
 
     @cached_property
@@ -95,21 +92,45 @@ class Datasets:
     @cached_property
     def utkinect(self) -> list[Example]:
         """The labelled segments of UTKinect-Action3D."""
-        return examples_of(self._recordings("utkinect", import_utkinect))
+        return examples_of(self.utkinect_recordings)
+
+    @cached_property
+    def utkinect_recordings(self) -> list[Recording]:
+        return self._recordings("utkinect", import_utkinect)
 
     @cached_property
     def msrc12(self) -> list[Example]:
         """At most `MSRC12_SEGMENTS` segments of each gesture and person of MSRC-12, of those with anybody in them."""
-        recordings = self._recordings("msrc12", import_msrc12)
-        samples = samples_from(recordings)
+        names = {sample.segment_id for sample in drawn(self._msrc12_samples, MSRC12_SEGMENTS, MSRC12_SEED)}
+        return [example for example in self.msrc12_of_few if example.name in names]
+
+    @cached_property
+    def msrc12_of_few(self) -> list[Example]:
+        """The same, at most `MSRC12_SEGMENTS_OF_FEW` of each."""
+        samples = drawn(self._msrc12_samples, MSRC12_SEGMENTS_OF_FEW, MSRC12_SEED)
+        return with_joints(samples, self._msrc12_recordings)
+
+    @cached_property
+    def _msrc12_samples(self) -> list[SegmentSample]:
+        samples = samples_from(self._msrc12_recordings)
         if unusable := [left_out for left_out in samples.unusable if left_out.reason != _NOBODY]:
             raise ValueError(f"unusable: {unusable}")
-        return _examples(drawn(samples.usable, MSRC12_SEGMENTS, MSRC12_SEED), recordings)
+        return samples.usable
+
+    @cached_property
+    def _msrc12_recordings(self) -> list[Recording]:
+        return self._recordings("msrc12", import_msrc12)
 
     @cached_property
     def florence(self) -> list[Example]:
         """The RGB clips of Florence 3D Actions, people 1 to 6, seen by the pose model that ACTUM_POSE_MODEL names."""
         return examples_of(self._recordings("florence3d_rgb", import_florence))
+
+    @cached_property
+    def exercise(self) -> list[Example]:
+        """Pieces of a video of somebody who does exercises, those in which anybody was seen by the same pose model."""
+        pieces = [Pieces(recording.path) for recording in self._recordings("people_video", import_exercise)]
+        return with_joints(samples_from(pieces).usable, pieces)
 
     def action_set(self, number: int) -> list[Example]:
         """Return the sequences of AS1, AS2 or AS3 that are among the 557."""
@@ -130,14 +151,7 @@ def examples_of(recordings: Sequence[Recording]) -> list[Example]:
     samples = samples_from(recordings)
     if samples.unusable:
         raise ValueError(f"unusable: {samples.unusable}")
-    return _examples(samples.usable, recordings)
-
-
-def import_florence(src: Path, out: Path, progress: Progress) -> ImportReport:
-    """Import the clips as `actum import video` does; they are mirror images, as the writing on a shirt shows."""
-    settings = Settings(people=1, mirrored=True)
-    opened = partial(estimator_of, settings)
-    return import_video(src, out, progress, naming=FLORENCE_NAMING, optics=optics_of(settings), opened=opened)
+    return with_joints(samples.usable, recordings)
 
 
 def drawn(samples: Sequence[SegmentSample], at_most: int, seed: int) -> list[SegmentSample]:
@@ -150,7 +164,8 @@ def drawn(samples: Sequence[SegmentSample], at_most: int, seed: int) -> list[Seg
     return [samples[index] for index in sorted(chosen)]
 
 
-def _examples(samples: Sequence[SegmentSample], recordings: Sequence[Recording]) -> list[Example]:
+def with_joints(samples: Sequence[SegmentSample], recordings: Sequence[Recording]) -> list[Example]:
+    """Put beside each sample its joints in camera axes, from the recordings that it was cut out of."""
     by_file = {str(recording.path): _by_stamp(recording) for recording in recordings}
     return [Example(sample, _camera_m(sample, by_file[sample.file])) for sample in samples]
 
@@ -167,6 +182,18 @@ def _array(agent: Agent) -> Array:
 
 
 def _camera_m(sample: SegmentSample, joints_m: dict[int, Array]) -> Array:
-    scaled = np.stack([geometry.scaled(joints_m[int(stamp_ns)]) for stamp_ns in sample.stamps_ns])
+    seen = np.stack([joints_m[int(stamp_ns)] for stamp_ns in sample.stamps_ns])
+    scaled = np.stack([geometry.scaled(frame) for frame in interpolated(seen.reshape(-1, 45)).reshape(seen.shape)])
     relative: Array = scaled - scaled[:, _HIPS].mean(axis=1, keepdims=True)
     return relative
+
+
+def interpolated(rows: Array) -> Array:
+    """Interpolate over time what is missing (NaN) of each component; what is never there stays missing."""
+    if not np.isnan(rows).any():
+        return rows
+    complete = rows.copy()
+    for component, known in enumerate(~np.isnan(rows.T)):
+        if known.any():
+            complete[:, component] = np.interp(np.arange(len(rows)), np.flatnonzero(known), rows[known, component])
+    return complete

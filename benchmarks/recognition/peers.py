@@ -15,7 +15,7 @@ from sklearn.linear_model import RidgeClassifierCV
 from sklearn.pipeline import Pipeline, make_pipeline
 from sklearn.preprocessing import StandardScaler
 
-from .datasets import Example
+from .datasets import Example, interpolated
 from .splits import SEED
 
 Floats = NDArray[Any]
@@ -52,24 +52,14 @@ def upright(example: Example) -> Floats:
 
 
 def resampled(frames: Floats, share: float, instants: int) -> NDArray[np.float32]:
-    """Interpolate the first frames (n, 15, 3) at equal steps, shape (45, instants)."""
-    seen = filled(frames[: min(len(frames), max(SHORTEST_FRAMES, round(share * len(frames))))].reshape(-1, 45))
+    """Interpolate the first frames (n, 15, 3) at equal steps, shape (45, instants); 0 for what was never seen."""
+    known = frames[: min(len(frames), max(SHORTEST_FRAMES, round(share * len(frames))))].reshape(-1, 45)
+    seen = np.nan_to_num(interpolated(known))
     at = np.linspace(0, len(seen) - 1, instants)
     before = np.minimum(at.astype(int), len(seen) - 2)
     after = (at - before)[:, None]
     between: Floats = (1 - after) * seen[before] + after * seen[before + 1]
     return between.T.astype(np.float32)
-
-
-def filled(rows: Floats) -> Floats:
-    """Interpolate what is missing (NaN) over time; 0 for what is never there."""
-    if not np.isnan(rows).any():
-        return rows
-    complete = np.zeros_like(rows)
-    for component, known in zip(range(rows.shape[1]), ~np.isnan(rows.T), strict=True):
-        if known.any():
-            complete[:, component] = np.interp(np.arange(len(rows)), np.flatnonzero(known), rows[known, component])
-    return complete
 
 
 @dataclass(frozen=True)
