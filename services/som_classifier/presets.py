@@ -175,7 +175,7 @@ PYRAMID = PyramidPreset(
     beta=0.05,
     epochs=10,
     known_share=0.95,
-    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.25, newcomer_log_error=1.7),
+    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.3, newcomer_log_error=1.7),
 )
 """The default. How it was chosen, and on whom, is said in benchmarks/recognition."""
 

@@ -14,8 +14,10 @@ Floats = NDArray[Any]
 
 NEGLIGIBLE = 0.02
 SHORTEST_S = 1e-3
-LOG_ERROR_COST = 0.1
-"""What postures e times as far from the map as usual (squared) take off the familiarity."""
+LOG_ERROR_SPREAD = 0.3
+"""By so much more than usual the logarithm of the squared quantization error may be at no cost: people differ."""
+LOG_ERROR_COST = 0.3
+"""What postures e times as far from the map as that (squared) take off the familiarity."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,4 +67,4 @@ def familiarity_of(scores: Floats, log_error: float) -> float:
         scores: (actions,).
         log_error: the mean logarithm of the posture map's squared quantization error, less the usual one.
     """
-    return float(scores.max()) - LOG_ERROR_COST * log_error
+    return float(scores.max()) - LOG_ERROR_COST * max(log_error - LOG_ERROR_SPREAD, 0.0)

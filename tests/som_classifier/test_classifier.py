@@ -14,6 +14,7 @@ from model_trainer.answering import answer, encoded
 from model_trainer.samples import SegmentSample
 from people import FRAME_NS, lacking, skeleton
 from performers import FRAMES, HAND_PATHS, PAUSE_FRAMES, TINY, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
+from pose_preprocessor.bridging import BRIDGED_NS
 from pose_preprocessor.node import PosePreprocessor
 from recognisers import tiny_model, tiny_samples
 from som_classifier.model import Model
@@ -201,9 +202,10 @@ def gappy(names: Sequence[str], frames: slice) -> list[Message]:
 
 @each_preset
 def test_missing_joints_are_named_in_their_usual_order(preset: Preset) -> None:
-    actions = live(SomClassifier(tiny_model(preset)), gappy(["right_foot", "head", "left_foot"], slice(8, 12)))
-    names = ["head", "left_foot", "right_foot"]
-    assert [a.missing_joints for a in actions] == [[]] * (8 - 2) + [names] * (FRAMES - 8)
+    """From when on they are away for longer than is bridged."""
+    actions = live(SomClassifier(tiny_model(preset)), gappy(["right_foot", "head", "left_foot"], slice(4, 18)))
+    names, gone = ["head", "left_foot", "right_foot"], 4 + BRIDGED_NS // FRAME_NS
+    assert [a.missing_joints for a in actions] == [[]] * (gone - 2) + [names] * (FRAMES - gone)
     assert actions[-1].final
     assert (actions[-1].action, actions[-1].frames) == ("push", FRAMES)
 

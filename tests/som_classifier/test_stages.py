@@ -94,8 +94,8 @@ def test_a_stage_without_weight_leaves_no_trace() -> None:
 
 
 def test_familiarity_by_hand() -> None:
-    """The largest score, less a tenth of by how much more than usual the postures are off the map."""
+    """The largest score, less 0.3 of by how much the postures are more off the map than people differ."""
     scores = np.array([0.1, 0.7, -0.2], np.float32)
-    assert familiarity_of(scores, 0.0) == pytest.approx(0.7)
-    assert familiarity_of(scores, 2.0) == pytest.approx(0.5)
-    assert familiarity_of(scores, -1.0) == pytest.approx(0.8)
+    assert [familiarity_of(scores, off) for off in (-1.0, 0.0, 0.3)] == pytest.approx([0.7] * 3)
+    assert familiarity_of(scores, 1.3) == pytest.approx(0.4)
+    assert familiarity_of(scores, 3.3) == pytest.approx(-0.2)

@@ -87,7 +87,7 @@ class Action(Message):
     familiarity: FiniteFloat | None = None
     """How much it resembles what was trained, on the model's own scale; null where the model cannot tell."""
     missing_joints: list[Name] = Field([])
-    """The names of the joints that some frame lacked."""
+    """The names of the joints that some frame lacked for longer than 0.3 s."""
     maps: dict[str, Tensor] | None = None
     """The mean activity of each map over the segment, rows by columns, by the map's name; null unless asked for."""
     trace: Tensor | None = None
@@ -202,7 +202,7 @@ class Event(Message):
     unknown: bool = False
     """Whether it may be none of the trained actions."""
     missing_joints: list[Name] = Field([])
-    """The names of the joints that some frame lacked."""
+    """The names of the joints that some frame lacked for longer than 0.3 s."""
     candidates: list[ActedObject] = Field([])
     """Two or more objects that are as likely, the likeliest first; empty where one is."""
     pointing: Pointing | None = None

@@ -81,7 +81,8 @@ class Posture(Message):
     agent: AgentId
     """The person's number; 0 where nobody is sure who it is."""
     joints_m: Joints | None
-    """The measured joints in metres, egocentric (x left, y up, z forward, origin on the hip line)."""
+    """The measured joints in metres, egocentric (x left, y up, z forward, origin on the hip line); null where one is
+    missing. Torso and neck may be those of a moment before, moved on with the body."""
     joints: Joints | None
     """The same posture with standard bone lengths; a joint is null also where one on its way from the torso is."""
     upright: Joints | None = None
