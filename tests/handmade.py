@@ -41,7 +41,7 @@ def pyramid_model(**changes: object) -> PyramidModel:
         "posture_contrast": 0.5, "velocity_contrast": 0.1, "arm_contrast": 0.2, "arm_shares": [0.4, 0.1],
         "mirrors": True,
         "levels": LEVELS, "overlap": 0.25, "fractions": FRACTIONS, "log_duration_mean": 0.5, "log_duration_sd": 0.4,
-        "concept_contrast": 2.0, "gains": [4.0, 8.0], "familiar": 0.3, "usual_log_error": 0.2,
+        "concept_contrast": 2.0, "gains": [4.0, 8.0], "familiar": 0.3,
     }  # fmt: skip
     description = PyramidDescription.model_validate(PROVENANCE | about | changes)
     rng = np.random.default_rng(0)

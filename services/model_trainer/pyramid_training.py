@@ -1,6 +1,5 @@
 """The default recogniser, trained layer after layer: first maps, discriminant axes, map of actions, neurons."""
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -54,7 +53,7 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
     progress("discriminant axes", len(preset.stages), len(preset.stages))
     upper = train_upper(fitted[-1], len(labels), preset, rng, progress)
     origin = provenance(samples, preset, seed) | {"mirrors": mirrors}
-    return _assembled(samples, shown, first, fitted, upper, origin, preset)
+    return _assembled(samples, first, fitted, upper, origin, preset)
 
 
 def _varied(preset: PyramidPreset, samples: Sequence[SegmentSample]) -> PyramidPreset:
@@ -117,7 +116,6 @@ def _fitted(
 
 def _assembled(
     samples: Sequence[SegmentSample],
-    shown: Sequence[Sequence[View]],
     first: FirstMaps,
     fitted: Sequence[Scored],
     upper: UpperLayers,
@@ -147,14 +145,8 @@ def _assembled(
         "gains": calibrated_gains(fitted, upper, prior, people, any(sample.depth_inferred for sample in samples)),
         "familiar": familiar(fitted[-1].axes.held_out, prior, people, preset.known_share),
         "held_out": _held_out(fitted[-1], origin["labels"]),
-        "usual_log_error": _usual_log_error(first, shown) + prior.newcomer_log_error / math.sqrt(people),
     }
     return PyramidModel(first, stages, upper.concepts, upper.layer3, PyramidDescription.model_validate(about))
-
-
-def _usual_log_error(first: FirstMaps, shown: Sequence[Sequence[View]]) -> float:
-    """Return the mean logarithm of the posture map's quantization error over all frames of all samples."""
-    return float(np.concatenate([first.log_errors(views_of_one[0].postures) for views_of_one in shown]).mean())
 
 
 def _held_out(stage: Scored, labels: Sequence[str]) -> dict[str, dict[str, int]]:

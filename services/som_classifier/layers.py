@@ -20,8 +20,8 @@ ARM_SPEED = 3.0
 ARM_INPUTS = 12
 HEARD = ("postures", "velocities", "acting arm", "other arm")
 """Whose activity a frame gives, in this order; the map of arms is asked for both arms."""
-SMALLEST_ERROR2 = 1e-3
-"""Squared quantization errors below this, in units of the contrast, count as this: a logarithm knows no bottom."""
+SMALLEST_ERROR2 = 6e-5
+"""Squared quantization errors (m²) below this, 2 mm a joint on the mean, count as this: a logarithm knows no bottom."""
 
 _SIZE = 3 * len(JOINTS)
 _ARM = np.arange(3 * INDEX["right_elbow"], 3 * INDEX["right_hand"] + 3)
@@ -85,17 +85,17 @@ class FirstMaps:
         return self._shared(np.concatenate([_excess2s(som, inputs) for som, inputs in heard], axis=1))
 
     def log_errors(self, postures: Floats) -> Floats:
-        """Return log(d²_min / contrast) of the map of postures for (n, 15, 3), its quantization error, shape (n,).
+        """Return log(d²_min) of the map of postures for (n, 15, 3), its squared quantization error in m², shape (n,).
 
-        Scaled up for the joints that are missing; 0 where all are.
+        Scaled up for the joints that are missing; that of no error at all where all are.
         """
         rows = postures.reshape(-1, _SIZE)
         known = ~np.isnan(rows)
         some = known.any(axis=1)
-        errors = np.zeros(len(rows))
+        errors = np.full(len(rows), np.log(SMALLEST_ERROR2))
         off = rows[some] - self.postures.weights[self.postures.bmus(rows[some])]
         mean2 = np.square(np.where(known[some], off, 0.0)).sum(axis=1) / known[some].sum(axis=1)
-        errors[some] = np.log(np.maximum(mean2 * _SIZE / self.contrasts[0], SMALLEST_ERROR2))
+        errors[some] = np.log(np.maximum(mean2 * _SIZE, SMALLEST_ERROR2))
         return errors
 
     def sides(self, posture: Floats, velocity: Floats) -> Floats:

@@ -41,15 +41,12 @@ class Prior:
         gain: what makes cosines logits.
         gain_where_inferred: the same where distances follow from a picture and a body's usual size.
         familiar: the familiarity that most segments of known actions exceed.
-        newcomer_log_error: how much larger the logarithm of the posture map's squared quantization error is for other
-            people than for those learnt from, where that is one; divided by the square root of their number where more.
     """
 
     people: float
     gain: float
     gain_where_inferred: float
     familiar: float
-    newcomer_log_error: float
 
 
 @dataclass(frozen=True)
@@ -175,7 +172,7 @@ PYRAMID = PyramidPreset(
     beta=0.05,
     epochs=10,
     known_share=0.95,
-    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.3, newcomer_log_error=1.7),
+    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28),
 )
 """The default. How it was chosen, and on whom, is said in benchmarks/recognition."""
 

@@ -43,7 +43,6 @@ class PyramidDescription(Description):
         concept_contrast: of the second map's activity, in squared scores.
         gains: what makes cosines logits, by stage.
         familiar: the familiarity below which an action may be none of those trained.
-        usual_log_error: the mean logarithm of the posture map's quantization error to be expected of other people.
     """
 
     kind: Literal["pyramid"] = "pyramid"
@@ -60,7 +59,6 @@ class PyramidDescription(Description):
     concept_contrast: Positive
     gains: list[Positive]
     familiar: Annotated[float, Field(allow_inf_nan=False)]
-    usual_log_error: Annotated[float, Field(allow_inf_nan=False)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,8 +188,7 @@ class PyramidModel(Model):
 
     def familiarity(self, codes: Sequence[Code], scores: NDArray[np.float32]) -> float:
         """Return how much a segment with these scores is like an action that was trained."""
-        log_error = mean_log_error(codes, self.reads_in_mirror(codes))
-        return familiarity_of(scores, log_error - self.description.usual_log_error)
+        return familiarity_of(scores, mean_log_error(codes, self.reads_in_mirror(codes)))
 
     def scores(self, codes: Sequence[Code], weights: Sequence[float]) -> NDArray[np.float32]:
         """Return the actions' scores on the discriminant axes of the stages that the weights name."""

@@ -14,10 +14,11 @@ Floats = NDArray[Any]
 
 NEGLIGIBLE = 0.02
 SHORTEST_S = 1e-3
-LOG_ERROR_SPREAD = 0.3
-"""By so much more than usual the logarithm of the squared quantization error may be at no cost: people differ."""
+STRANGERS_LOG_ERROR = -2.2
+"""Mean log(d²) of postures from the map of postures, d in m over all joints of a standard body, to which a stranger may
+well come who does what was trained."""
 LOG_ERROR_COST = 0.3
-"""What postures e times as far from the map as that (squared) take off the familiarity."""
+"""What postures whose d² is e times as large as that take off the familiarity."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +66,6 @@ def familiarity_of(scores: Floats, log_error: float) -> float:
 
     Args:
         scores: (actions,).
-        log_error: the mean logarithm of the posture map's squared quantization error, less the usual one.
+        log_error: the mean logarithm of the posture map's squared quantization error (m²).
     """
-    return float(scores.max()) - LOG_ERROR_COST * max(log_error - LOG_ERROR_SPREAD, 0.0)
+    return float(scores.max()) - LOG_ERROR_COST * max(log_error - STRANGERS_LOG_ERROR, 0.0)

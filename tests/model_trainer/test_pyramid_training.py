@@ -79,15 +79,6 @@ def test_a_model_remembers_what_left_out_samples_were_taken_for(samples: list[Se
     assert not {answered for done, answered in told if done in "ab"} - {"a", "b"}
 
 
-def test_the_usual_error_is_that_of_the_samples_and_what_others_add(samples: list[SegmentSample]) -> None:
-    few = [replace(sample, person=str(k % 4)) for k, sample in enumerate(samples)]
-    for people, own in ((1, [replace(s, person="1") for s in few]), (4, few)):
-        model = trained(own, PLAIN)
-        errors = np.concatenate([model.first.log_errors(sample.postures) for sample in own])
-        added = PLAIN.prior.newcomer_log_error / np.sqrt(people)
-        assert model.description.usual_log_error == pytest.approx(errors.mean() + added, abs=1e-6)
-
-
 def test_few_peoples_samples_are_shown_as_more_other_people(samples: list[SegmentSample]) -> None:
     several = Others(3, build_sd=0.2, tempo=0.5)
     of_few = replace(PLAIN, others_of_few=several, few_people=2)

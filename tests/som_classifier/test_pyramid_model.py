@@ -73,8 +73,7 @@ def test_an_answer_is_cosines_and_the_share_of_their_softmax(sample: SegmentSamp
     assert found.activations == dict(zip(model().labels, cosines.tolist(), strict=True))
     assert found.confidence == pytest.approx(shares.max() / shares.sum())
     log_errors = model().first.log_errors(read_by(model(), sample))
-    off = log_errors.mean() - model().description.usual_log_error
-    assert found.familiarity == pytest.approx(familiarity_of(scores, off), abs=1e-5)
+    assert found.familiarity == pytest.approx(familiarity_of(scores, log_errors.mean()), abs=1e-5)
     assert found.label == model().labels[int(np.argmax(cosines))]
 
 
