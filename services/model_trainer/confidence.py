@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model_trainer.calibration import matched_gain
+from model_trainer.samples import SegmentSample
 from model_trainer.upper_layers import Scored, UpperLayers
-from som_classifier.presets import Prior
+from som_classifier.presets import Prior, PyramidPreset
 
 Floats = NDArray[Any]
 
@@ -44,16 +45,17 @@ def held_out_gain(stage: Scored, upper: UpperLayers) -> float:
     return matched_gain(upper.cosines(stage.axes.held_out), (right + 1) / (len(stage.targets) + 2))
 
 
-def familiar(held_out: Floats, prior: Prior, people: int, known_share: float) -> float:
+def familiar(held_out: Floats, samples: Sequence[SegmentSample], preset: PyramidPreset) -> float:
     """Return the familiarity that most segments of known actions exceed.
 
     Args:
         held_out: (n, actions), scores on axes that were trained without the person.
-        people: how many were learnt from.
-        known_share: the share of segments that are to count as known.
+        samples: what was learnt from.
     """
-    exceeded = np.quantile(held_out.max(axis=1), 1 - known_share)
-    return float(_drawn(prior.familiar, exceeded, prior, people))
+    prior, people = preset.prior, len({sample.person for sample in samples})
+    once = len({(sample.person, sample.label) for sample in samples}) == len(samples)
+    exceeded = np.quantile(held_out.max(axis=1), 1 - preset.known_share)
+    return float(_drawn(prior.familiar_from_one if once else prior.familiar, exceeded, prior, people))
 
 
 def _drawn(usual: Any, seen: Any, prior: Prior, people: int) -> Any:

@@ -143,7 +143,7 @@ def _assembled(
         "log_duration_sd": stages.log_duration_sd,
         "concept_contrast": upper.concepts.contrast,
         "gains": calibrated_gains(fitted, upper, prior, people, any(sample.depth_inferred for sample in samples)),
-        "familiar": familiar(fitted[-1].axes.held_out, prior, people, preset.known_share),
+        "familiar": familiar(fitted[-1].axes.held_out, samples, preset),
         "held_out": _held_out(fitted[-1], origin["labels"]),
     }
     return PyramidModel(first, stages, upper.concepts, upper.layer3, PyramidDescription.model_validate(about))

@@ -41,12 +41,14 @@ class Prior:
         gain: what makes cosines logits.
         gain_where_inferred: the same where distances follow from a picture and a body's usual size.
         familiar: the familiarity that most segments of known actions exceed.
+        familiar_from_one: the same where nobody showed an action more than once: scores are lower then.
     """
 
     people: float
     gain: float
     gain_where_inferred: float
     familiar: float
+    familiar_from_one: float
 
 
 @dataclass(frozen=True)
@@ -172,7 +174,7 @@ PYRAMID = PyramidPreset(
     beta=0.05,
     epochs=10,
     known_share=0.95,
-    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28),
+    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28, familiar_from_one=0.2),
 )
 """The default. How it was chosen, and on whom, is said in benchmarks/recognition."""
 

@@ -10,8 +10,10 @@ from hypothesis import strategies as st
 from model_trainer.confidence import calibrated_gains, familiar, held_out_gain
 from model_trainer.discriminants import Axes
 from model_trainer.progress import silent
+from model_trainer.samples import SegmentSample
 from model_trainer.upper_layers import Scored, UpperLayers, train_upper
 from performers import TINY
+from recognisers import tiny_samples
 
 ACTIONS, EACH = 3, 30
 TARGETS = np.repeat(np.arange(ACTIONS), EACH)
@@ -65,16 +67,34 @@ def test_each_stage_has_its_own_gain() -> None:
     assert early < 0.5 * late
 
 
+def taught(people: int, times: int) -> list[SegmentSample]:
+    """Every action by each person so many times."""
+    one = tiny_samples()[0]
+    return [
+        replace(one, person=str(person), label=label)
+        for person in range(people)
+        for label in ("lift", "push")
+        for _ in range(times)
+    ]
+
+
 @given(st.integers(1, 40))
 def test_familiar_lies_between_what_is_usual_and_what_most_held_out_people_exceed(people: int) -> None:
     held_out = scored(0.1).axes.held_out
     exceeded = float(np.quantile(held_out.max(axis=1), 0.05))
-    found = familiar(held_out, PRIOR, people, 0.95)
+    found = familiar(held_out, taught(people, 2), TINY)
     assert PRIOR.familiar <= found <= exceeded
     assert people > 1 or found == PRIOR.familiar
 
 
+def test_who_was_shown_each_action_once_expects_lower_scores() -> None:
+    held_out = scored(0.1).axes.held_out
+    assert familiar(held_out, taught(1, 1), TINY) == PRIOR.familiar_from_one < PRIOR.familiar
+    assert familiar(held_out, taught(3, 1), TINY) < familiar(held_out, taught(3, 2), TINY)
+
+
 def test_without_a_prior_it_is_what_the_known_share_exceeds() -> None:
     held_out = scored(0.1).axes.held_out
-    found = familiar(held_out, replace(PRIOR, people=0.0), 2, 0.9)
+    preset = replace(TINY, prior=replace(PRIOR, people=0.0), known_share=0.9)
+    found = familiar(held_out, taught(2, 2), preset)
     assert (held_out.max(axis=1) > found).mean() == pytest.approx(0.9, abs=0.02)

@@ -55,7 +55,7 @@ def test_axes_are_fitted_to_what_the_recogniser_pools(samples: list[SegmentSampl
     vectors = np.stack([pooled(model, sample) for sample in samples])
     axes = discriminant_axes(vectors, wanted(model, samples), folds_of(samples), PLAIN.shrinkage)
     np.testing.assert_allclose(vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.own, atol=0.02)
-    usual = familiar(axes.held_out, PLAIN.prior, len({sample.person for sample in samples}), PLAIN.known_share)
+    usual = familiar(axes.held_out, samples, PLAIN)
     assert model.description.familiar == pytest.approx(usual, abs=0.02)
 
 
