@@ -60,13 +60,11 @@ class FrameEncoder:
         self._totals[_PARTS] += moved_um
         self._totals[_LIMBS] += moments(frame.movement.posture).ravel()
         self._totals[_MISSING] += len(frame.missing)
-        self._totals[_LOG_ERRORS] += self._log_errors(frame.movement.posture)
-        seen, mirrored = sides[:, : len(self._first.postures.weights)].argmax(axis=1).tolist()
-        return Code(before, self._instant, totals_before, self._totals, (seen, mirrored))
-
-    def _log_errors(self, posture: NDArray[np.float64]) -> NDArray[np.int64]:
-        both = np.stack([posture, mirrored(posture)])
-        return np.rint(self._first.log_errors(both) * _MILLIONTHS).astype(np.int64)
+        seen, in_mirror = sides[:, : len(self._first.postures.weights)].argmax(axis=1).tolist()
+        both = np.stack([frame.movement.posture, mirrored(frame.movement.posture)])
+        log_errors = self._first.log_errors(both, [seen, in_mirror])
+        self._totals[_LOG_ERRORS] += np.rint(log_errors * _MILLIONTHS).astype(np.int64)
+        return Code(before, self._instant, totals_before, self._totals, (seen, in_mirror))
 
 
 def trail_of(codes: Sequence[Code], in_mirror: bool) -> Trail:

@@ -1,6 +1,7 @@
 """The two layers of maps of the default recogniser, each answering with a soft activity."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -84,18 +85,19 @@ class FirstMaps:
         heard = [*zip(self.maps, _of_maps(rows), strict=True), (self.arms, arm_inputs(in_a_mirror(rows)))]
         return self._shared(np.concatenate([_excess2s(som, inputs) for som, inputs in heard], axis=1))
 
-    def log_errors(self, postures: Floats) -> Floats:
-        """Return log(d²_min) of the map of postures for (n, 15, 3), its squared quantization error in m², shape (n,).
+    def log_errors(self, postures: Floats, winners: Sequence[int]) -> Floats:
+        """Return log(d²) to the winners on the map of postures, the squared quantization error in m², shape (n,).
 
         Scaled up for the joints that are missing; that of no error at all where all are.
+
+        Args:
+            postures: (n, 15, 3).
+            winners: (n,), the unit nearest to each.
         """
-        rows = postures.reshape(-1, _SIZE)
-        known = ~np.isnan(rows)
-        some = known.any(axis=1)
-        errors = np.full(len(rows), np.log(SMALLEST_ERROR2))
-        off = rows[some] - self.postures.weights[self.postures.bmus(rows[some])]
-        mean2 = np.square(np.where(known[some], off, 0.0)).sum(axis=1) / known[some].sum(axis=1)
-        errors[some] = np.log(np.maximum(mean2 * _SIZE, SMALLEST_ERROR2))
+        off = postures.reshape(-1, _SIZE) - self.postures.weights[winners]
+        known = ~np.isnan(off)
+        mean2 = np.square(np.where(known, off, 0.0)).sum(axis=1) / np.maximum(known.sum(axis=1), 1)
+        errors: Floats = np.log(np.maximum(mean2 * _SIZE, SMALLEST_ERROR2))
         return errors
 
     def sides(self, posture: Floats, velocity: Floats) -> Floats:

@@ -53,7 +53,8 @@ def test_each_maps_activity_adds_up_to_its_share(missing: float) -> None:
 def test_the_log_error_by_hand() -> None:
     """Of the winner's squared distance, scaled up for what is missing, whatever the contrast."""
     maps, (postures, _) = first_maps(posture_contrast=3.0), inputs(missing=0.3)
-    for posture, error in zip(postures, maps.log_errors(postures), strict=True):
+    winners = maps.postures.bmus(postures.reshape(-1, 45))
+    for posture, error in zip(postures, maps.log_errors(postures, winners), strict=True):
         off = posture.ravel() - maps.postures.weights
         mean2 = np.nanmean(np.square(off), axis=1).min()
         assert error == pytest.approx(np.log(45 * mean2), rel=1e-5)
@@ -62,7 +63,7 @@ def test_the_log_error_by_hand() -> None:
 def test_a_log_error_has_a_bottom_and_is_none_of_nothing() -> None:
     maps = first_maps()
     postures = np.stack([maps.postures.weights[3].reshape(15, 3), np.full((15, 3), np.nan)])
-    np.testing.assert_allclose(maps.log_errors(postures), [np.log(SMALLEST_ERROR2)] * 2)
+    np.testing.assert_allclose(maps.log_errors(postures, [3, 0]), [np.log(SMALLEST_ERROR2)] * 2)
 
 
 def test_activity_by_hand() -> None:
