@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from action_fusion.samples import RIGID_TOLERANCE, Array
+from action_fusion.samples import Array
 from actum import geometry
 
 FORM = "16 numbers of a rigid 4x4 transform (rows one after the other, metres), or a file that holds just these"
@@ -28,7 +28,7 @@ def as_text(given: object) -> str | None:
         numbers = _numbers(_content(text))
     if numbers is None or len(numbers) != 16:
         raise ValueError(f"{text!r} is not {FORM}")
-    if not _is_rigid(np.array(numbers).reshape(4, 4)):
+    if not geometry.is_rigid(np.array(numbers).reshape(4, 4), FURTHEST_M):
         raise ValueError(f"{text!r} is no rigid transform: a rotation, a position, and 0 0 0 1 below them")
     return " ".join(map(repr, numbers))
 
@@ -52,11 +52,3 @@ def _content(name: str) -> str:
             return file.read(MOST_CHARACTERS)
     except (OSError, ValueError) as error:
         raise ValueError(f"{name!r} is not {FORM}: {error}") from None
-
-
-def _is_rigid(transform: Array) -> bool:
-    rotation = transform[:3, :3]
-    if not np.isfinite(transform).all() or np.abs(rotation).max() > 2 or np.abs(transform[:3, 3]).max() > FURTHEST_M:
-        return False
-    orthogonal = np.allclose(rotation @ rotation.T, np.eye(3), atol=RIGID_TOLERANCE)
-    return bool(orthogonal and np.linalg.det(rotation) > 0 and np.array_equal(transform[3], (0, 0, 0, 1)))

@@ -15,7 +15,6 @@ Mask = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
 FURTHEST_M = 100.0
-RIGID_TOLERANCE = 1e-3
 UNIT_TOLERANCE = 0.1
 MISSING = [math.nan] * 3
 LEVEL = (0.0, -1.0, 0.0)
@@ -100,7 +99,7 @@ def _body(posture: Posture, tally: Tally) -> Body | None:
     if posture.joints_m is None or posture.ego_from_camera is None:
         return None
     ego_from_camera = geometry.from_flat(posture.ego_from_camera)
-    if not _is_rigid(ego_from_camera):
+    if not geometry.is_rigid(ego_from_camera, FURTHEST_M):
         return None
     joints_m = _joints(posture.joints_m)
     known = np.isfinite(joints_m).all(axis=1)
@@ -116,10 +115,3 @@ def _joints(joints: list[Joint]) -> Array:
     read = np.array([MISSING if joint is None else joint for joint in joints], dtype=np.float64)
     read[~(np.abs(read) < FURTHEST_M).all(axis=1)] = np.nan
     return read
-
-
-def _is_rigid(transform: Array) -> bool:
-    rotation = transform[:3, :3]
-    if np.abs(rotation).max() > 2 or np.abs(transform[:3, 3]).max() > FURTHEST_M:
-        return False
-    return bool(np.allclose(rotation @ rotation.T, np.eye(3), atol=RIGID_TOLERANCE))

@@ -24,7 +24,6 @@ FURTHEST_OFF_CENTRE = 0.2
 SAME_ASPECT = 0.01
 DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
 JPEG_START = b"\xff\xd8"
-RIGID_TOLERANCE = 1e-3
 FURTHEST_M = 100.0
 
 
@@ -70,7 +69,7 @@ def camera(image: Image, calibrated_size_px: tuple[int, int] | None = None) -> C
     if not np.array_equal(matrix[2], (0, 0, 1)):
         raise UnusableImageError("bad_calibration", f"the last row of K is {matrix[2].tolist()}, not [0, 0, 1]")
     skeleton_from_image = geometry.from_flat(image.skeleton_from_image)
-    if not _is_rigid(skeleton_from_image):
+    if not geometry.is_rigid(skeleton_from_image, FURTHEST_M):
         raise UnusableImageError("bad_calibration", "skeleton_from_image is no rigid transform")
     matrix = _of_size(matrix, (image.width, image.height), calibrated_size_px)
     return Camera(matrix, _distortion(image.distortion), skeleton_from_image)
@@ -158,15 +157,3 @@ def _distortion(coefficients: list[float]) -> Array:
     if np.abs(distortion).max(initial=0) > LARGEST_COEFFICIENT:
         raise UnusableImageError("bad_calibration", f"a distortion coefficient beyond {LARGEST_COEFFICIENT:g}")
     return distortion
-
-
-def _is_rigid(transform: Array) -> bool:
-    rotation = transform[:3, :3]
-    if (
-        np.abs(rotation).max() > 2
-        or np.abs(transform[:3, 3]).max() > FURTHEST_M
-        or not np.array_equal(transform[3], (0, 0, 0, 1))
-    ):
-        return False
-    orthogonal = np.allclose(rotation @ rotation.T, np.eye(3), atol=RIGID_TOLERANCE)
-    return bool(orthogonal and np.linalg.det(rotation) > 0)

@@ -19,7 +19,8 @@ from actum.messages import Intrinsics, Transform
 
 FORMAT: Literal["actum.calibration/1"] = "actum.calibration/1"
 DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
-RIGID_TOLERANCE = 1e-3
+FURTHEST_M = 1e6
+"""Positions beyond this are no cameras'."""
 LARGEST_BYTES = 100_000
 HEADER = "# A camera's calibration: the sensor gateway sends it with each image (ACTUM_CALIBRATION names this file).\n"
 MATRICES = {"K": 3, "skeleton_from_image": 4}
@@ -89,7 +90,7 @@ class Calibration(_Part):
     @field_validator("skeleton_from_image")
     @classmethod
     def _rigid(cls, numbers: list[float] | None) -> list[float] | None:
-        if numbers is not None and not _is_rigid(geometry.from_flat(numbers)):
+        if numbers is not None and not geometry.is_rigid(geometry.from_flat(numbers), FURTHEST_M):
             raise ValueError("no rigid transform: rotation and position as 4x4 numbers, row-major")
         return numbers
 
@@ -182,11 +183,3 @@ def _first(error: ValidationError) -> str:
     problem = error.errors()[0]
     place = ".".join(map(str, problem["loc"])) or "the file"
     return f"{place}: {problem['msg']}"
-
-
-def _is_rigid(transform: geometry.Array) -> bool:
-    rotation = transform[:3, :3]
-    if np.abs(rotation).max() > 2 or not np.array_equal(transform[3], (0, 0, 0, 1)):
-        return False
-    orthogonal = np.allclose(rotation @ rotation.T, np.eye(3), atol=RIGID_TOLERANCE)
-    return bool(orthogonal and np.linalg.det(rotation) > 0)

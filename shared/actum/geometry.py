@@ -58,8 +58,21 @@ def _walk() -> Array:
 _WALK = _walk()
 
 
+RIGID_TOLERANCE = 1e-3
+"""How far the products of a rotation's rows may be from 0 and 1: transforms come with few decimals."""
+
+
 class DegenerateError(ValueError):
     """Joints coincide or lie in line, so that no frame or direction is defined."""
+
+
+def is_rigid(transform: Array, furthest_m: float) -> bool:
+    """Tell whether (4, 4) is a rotation and a shift by no more than that in each axis, with 0 0 0 1 below them."""
+    rotation, shift_m = transform[:3, :3], transform[:3, 3]
+    if not np.isfinite(transform).all() or np.abs(rotation).max() > 2 or np.abs(shift_m).max() > furthest_m:
+        return False
+    orthogonal = np.allclose(rotation @ rotation.T, np.eye(3), atol=RIGID_TOLERANCE)
+    return bool(orthogonal and np.linalg.det(rotation) > 0 and np.array_equal(transform[3], (0, 0, 0, 1)))
 
 
 def invert(b_from_a: Array) -> Array:

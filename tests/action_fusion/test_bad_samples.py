@@ -10,6 +10,9 @@ from actum.messages import Event, Message
 from actum.skeletons import INDEX
 from scenes import Scene, acting_on, action, still
 
+MIRRORED = [-1.0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+OF_A_CAMERA = [1.0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0]
+"""Its last row is a perspective projection's."""
 TOUCH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.45))
 
 
@@ -30,6 +33,8 @@ def told(node: ActionFusion, *messages: Message) -> list[Event]:
         {"ego_from_camera": [0.0] * 16},
         {"ego_from_camera": [2.0**31] * 16},
         {"ego_from_camera": [1e308] * 16},
+        {"ego_from_camera": MIRRORED},
+        {"ego_from_camera": OF_A_CAMERA},
     ],
 )
 def test_a_posture_that_is_valid_only_in_name_is_counted(node, fields) -> None:

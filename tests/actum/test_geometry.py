@@ -111,6 +111,30 @@ def test_the_transform_is_rigid_and_its_inverse_undoes_it(heading: float, shift:
     np.testing.assert_allclose(geometry.invert(ego) @ ego, np.eye(4), atol=1e-12)
 
 
+TURNED_AND_SHIFTED = np.array([[0, -1, 0, 0.5], [1, 0, 0, -2], [0, 0, 1, 3], [0, 0, 0, 1.0]])
+SPOILT = {
+    "a mirror image": lambda rigid: rigid @ np.diag([1, 1, -1, 1.0]),
+    "twice the size": lambda rigid: rigid @ np.diag([2, 2, 2, 1.0]),
+    "sheared": lambda rigid: rigid @ (np.eye(4) + 0.01 * np.eye(4, k=1)),
+    "a projection": lambda rigid: rigid + np.diag([0, 0, -1.0], k=-1),
+    "another last number": lambda rigid: rigid + np.diag([0, 0, 0, 1.0]),
+    "too far": lambda rigid: rigid + 11 * np.eye(4, k=3),
+    "not finite": lambda rigid: np.where(np.eye(4, k=3), np.nan, rigid),
+}
+
+
+@given(ANGLES, st.tuples(SHIFTS, SHIFTS, SHIFTS))
+def test_rounding_to_four_decimals_leaves_a_transform_rigid(heading: float, shift: tuple[float, float, float]) -> None:
+    ego = geometry.ego_from_camera(turned(STANDING, heading, shift))
+    assert geometry.is_rigid(ego.round(4), furthest_m=10)
+
+
+@pytest.mark.parametrize("spoil", SPOILT.values(), ids=SPOILT)
+def test_what_is_no_turn_and_shift_is_not_rigid(spoil) -> None:
+    assert geometry.is_rigid(TURNED_AND_SHIFTED, furthest_m=10)
+    assert not geometry.is_rigid(spoil(TURNED_AND_SHIFTED), furthest_m=10)
+
+
 def test_a_joint_is_scaled_where_its_way_from_the_torso_is_known() -> None:
     standard = geometry.scaled(lacking(STANDING, "left_shoulder", "right_elbow", "right_foot"))
     unknown = ["left_shoulder", "left_elbow", "left_hand", "right_elbow", "right_hand", "right_foot"]
