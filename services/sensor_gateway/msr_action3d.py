@@ -10,9 +10,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Agent, Segment, Skeleton
+from actum.messages import Agent, Skeleton
 from actum.skeletons import to_actum
-from sensor_gateway.takes import DatasetError, Take, TakesSource, camera_joints, files_of, read_rows, stamp_of
+from sensor_gateway.takes import (
+    DatasetError,
+    Take,
+    TakesSource,
+    camera_joints,
+    files_of,
+    lost_frame,
+    marks_between,
+    read_rows,
+    stamp_of,
+)
 
 FRAMES_PER_SECOND = 15
 SOURCE_JOINTS = 20
@@ -93,7 +103,8 @@ def read_sequence(path: Path, sensor: str) -> Take:
     if name in EXCLUDED:
         fields["excluded"] = "true"
     label = CLASSES[int(match["action"]) - 1]
-    return Take(name, str(int(match["person"])), frames, _marks(frames, name, label), fields)
+    marks = marks_between(frames[0].stamp_ns, frames[-1].stamp_ns, sensor, name, label)
+    return Take(name, str(int(match["person"])), frames, marks, fields)
 
 
 def _frames(path: Path) -> NDArray[np.float64]:
@@ -107,23 +118,8 @@ def _frames(path: Path) -> NDArray[np.float64]:
 def _skeleton(i: int, rows: NDArray[np.float64], sensor: str, session_id: str) -> Skeleton:
     stamp_ns = stamp_of(i, FRAMES_PER_SECOND)
     if not rows.any():
-        return Skeleton(
-            stamp_ns=stamp_ns,
-            sensor=sensor,
-            valid=False,
-            reason="no skeleton in the source",
-            agents=[],
-            session_id=session_id,
-        )
+        return lost_frame(stamp_ns, sensor, session_id)
     joints: list[list[float]] = to_actum(rows.tolist(), "msr-action3d-20")
     confidence = [joint[3] for joint in joints]
     agent = Agent(agent=1, joints=camera_joints([joint[:3] for joint in joints]), confidence=confidence)
     return Skeleton(stamp_ns=stamp_ns, sensor=sensor, agents=[agent], session_id=session_id)
-
-
-def _marks(frames: list[Skeleton], segment_id: str, label: str) -> list[Segment]:
-    first, last = frames[0], frames[-1]
-    return [
-        Segment(stamp_ns=first.stamp_ns, sensor=first.sensor, kind="start", segment_id=segment_id, label=label),
-        Segment(stamp_ns=last.stamp_ns, sensor=last.sensor, kind="end", segment_id=segment_id),
-    ]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from actum.messages import Agent, Segment, Skeleton
 from actum.skeletons import JOINTS, to_actum
-from sensor_gateway.takes import DatasetError, Take, camera_joints, files_of
+from sensor_gateway.takes import DatasetError, Take, camera_joints, files_of, lost_frame, marks_between
 
 Integers = NDArray[np.int64]
 
@@ -136,14 +136,7 @@ def _stream(path: Path, name: str) -> Stream:
 def _skeleton(stamp_us: int, joints_mm: Integers, sensor: str, session_id: str) -> Skeleton:
     stamp_ns = int(stamp_us) * 1000
     if not joints_mm.any():
-        return Skeleton(
-            stamp_ns=stamp_ns,
-            sensor=sensor,
-            valid=False,
-            reason="no skeleton in the source",
-            agents=[],
-            session_id=session_id,
-        )
+        return lost_frame(stamp_ns, sensor, session_id)
     joints_m: list[list[float]] = to_actum((joints_mm / 1000).tolist(), "kinect-v1-20")
     agent = Agent(agent=1, joints=camera_joints(joints_m), confidence=[1.0] * len(JOINTS))
     return Skeleton(stamp_ns=stamp_ns, sensor=sensor, agents=[agent], session_id=session_id)
@@ -152,8 +145,5 @@ def _skeleton(stamp_us: int, joints_mm: Integers, sensor: str, session_id: str) 
 def _marks(span_us: tuple[int, int] | None, sensor: str, segment_id: str, label: str) -> list[Segment]:
     if span_us is None:
         return []
-    start_ns, end_ns = (1000 * bound_us for bound_us in span_us)
-    return [
-        Segment(stamp_ns=start_ns, sensor=sensor, kind="start", segment_id=segment_id, label=label),
-        Segment(stamp_ns=end_ns, sensor=sensor, kind="end", segment_id=segment_id),
-    ]
+    start_us, end_us = span_us
+    return marks_between(1000 * start_us, 1000 * end_us, sensor, segment_id, label)

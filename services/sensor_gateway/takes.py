@@ -111,6 +111,20 @@ def read_rows(path: Path, columns: int) -> NDArray[np.float64]:
     return rows
 
 
+def lost_frame(stamp_ns: int, sensor: str, session_id: str) -> Skeleton:
+    """Return a frame in which the set has nobody."""
+    reason = "no skeleton in the source"
+    return Skeleton(stamp_ns=stamp_ns, sensor=sensor, valid=False, reason=reason, agents=[], session_id=session_id)
+
+
+def marks_between(start_ns: int, end_ns: int, sensor: str, segment_id: str, label: str) -> list[Segment]:
+    """Return the start and the end mark of a labelled segment."""
+    return [
+        Segment(stamp_ns=start_ns, sensor=sensor, kind="start", segment_id=segment_id, label=label),
+        Segment(stamp_ns=end_ns, sensor=sensor, kind="end", segment_id=segment_id),
+    ]
+
+
 def camera_joints(positions_m: list[list[float]]) -> list[list[float] | None]:
     """Turn positions (x left, y up, z forward; m) into joints in the camera frame (x right, y down, z forward)."""
     return [[-x, -y, z] for x, y, z in positions_m]

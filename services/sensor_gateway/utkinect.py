@@ -15,7 +15,16 @@ from numpy.typing import NDArray
 
 from actum.messages import Agent, Segment, Skeleton
 from actum.skeletons import JOINTS, to_actum
-from sensor_gateway.takes import DatasetError, Take, TakesSource, camera_joints, files_of, read_rows, stamp_of
+from sensor_gateway.takes import (
+    DatasetError,
+    Take,
+    TakesSource,
+    camera_joints,
+    files_of,
+    marks_between,
+    read_rows,
+    stamp_of,
+)
 
 IMAGES_PER_SECOND = 30
 SOURCE_JOINTS = 20
@@ -152,11 +161,7 @@ def _marks(segment: LabelledSegment, sensor: str, name: str) -> list[Segment]:
     if segment.bounds is None:
         return []
     start_ns, end_ns = map(_stamp_ns, segment.bounds)
-    segment_id = f"{name}-{segment.label}"
-    return [
-        Segment(stamp_ns=start_ns, sensor=sensor, kind="start", segment_id=segment_id, label=segment.label),
-        Segment(stamp_ns=end_ns, sensor=sensor, kind="end", segment_id=segment_id),
-    ]
+    return marks_between(start_ns, end_ns, sensor, f"{name}-{segment.label}", segment.label)
 
 
 def _stamp_ns(image: int) -> int:
