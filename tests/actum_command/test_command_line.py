@@ -308,6 +308,7 @@ def test_who_waits_for_a_router_says_so_once(
 @pytest.fixture
 def _handlers() -> Iterator[None]:
     before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs inherit that it is ignored
     yield
     for number, handler in before.items():
         signal.signal(number, handler)
