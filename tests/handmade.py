@@ -42,6 +42,7 @@ def pyramid_model(**changes: object) -> PyramidModel:
         "mirrors": True,
         "levels": LEVELS, "overlap": 0.25, "fractions": FRACTIONS, "log_duration_mean": 0.5, "log_duration_sd": 0.4,
         "concept_contrast": 2.0, "gains": [4.0, 8.0], "familiar": 0.3,
+        "usual_log_errors": [-2.5, -2.0],
     }  # fmt: skip
     description = PyramidDescription.model_validate(PROVENANCE | about | changes)
     rng = np.random.default_rng(0)

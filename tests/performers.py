@@ -37,7 +37,7 @@ TINY = PyramidPreset(
     beta=0.05,
     epochs=5,
     known_share=0.95,
-    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28, familiar_from_one=0.2),
+    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28, familiar_from_one=0.2, log_error=-2.5),
 )
 
 FALLING = Schedule(alpha=(0.5, 0.05), radius=(5.0, 0.6))

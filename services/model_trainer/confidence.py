@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 from model_trainer.calibration import matched_gain
 from model_trainer.samples import SegmentSample
 from model_trainer.upper_layers import Scored, UpperLayers
+from som_classifier.layers import FirstMaps
 from som_classifier.presets import Prior, PyramidPreset
 
 Floats = NDArray[Any]
+Indices = NDArray[np.intp]
 
 
 def calibrated_gains(
@@ -56,6 +58,22 @@ def familiar(held_out: Floats, samples: Sequence[SegmentSample], preset: Pyramid
     once = len({(sample.person, sample.label) for sample in samples}) == len(samples)
     exceeded = np.quantile(held_out.max(axis=1), 1 - preset.known_share)
     return float(_drawn(prior.familiar_from_one if once else prior.familiar, exceeded, prior, people))
+
+
+def usual_log_errors(first: FirstMaps, postures: Sequence[Floats], targets: Indices, prior: Prior) -> list[float]:
+    """Return to what mean log(d²) from the map of postures a stranger who does each action may well come.
+
+    It is the usual one, higher or lower by as much as the action's own samples are off the map more or less than all
+    are: a map has few units for postures that are seldom taken. As there may be few, their mean counts as one of each.
+
+    Args:
+        postures: (frames, 15, 3) of each sample, as the classifier reads it.
+        targets: (n,), their actions.
+    """
+    winners = [first.postures.bmus(own.reshape(len(own), -1)) for own in postures]
+    log_errors = np.array([first.log_errors(own, won).mean() for own, won in zip(postures, winners, strict=True)])
+    above = np.bincount(targets, weights=log_errors - log_errors.mean()) / (np.bincount(targets) + 1)
+    return [float(prior.log_error + own) for own in above]
 
 
 def _drawn(usual: Any, seen: Any, prior: Prior, people: int) -> Any:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from actum.node import SECOND_NS
 from actum.som import Som
 from model_trainer.augmentation import View, views
-from model_trainer.confidence import calibrated_gains, familiar
+from model_trainer.confidence import calibrated_gains, familiar, usual_log_errors
 from model_trainer.description import labels_of, provenance
 from model_trainer.discriminants import discriminant_axes, folds_of
 from model_trainer.hands import keep_to_one_hand
@@ -52,7 +52,8 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
         fitted.append(_fitted(vectors, owners, targets, folds_of(samples), preset.shrinkage))
     progress("discriminant axes", len(preset.stages), len(preset.stages))
     upper = train_upper(fitted[-1], len(labels), preset, rng, progress)
-    origin = provenance(samples, preset, seed) | {"mirrors": mirrors}
+    usual = usual_log_errors(first, [own[0].postures for own in shown], targets, preset.prior)
+    origin = provenance(samples, preset, seed) | {"mirrors": mirrors, "usual_log_errors": usual}
     return _assembled(samples, first, fitted, upper, origin, preset)
 
 

@@ -85,7 +85,7 @@ class FirstMaps:
         heard = [*zip(self.maps, _of_maps(rows), strict=True), (self.arms, arm_inputs(in_a_mirror(rows)))]
         return self._shared(np.concatenate([_excess2s(som, inputs) for som, inputs in heard], axis=1))
 
-    def log_errors(self, postures: Floats, winners: Sequence[int]) -> Floats:
+    def log_errors(self, postures: Floats, winners: Sequence[int] | NDArray[np.intp]) -> Floats:
         """Return log(d²) to the winners on the map of postures, the squared quantization error in m², shape (n,).
 
         Scaled up for the joints that are missing; that of no error at all where all are.

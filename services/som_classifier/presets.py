@@ -42,6 +42,8 @@ class Prior:
         gain_where_inferred: the same where distances follow from a picture and a body's usual size.
         familiar: the familiarity that most segments of known actions exceed.
         familiar_from_one: the same where nobody showed an action more than once: scores are lower then.
+        log_error: to what mean log(d²) of postures from the map of postures a stranger who does what was trained may
+            well come, d in metres over all joints of a standard body.
     """
 
     people: float
@@ -49,6 +51,7 @@ class Prior:
     gain_where_inferred: float
     familiar: float
     familiar_from_one: float
+    log_error: float
 
 
 @dataclass(frozen=True)
@@ -174,7 +177,7 @@ PYRAMID = PyramidPreset(
     beta=0.05,
     epochs=10,
     known_share=0.95,
-    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28, familiar_from_one=0.2),
+    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28, familiar_from_one=0.2, log_error=-2.5),
 )
 """The default. How it was chosen, and on whom, is said in benchmarks/recognition."""
 

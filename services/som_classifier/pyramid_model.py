@@ -23,6 +23,7 @@ from som_classifier.supervised import SupervisedLayer, activity
 from som_classifier.trace import without_repeats
 
 Floats = NDArray[Any]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
@@ -43,6 +44,8 @@ class PyramidDescription(Description):
         concept_contrast: of the second map's activity, in squared scores.
         gains: what makes cosines logits, by stage.
         familiar: the familiarity below which an action may be none of those trained.
+        usual_log_errors: for each action, to what mean log(d²) of its postures from the map of postures a stranger who
+            does it may well come, d in metres over all joints of a standard body.
     """
 
     kind: Literal["pyramid"] = "pyramid"
@@ -54,11 +57,12 @@ class PyramidDescription(Description):
     levels: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=1)]
     overlap: Annotated[float, Field(ge=0, le=1)]
     fractions: Annotated[list[Annotated[float, Field(gt=0, le=1)]], Field(min_length=1)]
-    log_duration_mean: Annotated[float, Field(allow_inf_nan=False)]
+    log_duration_mean: Finite
     log_duration_sd: Positive
     concept_contrast: Positive
     gains: list[Positive]
-    familiar: Annotated[float, Field(allow_inf_nan=False)]
+    familiar: Finite
+    usual_log_errors: list[Finite]
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +192,8 @@ class PyramidModel(Model):
 
     def familiarity(self, codes: Sequence[Code], scores: NDArray[np.float32]) -> float:
         """Return how much a segment with these scores is like an action that was trained."""
-        return familiarity_of(scores, mean_log_error(codes, self.reads_in_mirror(codes)))
+        log_error = mean_log_error(codes, self.reads_in_mirror(codes))
+        return familiarity_of(scores, log_error, self.description.usual_log_errors)
 
     def scores(self, codes: Sequence[Code], weights: Sequence[float]) -> NDArray[np.float32]:
         """Return the actions' scores on the discriminant axes of the stages that the weights name."""
@@ -202,7 +207,7 @@ class PyramidModel(Model):
             return "its joint order is not this version's"
         if len({som.dtype for som in first.maps}) > 1:
             return "its maps are not of the same precision"
-        if len(set(about.labels)) < actions or len(about.gains) != stages:
+        if len(set(about.labels)) < actions or len(about.gains) != stages or len(about.usual_log_errors) != actions:
             return "its labels or its stages do not fit together"
         loose = (self.stages.axes, self.stages.offsets, self.concepts.mean)
         if not all(array.dtype == np.float32 and np.isfinite(array).all() for array in loose):

@@ -14,11 +14,8 @@ Floats = NDArray[Any]
 
 NEGLIGIBLE = 0.02
 SHORTEST_S = 1e-3
-STRANGERS_LOG_ERROR = -2.2
-"""Mean log(d²) of postures from the map of postures, d in m over all joints of a standard body, to which a stranger may
-well come who does what was trained."""
-LOG_ERROR_COST = 0.3
-"""What postures whose d² is e times as large as that take off the familiarity."""
+LOG_ERROR_COST = 0.2
+"""What postures whose d² from the map of postures is e times as large as usual take off the familiarity."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,11 +58,13 @@ class Stages:
         return total
 
 
-def familiarity_of(scores: Floats, log_error: float) -> float:
-    """Return how much a segment is like a trained action: its largest score, less how strange its postures are.
+def familiarity_of(scores: Floats, log_error: float, usual_log_errors: Sequence[float]) -> float:
+    """Return how much a segment is like a trained action: its largest score, less how strange its postures are for it.
 
     Args:
         scores: (actions,).
         log_error: the mean logarithm of the posture map's squared quantization error (m²).
+        usual_log_errors: (actions,), what a stranger who does that action may well come to.
     """
-    return float(scores.max()) - LOG_ERROR_COST * max(log_error - STRANGERS_LOG_ERROR, 0.0)
+    likeliest = int(scores.argmax())
+    return float(scores[likeliest]) - LOG_ERROR_COST * max(log_error - usual_log_errors[likeliest], 0.0)

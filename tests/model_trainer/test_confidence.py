@@ -7,13 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from model_trainer.confidence import calibrated_gains, familiar, held_out_gain
+from actum.som import Som
+from model_trainer.confidence import calibrated_gains, familiar, held_out_gain, usual_log_errors
 from model_trainer.discriminants import Axes
 from model_trainer.progress import silent
 from model_trainer.samples import SegmentSample
 from model_trainer.upper_layers import Scored, UpperLayers, train_upper
 from performers import TINY
 from recognisers import tiny_samples
+from som_classifier.layers import FirstMaps
 
 ACTIONS, EACH = 3, 30
 TARGETS = np.repeat(np.arange(ACTIONS), EACH)
@@ -98,3 +100,15 @@ def test_without_a_prior_it_is_what_the_known_share_exceeds() -> None:
     preset = replace(TINY, prior=replace(PRIOR, people=0.0), known_share=0.9)
     found = familiar(held_out, taught(2, 2), preset)
     assert (held_out.max(axis=1) > found).mean() == pytest.approx(0.9, abs=0.02)
+
+
+def test_what_is_usual_for_an_action_by_hand() -> None:
+    """A map of one unit: three samples of one action are off it by d² = 1 m², one of another by e² m²."""
+    off_m = np.zeros((1, 15, 3))
+    off_m[0, 7, 1] = 1.0
+    still = [Som(1, 1, np.zeros((1, size), np.float32)) for size in (45, 45, 12)]
+    first = FirstMaps(still[0], still[1], still[2], (1.0, 1.0, 1.0), (0.4, 0.1))
+    usual = usual_log_errors(first, [off_m, off_m, np.e * off_m, off_m], np.array([0, 0, 1, 0]), PRIOR)
+    mean = (0 + 0 + 2 + 0) / 4
+    once_more = [(3 * 0 + mean) / 4, (2 + mean) / 2]
+    assert usual == pytest.approx([PRIOR.log_error + own - mean for own in once_more])

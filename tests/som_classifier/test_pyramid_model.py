@@ -72,8 +72,9 @@ def test_an_answer_is_cosines_and_the_share_of_their_softmax(sample: SegmentSamp
     shares = np.exp(model().description.gains[-1] * cosines)
     assert found.activations == dict(zip(model().labels, cosines.tolist(), strict=True))
     assert found.confidence == pytest.approx(shares.max() / shares.sum())
+    usual = model().description.usual_log_errors
     log_errors = model().first.log_errors(read_by(model(), sample), model().winners(frames))
-    assert found.familiarity == pytest.approx(familiarity_of(scores, log_errors.mean()), abs=1e-5)
+    assert found.familiarity == pytest.approx(familiarity_of(scores, log_errors.mean(), usual), abs=1e-5)
     assert found.label == model().labels[int(np.argmax(cosines))]
 
 

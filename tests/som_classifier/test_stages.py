@@ -94,8 +94,9 @@ def test_a_stage_without_weight_leaves_no_trace() -> None:
 
 
 def test_familiarity_by_hand() -> None:
-    """The largest score, less 0.3 for each e-fold by which the postures are further off the map than strangers' are."""
+    """The largest score, less 0.2 for each e-fold by which the postures are further off the map than usual for it."""
     scores = np.array([0.1, 0.7, -0.2], np.float32)
-    assert [familiarity_of(scores, error) for error in (-9.0, -3.0, -2.2)] == pytest.approx([0.7] * 3)
-    assert familiarity_of(scores, -1.2) == pytest.approx(0.4)
-    assert familiarity_of(scores, 1.8) == pytest.approx(-0.5)
+    usual = [-4.0, -2.5, 0.0]
+    assert [familiarity_of(scores, error, usual) for error in (-9.0, -3.0, -2.5)] == pytest.approx([0.7] * 3)
+    assert familiarity_of(scores, -1.5, usual) == pytest.approx(0.5)
+    assert familiarity_of(scores, 2.5, usual) == pytest.approx(-0.3)

@@ -233,6 +233,8 @@ OF_PYRAMID: list[tuple[dict[str, object], str]] = [
     ({"gains": [4.0]}, "stages"),
     ({"gains": [4.0, -1.0]}, "gains"),
     ({"familiar": NAN}, "familiar"),
+    ({"usual_log_errors": [0.0, NAN]}, "usual_log_errors"),
+    ({"usual_log_errors": [0.0]}, "do not fit"),
     ({"labels": ["lift", "pull", "push"]}, "not"),
 ]
 
