@@ -4,7 +4,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-latency bench-maps bench-recognition bench-objects bench-tracker picture schemas clean
+.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-latency bench-maps bench-recognition bench-objects bench-paper bench-tracker picture schemas clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -74,11 +74,15 @@ bench-recognition: $(STAMP)  ## the recogniser beside its peers on public record
 bench-objects: $(STAMP)  ## the right object in simulated scenes that are hard to see, about ten minutes
 	$(BIN)/python -m benchmarks.objects
 
+bench-paper: $(STAMP)  ## preset paper by the paper's own protocols, step by step, and its figures
+	@test -d "$$ACTUM_DATA" || { echo "bench-paper needs ACTUM_DATA: the folder that holds gharaee_set1/, msr_action3d/ and utkinect/" >&2; exit 1; }
+	$(BIN)/python -m benchmarks.paper
+
 bench-tracker: $(STAMP)  ## what the marker tracker costs for a frame, beside bare OpenCV
 	$(BIN)/python benchmarks/tracker.py
 
 picture: $(STAMP)  ## the README's pictures
-	$(BIN)/python docs/picture.py docs/scene.png
+	$(BIN)/python -m docs.picture docs/scene.png
 	folder=$$(mktemp -d) && $(BIN)/actum simulate $$folder/learnt.mcap && $(BIN)/actum train $$folder/learnt.mcap -o $$folder/model.npz \
 	  && $(BIN)/actum simulate $$folder/seen.mcap --actor 24 --seed 3 --repetitions 2 \
 	  && $(BIN)/actum inspect $$folder/model.npz $$folder/seen.mcap -o $$folder && cp $$folder/time-lift.png docs/time.png && rm -r $$folder

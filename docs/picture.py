@@ -1,6 +1,6 @@
 """Makes the README's picture: moments of the simulated scene, and what the processes' nodes say of them.
 
-    python docs/picture.py docs/scene.png
+    python -m docs.picture docs/scene.png
 
 The samples are of the demo's test, which the model has not seen; the first correct one of each action is shown.
 """
@@ -11,23 +11,16 @@ from tempfile import TemporaryDirectory
 
 import cv2
 import numpy as np
+from benchmarks.chain import Chain
 
-from action_fusion.node import ActionFusion
-from action_fusion.settings import Settings as FusionSettings
 from actum.geometry import BONES
 from actum.messages import Event, Image, Message, Objects, Skeleton, Truth
-from actum.node import Numbering, Tick
 from actum.recording import Recording
-from actum_command import processes
 from actum_command.scene import mark_of, write_examples
-from marker_tracker.node import MarkerTracker
-from marker_tracker.settings import Settings as TrackerSettings
 from model_trainer.samples import samples_from
 from model_trainer.training import train
-from pose_preprocessor.node import PosePreprocessor
 from sensor_gateway.simulator import Simulator, balanced_programme
 from som_classifier.model import Model
-from som_classifier.node import SomClassifier
 from som_classifier.presets import DEFAULT
 
 SHOWN = ("push", "lift", "point")
@@ -42,30 +35,6 @@ def model() -> Model:
         examples = Path(folder) / "examples.mcap"
         write_examples(examples, repetitions=12, actor=0, seed=TRAINING_SEED)
         return train(samples_from([Recording(examples)]).usable, DEFAULT)
-
-
-class Chain:
-    """The four nodes, one after another, without any transport."""
-
-    def __init__(self, recogniser: Model) -> None:
-        specs = processes.simulated_objects()["ACTUM_OBJECTS"]
-        tracker = TrackerSettings.model_validate_json(f'{{"objects": {specs}}}', strict=False)
-        self._nodes = (
-            PosePreprocessor(),
-            MarkerTracker(tracker),
-            SomClassifier(recogniser),
-            ActionFusion(FusionSettings()),
-        )
-        self._numbering = Numbering()
-
-    def feed(self, message: Message | Tick) -> list[Message]:
-        """Return the message and all that follows from it."""
-        outputs = [] if isinstance(message, Tick) else [message]
-        for node in self._nodes:
-            inputs = tuple(topic.message for topic in node.inputs)
-            arriving = [message] if isinstance(message, Tick) else [m for m in outputs if isinstance(m, inputs)]
-            outputs += [self._numbering.numbered(m) for one in arriving for m in node.handle(one)]
-        return outputs
 
 
 def panels(recogniser: Model) -> dict[str, np.ndarray]:

@@ -30,7 +30,8 @@ def paper_model(**changes: object) -> PaperModel:
     """A 3×3 map; the second map knows the way down its first column and the way up, each with its own neuron."""
     layer1 = Som.random(3, 3, 9, np.random.default_rng(0))
     down, up = [0.0, 0.0, 1.0, 0.0, 2.0, 0.0], [2.0, 0.0, 1.0, 0.0, 0.0, 0.0]
-    about = PROVENANCE | {"points": POINTS, "contrast": 4.0, "part": None} | changes
+    posture = {"axes": "posture", "origin": "hips", "attention": "moving"}
+    about = PROVENANCE | posture | {"centre_contrast": 0.1, "points": POINTS, "contrast": 4.0} | changes
     description = PaperDescription.model_validate(about)
     return PaperModel(layer1, Som(1, 2, np.array([down, up])), SupervisedLayer(np.eye(2)), description)
 

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from som_classifier.presets import PYRAMID, Others
+from actum.som import Schedule
+from som_classifier.presets import PAPER, PYRAMID, MapPlan, Others
 
 QUICK = replace(
     PYRAMID,
@@ -15,4 +16,10 @@ QUICK = replace(
     concepts=(10, 10),
     concept_epochs=8,
     concept_radius=(4.0, 1.0),
+)
+QUICK_PAPER = replace(
+    PAPER,
+    name="quick paper",
+    layer1=MapPlan(12, 12, 10_000, Schedule(PAPER.layer1.schedule.alpha, (6.0, 1.5))),
+    layer2=MapPlan(12, 12, 5_000, Schedule(PAPER.layer2.schedule.alpha, (6.0, 0.5))),
 )

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from actum.messages import Segment, Skeleton
 from actum.som import Schedule
 from people import FRAME_NS, STANDING, skeleton
+from som_classifier.attention import MOVING, PostureInput
 from som_classifier.presets import MapPlan, Others, PaperPreset, Prior, PyramidPreset
 
 FRAMES = 20
@@ -43,9 +44,10 @@ TINY = PyramidPreset(
 FALLING = Schedule(alpha=(0.5, 0.05), radius=(5.0, 0.6))
 TINY_PAPER = PaperPreset(
     name="tiny paper",
-    part=None,
+    posture=PostureInput(axes="upright", origin="hips", attention=MOVING),
     layer1=MapPlan(10, 10, 4000, FALLING),
     layer2=MapPlan(8, 8, 2000, FALLING),
+    centre_contrast=0.3,
     relative_contrast=0.15,
     beta=0.35,
     epochs=20,

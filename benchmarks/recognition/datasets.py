@@ -70,7 +70,7 @@ class Datasets:
     """The sets below one folder; each is imported into another when first asked for."""
 
     def __init__(self, originals: Path, imported: Path) -> None:
-        self._originals, self._imported = originals, imported
+        self.folder, self._imported = originals, imported
 
     @classmethod
     def from_environment(cls, imported: Path) -> "Datasets":
@@ -134,11 +134,11 @@ class Datasets:
 
     def action_set(self, number: int) -> list[Example]:
         """Return the sequences of AS1, AS2 or AS3 that are among the 557."""
-        names = set((self._originals / "msr_action3d" / f"ActionSet{number}.txt").read_text().split())
+        names = set((self.folder / "msr_action3d" / f"ActionSet{number}.txt").read_text().split())
         return [example for example in self.msr if example.name in names]
 
     def _recordings(self, name: str, import_set: Import) -> list[Recording]:
-        import_set(self._originals / name, self._imported / name, lambda done, total: None)
+        import_set(self.folder / name, self._imported / name, lambda done, total: None)
         return select([self._imported / name])
 
 

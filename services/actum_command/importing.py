@@ -93,7 +93,7 @@ def import_msr_action3d(src: Path, out: Path, progress: Progress) -> ImportRepor
     """
     files = msr_action3d.sequence_files(src)
     takes = (msr_action3d.read_sequence(file, SENSOR) for file in files)
-    return _import("msr-action3d", takes, len(files), out, progress)
+    return import_takes("msr-action3d", takes, len(files), out, progress)
 
 
 def import_utkinect(src: Path, out: Path, progress: Progress) -> ImportReport:
@@ -105,7 +105,7 @@ def import_utkinect(src: Path, out: Path, progress: Progress) -> ImportReport:
     files = utkinect.recording_files(src)
     labels = utkinect.read_labels(src)
     takes = (utkinect.read_labelled(file, SENSOR, labels) for file in files)
-    return _import("utkinect", takes, len(files), out, progress)
+    return import_takes("utkinect", takes, len(files), out, progress)
 
 
 def import_msrc12(src: Path, out: Path, progress: Progress) -> ImportReport:
@@ -116,7 +116,7 @@ def import_msrc12(src: Path, out: Path, progress: Progress) -> ImportReport:
     """
     streams = msrc12.stream_names(src)
     takes = (msrc12.read_stream(file, name, SENSOR) for file, name in streams)
-    return _import("msrc12", takes, len(streams), out, progress)
+    return import_takes("msrc12", takes, len(streams), out, progress)
 
 
 def import_bimacs(src: Path, out: Path, progress: Progress) -> ImportReport:
@@ -156,10 +156,11 @@ def import_video(
     for file in files:
         naming.read(file)
     takes = (read_clip(file, naming, SENSOR, optics, opened) for file in files)
-    return _import("video", takes, len(files), out, progress)
+    return import_takes("video", takes, len(files), out, progress)
 
 
-def _import(source: str, takes: Iterable[Take], total: int, out: Path, progress: Progress) -> ImportReport:
+def import_takes(source: str, takes: Iterable[Take], total: int, out: Path, progress: Progress) -> ImportReport:
+    """Write one recording per take, `out/NAME.mcap`, with `source` in its metadata."""
     report = ImportReport()
     for take in takes:
         with Recorder(out / f"{take.name}.mcap", person=take.person, source=source, **take.fields) as recorder:

@@ -2,9 +2,10 @@
 
 import json
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -17,12 +18,22 @@ from model_trainer.report import report
 from model_trainer.samples import samples_from, select
 from model_trainer.training import TrainingError, train
 from model_trainer.warnings import warnings_of
-from som_classifier.presets import DEFAULT, PRESETS, Preset
+from som_classifier.attention import CHOICES
+from som_classifier.presets import DEFAULT, PAPER, PRESETS, PaperPreset, Preset
 from som_classifier.storage import ModelError, load_model
 
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of them")]
 PersonOption = Annotated[str | None, typer.Option(help="only these persons, e.g. 1,3,5")]
 PresetOption = Annotated[str, typer.Option(help=f"one of {', '.join(PRESETS)}")]
+SETTINGS = "; ".join(f"{name}={'|'.join(values)}" for name, values in CHOICES.items())
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help=f"of preset {PAPER.name}, once each: " + SETTINGS,
+    ),
+]
 AllOption = Annotated[bool, typer.Option("--all", help="also recordings marked as excluded")]
 SeedOption = Annotated[int, typer.Option(min=0, help="the same seed makes the same model")]
 
@@ -31,6 +42,7 @@ def train_command(
     files: Files,
     output: Annotated[Path, typer.Option("-o", "--output", help="the model file to write")],
     preset: PresetOption = DEFAULT.name,
+    settings: SetOption = None,
     person: PersonOption = None,
     seed: SeedOption = 0,
     with_excluded: AllOption = False,
@@ -39,6 +51,7 @@ def train_command(
     began_s = time.monotonic()
     _refuse_place(output)
     refuse_ending(output, ".npz")
+    chosen_preset = preset_named(preset, settings)
     recordings = chosen(files, person, with_excluded)
     try:
         with bars() as progress:
@@ -47,7 +60,7 @@ def train_command(
             say(f"left out {unusable.segment_id} of {unusable.file}: {unusable.reason}")
         tell_unread(recordings)
         with bars() as progress:
-            model = train(samples.usable, preset_named(preset), seed, progress)
+            model = train(samples.usable, chosen_preset, seed, progress)
         model.save(output)
     except (RecordingError, TrainingError, OSError) as error:
         fail(str(error))
@@ -67,6 +80,7 @@ def evaluate_command(
         bool, typer.Option("--leave-one-person-out", help="train anew without each person, test on them")
     ] = False,
     preset: PresetOption = DEFAULT.name,
+    settings: SetOption = None,
     seed: SeedOption = 0,
     with_excluded: AllOption = False,
 ) -> None:
@@ -82,7 +96,7 @@ def evaluate_command(
         recordings = chosen(files if by_person else files[1:], person, with_excluded)
         with bars() as progress:
             if model is None:
-                result = leave_one_person_out(recordings, preset_named(preset), seed, progress)
+                result = leave_one_person_out(recordings, preset_named(preset, settings), seed, progress)
             else:
                 result = evaluate(model, recordings, progress)
     except (RecordingError, TrainingError, ModelError) as error:
@@ -93,11 +107,20 @@ def evaluate_command(
         _write_json(result, json_file)
 
 
-def preset_named(name: str) -> Preset:
-    """Look a preset up by name."""
+def preset_named(name: str, settings: Sequence[str] | None = None) -> Preset:
+    """Look a preset up by name, and change what the settings, each NAME=VALUE, say of it."""
     if name not in PRESETS:
         fail(f"no preset {name!r}: use one of {', '.join(PRESETS)}")
-    return PRESETS[name]
+    preset = PRESETS[name]
+    changes: dict[str, Any] = dict(setting.partition("=")[::2] for setting in settings or ())
+    if not changes:
+        return preset
+    if not isinstance(preset, PaperPreset):
+        fail(f"preset {name} has nothing to set; {PAPER.name} has {', '.join(CHOICES)}")
+    for setting, value in changes.items():
+        if value not in CHOICES.get(setting, ()):
+            fail(f"preset {name} knows no {setting}={value}; what it knows: {SETTINGS}")
+    return replace(preset, posture=replace(preset.posture, **changes))
 
 
 def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[Recording]:

@@ -11,16 +11,17 @@ from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from actum.som import Som
 from model_inspector.bodies import LIMB, STANDING, WHOLE, Figure
-from som_classifier.attention import UNSEEN, attended
+from som_classifier.attention import ALL
 from som_classifier.model import Model
 from som_classifier.paper_model import PaperModel
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.streams import Frame
 from som_classifier.supervised import activity
-from som_classifier.trace import ordered_vector, without_repeats
 
 Floats = NDArray[Any]
 Indices = NDArray[np.intp]
+
+ABOVE_HIPS_M = STANDING[INDEX["torso"]] - STANDING[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0)
 
 
 class Anatomy(ABC):
@@ -93,30 +94,25 @@ class PyramidAnatomy(Anatomy):
 class PaperAnatomy(Anatomy):
     """The maps of the paper's recogniser."""
 
-    figure = LIMB
-
     def __init__(self, model: PaperModel) -> None:
         self.model: PaperModel = model
         self.postures, self.actions = model.layer1, model.layer2
+        self.figure = WHOLE if model.description.posture.attention == ALL else LIMB
 
     def unit_points(self) -> Floats:
-        """Return the three joints that each unit of the first map stands for, relative to the torso, (units, 3, 3)."""
-        above_hips_m = STANDING[INDEX["torso"]] - STANDING[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0)
-        points: Floats = self.postures.weights.reshape(len(self.postures.weights), -1, 3) - above_hips_m
-        return points
+        """Return the joints that each unit of the first map stands for, relative to the torso, (units, 3 or 15, 3)."""
+        points: Floats = self.postures.weights.reshape(len(self.postures.weights), -1, 3)
+        from_hips = self.model.description.posture.origin == "hips"
+        return points - ABOVE_HIPS_M if from_hips else points
 
     def winners(self, frames: Sequence[Frame]) -> Indices:
-        """Return the winner for the part attended to at each encoded frame, UNSEEN where that part has no joint."""
-        cells = np.array([frame.code for frame in frames])
-        motion = np.array([frame.motion for frame in frames])
-        seen: Indices = cells[:, attended(motion, self.model.description.part, (cells != UNSEEN).any(axis=0))]
-        return seen
+        """Return the winner for what is attended to at each encoded frame, UNSEEN where none of it is there."""
+        _, seen = self.model.attended(frames)
+        return seen.winners
 
     def place(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a segment of encoded frames."""
-        winners = self.winners(frames)
-        trace = self.postures.coordinates[without_repeats(winners[winners != UNSEEN])]
-        return self.actions.bmu(ordered_vector(trace, self.model.description.points))
+        return self.model.place(frames)
 
     def answers(self) -> Floats:
         """Return the neurons' cosines where the input lies right on each unit of the second map, (units, actions)."""

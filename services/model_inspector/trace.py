@@ -16,8 +16,8 @@ from model_inspector.answered import Answered, encoded
 from model_inspector.posture_map import draw_postures, draw_units, map_size, name_sides
 from model_inspector.style import HALO, PAPER, canvas, in_house_style
 from model_inspector.wording import headline
-from som_classifier.attention import UNSEEN
 from som_classifier.handedness import mirrored
+from som_classifier.trace import UNSEEN
 
 PALE = 0.28
 CARD, ASIDE = 0.94, 0.07

@@ -1,6 +1,7 @@
 """The paper's recogniser, trained layer after layer (paper, sections 2.1 and 3)."""
 
 from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from functools import partial
 
 import numpy as np
@@ -10,14 +11,44 @@ from actum.som import Som
 from model_trainer.description import labels_of, provenance
 from model_trainer.progress import Progress
 from model_trainer.samples import SegmentSample
-from som_classifier.attention import UNSEEN, attended, part_inputs, winners
+from model_trainer.typical import typical_distance2, typical_error2
+from som_classifier.attention import PostureInput
 from som_classifier.paper_model import PaperDescription, PaperModel
 from som_classifier.presets import MapPlan, PaperPreset
 from som_classifier.supervised import SupervisedLayer, activity
-from som_classifier.trace import ordered_vector, without_repeats
+from som_classifier.trace import Activities, activities, ordered_vector, way
 
 Array = NDArray[np.float64]
-NEIGHBOUR_CHUNK = 64
+
+
+@dataclass(frozen=True, eq=False)
+class _Shown:
+    """A sample as the recogniser looks at it.
+
+    Attributes:
+        rows: (frames, choices, size), what attention chooses among.
+        attended: which of the choices it goes to.
+    """
+
+    rows: Array
+    attended: int
+
+    @classmethod
+    def of(cls, sample: SegmentSample, posture: PostureInput) -> "_Shown":
+        rows = np.stack([posture.rows(*frame) for frame in zip(sample.joints, sample.postures, strict=True)])
+        _, attended = posture.attended(sample.motion, np.any(np.isfinite(rows), axis=(0, 2)))
+        return cls(rows, attended)
+
+    @property
+    def vectors(self) -> Array:
+        """What the first map learns of it, frames in which nothing is there left out, shape (n, size)."""
+        looked_at: Array = self.rows[:, self.attended]
+        return looked_at[~np.isnan(looked_at).all(axis=1)]
+
+    def way(self, layer1: Som, contrast: float) -> Array:
+        """Walk the first map frame by frame, through the same products as the recogniser."""
+        walked = [activities(layer1, rows, contrast)[self.attended] for rows in self.rows]
+        return way(Activities(np.array([step.winners for step in walked]), np.array([step.centres for step in walked])))
 
 
 def train(samples: Sequence[SegmentSample], preset: PaperPreset, seed: int, progress: Progress) -> PaperModel:
@@ -28,56 +59,22 @@ def train(samples: Sequence[SegmentSample], preset: PaperPreset, seed: int, prog
     """
     labels = labels_of(samples)
     rng = np.random.default_rng(seed)
-    parts = [_attended(sample, preset.part) for sample in samples]
-    inputs = np.concatenate([_part_vectors(sample, part) for sample, part in zip(samples, parts, strict=True)])
-    layer1 = _trained_map(preset.layer1, inputs, rng, progress, "layer 1")
-    traces = [_trace(layer1, sample, part) for sample, part in zip(samples, parts, strict=True)]
-    points = max(2, *map(len, traces))
-    vectors = np.stack([ordered_vector(trace, points) for trace in traces])
+    shown = [_Shown.of(sample, preset.posture) for sample in samples]
+    postures = np.concatenate([own.vectors for own in shown])
+    layer1 = _trained_map(preset.layer1, postures, rng, progress, "layer 1")
+    centre_contrast = preset.centre_contrast * typical_error2(layer1, postures)
+    paths = [own.way(layer1, centre_contrast) for own in shown]
+    points = max(2, *map(len, paths))
+    vectors = np.stack([ordered_vector(path, points) for path in paths])
     layer2 = _trained_map(preset.layer2, vectors, rng, progress, "layer 2")
     contrast = preset.relative_contrast * typical_distance2(vectors)
-    activities = np.stack([activity(layer2.excess2(vector), contrast) for vector in vectors])
+    heard = np.stack([activity(layer2.excess2(vector), contrast) for vector in vectors])
     targets = np.array([labels.index(sample.label) for sample in samples])
-    layer3 = SupervisedLayer.random(len(labels), activities.shape[1], rng).train(
-        activities, targets, preset.beta, preset.epochs, rng, partial(progress, "layer 3")
-    )
-    about = provenance(samples, preset, seed) | {"points": points, "contrast": contrast, "part": preset.part}
+    untrained = SupervisedLayer.random(len(labels), heard.shape[1], rng)
+    layer3 = untrained.train(heard, targets, preset.beta, preset.epochs, rng, partial(progress, "layer 3"))
+    measured = {"centre_contrast": centre_contrast, "points": points, "contrast": contrast}
+    about = provenance(samples, preset, seed) | asdict(preset.posture) | measured
     return PaperModel(layer1, layer2, layer3, PaperDescription.model_validate(about))
-
-
-def typical_distance2(vectors: Array) -> float:
-    """Return the median squared distance of each row (n, dim) to its nearest other row; 1 where that is 0.
-
-    The rows are grid coordinates, so 1 is the smallest distance there is between two neurons.
-    """
-    nearest = [_nearest_distance2(vectors, start) for start in range(0, len(vectors), NEIGHBOUR_CHUNK)]
-    return float(np.median(np.concatenate(nearest))) or 1.0
-
-
-def _nearest_distance2(vectors: Array, start: int) -> Array:
-    chunk = vectors[start : start + NEIGHBOUR_CHUNK]
-    distances2 = np.square(chunk[:, None] - vectors).sum(axis=2)
-    distances2[np.arange(len(chunk)), np.arange(start, start + len(chunk))] = np.inf
-    nearest: Array = distances2.min(axis=1)
-    return nearest
-
-
-def _attended(sample: SegmentSample, fixed: str | None) -> int:
-    there = [np.isfinite(part_inputs(joints)).any(axis=1) for joints in sample.joints]
-    return attended(sample.motion, fixed, np.any(there, axis=0))
-
-
-def _part_vectors(sample: SegmentSample, part: int) -> Array:
-    """Return a part's input in each frame that has some of it, shape (n, 9)."""
-    inputs = np.stack([part_inputs(joints)[part] for joints in sample.joints])
-    known: Array = inputs[~np.isnan(inputs).all(axis=1)]
-    return known
-
-
-def _trace(layer1: Som, sample: SegmentSample, part: int) -> Array:
-    """Walk the first map frame by frame, through the same product as the recogniser."""
-    walked = np.array([winners(layer1, joints)[part] for joints in sample.joints])
-    return layer1.coordinates[without_repeats(walked[walked != UNSEEN])]
 
 
 def _trained_map(plan: MapPlan, vectors: Array, rng: np.random.Generator, progress: Progress, stage: str) -> Som:

@@ -18,6 +18,7 @@ from model_trainer.hands import keep_to_one_hand
 from model_trainer.pooling import Pooling
 from model_trainer.progress import Progress
 from model_trainer.samples import SegmentSample
+from model_trainer.typical import typical_error2
 from model_trainer.upper_layers import Scored, UpperLayers, train_upper
 from som_classifier.layers import FirstMaps, arm_inputs, frame_inputs
 from som_classifier.presets import PyramidPreset
@@ -83,7 +84,7 @@ def _first_maps(
 def _first_map(inputs: Floats, preset: PyramidPreset, report: Callable[[int, int], None]) -> tuple[Som, float]:
     """Return a map of the inputs and the contrast of its activity."""
     som = Som.linear(*preset.units, inputs).train_batch(inputs, preset.unit_epochs, preset.unit_radius, report)
-    return som, preset.relative_contrast * typical_distance2(som, inputs)
+    return som, preset.relative_contrast * typical_error2(som, inputs)
 
 
 def _some(vectors: Floats, rng: np.random.Generator) -> NDArray[np.float32]:
@@ -97,14 +98,6 @@ def _some(vectors: Floats, rng: np.random.Generator) -> NDArray[np.float32]:
         return np.zeros((1, vectors[0].size), np.float32)
     flat = np.where(np.isnan(flat).all(axis=0), np.float32(0), flat)
     return flat if len(flat) <= MOST_INPUTS else flat[rng.choice(len(flat), MOST_INPUTS, replace=False)]
-
-
-def typical_distance2(som: Som, vectors: Floats) -> float:
-    """Return the median squared distance of the rows to their winners."""
-    differences = vectors - som.weights[som.bmus(vectors)]
-    known = ~np.isnan(differences)
-    distances2 = np.square(np.where(known, differences, 0)).sum(axis=1) * som.dim / known.sum(axis=1)
-    return float(np.median(distances2)) or 1e-6
 
 
 def _fitted(

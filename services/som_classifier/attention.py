@@ -1,18 +1,90 @@
-"""Attention: which of the five body parts to look at, chosen from motion alone (paper, section 2.1)."""
+"""What of a posture the first map is shown: which joints, along which axes, from where (paper, section 2.1)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.skeletons import PARTS
-from actum.som import Som
+from actum.skeletons import INDEX, JOINTS, PARTS
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Axes = Literal["posture", "upright"]
+Origin = Literal["torso", "hips"]
 
 PART_NAMES: tuple[str, ...] = tuple(PARTS)
-UNSEEN = -1
-"""The winner for a part none of whose joints is there."""
+MOVING, ALL = "moving", "all"
+ATTENTIONS: tuple[str, ...] = (MOVING, ALL, *PART_NAMES)
 _PART_JOINTS = np.array(list(PARTS.values()))
+CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {"axes": get_args(Axes), "origin": get_args(Origin), "attention": ATTENTIONS}
+)
+_HIPS = [INDEX["left_hip"], INDEX["right_hip"]]
+_TORSO = INDEX["torso"]
 
 
-def attended(motion: NDArray[np.float64], fixed: str | None = None, there: NDArray[np.bool_] | None = None) -> int:
+@dataclass(frozen=True)
+class PostureInput:
+    """The first map's input.
+
+    Attributes:
+        axes: `posture`, the paper's, from hips and torso of every posture anew; `upright`, gravity and the actor's
+            heading, smoothed over time.
+        origin: the torso, or the middle of the hips, about where the paper's point 0 lies; where a hip is unknown, as
+            far below the torso as the neck is above it.
+        attention: the part that moves most over a segment (`moving`), one part by its name, or the whole body (`all`).
+
+    Raises:
+        ValueError: one of them is none of these.
+    """
+
+    axes: Axes
+    origin: Origin
+    attention: str
+
+    def __post_init__(self) -> None:
+        for name, choices in CHOICES.items():
+            if getattr(self, name) not in choices:
+                raise ValueError(f"{name} {getattr(self, name)!r} is none of {', '.join(choices)}")
+
+    @property
+    def size(self) -> int:
+        """The length of an input vector."""
+        return 3 * len(JOINTS) if self.attention == ALL else 3 * _PART_JOINTS.shape[1]
+
+    def rows(self, joints: Array, upright: Array) -> Array:
+        """Return the vectors of one frame among which a segment's attention will choose, shape (choices, size).
+
+        Args:
+            joints: (15, 3), scaled, along the axes of the posture.
+            upright: (15, 3), scaled, upright, from the torso.
+        """
+        points = joints if self.axes == "posture" else upright
+        relative: Array = points - (_hips(points) if self.origin == "hips" else points[_TORSO])
+        return relative.reshape(1, -1) if self.attention == ALL else relative[_PART_JOINTS].reshape(len(PARTS), -1)
+
+    def attended(self, motion: Array, there: Flags) -> tuple[int, int]:
+        """Return which part a segment's attention goes to, and which of the rows is looked at.
+
+        Args:
+            motion: (n, 5), metres since the frame before.
+            there: (choices,), which of the rows have a joint in some frame.
+        """
+        if self.attention == ALL:
+            return attended(motion), 0
+        part = attended(motion, None if self.attention == MOVING else self.attention, there)
+        return part, part
+
+
+def _hips(points: Array) -> Array:
+    hips: Array = points[_HIPS].mean(axis=0)
+    return 2 * points[_TORSO] - points[INDEX["neck"]] if np.isnan(hips).any() else hips
+
+
+def attended(motion: NDArray[Any], fixed: str | None = None, there: Flags | None = None) -> int:
     """Return the index of the part that moves most over a segment, or of the fixed one; ties by listed order.
 
     A part that is never there is not attended to while another is.
@@ -27,23 +99,3 @@ def attended(motion: NDArray[np.float64], fixed: str | None = None, there: NDArr
         return PART_NAMES.index(fixed)
     moved = motion[1:].sum(axis=0)
     return int(np.argmax(moved if there is None else np.where(there, moved, -1.0)))
-
-
-def winners(layer1: Som, joints: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return the map's winner for each part, shape (5,), `UNSEEN` where a part has no joint, from joints (15, 3).
-
-    One matrix product of always the same shape, so that live and replayed frames agree to the bit.
-    """
-    inputs = part_inputs(joints)
-    if np.isfinite(inputs).all():
-        return layer1.bmus(inputs)
-    found = np.full(len(inputs), UNSEEN, dtype=np.intp)
-    partly = ~np.isnan(inputs).all(axis=1)
-    found[partly] = layer1.bmus(inputs[partly])
-    return found
-
-
-def part_inputs(joints: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the first layer's input of each part, shape (5, 9), from one frame's joints (15, 3)."""
-    inputs: NDArray[np.float64] = joints[_PART_JOINTS].reshape(len(PART_NAMES), -1)
-    return inputs

@@ -106,7 +106,7 @@ class Model(ABC):
 
     @abstractmethod
     def trace(self, frames: Sequence[Frame]) -> NDArray[np.float64]:
-        """Return the way over the first map: row and column of its winners, repeats removed, shape (n, 2)."""
+        """Return the way over the first map, row and column of winners or of centres of activity, shape (n, 2)."""
 
     @abstractmethod
     def maps(self, frames: Sequence[Frame]) -> Arrays:

@@ -2,37 +2,53 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from functools import cached_property
+from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from actum.skeletons import JOINTS, PARTS
+from actum.skeletons import JOINTS
 from actum.som import Som
-from som_classifier.attention import PART_NAMES, UNSEEN, attended, winners
+from som_classifier.attention import PART_NAMES, Axes, Origin, PostureInput
 from som_classifier.model import Arrays, Description, Encoder, Model
 from som_classifier.recognition import Recognition
 from som_classifier.streams import Frame
 from som_classifier.supervised import SupervisedLayer, activity
-from som_classifier.trace import ordered_vector, without_repeats
+from som_classifier.trace import UNSEEN, Activities, activities, ordered_vector, way
 
 Array = NDArray[np.float64]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
 class PaperDescription(Description):
     """What a model of this kind is.
 
     Attributes:
+        axes, origin, attention: what the first map is shown.
+        centre_contrast: of the first map's activity, in squared metres.
         points: the length of an ordered vector in points: the paper's N_max.
         contrast: of the second map's activity, in squared grid units of the first map.
-        part: the body part attended to, or None for the one that moves most.
     """
 
     kind: Literal["paper"] = "paper"
+    axes: Axes
+    origin: Origin
+    attention: str
+    centre_contrast: Positive
     points: Annotated[int, Field(ge=2)]
-    contrast: Annotated[float, Field(gt=0, allow_inf_nan=False)]
-    part: str | None
+    contrast: Positive
+
+    @model_validator(mode="after")
+    def _of_its_kind(self) -> Self:
+        _ = self.posture
+        return self
+
+    @cached_property
+    def posture(self) -> PostureInput:
+        """What the first map is shown."""
+        return PostureInput(self.axes, self.origin, self.attention)
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +56,7 @@ class PaperModel(Model):
     """The paper's three layers, trained. `confidence` is a share of cosines, not a calibrated probability.
 
     Attributes:
-        layer1: the map of postures, on one part's joints.
+        layer1: the map of postures, or of one part's.
         layer2: the map of ordered vectors.
         layer3: one neuron per label on the second map's activity.
     """
@@ -77,7 +93,7 @@ class PaperModel(Model):
 
     def encoder(self) -> Encoder:
         """Begin to read an agent."""
-        return _Winners(self)
+        return _Looking(self)
 
     def recognise(self, frames: Sequence[Frame], complete: bool) -> Recognition:
         """Say which action a segment's frames so far are; the same whether it is complete or not.
@@ -87,54 +103,50 @@ class PaperModel(Model):
         """
         if not frames:
             raise ValueError("no frame to recognise an action from")
-        return self.classify(*_cells_and_motion(frames))
-
-    def trace(self, frames: Sequence[Frame]) -> Array:
-        """Return the way of the part attended to over the first map, repeats removed, shape (n, 2)."""
-        return self.way(*_cells_and_motion(frames))
-
-    def cells(self, joints: Array) -> NDArray[np.intp]:
-        """Return the first map's winner for each of the five parts, shape (5,), for one frame's joints (15, 3)."""
-        return winners(self.layer1, joints)
-
-    def classify(self, cells: NDArray[np.intp], motion: Array) -> Recognition:
-        """Recognise from winners and motion.
-
-        Args:
-            cells: (n, 5), from `cells`, valid frames only, n > 0.
-            motion: (n, 5), metres since the frame before.
-
-        Raises:
-            ValueError: there is no frame.
-        """
-        if not len(cells):
-            raise ValueError("no frame to recognise an action from")
-        part = self._part(cells, motion)
-        excess2 = self.layer2.excess2(ordered_vector(self._way(cells[:, part]), self.description.points))
-        cosines = self.layer3.cosines(activity(excess2, self.description.contrast)).tolist()
+        part, seen = self.attended(frames)
+        cosines = self.layer3.cosines(self._heard(way(seen))).tolist()
         winner = int(np.argmax(cosines))
         return Recognition(
             label=self.labels[winner],
-            confidence=_share(cosines, winner) * float((cells[:, part] != UNSEEN).mean()),
+            confidence=_share(cosines, winner) * float((seen.winners != UNSEEN).mean()),
             activations=dict(zip(self.labels, cosines, strict=True)),
             part=PART_NAMES[part],
         )
 
-    def way(self, cells: NDArray[np.intp], motion: Array) -> Array:
-        """Return the trace of what `classify` takes, shape (n, 2)."""
-        return self._way(cells[:, self._part(cells, motion)])
+    def look(self, joints: Array, upright: Array) -> Activities:
+        """Return where one frame's inputs make the first map active, of all that attention chooses among.
+
+        Args:
+            joints: (15, 3), along the axes of the posture.
+            upright: (15, 3), upright.
+        """
+        rows = self.description.posture.rows(joints, upright)
+        return activities(self.layer1, rows, self.description.centre_contrast)
+
+    def attended(self, frames: Sequence[Frame]) -> tuple[int, Activities]:
+        """Return the part attended to, and the first map's activities at each frame of a segment, (n,)."""
+        codes: list[Activities] = [frame.code for frame in frames]
+        seen = Activities(np.stack([code.winners for code in codes]), np.stack([code.centres for code in codes]))
+        motion = np.array([frame.motion for frame in frames])
+        part, row = self.description.posture.attended(motion, (seen.winners != UNSEEN).any(axis=0))
+        return part, seen[:, row]
+
+    def trace(self, frames: Sequence[Frame]) -> Array:
+        """Return the way of the activity's centre over the first map, shape (stays, 2)."""
+        return way(self.attended(frames)[1])
+
+    def place(self, frames: Sequence[Frame]) -> int:
+        """Return the second map's winner."""
+        return self.layer2.bmu(ordered_vector(self.trace(frames), self.description.points))
 
     def maps(self, frames: Sequence[Frame]) -> Arrays:
         """Return the activity of the second map."""
-        excess2 = self.layer2.excess2(ordered_vector(self.trace(frames), self.description.points))
-        return {"actions": activity(excess2, self.description.contrast).reshape(self.layer2.rows, self.layer2.cols)}
+        return {"actions": self._heard(self.trace(frames)).reshape(self.layer2.rows, self.layer2.cols)}
 
-    def _part(self, cells: NDArray[np.intp], motion: Array) -> int:
-        return attended(motion, self.description.part, (cells != UNSEEN).any(axis=0))
-
-    def _way(self, seen: NDArray[np.intp]) -> Array:
-        coordinates: Array = self.layer1.coordinates[without_repeats(seen[seen != UNSEEN])]
-        return coordinates
+    def _heard(self, path: Array) -> Array:
+        excess2 = self.layer2.excess2(ordered_vector(path, self.description.points))
+        heard: Array = activity(excess2, self.description.contrast)
+        return heard
 
     def _mismatch(self) -> str | None:
         """Name the first thing about the layers that does not fit together."""
@@ -142,28 +154,23 @@ class PaperModel(Model):
         neurons = len(self.layer2.weights)
         if about.joint_order != list(JOINTS):
             return "its joint order is not this version's"
-        if about.part is not None and about.part not in PARTS:
-            return f"it attends to {about.part!r}, which is no body part"
-        if self.layer1.dim != 9 or self.layer2.dim != 2 * about.points:
-            return f"its maps take vectors of {self.layer1.dim} and {self.layer2.dim}, not of 9 and {2 * about.points}"
+        sizes = about.posture.size, 2 * about.points
+        if (self.layer1.dim, self.layer2.dim) != sizes:
+            return f"its maps take vectors of {self.layer1.dim} and {self.layer2.dim}, not of {sizes[0]} and {sizes[1]}"
         if len(set(about.labels)) < len(about.labels) or self.layer3.weights.shape != (len(about.labels), neurons):
             return f"its third layer {self.layer3.weights.shape} does not fit {len(about.labels)} labels"
         return None
 
 
-class _Winners:
-    """Each frame's best matching units."""
+class _Looking:
+    """Each frame's activities."""
 
     def __init__(self, model: PaperModel) -> None:
         self._model = model
 
-    def encode(self, frame: Frame) -> Any:
-        assert frame.joints is not None
-        return self._model.cells(frame.joints)
-
-
-def _cells_and_motion(frames: Sequence[Frame]) -> tuple[NDArray[np.intp], Array]:
-    return np.array([frame.code for frame in frames]), np.array([frame.motion for frame in frames])
+    def encode(self, frame: Frame) -> Activities:
+        assert frame.joints is not None and frame.movement is not None
+        return self._model.look(frame.joints, frame.movement.posture)
 
 
 def _share(cosines: list[float], winner: int) -> float:

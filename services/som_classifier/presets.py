@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from actum.som import Schedule
+from som_classifier.attention import MOVING, PostureInput
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,9 @@ class PaperPreset:
     """Everything that a training of the paper's recogniser depends on beside its samples and its seed.
 
     Attributes:
-        part: the body part attended to, or None for the one that moves most.
+        posture: what the first map is shown.
+        centre_contrast: the first map's contrast in units of the training postures' median squared distance to their
+            winners.
         relative_contrast: the second map's contrast in units of the training vectors' median squared distance
             to their nearest neighbour.
         beta: adaptation strength of the third layer.
@@ -67,9 +70,10 @@ class PaperPreset:
     """
 
     name: str
-    part: str | None
+    posture: PostureInput
     layer1: MapPlan
     layer2: MapPlan
+    centre_contrast: float
     relative_contrast: float
     beta: float
     epochs: int
@@ -138,9 +142,10 @@ Preset = PaperPreset | PyramidPreset
 
 PAPER = PaperPreset(
     name="paper",
-    part=None,
-    layer1=MapPlan(30, 30, 100_000, Schedule(alpha=(0.1, 0.01), radius=(15.0, 2.0))),
+    posture=PostureInput(axes="upright", origin="torso", attention=MOVING),
+    layer1=MapPlan(30, 30, 100_000, Schedule(alpha=(0.1, 0.01), radius=(15.0, 3.0))),
     layer2=MapPlan(35, 35, 30_000, Schedule(alpha=(0.5, 0.02), radius=(17.5, 0.5))),
+    centre_contrast=1.0,
     relative_contrast=0.15,
     beta=0.35,
     epochs=50,

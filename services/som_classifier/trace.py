@@ -1,16 +1,73 @@
 """The ordered vector: where activity wanders on the first map, freed of time (paper, section 2.1)."""
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.som import Som
+from som_classifier.supervised import activity
+
 Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+UNSEEN = -1
+"""The winner where nothing is there to compare with the map."""
 
 
-def without_repeats(cells: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Drop consecutive duplicates from a sequence of winners."""
+@dataclass(frozen=True, eq=False)
+class Activities:
+    """Where each of several inputs makes a map active.
+
+    Attributes:
+        winners: (…,), the units that are nearest; `UNSEEN` where an input has no known component.
+        centres: (…, 2), the centres of activity, row and column; NaN there.
+    """
+
+    winners: Indices
+    centres: Array
+
+    def __getitem__(self, which: Any) -> "Activities":
+        return Activities(self.winners[which], self.centres[which])
+
+
+def activities(som: Som, rows: Array, contrast: float) -> Activities:
+    """Return winners and centres of activity of (n, dim) rows, the map's coordinates weighted by y, where
+    y = exp(−(d² − d²_min) / contrast).
+
+    One matrix product of always the same shape for n rows, so that live and replayed frames agree to the bit.
+    """
+    known = ~np.isnan(rows).all(axis=1)
+    winners = np.full(len(rows), UNSEEN, dtype=np.intp)
+    centres = np.full((len(rows), 2), np.nan)
+    if known.any():
+        excess2s = som.excess2s(rows[known])
+        weights = activity(excess2s, contrast)
+        winners[known] = excess2s.argmin(axis=1)
+        centres[known] = weights @ som.coordinates / weights.sum(axis=1, keepdims=True)
+    return Activities(winners, centres)
+
+
+def way(seen: Activities) -> Array:
+    """Return the centres at which a new unit wins, frames in which nothing is there left out, shape (stays, 2).
+
+    Args:
+        seen: of one input in each of n frames.
+    """
+    there = seen[seen.winners != UNSEEN]
+    return there.centres[changes(there.winners)]
+
+
+def changes(cells: Indices) -> NDArray[np.bool_]:
+    """Tell which of a sequence of winners are not the one before. Shape (n,)."""
     changed = np.ones(len(cells), dtype=bool)
     changed[1:] = cells[1:] != cells[:-1]
-    kept: NDArray[np.intp] = cells[changed]
+    return changed
+
+
+def without_repeats(cells: Indices) -> Indices:
+    """Drop consecutive duplicates from a sequence of winners."""
+    kept: Indices = cells[changes(cells)]
     return kept
 
 

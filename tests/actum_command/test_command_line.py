@@ -4,6 +4,7 @@ import socket
 import tempfile
 from collections.abc import Iterator
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -15,8 +16,11 @@ from actum.runtime import RouterUnreachableError
 from actum.settings import ServiceSettings
 from actum_command import context, demo, learning, marks, processes, system
 from actum_command.__main__ import app
+from actum_command.learning import preset_named
 from people import FRAME_NS
 from performers import mark, performance
+from som_classifier.attention import PostureInput
+from som_classifier.presets import PAPER, PaperPreset
 
 COMMANDS = (
     "demo", "up", "router", "watch", "doctor", "segment start", "segment end", "segment toggle", "record", "play",
@@ -125,6 +129,31 @@ def test_an_unknown_preset_is_refused_with_the_known_ones(tmp_path: Path) -> Non
     message = refusal("train", str(tmp_path), "-o", str(tmp_path / "m.npz"), "--preset", "best")
     assert "no preset" in message
     assert "paper" in message
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (("paper", "attention=arms"), "no attention=arms"),
+        (("paper", "beta=1"), "no beta=1"),
+        (("paper", "axes"), "no axes="),
+        (("pyramid", "attention=all"), "pyramid has nothing to set"),
+    ],
+)
+def test_a_setting_that_a_preset_does_not_know_is_refused_with_the_known_ones(
+    tmp_path: Path, given: tuple[str, str], told: str
+) -> None:
+    preset, setting = given
+    message = refusal("train", str(tmp_path), "-o", str(tmp_path / "m.npz"), "--preset", preset, "--set", setting)
+    assert told in message
+    assert "attention" in message
+
+
+def test_the_papers_preset_is_trained_as_it_was_set() -> None:
+    preset = preset_named("paper", ["attention=all", "origin=hips"])
+    assert isinstance(preset, PaperPreset)
+    assert preset == replace(PAPER, posture=PostureInput(PAPER.posture.axes, "hips", "all"))
+    assert preset_named("paper") is PAPER
 
 
 def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from actum.skeletons import PARTS
-from model_trainer.paper_training import typical_distance2
+from model_trainer.answering import encoded
 from model_trainer.samples import SegmentSample
 from model_trainer.training import train
+from model_trainer.typical import typical_distance2
 from performers import TINY_PAPER
+from som_classifier.attention import PostureInput
 from som_classifier.paper_model import PaperModel
 from som_classifier.presets import PaperPreset
-from som_classifier.trace import without_repeats
 
 
 def trained(samples: list[SegmentSample], preset: PaperPreset = TINY_PAPER) -> PaperModel:
@@ -21,42 +22,47 @@ def trained(samples: list[SegmentSample], preset: PaperPreset = TINY_PAPER) -> P
     return model
 
 
-def cells_of(model: PaperModel, sample: SegmentSample) -> np.ndarray:
-    return np.stack([model.cells(joints) for joints in sample.joints])
-
-
 def test_the_description_says_what_it_was_made_of(samples: list[SegmentSample]) -> None:
     about = trained(samples).metadata
-    assert (about["kind"], about["part"]) == ("paper", None)
+    assert (about["kind"], about["axes"], about["origin"], about["attention"]) == ("paper", "upright", "hips", "moving")
     assert about["parameters"]["layer1"]["steps"] == TINY_PAPER.layer1.steps
 
 
 def test_vectors_are_as_long_as_the_longest_training_trace(samples: list[SegmentSample]) -> None:
     model = trained(samples)
-    walked = [len(model.way(cells_of(model, sample), sample.motion)) for sample in samples]
+    walked = [len(model.trace(encoded(model, sample))) for sample in samples]
     assert model.description.points == max(walked)
 
 
 def test_a_person_who_never_moves_can_be_learned(samples: list[SegmentSample]) -> None:
     """Every trace is a single point."""
-    still = [replace(s, joints=np.repeat(s.joints[-1:], 5, axis=0), motion=np.zeros((5, 5))) for s in samples]
+    frozen = ("joints", "postures", "velocities")
+    still = [
+        replace(
+            sample,
+            stamps_ns=sample.stamps_ns[:5],
+            motion=np.zeros((5, 5)),
+            **{name: np.repeat(getattr(sample, name)[-1:], 5, axis=0) for name in frozen},
+        )
+        for sample in samples
+    ]
     model = trained(still)
     assert model.description.points == 2
-    assert all(len(without_repeats(cells_of(model, sample)[:, 0])) == 1 for sample in still)
+    assert all(len(model.trace(encoded(model, sample))) == 1 for sample in still)
 
 
 def test_only_the_attended_part_is_learned(samples: list[SegmentSample]) -> None:
-    right_arm = replace(TINY_PAPER, part="right_arm")
-    elsewhere = [joint for part, joints in PARTS.items() if part != "right_arm" for joint in joints]
+    right_arm = replace(TINY_PAPER, posture=PostureInput("upright", "torso", "right_arm"))
+    elsewhere = [joint for part in ("left_arm", "left_leg", "right_leg") for joint in PARTS[part]]
     altered = []
     for sample in samples:
-        joints = sample.joints.copy()
-        joints[:, elsewhere] += 0.3
-        altered.append(replace(sample, joints=joints))
+        postures = sample.postures.copy()
+        postures[:, elsewhere] += 0.3
+        altered.append(replace(sample, postures=postures))
     models = [trained(each, right_arm) for each in (samples, altered)]
     assert (models[0].layer1.weights == models[1].layer1.weights).all()
     assert (models[0].layer3.weights == models[1].layer3.weights).all()
-    assert models[0].description.part == "right_arm"
+    assert models[0].description.attention == "right_arm"
 
 
 def test_progress_names_every_stage_to_its_end(samples: list[SegmentSample]) -> None:

@@ -13,9 +13,9 @@ from model_trainer.confidence import familiar
 from model_trainer.description import TrainingError
 from model_trainer.discriminants import discriminant_axes, folds_of
 from model_trainer.hands import keep_to_one_hand
-from model_trainer.pyramid_training import typical_distance2
 from model_trainer.samples import SegmentSample
 from model_trainer.training import train
+from model_trainer.typical import typical_error2
 from performers import TINY
 from recognisers import in_a_mirror
 from som_classifier.layers import arm_inputs, frame_inputs
@@ -243,16 +243,16 @@ def mean_confidence(samples: list[SegmentSample]) -> float:
 
 def test_typical_distance_by_hand() -> None:
     """One unit at 0: squared distances 1, 4 and 9."""
-    assert typical_distance2(Som(1, 1, np.zeros((1, 1))), np.array([[1.0], [2.0], [3.0]])) == 4.0
+    assert typical_error2(Som(1, 1, np.zeros((1, 1))), np.array([[1.0], [2.0], [3.0]])) == 4.0
 
 
 def test_typical_distance_scales_up_what_is_missing() -> None:
     """Two of three components known: 1 + 1 stands for 3."""
-    assert typical_distance2(Som(1, 1, np.zeros((1, 3))), np.array([[1.0, np.nan, 1.0]])) == 3.0
+    assert typical_error2(Som(1, 1, np.zeros((1, 3))), np.array([[1.0, np.nan, 1.0]])) == 3.0
 
 
 def test_a_typical_distance_is_never_zero() -> None:
-    assert typical_distance2(Som(1, 1, np.ones((1, 3))), np.ones((4, 3))) > 0
+    assert typical_error2(Som(1, 1, np.ones((1, 3))), np.ones((4, 3))) > 0
 
 
 @pytest.mark.parametrize("friends", [1, 2])

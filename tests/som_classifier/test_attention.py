@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from actum.skeletons import INDEX
-from som_classifier.attention import PART_NAMES, attended, part_inputs
+from people import STANDING, lacking
+from som_classifier.attention import ALL, ATTENTIONS, MOVING, PART_NAMES, PostureInput, attended
 
 
 @pytest.mark.parametrize("part", range(5))
@@ -29,9 +30,62 @@ def test_a_fixed_part_is_kept_whatever_moves() -> None:
     assert PART_NAMES[attended(np.array([[0, 0, 0, 0, 0], [1.0, 0, 0, 0, 0]]), "left_leg")] == "left_leg"
 
 
+def shown(attention: str, origin: str = "torso", axes: str = "posture") -> PostureInput:
+    return PostureInput(axes=axes, origin=origin, attention=attention)  # type: ignore[arg-type]
+
+
+JOINTS_M = np.random.default_rng(0).random((15, 3))
+EVERY_PART = np.ones(5, dtype=bool)
+
+
 def test_a_part_is_its_three_joints_one_after_the_other() -> None:
-    joints = np.arange(45, dtype=np.float64).reshape(15, 3)
-    inputs = part_inputs(joints)
-    assert inputs.shape == (5, 9)
-    right_arm = [joints[INDEX[name]] for name in ("right_shoulder", "right_elbow", "right_hand")]
-    assert inputs[PART_NAMES.index("right_arm")].tolist() == np.concatenate(right_arm).tolist()
+    rows = shown(MOVING).rows(JOINTS_M, STANDING)
+    assert rows.shape == (5, shown(MOVING).size) == (5, 9)
+    right_arm = [JOINTS_M[INDEX[name]] for name in ("right_shoulder", "right_elbow", "right_hand")]
+    expected = np.concatenate([joint - JOINTS_M[INDEX["torso"]] for joint in right_arm])
+    assert rows[PART_NAMES.index("right_arm")].tolist() == expected.tolist()
+
+
+def test_the_whole_body_is_one_choice() -> None:
+    """Of which the part that moves most is told, all the same."""
+    rows = shown(ALL).rows(JOINTS_M, STANDING)
+    assert rows.shape == (1, shown(ALL).size) == (1, 45)
+    motion = np.array([[0, 0, 0, 0, 0], [0, 0, 0, 0.2, 0.1]])
+    assert shown(ALL).attended(motion, np.ones(1, dtype=bool)) == (PART_NAMES.index("left_leg"), 0)
+
+
+def test_a_fixed_or_moving_part_is_its_own_choice() -> None:
+    motion = np.array([[0, 0, 0, 0, 0], [0, 0, 0, 0.2, 0.1]])
+    assert shown("body").attended(motion, EVERY_PART) == (4, 4)
+    assert shown(MOVING).attended(motion, EVERY_PART) == (3, 3)
+
+
+@pytest.mark.parametrize(("axes", "used"), [("posture", 0), ("upright", 1)])
+def test_axes_name_the_joints_that_are_read(axes: str, used: int) -> None:
+    given = JOINTS_M, STANDING
+    relative = given[used] - given[used][INDEX["torso"]]
+    assert shown(ALL, axes=axes).rows(*given).tolist() == [relative.ravel().tolist()]
+
+
+def test_from_the_hips_is_from_their_middle() -> None:
+    rows = shown(ALL, "hips").rows(JOINTS_M, STANDING).reshape(15, 3)
+    np.testing.assert_allclose(rows[INDEX["left_hip"]], -rows[INDEX["right_hip"]], atol=1e-15)
+
+
+@pytest.mark.parametrize("hip", ["left_hip", "right_hip"])
+def test_without_a_hip_it_is_as_far_below_the_torso_as_the_neck_is_above_it(hip: str) -> None:
+    rows = shown(ALL, "hips").rows(lacking(JOINTS_M, hip), STANDING).reshape(15, 3)
+    np.testing.assert_allclose(rows[INDEX["neck"]], 2 * rows[INDEX["torso"]])
+    assert np.isnan(rows).any(axis=1).tolist() == [number == INDEX[hip] for number in range(15)]
+
+
+@pytest.mark.parametrize("changed", [{"axes": "camera"}, {"origin": "head"}, {"attention": "right arm"}])
+def test_what_it_does_not_know_is_named(changed: dict[str, str]) -> None:
+    settings = {"axes": "upright", "origin": "hips", "attention": "all"} | changed
+    ((name, value),) = changed.items()
+    with pytest.raises(ValueError, match=f"{name} {value!r}"):
+        PostureInput(**settings)  # type: ignore[arg-type]
+
+
+def test_attention_is_one_of_so_many() -> None:
+    assert set(ATTENTIONS) == {"moving", "all", *PART_NAMES}

@@ -211,7 +211,11 @@ OF_PAPER: list[tuple[dict[str, object], str]] = [
     ({"points": "3"}, "points"),
     ({"contrast": 0.0}, "contrast"),
     ({"contrast": NAN}, "contrast"),
-    ({"part": "tail"}, "tail"),
+    ({"attention": "tail"}, "tail"),
+    ({"axes": "camera"}, "axes"),
+    ({"origin": "head"}, "origin"),
+    ({"attention": "all"}, "45"),
+    ({"centre_contrast": 0.0}, "centre_contrast"),
 ]
 OF_PYRAMID: list[tuple[dict[str, object], str]] = [
     ({"posture_contrast": 0.0}, "posture_contrast"),

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from som_classifier.trace import ordered_vector, resampled, without_repeats
+from actum.som import Som
+from som_classifier.trace import UNSEEN, Activities, activities, ordered_vector, resampled, way, without_repeats
 
 cells = st.lists(st.integers(0, 899), min_size=1, max_size=40)
 points = st.integers(2, 80)
@@ -37,6 +38,30 @@ def position_along(path: np.ndarray, point: np.ndarray, after: float) -> float:
 
 def test_repeats_are_dropped_only_where_they_follow_each_other() -> None:
     assert without_repeats(np.array([7, 7, 3, 3, 3, 7, 1])).tolist() == [7, 3, 7, 1]
+
+
+def test_the_centre_of_activity_by_hand() -> None:
+    """Three units in a row at 0, 1 and 3: an input at 0 is 1 and 9 further off in d² from the others."""
+    row = Som(1, 3, np.array([[0.0], [1.0], [3.0]]))
+    seen = activities(row, np.array([[0.0], [np.nan]]), contrast=2.0)
+    weights = np.exp([0.0, -0.5, -4.5])
+    assert seen.winners.tolist() == [0, UNSEEN]
+    assert seen.centres[0] == pytest.approx([0.0, weights @ [0, 1, 2] / weights.sum()])
+    assert np.isnan(seen.centres[1]).all()
+
+
+@given(st.floats(0, 3))
+def test_with_little_contrast_left_the_centre_is_the_winner(at: float) -> None:
+    row = Som(1, 3, np.array([[0.0], [1.0], [3.0]]))
+    seen = activities(row, np.array([[at]]), contrast=1e-3)
+    if min(abs(at - border) for border in (0.5, 2.0)) > 0.05:
+        assert seen.centres[0] == pytest.approx(row.coordinates[seen.winners[0]])
+
+
+def test_a_way_has_the_centre_of_each_stays_first_frame() -> None:
+    centres = np.arange(12.0).reshape(6, 2)
+    seen = Activities(np.array([7, 7, UNSEEN, 7, 3, 7]), centres)
+    assert way(seen).tolist() == centres[[0, 4, 5]].tolist()
 
 
 def test_resampling_by_hand() -> None:

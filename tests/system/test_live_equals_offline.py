@@ -16,9 +16,10 @@ from live import System, collect
 from model_trainer.evaluation import Evaluation, evaluate
 from model_trainer.samples import samples_from, select
 from model_trainer.training import train
-from models import QUICK
+from models import QUICK, QUICK_PAPER
 from sensor_gateway.msr_action3d import EXCLUDED, NAME, sequence_files
 from sensor_gateway.utkinect import LABELS
+from som_classifier.presets import PRESETS
 from som_classifier.storage import load_model
 
 pytestmark = [pytest.mark.system, pytest.mark.data]
@@ -53,10 +54,10 @@ def few_of_msr(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-@pytest.fixture(scope="module")
-def quick_model(few_of_msr: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+@pytest.fixture(scope="module", params=[QUICK, QUICK_PAPER], ids=lambda preset: preset.name)
+def quick_model(request: pytest.FixtureRequest, few_of_msr: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("model") / "quick.npz"
-    train(samples_from(select([few_of_msr], TRAINING_PEOPLE)).usable, QUICK).save(path)
+    train(samples_from(select([few_of_msr], TRAINING_PEOPLE)).usable, request.param).save(path)
     return path
 
 
@@ -103,9 +104,11 @@ def test_a_continuous_utkinect_recording(running: System, data: Path, quick_mode
 
 @pytest.mark.live
 @pytest.mark.timeout(400)
-def test_all_msr_test_sequences_by_the_command_line(running: System, msr: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("preset", PRESETS)
+def test_all_msr_test_sequences_by_the_command_line(running: System, msr: Path, tmp_path: Path, preset: str) -> None:
     model, report = tmp_path / "model.npz", tmp_path / "report.json"
-    trained = running.actum("train", str(msr), "-o", str(model), "--person", ",".join(TRAINING_PEOPLE), timeout_s=200)
+    of_people = "--person", ",".join(TRAINING_PEOPLE)
+    trained = running.actum("train", str(msr), "-o", str(model), "--preset", preset, *of_people, timeout_s=200)
     assert trained.returncode == 0, trained.stderr
     people = ",".join(TEST_PEOPLE)
     tested = running.actum("evaluate", str(model), str(msr), "--person", people, "--json", str(report), timeout_s=200)

@@ -1,0 +1,92 @@
+"""What the paper's recogniser is measured on: three sets of recordings, and the simulated scene."""
+
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from benchmarks.recognition.datasets import Datasets
+from benchmarks.recognition.splits import TEST_SHARE
+
+from actum.recording import Recording
+from actum_command.scene import write_examples
+from model_trainer.samples import SegmentSample, samples_from, select
+
+from .set1 import import_set1
+
+LOOK_ALIKES = ("high arm wave", "hammer", "forward punch", "high throw", "draw x")
+"""Five actions of the author's set in which one arm goes up and ahead, as in those of the paper."""
+TRAINED_EACH, TESTED_EACH = 12, 9
+"""As the paper has of each action."""
+TRAINING_SEED, TEST_SEED = 1, 2
+
+Samples = list[SegmentSample]
+Split = tuple[Samples, Samples]
+"""What to learn from, and what to answer."""
+
+
+class Data:
+    """The sets below one folder, imported into another when first asked for."""
+
+    def __init__(self, imported: Path) -> None:
+        self._public, self._imported = Datasets.from_environment(imported), imported
+
+    @cached_property
+    def set1(self) -> Samples:
+        """The 276 sequences of the paper's first author."""
+        folder = self._public.folder / "gharaee_set1"
+        if not folder.is_dir():
+            raise SystemExit(f"{folder} is not there: ACTUM_DATA has to hold gharaee_set1/ as well")
+        import_set1(folder, self._imported / "set1", lambda done, total: None)
+        return samples_from(select([self._imported / "set1"])).usable
+
+    @cached_property
+    def msr(self) -> Samples:
+        """The 557 sequences of MSR Action3D."""
+        return [example.sample for example in self._public.msr]
+
+    @cached_property
+    def utkinect(self) -> Samples:
+        """The labelled segments of UTKinect."""
+        return [example.sample for example in self._public.utkinect]
+
+    def quarter(self, draw: int) -> Split:
+        """Test a random quarter of the author's set, whoever did it."""
+        order, count = np.random.default_rng(draw).permutation(len(self.set1)), round(TEST_SHARE * len(self.set1))
+        return [self.set1[i] for i in order[count:]], [self.set1[i] for i in order[:count]]
+
+    def look_alikes(self, draw: int) -> Split:
+        """Draw as many of each look-alike action as the paper has."""
+        rng, training, test = np.random.default_rng(draw), [], []
+        for label in LOOK_ALIKES:
+            own = [sample for sample in self.set1 if sample.label == label]
+            shuffled = [own[i] for i in rng.permutation(len(own))]
+            training += shuffled[:TRAINED_EACH]
+            test += shuffled[TRAINED_EACH : TRAINED_EACH + TESTED_EACH]
+        return training, test
+
+    def odd_even(self) -> Split:
+        """Learn from people 1, 3, 5, 7 and 9 of MSR Action3D, test the others."""
+        odd = [sample for sample in self.msr if int(sample.person) % 2]
+        return odd, [sample for sample in self.msr if int(sample.person) % 2 == 0]
+
+    def other_people(self) -> list[Split]:
+        """Test each person of UTKinect on what the others did."""
+        people = sorted({sample.person for sample in self.utkinect})
+        return [
+            ([s for s in self.utkinect if s.person != person], [s for s in self.utkinect if s.person == person])
+            for person in people
+        ]
+
+    def simulated(self, actor: int, repetitions: int, seed: int) -> Samples:
+        """Let an actor of the simulated scene do the paper's five actions."""
+        path = self._imported / f"simulated-{actor}-{repetitions}-{seed}.mcap"
+        if not path.exists():
+            write_examples(path, repetitions, actor, seed)
+        return samples_from([Recording(path)]).usable
+
+    def one_actor(self, actor: int) -> Split:
+        """Learn from and test one simulated actor, as the paper does."""
+        return (
+            self.simulated(actor, TRAINED_EACH, TRAINING_SEED),
+            self.simulated(actor, TESTED_EACH, TEST_SEED),
+        )

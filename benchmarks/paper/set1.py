@@ -1,0 +1,77 @@
+"""The 276 sequences on which the paper's first author evaluates her system, turned into recordings.
+
+They are ten actions of MSR Action3D as screen skeletons: `a01_s01_e01.txt` holds a frame a line, twenty joints of
+column, row (pixels of a 320 × 240 depth image), depth (4 mm) and confidence. Absurd depths, near 2³¹, are left to the
+preprocessor, which takes them for missing.
+"""
+
+import re
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.messages import Agent, Skeleton
+from actum.skeletons import to_actum
+from actum_command.importing import ImportReport, Progress, import_takes
+from sensor_gateway.msr_action3d import CLASSES, FRAMES_PER_SECOND, SOURCE_JOINTS
+from sensor_gateway.takes import (
+    DatasetError,
+    Take,
+    camera_joints,
+    files_of,
+    lost_frame,
+    marks_between,
+    read_rows,
+    stamp_of,
+)
+
+Array = NDArray[np.float64]
+
+SENSOR = "kinect0"
+NAME = re.compile(r"(a(?P<action>\d\d)_s(?P<person>\d\d)_e\d\d)\.txt")
+FOCAL_PX = 285.63
+"""Nominal, of a Kinect's depth camera at 320 × 240."""
+CENTRE_PX = (160.0, 120.0)
+DEPTH_M = 0.004
+
+
+def import_set1(src: Path, out: Path, progress: Progress) -> ImportReport:
+    """Write one recording per sequence, `out/a01_s01_e01.mcap`.
+
+    Raises:
+        DatasetError: `src` does not hold the set, or a file of it is damaged.
+    """
+    files = files_of(src, "a??_s??_e??.txt")
+    return import_takes("gharaee-set1", map(read_sequence, files), len(files), out, progress)
+
+
+def read_sequence(path: Path) -> Take:
+    """Read one sequence: the whole of it is one labelled segment.
+
+    Raises:
+        DatasetError: the name or the content is not of the set's form.
+    """
+    match = NAME.fullmatch(path.name)
+    if match is None or not 1 <= int(match["action"]) <= len(CLASSES):
+        raise DatasetError(f"{path}: not named like a01_s01_e01.txt; keep the set's own file names")
+    screen = read_rows(path, columns=4 * SOURCE_JOINTS).reshape(-1, SOURCE_JOINTS, 4)
+    frames = [_skeleton(stamp_of(i, FRAMES_PER_SECOND), rows, match[1]) for i, rows in enumerate(screen)]
+    label = CLASSES[int(match["action"]) - 1]
+    marks = marks_between(frames[0].stamp_ns, frames[-1].stamp_ns, SENSOR, match[1], label)
+    return Take(match[1], str(int(match["person"])), frames, marks)
+
+
+def positions_m(screen: Array) -> Array:
+    """Turn column, row and depth into metres left, up and forward of the camera, as the set has them, shape (n, 3)."""
+    forward_m = DEPTH_M * screen[:, 2]
+    across = (screen[:, :2] - CENTRE_PX) / FOCAL_PX
+    return np.stack([across[:, 0] * forward_m, -across[:, 1] * forward_m, forward_m], axis=1)
+
+
+def _skeleton(stamp_ns: int, rows: Array, name: str) -> Skeleton:
+    if not rows.any():
+        return lost_frame(stamp_ns, SENSOR, name)
+    listed: list[list[float]] = to_actum(np.column_stack([positions_m(rows), rows[:, 3]]).tolist(), "msr-action3d-20")
+    agent = Agent(agent=1, joints=camera_joints([j[:3] for j in listed]), confidence=[j[3] for j in listed])
+    return Skeleton(stamp_ns=stamp_ns, sensor=SENSOR, agents=[agent], session_id=name)
