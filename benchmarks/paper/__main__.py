@@ -13,6 +13,7 @@ from pathlib import Path
 from benchmarks.page import measure_page, part_asked_for
 
 from .data import Data
+from .details import details
 from .figures import figures
 from .protocols import protocols
 from .scene import scene
@@ -24,6 +25,7 @@ PARTS: Mapping[str, tuple[str, Callable[[Data], Iterator[str]]]] = {
     "protocols": ("The protocols", protocols),
     "scene": ("Table 2 of the paper", scene),
     "steps": ("What each step is worth", steps),
+    "details": ("What cannot be as printed", details),
     "figures": ("The figures", figures),
 }
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from benchmarks.recognition.datasets import Datasets
 from benchmarks.recognition.splits import TEST_SHARE
+from numpy.typing import NDArray
 
 from actum.recording import Recording
 from actum_command.scene import write_examples
@@ -43,6 +44,11 @@ class Data:
     def msr(self) -> Samples:
         """The 557 sequences of MSR Action3D."""
         return [example.sample for example in self._public.msr]
+
+    @cached_property
+    def msr_in_camera_m(self) -> list[NDArray[np.float64]]:
+        """Their joints in camera axes, (n, 15, 3) each."""
+        return [example.camera_m for example in self._public.msr]
 
     @cached_property
     def utkinect(self) -> Samples:
