@@ -32,10 +32,10 @@ class Activities:
 
 
 def activities(som: Som, rows: Array, contrast: float) -> Activities:
-    """Return winners and centres of activity of (n, dim) rows, the map's coordinates weighted by y, where
-    y = exp(−(d² − d²_min) / contrast).
+    """Return the winners and the centres of activity of (n, dim) rows.
 
-    One matrix product of always the same shape for n rows, so that live and replayed frames agree to the bit.
+    A centre is the mean of the units' places, weighted by their activities y = exp(−(d² − d²_min) / contrast). One
+    matrix product of always the same shape for n rows, so that live and replayed frames agree to the bit.
     """
     known = ~np.isnan(rows).all(axis=1)
     winners = np.full(len(rows), UNSEEN, dtype=np.intp)
