@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from actum.messages import Message
+from actum.messages import Info, Message
 from actum.runtime import Client, Listening
 from actum.settings import ServiceSettings
 
@@ -34,6 +34,18 @@ def wait_until(condition: Callable[[], bool], what: str, patience_s: float = PAT
     while not condition():
         assert time.monotonic() < deadline_s, f"waited {patience_s:g} s in vain: {what}"
         threading.Event().wait(POLL_S)
+
+
+def described(client: Client) -> Info:
+    """Wait until one service says what it is, which it does once it has its place."""
+    asked: list[list[Info]] = []
+
+    def answers_alone() -> bool:
+        asked.append(client.infos())
+        return len(asked[-1]) == 1
+
+    wait_until(answers_alone, "one service describes itself")
+    return asked[-1][0]
 
 
 @dataclass

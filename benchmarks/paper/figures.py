@@ -26,6 +26,7 @@ from .scene import IMAGE_HZ, PAPERS_MEASURE, TAIL_S
 PLACE = Path(__file__).parents[2] / "docs" / "paper.png"
 COLOURS = dict(zip(TABLE_2, mpl.color_sequences["tab10"], strict=False))
 HAND = INDEX["right_hand"]
+FURTHEST_M = 0.6
 
 
 @dataclass
@@ -93,6 +94,7 @@ def draw(courses: Sequence[Course]) -> Figure:
         _draw_distances(rows[1, column], course)
     rows[0, 0].set_ylabel("neuron's activity (cosine)")
     rows[1, 0].set_ylabel("hand to object (m)")
+    rows[1, 0].set_ylim(0, FURTHEST_M)
     figure.legend(*rows[0, 0].get_legend_handles_labels(), loc="outside upper left", ncols=len(TABLE_2), frameon=False)
     figure.legend(*rows[1, 0].get_legend_handles_labels(), loc="outside upper right", ncols=3, frameon=False)
     return figure
@@ -102,10 +104,14 @@ def _draw_neurons(axes: Axes, course: Course) -> None:
     for label, colour in COLOURS.items():
         own = [(time_s, activations[label]) for time_s, activations in course.neurons]
         axes.plot(*zip(*own, strict=True), color=colour, lw=2.4 if label == course.truth.action else 1.2, label=label)
-    told = course.event
-    found = "nothing" if told is None or told.object is None else f"object {told.object.id}"
-    action = "no answer" if told is None else f"{told.action}, {found}"
-    axes.set_title(f"{course.truth.action} object {course.truth.object_id}\ntold: {action}", fontsize=11)
+    axes.set_title(f"{course.truth.action} object {course.truth.object_id}\ntold: {_told(course.event)}", fontsize=11)
+
+
+def _told(event: Event | None) -> str:
+    if event is None:
+        return "nothing"
+    found = "no object" if event.object is None else f"object {event.object.id}"
+    return f"{event.action} {found} of {len(event.objects_present)}"
 
 
 def _draw_distances(axes: Axes, course: Course) -> None:
@@ -116,4 +122,3 @@ def _draw_distances(axes: Axes, course: Course) -> None:
         wide = 2.4 if number == course.truth.object_id else 1.2
         axes.plot(*zip(*own, strict=True), color="black", ls=style, lw=wide, label=f"object {number}")
     axes.set_xlabel("s")
-    axes.set_ylim(0, None)

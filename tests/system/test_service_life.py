@@ -9,7 +9,7 @@ from actum import codec, keys
 from actum.messages import Posture, Status
 from actum.runtime import Client
 from actum.runtime.outbox import MOST_PUBLISHERS
-from live import Running, System, collect, wait_until
+from live import Running, System, collect, described, wait_until
 from people import STANDING, reaches, skeleton
 
 SERVICES = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
@@ -39,7 +39,7 @@ def test_services_started_before_the_router_wait_for_it_serve_and_leave(
             running.wait_for_services(client, name)
             status = collect(client.listen(keys.pattern(keys.STATUS, client.sensor)), Status, bool)[0]
             assert (status.service, status.valid, status.rejects) == (name, True, {})
-            [info] = client.infos()
+            info = described(client)
             assert "actum.skeleton/1" in info.schemas
             assert info.joint_names[0] == "head"
     assert_leave_cleanly(waiting)

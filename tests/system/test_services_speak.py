@@ -8,7 +8,7 @@ from actum import keys
 from actum.messages import Skeleton
 from actum_command.doctor import STATUS_S
 from camera_videos import write_video
-from live import Running, System, collect, wait_until
+from live import Running, System, collect, described, wait_until
 from people import reaches
 from sensors import marker_camera, recording
 
@@ -38,7 +38,7 @@ def test_a_gateway_of_a_simulated_scene_says_so_without_a_router_and_doctor_does
     running.start_router()
     with running.client() as client:
         running.wait_for_services(client, "sensor_gateway")
-        [info] = client.infos()
+        info = described(client)
         assert (info.source or "").startswith("simulated scene")
         assert info.host
         assert "sensor: simulated scene, no camera" in diagnosed(running)
