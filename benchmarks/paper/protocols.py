@@ -20,7 +20,7 @@ ROWS: dict[str, Preset] = {
 }
 REPORTED = {
     "published (Gharaee, Gärdenfors and Johnsson)": ("83", "", "", ""),
-    "the author's code, run here without its use of test labels; its 1-NN": ("78; 83", "", "", ""),
+    "the author's code without its use of test labels; its 1-NN": ("78; 83", "", "", ""),
     "a literal reimplementation, whole body; part that moves most": ("70; 75", "76; 74", "52; 53", "86; 65"),
 }
 
