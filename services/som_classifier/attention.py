@@ -8,6 +8,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS, PARTS
 
 Array = NDArray[np.float64]
@@ -24,6 +25,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
 )
 _HIPS = [INDEX["left_hip"], INDEX["right_hip"]]
 _TORSO = INDEX["torso"]
+_UP_TO_THE_NECK = np.array([0.0, next(length_m for _, end, length_m in BONES if end == INDEX["neck"]), 0.0])
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,7 @@ class PostureInput:
         axes: `posture`, the paper's, from hips and torso of every posture anew; `upright`, gravity and the actor's
             heading, smoothed over time.
         origin: the torso, or the middle of the hips, about where the paper's point 0 lies; where a hip is unknown, as
-            far below the torso as the neck is above it.
+            far below the torso as the neck usually is above it.
         attention: the part that moves most over a segment (`moving`), one part by its name, or the whole body (`all`).
 
     Raises:
@@ -81,7 +83,7 @@ class PostureInput:
 
 def _hips(points: Array) -> Array:
     hips: Array = points[_HIPS].mean(axis=0)
-    return 2 * points[_TORSO] - points[INDEX["neck"]] if np.isnan(hips).any() else hips
+    return points[_TORSO] - _UP_TO_THE_NECK if np.isnan(hips).any() else hips
 
 
 def attended(motion: NDArray[Any], fixed: str | None = None, there: Flags | None = None) -> int:
