@@ -4,8 +4,9 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from benchmarks.recognition import splits
 from benchmarks.recognition.datasets import Datasets
-from benchmarks.recognition.splits import TEST_SHARE
+from benchmarks.recognition.splits import TEST_SHARE, leave_one_person_out, odd_even
 from numpy.typing import NDArray
 
 from actum.recording import Recording
@@ -72,16 +73,11 @@ class Data:
 
     def odd_even(self) -> Split:
         """Learn from people 1, 3, 5, 7 and 9 of MSR Action3D, test the others."""
-        odd = [sample for sample in self.msr if int(sample.person) % 2]
-        return odd, [sample for sample in self.msr if int(sample.person) % 2 == 0]
+        return _samples_of(odd_even(self._public.msr))
 
     def other_people(self) -> list[Split]:
         """Test each person of UTKinect on what the others did."""
-        people = sorted({sample.person for sample in self.utkinect})
-        return [
-            ([s for s in self.utkinect if s.person != person], [s for s in self.utkinect if s.person == person])
-            for person in people
-        ]
+        return [_samples_of(split) for split in leave_one_person_out(self._public.utkinect)]
 
     def simulated(self, actor: int, repetitions: int, seed: int) -> Samples:
         """Let an actor of the simulated scene do the paper's five actions."""
@@ -96,3 +92,7 @@ class Data:
             self.simulated(actor, TRAINED_EACH, TRAINING_SEED),
             self.simulated(actor, TESTED_EACH, TEST_SEED),
         )
+
+
+def _samples_of(split: splits.Split) -> Split:
+    return [example.sample for example in split.training], [example.sample for example in split.test]

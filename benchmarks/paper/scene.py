@@ -16,10 +16,13 @@ from som_classifier.model import Model
 from som_classifier.presets import DEFAULT, Preset
 
 from .data import TEST_SEED, TESTED_EACH, TRAINED_EACH, TRAINING_SEED, Data
-from .measuring import BODY, DRAWS, PART, Shares, labels
+from .measuring import BODY, PART, Shares, labels
 
 TAIL_S = 1.0
 IMAGE_HZ = 15
+OTHERS = 9
+ACTORS = 10
+"""How many learn and are tested each alone."""
 PAPERS_MEASURE = FusionSettings(measure="proximity")
 
 
@@ -45,14 +48,14 @@ def scene(data: Data) -> Iterator[str]:
 as in the paper; a simulated actor instead of a person, drawn images, a Kinect's noise. The nodes that run live answer,
 one after the other without transport; the object is the paper's nearest one. Right of {TESTED_EACH} in a row: action,
 object."""
-    one, others = [0], list(range(1, 1 + TESTED_EACH))
+    one, others = [0], list(range(1, 1 + OTHERS))
     columns = {
         "`paper`, the same actor": played(_model(data, PART), one, TESTED_EACH),
         "`paper`, nine others": played(_model(data, PART), others, 1),
         f"`{DEFAULT.name}`, nine others": played(_model(data, DEFAULT), others, 1),
     }
     yield table(("action", "paper: a person", *columns), _rows(columns))
-    yield f"""How much that depends on the actor: each of {DRAWS} alone, {TRAINED_EACH} samples of each action to learn
+    yield f"""How much that depends on the actor: each of {ACTORS} alone, {TRAINED_EACH} samples of each action to learn
 from and {TESTED_EACH} to test; right actions in %, mean ± standard deviation over actors."""
     presets: dict[str, Preset] = {
         "`paper`, the part that moves most": PART, "`paper`, the whole body": BODY, f"`{DEFAULT.name}`": DEFAULT
@@ -63,7 +66,7 @@ from and {TESTED_EACH} to test; right actions in %, mean ± standard deviation o
 def alone(data: Data, preset: Preset) -> Shares:
     """Train and test actor after actor."""
     shares = []
-    for actor in range(DRAWS):
+    for actor in range(ACTORS):
         training, test = data.one_actor(actor)
         answers = labels(preset, training, test, 0)
         shares.append(sum(a == s.label for a, s in zip(answers, test, strict=True)) / len(test))
