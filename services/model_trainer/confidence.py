@@ -70,8 +70,7 @@ def usual_log_errors(first: FirstMaps, postures: Sequence[Floats], targets: Indi
         postures: (frames, 15, 3) of each sample, as the classifier reads it.
         targets: (n,), their actions.
     """
-    winners = [first.postures.bmus(own.reshape(len(own), -1)) for own in postures]
-    log_errors = np.array([first.log_errors(own, won).mean() for own, won in zip(postures, winners, strict=True)])
+    log_errors = np.array([first.log_errors(own, first.nearest(own)).mean() for own in postures])
     above = np.bincount(targets, weights=log_errors - log_errors.mean()) / (np.bincount(targets) + 1)
     return [float(prior.log_error + own) for own in above]
 

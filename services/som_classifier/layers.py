@@ -85,6 +85,11 @@ class FirstMaps:
         heard = [*zip(self.maps, _of_maps(rows), strict=True), (self.arms, arm_inputs(in_a_mirror(rows)))]
         return self._shared(np.concatenate([_excess2s(som, inputs) for som, inputs in heard], axis=1))
 
+    def nearest(self, postures: Floats) -> NDArray[np.intp]:
+        """Return the map of postures' winner for each of (n, 15, 3), shape (n,); the first where nothing is known."""
+        winners: NDArray[np.intp] = _excess2s(self.postures, postures.reshape(-1, _SIZE)).argmin(axis=1)
+        return winners
+
     def log_errors(self, postures: Floats, winners: Sequence[int] | NDArray[np.intp]) -> Floats:
         """Return log(d²) to the winners on the map of postures, the squared quantization error in m², shape (n,).
 

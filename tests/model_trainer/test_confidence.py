@@ -112,3 +112,11 @@ def test_what_is_usual_for_an_action_by_hand() -> None:
     mean = (0 + 0 + 2 + 0) / 4
     once_more = [(3 * 0 + mean) / 4, (2 + mean) / 2]
     assert usual == pytest.approx([PRIOR.log_error + own - mean for own in once_more])
+
+
+def test_a_frame_of_nothing_is_no_reason_to_fail() -> None:
+    """It counts as no error at all, as it does live."""
+    still = [Som(1, 1, np.zeros((1, size), np.float32)) for size in (45, 45, 12)]
+    first = FirstMaps(still[0], still[1], still[2], (1.0, 1.0, 1.0), (0.4, 0.1))
+    nothing, still_m = np.full((2, 15, 3), np.nan), np.zeros((2, 15, 3))
+    assert usual_log_errors(first, [nothing, still_m], np.array([0, 1]), PRIOR) == [PRIOR.log_error] * 2
