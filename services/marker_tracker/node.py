@@ -9,14 +9,14 @@ from actum import keys
 from actum.messages import Image, Message, Objects, TrackedObject
 from actum.node import SECOND_NS, Tally, Tick
 from actum.stamps import Order, StampGuard
-from marker_tracker.catalogue import Carried, Catalogue, Key, plain
-from marker_tracker.decoding import Marker
-from marker_tracker.images import Camera, UnusableImageError, camera, gray, refuse_black
-from marker_tracker.poses import WORST_ERROR_PX, BadPoseError, Pose, confidence, solve
-from marker_tracker.rotations import Array
+from marker_tracker.detection.decoding import Marker
+from marker_tracker.detection.images import Camera, UnusableImageError, camera, gray, refuse_black
+from marker_tracker.pose.catalogue import Carried, Catalogue, Key, plain
+from marker_tracker.pose.object_tracks import Sighting, Tracks
+from marker_tracker.pose.poses import WORST_ERROR_PX, BadPoseError, Pose, confidence, solve
+from marker_tracker.pose.rotations import Array
 from marker_tracker.scene_file import SceneFileError, load
 from marker_tracker.settings import Settings
-from marker_tracker.tracks import Sighting, Tracks
 from marker_tracker.watching import Watch
 
 OnObject = list[tuple[Marker, Carried]]

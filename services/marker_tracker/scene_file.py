@@ -11,8 +11,8 @@ import yaml
 from numpy.typing import NDArray
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
-from marker_tracker.catalogue import Carried, Catalogue, Key
-from marker_tracker.families import canonical, family
+from marker_tracker.detection.families import canonical, family
+from marker_tracker.pose.catalogue import Carried, Catalogue, Key
 
 Array = NDArray[np.float64]
 Degrees = Annotated[FiniteFloat, Field(ge=-360, le=360)]

@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from actum.settings import ServiceSettings
-from marker_tracker.families import canonical
+from marker_tracker.detection.families import canonical
 
 
 class ObjectSpec(BaseModel):

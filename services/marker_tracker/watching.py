@@ -3,11 +3,11 @@
 from collections.abc import Collection, Mapping
 
 from actum.node import SECOND_NS
-from marker_tracker.covers import Covers
-from marker_tracker.decoding import Marker
-from marker_tracker.detection import MarkerDetector
-from marker_tracker.following import Follower
-from marker_tracker.images import Pixels
+from marker_tracker.detection.decoding import Marker
+from marker_tracker.detection.detector import MarkerDetector
+from marker_tracker.detection.images import Pixels
+from marker_tracker.occlusion.covering_hand import Covers
+from marker_tracker.occlusion.partly_covered import Follower
 
 SEARCHED_NS = SECOND_NS // 3
 """Images are searched as a whole at least this often: others' markers and second copies are to be told, too."""

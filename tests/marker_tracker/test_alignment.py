@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from marker_tracker.alignment import aligned, aligned_alike, is_small
-from marker_tracker.families import family
+from marker_tracker.detection.alignment import aligned, aligned_alike, is_small
+from marker_tracker.detection.families import family
 
 FAMILY = family("DICT_4X4_50")
 SHOWN = FAMILY.shown[3]

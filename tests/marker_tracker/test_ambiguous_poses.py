@@ -6,12 +6,12 @@ import cv2
 import numpy as np
 import pytest
 
-from marker_tracker.catalogue import Carried
-from marker_tracker.decoding import Marker
-from marker_tracker.facing import Facing
-from marker_tracker.images import Camera
-from marker_tracker.poses import Pose, solve
-from marker_tracker.rotations import apart_rad
+from marker_tracker.detection.decoding import Marker
+from marker_tracker.detection.images import Camera
+from marker_tracker.pose.catalogue import Carried
+from marker_tracker.pose.disambiguation import Facing
+from marker_tracker.pose.poses import Pose, solve
+from marker_tracker.pose.rotations import apart_rad
 
 CAMERA = Camera(np.array([[525.0, 0, 319.5], [0, 525.0, 239.5], [0, 0, 1]]), np.zeros(0), np.eye(4))
 CARRIED = Carried(1, 0.08)

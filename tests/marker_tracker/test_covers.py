@@ -6,8 +6,8 @@ import pytest
 
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
-from marker_tracker.covers import MOST_FOLLOWED, View
 from marker_tracker.node import MarkerTracker
+from marker_tracker.occlusion.covering_hand import MOST_FOLLOWED, View
 from marker_tracker.settings import Settings
 
 SIZE_M, FOCAL_PX, MIDDLE_PX = 0.08, 525.0, np.array([319.5, 239.5])

@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
-from marker_tracker.decoding import CLEAR, read_in_place
-from marker_tracker.detection import MarkerDetector
-from marker_tracker.families import family
+from marker_tracker.detection.decoding import CLEAR, read_in_place
+from marker_tracker.detection.detector import MarkerDetector
+from marker_tracker.detection.families import family
 
 FAMILY = "DICT_4X4_50"
 SIDE_PX, FINE = 24, 8

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from actum.messages import Image, TrackedObject
-from marker_tracker.decoding import Marker
-from marker_tracker.detection import MarkerDetector
+from marker_tracker.detection.decoding import Marker
+from marker_tracker.detection.detector import MarkerDetector
 from marker_tracker.node import MarkerTracker
-from marker_tracker.rotations import apart_rad
+from marker_tracker.pose.rotations import apart_rad
 from marker_tracker.settings import Settings
 from rotation_of import rotation_of
 

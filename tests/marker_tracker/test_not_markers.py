@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from marker_tracker.detection import MarkerDetector
+from marker_tracker.detection.detector import MarkerDetector
 
 SIDE, CELLS = 96, 6
 DARK, PAPER = 30, 200

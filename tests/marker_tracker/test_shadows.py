@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from marker_tracker.detection import MarkerDetector
+from marker_tracker.detection.detector import MarkerDetector
 
 WIDTH, HEIGHT = 240, 180
 FINE = 4

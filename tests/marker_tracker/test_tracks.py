@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
-from marker_tracker.poses import Pose
-from marker_tracker.rotations import apart_rad, between
-from marker_tracker.tracks import PREDICTED_S, Sighting, Tracks
+from marker_tracker.pose.object_tracks import PREDICTED_S, Sighting, Tracks
+from marker_tracker.pose.poses import Pose
+from marker_tracker.pose.rotations import apart_rad, between
 
 RATE_HZ = 30
 NOISE_M = np.array([0.001, 0.001, 0.006])

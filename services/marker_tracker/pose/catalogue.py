@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum import geometry
-from marker_tracker.families import UnknownMarkerError, canonical
-from marker_tracker.families import family as family_of
+from marker_tracker.detection.families import UnknownMarkerError, canonical
+from marker_tracker.detection.families import family as family_of
 from marker_tracker.settings import Settings
 
 Array = NDArray[np.float64]

@@ -8,10 +8,10 @@ import numpy as np
 from actum.geometry import quaternion_xyzw
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
-from marker_tracker import kalman
-from marker_tracker.facing import Facing
-from marker_tracker.poses import Pose
-from marker_tracker.rotations import Array, apart_rad, between
+from marker_tracker.pose import kalman
+from marker_tracker.pose.disambiguation import Facing
+from marker_tracker.pose.poses import Pose
+from marker_tracker.pose.rotations import Array, apart_rad, between
 
 REJOIN_S = 0.5
 """What has been hidden for longer starts anew where it is seen again."""

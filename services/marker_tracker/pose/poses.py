@@ -8,10 +8,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from marker_tracker.catalogue import Carried
-from marker_tracker.decoding import Marker
-from marker_tracker.images import Camera
-from marker_tracker.rotations import apart_rad
+from marker_tracker.detection.decoding import Marker
+from marker_tracker.detection.images import Camera
+from marker_tracker.pose.catalogue import Carried
+from marker_tracker.pose.rotations import apart_rad
 
 Array = NDArray[np.float64]
 

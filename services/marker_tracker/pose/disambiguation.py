@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from marker_tracker.poses import Pose
-from marker_tracker.rotations import Array, apart_rad
+from marker_tracker.pose.poses import Pose
+from marker_tracker.pose.rotations import Array, apart_rad
 
 CORNER_NOISE_PX = 0.25
 STEP = 10.0

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.node import SECOND_NS
-from marker_tracker import reading
-from marker_tracker.alignment import aligned, aligned_alike
-from marker_tracker.decoding import Marker
-from marker_tracker.detection import SAME_PLACE
-from marker_tracker.families import family
-from marker_tracker.images import Pixels
+from marker_tracker.detection import reading
+from marker_tracker.detection.alignment import aligned, aligned_alike
+from marker_tracker.detection.decoding import Marker
+from marker_tracker.detection.detector import SAME_PLACE
+from marker_tracker.detection.families import family
+from marker_tracker.detection.images import Pixels
 
 Array = NDArray[np.float64]
 Box = tuple[int, int, int, int]

@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from marker_tracker.families import Cells
-from marker_tracker.images import Pixels
+from marker_tracker.detection.families import Cells
+from marker_tracker.detection.images import Pixels
 
 Array = NDArray[np.float64]
 

@@ -8,11 +8,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from marker_tracker import reading
-from marker_tracker.corners import refine
-from marker_tracker.decoding import Marker, read_in_place, read_squares
-from marker_tracker.families import Family, family
-from marker_tracker.images import Pixels
+from marker_tracker.detection import reading
+from marker_tracker.detection.corners import refine
+from marker_tracker.detection.decoding import Marker, read_in_place, read_squares
+from marker_tracker.detection.families import Family, family
+from marker_tracker.detection.images import Pixels
 
 Array = NDArray[np.float64]
 

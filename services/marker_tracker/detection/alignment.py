@@ -11,9 +11,9 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from marker_tracker.families import Cells
-from marker_tracker.images import Pixels
-from marker_tracker.reading import levels_at
+from marker_tracker.detection.families import Cells
+from marker_tracker.detection.images import Pixels
+from marker_tracker.detection.reading import levels_at
 
 Array = NDArray[np.float64]
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.node import SECOND_NS
-from marker_tracker.decoding import Marker
-from marker_tracker.images import Pixels
-from marker_tracker.registration import Patch, Similarity, blurred
+from marker_tracker.detection.decoding import Marker
+from marker_tracker.detection.images import Pixels
+from marker_tracker.occlusion.registration import Patch, Similarity, blurred
 
 Array = NDArray[np.float64]
 Key = tuple[str, int]

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from marker_tracker import reading
-from marker_tracker.alignment import Aligned, aligned, is_small
-from marker_tracker.families import Cells, Family, Match
-from marker_tracker.images import Pixels
+from marker_tracker.detection import reading
+from marker_tracker.detection.alignment import Aligned, aligned, is_small
+from marker_tracker.detection.families import Cells, Family, Match
+from marker_tracker.detection.images import Pixels
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from marker_tracker.images import Pixels
+from marker_tracker.detection.images import Pixels
 
 Array = NDArray[np.float64]
 
