@@ -1,174 +1,212 @@
-"""Squares to markers: which code each shows, and its corners by all of its pattern where it is small."""
+"""From squares to markers: which code the cells of each square show, and exact corners where the marker is small."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from marker_tracker.detection import reading
-from marker_tracker.detection.alignment import Aligned, aligned, is_small
-from marker_tracker.detection.families import Cells, Family, Match
+from marker_tracker.detection.alignment import Alignment, align, sample_squares
+from marker_tracker.detection.families import Cells, Family
 from marker_tracker.detection.images import Pixels
+from marker_tracker.detection.marker import AlignmentStart, Marker
 
 Array = NDArray[np.float64]
 
-BORDER_TOLERANCE = 0.1
-"""Part of the border's cells that may look white once the corners are exact."""
-MOST_COVERED = 0.1
-"""Part of a marker that is not of its pattern, as in a shadow, from which on its sides tell more than the pattern."""
-CLEAR = 0.02
-"""Part up to which a marker is clear; what covers more of it would draw it along from image to image."""
-LEAST_LIKENESS = 0.72
-"""Correlation with its pattern from which on a marker is one: grey cells of something else are read as a code, too."""
+SAMPLES_PER_CELL = 3
+"""Along each side of a cell; a cell is read by their mean."""
+SAMPLED_SHARE = 0.6
+"""Of a cell's width, in which the samples lie: its rim is blurred."""
+SHADOW_THRESHOLD = 0.25
+"""Between black (0) and white (1), instead of the middle: in a shadow white is darker than the middle."""
+MAX_WHITE_BORDER_SHARE = 0.1
+"""Of the border's cells that may be read as white: with refined corners hardly one is."""
+MIN_CORRELATION = 0.72
+"""Normalised cross-correlation with the pattern: cells of other things are read as some code, too."""
+SMALL_CELL_PX = 6.5
+"""Pixels per cell up to which markers are aligned; the sides of larger ones are located well enough."""
+MAX_COVERED_ALIGNED = 0.1
+"""Share of a marker; where more is covered, or in shadow, its sides tell more than its pattern."""
+MAX_COVERED_CLEAR = 0.02
+"""Share of a marker up to which it is clear: what covers more would drag the alignment along from image to image."""
 
 
 @dataclass(frozen=True)
-class Start:
-    """Where the alignment of a marker begins in the next image: `corners_px` (4, 2), in the marker's order.
+class Candidates:
+    """Squares that may show markers of a family.
 
-    They go with the marker, so that what stays is found just as it was. `look` (3,) is its blur in cells, black and
-    contrast; `moved_px` (2,) is how far it went last.
+    Attributes:
+        family: the family.
+        corners_px: (n, 4, 2), refined, clockwise.
+        initial_px: (n, 4, 2), from which they were refined.
     """
 
+    family: Family
     corners_px: Array
-    look: Array
-    moved_px: Array
+    initial_px: Array
 
 
 @dataclass(frozen=True)
-class Marker:
-    """A detected marker with `wrong` cells misread, and in part `covered` (0 to 1).
+class _Readings:
+    """Markers read in squares.
 
-    `corners_px` (4, 2) go clockwise from the marker's own top left; `rough_px` (4, 2) are what they were refined from.
-    One that was aligned by all of its pattern, and is not covered, has a `start`. A `hidden` one is where what covers
-    it has gone.
+    `index` (n,) is of the square, `corners_px` (n, 4, 2) begin at the marker's own top left; `wrong` counts cells.
     """
 
-    family: str
-    id: int
+    index: NDArray[np.intp]
     corners_px: Array
-    wrong: int = 0
-    covered: float = 0.0
-    rough_px: Array | None = None
-    start: Start | None = None
-    hidden: bool = False
-
-    @cached_property
-    def side_px(self) -> float:
-        """Mean length of the four sides."""
-        sides = self.corners_px - self.corners_px[[3, 0, 1, 2]]
-        return float(np.sqrt((sides * sides).sum(axis=1)).mean())
-
-    @cached_property
-    def centre_px(self) -> Array:
-        """Mean of the corners: (2,)."""
-        centre: Array = self.corners_px.sum(axis=0) / 4
-        return centre
-
-
-@dataclass(frozen=True)
-class Read:
-    """Squares (n, 4, 2) that show codes, from each marker's own top left on: `which` (n,) of those looked at they are.
-
-    `ids` and `wrong` (n,) tell the markers, and how many of their cells are misread.
-    """
-
-    which: NDArray[np.intp]
-    squares: Array
     ids: list[int]
     wrong: list[int]
 
 
-def read_squares(pixels: Pixels, squares: Array, rough: Array, one: Family) -> list[Marker]:
-    """Read a family's markers in squares (n, 4, 2), clockwise, that were refined from `rough` (n, 4, 2)."""
-    if not len(squares):
-        return []
-    read = _read(pixels, squares, one)
-    exact, covered, starts = _exact(pixels, read.squares, one.shown[read.ids])
+def decode(pixels: Pixels, candidates: Sequence[Candidates]) -> list[Marker]:
+    """Read the markers in candidate squares of a grey image (height, width); align the small ones."""
+    return [marker for each in candidates if len(each.corners_px) for marker in _decoded(pixels, each)]
+
+
+def read_in_place(pixels: Pixels, markers: Sequence[Marker], families: Sequence[Family]) -> list[Marker]:
+    """Align and read the small clear markers of the image before, from where their last motion would bring them.
+
+    Left out are markers whose alignment does not converge, that are covered, or that no longer show their code.
+    """
+    return [marker for family in families for marker in _read_in_place(pixels, markers, family)]
+
+
+def wrong_cells(pixels: Pixels, corners_px: Array, pattern: Cells) -> Cells:
+    """Compare a square (4, 2) with a marker (across, across), its border included: True where it shows another."""
+    wrong: Cells = _binarised(_sampled_cells(pixels, corners_px[None], len(pattern) - 2))[0] != pattern
+    return wrong
+
+
+def _decoded(pixels: Pixels, candidates: Candidates) -> list[Marker]:
+    family = candidates.family
+    readings = _read(_sampled_cells(pixels, candidates.corners_px, family.cells), candidates.corners_px, family)
+    corners_px, covered, starts = _aligned_if_small(pixels, readings.corners_px, family.patterns[readings.ids])
     return [
-        Marker(one.name, number, quad, wrong, part, rough[at], start)
+        Marker(family.name, number, quad, wrong, part, candidates.initial_px[at], start)
         for at, number, wrong, quad, part, start in zip(
-            read.which, read.ids, read.wrong, exact, covered, starts, strict=True
+            readings.index, readings.ids, readings.wrong, corners_px, covered, starts, strict=True
         )
     ]
 
 
-def read_in_place(pixels: Pixels, markers: Sequence[Marker], one: Family) -> list[Marker]:
-    """Read again those of a family's markers that were clear and go on as before, so that alignment finds them."""
-    before = [(marker, marker.start) for marker in markers if marker.start is not None]
+def _read(levels: Array, corners_px: Array, family: Family) -> _Readings:
+    """Match grey levels, as of `_sampled_cells`, with a family's codes: in plain light, or else in a shadow."""
+    cells = _binarised(levels)
+    ids, turns, wrong, matched = _matched(cells, family, family.corrected)
+    (unread,) = np.nonzero(~matched)
+    if len(unread):
+        shadowed = _matched(_binarised(levels[unread], SHADOW_THRESHOLD), family, 0)
+        ids[unread], turns[unread], wrong[unread], matched[unread] = shadowed
+    (index,) = np.nonzero(matched)
+    for at in index:
+        cells[at] = np.rot90(family.patterns[ids[at]], turns[at])
+    index = index[_correlation(levels, cells)[index] >= MIN_CORRELATION]
+    upright = [np.roll(corners_px[at], turns[at], axis=0) for at in index]
+    return _Readings(index, np.array(upright).reshape(-1, 4, 2), ids[index].tolist(), wrong[index].tolist())
+
+
+def _matched(
+    cells: Cells, family: Family, tolerated: int
+) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.int64], NDArray[np.bool_]]:
+    """Find the marker nearest to each reading (n, across, across) with its border.
+
+    Returns:
+        Ids (n,), quarter turns (n,), wrong cells (n,), and whether code and border are as right as they must be (n,).
+    """
+    inner = cells[:, 1:-1, 1:-1]
+    matches, white_border = family.match(inner), cells.sum(axis=(1, 2)) - inner.sum(axis=(1, 2))
+    border_cells = 4 * (family.cells + 1)
+    matched = (matches.wrong <= tolerated) & (white_border <= MAX_WHITE_BORDER_SHARE * border_cells)
+    return matches.ids, matches.turns, matches.wrong + white_border, matched
+
+
+def _aligned_if_small(
+    pixels: Pixels, corners_px: Array, patterns: Cells
+) -> tuple[Array, list[float], list[AlignmentStart | None]]:
+    """Align small markers (n, 4, 2); where more than a little is covered, corners stay as they were refined.
+
+    Returns:
+        Corners (n, 4, 2), the covered share of each, and where alignment begins in the next image.
+    """
+    exact, covered = corners_px.copy(), [0.0] * len(corners_px)
+    starts: list[AlignmentStart | None] = [None] * len(corners_px)
+    sides_px = np.linalg.norm(corners_px - corners_px[:, [3, 0, 1, 2]], axis=2).mean(axis=1)
+    (small,) = np.nonzero(sides_px <= SMALL_CELL_PX * patterns.shape[1])
+    if not len(small):
+        return exact, covered, starts
+    found = align(pixels, corners_px[small], patterns[small])
+    for i, at in enumerate(small):
+        covered[at] = float(found.covered[i])
+        if covered[at] <= MAX_COVERED_ALIGNED:
+            exact[at] = found.corners_px[i]
+        if covered[at] <= MAX_COVERED_CLEAR:
+            starts[at] = AlignmentStart(corners_px[at], found.photometric[i], np.zeros(2))
+    return exact, covered, starts
+
+
+def _read_in_place(pixels: Pixels, markers: Sequence[Marker], family: Family) -> list[Marker]:
+    before = [(each, each.start) for each in markers if each.family == family.name and each.start is not None]
     if not before:
         return []
-    starts_px = np.stack([start.corners_px + start.moved_px for _, start in before])
-    shown, looks = one.shown[[marker.id for marker, _ in before]], np.stack([start.look for _, start in before])
-    found = aligned(pixels, starts_px, shown, looks)
-    levels = reading.sampled(pixels, found.corners_px, one.cells)
-    wrong = (reading.white(levels) != shown).sum(axis=(1, 2))
-    shows = (wrong <= one.corrected) & (reading.likeness(levels, shown) >= LEAST_LIKENESS)
-    (here,) = np.nonzero(shows & found.settled & (found.covered <= CLEAR))
-    return [_gone_on(before[at], found, at, int(wrong[at])) for at in here.tolist()]
+    expected_px = np.stack([start.corners_px + start.motion_px for _, start in before])
+    patterns = family.patterns[[marker.id for marker, _ in before]]
+    found = align(pixels, expected_px, patterns, np.stack([start.photometric for _, start in before]))
+    levels = _sampled_cells(pixels, found.corners_px, family.cells)
+    wrong = (_binarised(levels) != patterns).sum(axis=(1, 2))
+    shows_code = (wrong <= family.corrected) & (_correlation(levels, patterns) >= MIN_CORRELATION)
+    (index,) = np.nonzero(shows_code & found.converged & (found.covered <= MAX_COVERED_CLEAR))
+    return [_moved(*before[at], found, at, int(wrong[at])) for at in index.tolist()]
 
 
-def _gone_on(before: tuple[Marker, Start], found: Aligned, at: int, wrong: int) -> Marker:
-    (marker, start), corners_px = before, found.corners_px[at]
-    moved_px = corners_px.mean(axis=0) - marker.centre_px
+def _moved(marker: Marker, start: AlignmentStart, found: Alignment, at: int, wrong: int) -> Marker:
+    corners_px = found.corners_px[at]
+    motion_px = corners_px.mean(axis=0) - marker.centre_px
     return replace(
         marker,
         corners_px=corners_px,
         wrong=wrong,
         covered=float(found.covered[at]),
-        start=Start(start.corners_px + moved_px, found.looks[at], moved_px),
+        start=AlignmentStart(start.corners_px + motion_px, found.photometric[at], motion_px),
     )
 
 
-def _read(pixels: Pixels, squares: Array, one: Family) -> Read:
-    """Match what squares (n, 4, 2) show with a family's codes, in plain light or else in a shadow."""
-    levels = reading.sampled(pixels, squares, one.cells)
-    shown = reading.white(levels)
-    matched: list[tuple[Match, int]] = []
-    which: list[int] = []
-    for index, level in enumerate(levels):
-        match = _matched(one, shown[index], one.corrected) or _matched(one, _in_shadow(level), 0)
-        if match is not None:
-            matched.append(match)
-            which.append(index)
-            shown[index] = np.rot90(one.shown[match[0].id], match[0].turns)
-    alike = reading.likeness(levels, shown)[which] >= LEAST_LIKENESS
-    kept, found = np.array(which, dtype=np.intp)[alike], [it for it, like in zip(matched, alike, strict=True) if like]
-    upright = [np.roll(squares[at], match.turns, axis=0) for at, (match, _) in zip(kept, found, strict=True)]
-    return Read(
-        kept, np.array(upright).reshape(-1, 4, 2), [match.id for match, _ in found], [wrong for _, wrong in found]
-    )
+def _sampled_cells(pixels: Pixels, corners_px: Array, cells: int) -> Array:
+    """Sample squares (n, 4, 2) with their borders: (n, cells + 2, SAMPLES_PER_CELL, cells + 2, SAMPLES_PER_CELL)."""
+    across = cells + 2
+    levels = sample_squares(pixels, corners_px, _sample_points(across))
+    return levels.reshape(-1, across, SAMPLES_PER_CELL, across, SAMPLES_PER_CELL)
 
 
-def _in_shadow(level: Array) -> Cells:
-    cells: Cells = reading.white(level[None], reading.SHADOWED)[0]
-    return cells
+@cache
+def _sample_points(across: int) -> Array:
+    """Sampled points (m, 2) of the unit square, row by row."""
+    within = np.linspace(-SAMPLED_SHARE / 2, SAMPLED_SHARE / 2, SAMPLES_PER_CELL)
+    unit = (np.arange(across)[:, None] + 0.5 + within).ravel() / across
+    return np.stack(np.meshgrid(unit, unit), axis=-1).reshape(-1, 2)
 
 
-def _matched(one: Family, cells: Cells, corrected: int) -> tuple[Match, int] | None:
-    """Find the marker that shows cells with their border, and how many of them are wrong."""
-    match, border = one.match(cells[1:-1, 1:-1]), reading.border_wrong(cells)
-    if match is None or match.wrong > corrected or border > BORDER_TOLERANCE * 4 * (one.cells + 1):
-        return None
-    return match, match.wrong + border
+def _binarised(levels: Array, threshold: float = 0.5) -> Cells:
+    """Binarise cells by a threshold between the border's median (0) and the mean of the bright ones (1).
 
-
-def _exact(pixels: Pixels, squares: Array, shown: Cells) -> tuple[Array, list[float], list[Start | None]]:
-    """Align the small ones of squares (n, 4, 2) where their pattern tells more than their sides.
-
-    Returns:
-        Corners (n, 4, 2), the part of each that is covered, and where to begin in the next image.
+    From levels as of `_sampled_cells` to (n, across, across), True where white.
     """
-    exact, covered = squares.copy(), [0.0] * len(squares)
-    starts: list[Start | None] = [None] * len(squares)
-    (small,) = np.nonzero(is_small(squares, shown.shape[1]))
-    if not len(small):
-        return exact, covered, starts
-    found = aligned(pixels, squares[small], shown[small])
-    for at, corners_px, part, look in zip(small, found.corners_px, found.covered.tolist(), found.looks, strict=True):
-        covered[at] = part
-        exact[at] = corners_px if part <= MOST_COVERED else squares[at]
-        starts[at] = Start(squares[at], look, np.zeros(2)) if part <= CLEAR else None
-    return exact, covered, starts
+    levels = levels.sum(axis=(2, 4))
+    rim = (levels[:, 0], levels[:, -1], levels[:, 1:-1, 0], levels[:, 1:-1, -1])
+    border = np.sort(np.concatenate(rim, axis=1), axis=1)
+    dark = border[:, border.shape[1] // 2, None, None]
+    bright = levels > (levels.min(axis=(1, 2), keepdims=True) + levels.max(axis=(1, 2), keepdims=True)) / 2
+    count = np.maximum(bright.sum(axis=(1, 2), keepdims=True), 1)
+    light = np.maximum((levels * bright).sum(axis=(1, 2), keepdims=True) / count, dark)
+    return np.asarray(levels > dark + threshold * (light - dark))
+
+
+def _correlation(levels: Array, patterns: Cells) -> Array:
+    """Normalised cross-correlation (n,) of levels, as of `_sampled_cells`, with patterns (n, across, across)."""
+    mean = levels.mean(axis=(2, 4))
+    light, middle = patterns.mean(axis=(1, 2)), mean.mean(axis=(1, 2))
+    covariance = (mean * patterns).mean(axis=(1, 2)) - light * middle
+    variance = np.einsum("nikjl,nikjl->n", levels, levels) / levels[0].size - middle**2
+    correlation: Array = covariance / np.sqrt(np.maximum(variance * light * (1 - light), 1e-9))
+    return correlation

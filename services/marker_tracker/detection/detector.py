@@ -1,161 +1,136 @@
-"""Markers of several families in an image, their corners to a fraction of a pixel."""
+"""The markers of each image: read again in their places, or searched for in the whole image when that is due."""
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from marker_tracker.detection import reading
+from actum.node import SECOND_NS
 from marker_tracker.detection.corners import refine
-from marker_tracker.detection.decoding import Marker, read_in_place, read_squares
-from marker_tracker.detection.families import Family, family
+from marker_tracker.detection.decoding import Candidates, decode, read_in_place
+from marker_tracker.detection.families import family
 from marker_tracker.detection.images import Pixels
+from marker_tracker.detection.marker import Marker
+from marker_tracker.detection.quads import QuadDetector, inner_squares, rimmed_squares, within
 
 Array = NDArray[np.float64]
 
-SMALL_FAMILY = 50
-"""Codes up to which it costs little to search all of them, so that unknown markers are found and told."""
-MOST_LOOKED_AT_AGAIN = 16
-STAYS_PX = 1.0
-SAME_PLACE = 0.25
-"""Markers whose centres are nearer than this, in parts of a side, are one printed marker."""
+SEARCH_INTERVAL_NS = SECOND_NS // 3
+"""Nanoseconds between whole searches with nothing missing: unknown markers and second copies are to be told, too."""
+MISSING_SEARCH_INTERVAL_NS = SECOND_NS // 20
+"""Nanoseconds between whole searches while a wanted marker is missing: every image of a slow camera."""
+STATIC_PX = 1.0
+"""Pixels in each axis by which a marker may differ from its initial corners and still count as static."""
+SAME_PLACE_SIDES = 0.25
+"""Distance of centres, in sides of a marker, below which two markers are one printed marker read twice."""
 
 
 class MarkerDetector:
-    """OpenCV finds squares and reads them; corners are then refined, and each code is read again at exact corners.
+    """Detects markers of several families in images that follow one another.
 
-    What OpenCV took for a marker and cannot be read again is dropped; while a wanted marker is missing, squares that
-    OpenCV could not read are given a second look, which finds markers that are small or steep.
+    A search of the whole image costs more than all the rest, so that markers are first read again where they were.
+    A search has OpenCV find squares and decode them; the squares' corners are refined, and each code is read again at
+    these corners. What cannot be read again is dropped. While a wanted marker is missing, squares that OpenCV could
+    not decode are read as well, which finds markers that are small or steep.
     """
 
     def __init__(self, wanted: Mapping[str, Collection[int]]) -> None:
-        """Search these families: for these ids, or for all where there are none or the family is small."""
+        """Detect these ids of these families, or all of a family where no ids are given."""
         self._families = [family(name) for name in wanted]
+        self._quads = QuadDetector(self._families, [*wanted.values()])
         self._wanted = {(name, number) for name, ids in wanted.items() for number in ids}
-        self._open = not all(wanted.values())
-        dictionaries = [_searched(one, ids) for one, ids in zip(self._families, wanted.values(), strict=True)]
-        self._detector = cv2.aruco.ArucoDetector(dictionaries, cv2.aruco.DetectorParameters())
+        self._all_wanted = not all(wanted.values())
+        self._last: list[Marker] = []
+        self._searched_ns = 0
 
-    def detect(self, pixels: Pixels, here: Sequence[Marker] = ()) -> list[Marker]:
-        """Find the markers of a grey image (height, width), of which some may be known to be here."""
-        corners, _ids, rejected, families = self._detector.detectMarkersMultiDict(pixels)
-        found, numbers = _quads(corners), np.zeros(0, dtype=int) if families is None else np.ravel(families).astype(int)
-        new = ~_is_within(found, _squares(here))
-        markers = [*here, *self._read_found(pixels, found[new], numbers[new])]
-        if not self.is_complete(markers):
-            markers += self._second_look(pixels, _quads(rejected), found)
-        return _apart(markers)
+    def clear(self) -> None:
+        """Forget where markers were."""
+        self._last = []
+        self._searched_ns = 0
 
-    def _read_found(self, pixels: Pixels, found: Array, numbers: NDArray[np.int_]) -> list[Marker]:
-        """Read squares (n, 4, 2) that OpenCV found, each of the family of a number (n,)."""
-        markers: list[Marker] = []
-        refined = refine(pixels, found)
-        for index in np.unique(numbers):
-            of_family, one = numbers == index, self._families[int(index)]
-            read = read_squares(pixels, refined[of_family], found[of_family], one)
-            markers += read
-            if len(read) < np.count_nonzero(of_family):
-                markers += self._read_within(pixels, _outside(found[of_family], _squares(read)), one)
+    def detect(self, stamp_ns: int, pixels: Pixels) -> list[Marker]:
+        """Detect the markers of the next grey image (height, width), of the size of the one before."""
+        interval_ns = SEARCH_INTERVAL_NS if self._is_complete(self._last) else MISSING_SEARCH_INTERVAL_NS
+        due = stamp_ns - self._searched_ns >= interval_ns
+        markers = read_in_place(pixels, self._last, self._families)
+        if not due:
+            markers = _distinct([*markers, *self._read_near(pixels, markers)])
+        if due or len(markers) < max(1, len(self._last)):
+            markers = self.search(pixels, markers)
+            self._searched_ns = stamp_ns
+        self._last = markers
         return markers
 
-    def is_complete(self, markers: Sequence[Marker]) -> bool:
-        """Tell whether nothing is left to find."""
-        return not self._open and self._wanted <= {_key(marker) for marker in markers}
+    def search(self, pixels: Pixels, known: Sequence[Marker] = ()) -> list[Marker]:
+        """Search a grey image (height, width) for markers, of which some may be known already."""
+        quads = self._quads.find(pixels, _squares(known))
+        markers = [*known, *self._read_decoded(pixels, quads.decoded[quads.new], quads.family[quads.new])]
+        if not self._is_complete(markers):
+            rough = rimmed_squares(pixels, quads)
+            refined = refine(pixels, rough)
+            markers += decode(pixels, [Candidates(each, refined, rough) for each in self._families])
+        return _distinct(markers)
 
-    def read_in_place(self, pixels: Pixels, markers: Sequence[Marker]) -> list[Marker]:
-        """Find the small markers of a grey image (height, width) that have hardly moved since another."""
-        return [marker for one in self._families for marker in read_in_place(pixels, _of(one, markers), one)]
+    def _is_complete(self, markers: Sequence[Marker]) -> bool:
+        """Tell whether every wanted marker is found."""
+        return not self._all_wanted and self._wanted <= {marker.key for marker in markers}
 
-    def read_again(self, pixels: Pixels, markers: Sequence[Marker]) -> list[Marker]:
-        """Find the markers of a grey image (height, width) that are still where they were in another, and no others."""
-        here = self.read_in_place(pixels, markers)
-        in_place = {_key(marker) for marker in here}
-        moved = [marker for marker in markers if _key(marker) not in in_place]
-        return _apart([*here, *self._read_near(pixels, moved)])
-
-    def _read_near(self, pixels: Pixels, markers: Sequence[Marker]) -> list[Marker]:
-        """Read again what may have moved by as much as corners are refined."""
-        if not markers:
+    def _read_near(self, pixels: Pixels, in_place: Sequence[Marker]) -> list[Marker]:
+        """Read the other markers of the image before, which may have moved as far as refinement corrects corners."""
+        found = {marker.key for marker in in_place}
+        others = [marker for marker in self._last if marker.key not in found]
+        if not others:
             return []
-        rough = np.stack([_start_px(marker) for marker in markers])
-        refined, names = refine(pixels, rough), np.array([marker.family for marker in markers])
-        near: list[Marker] = []
-        for one in self._families:
-            of_family = names == one.name
-            near += read_squares(pixels, refined[of_family], rough[of_family], one)
-        known = {_key(marker) for marker in markers}
-        return [marker for marker in near if _key(marker) in known]
+        rough = np.stack([_initial_px(marker) for marker in others])
+        near = self._read(pixels, rough, np.array([marker.family for marker in others]))
+        known = {marker.key for marker in others}
+        return [marker for marker in near if marker.key in known]
 
-    def _read_within(self, pixels: Pixels, unread: Array, one: Family) -> list[Marker]:
-        """Read what is darker in squares that OpenCV read: it may take the white's outline for the marker's."""
-        within = [square for quad in unread if (square := reading.dark_square(pixels, quad)) is not None]
-        if not within:
+    def _read_decoded(self, pixels: Pixels, rough: Array, numbers: NDArray[np.int_]) -> list[Marker]:
+        """Read squares (n, 4, 2) that OpenCV decoded, each as of the family with a number (n,).
+
+        In what cannot be read, a darker square is read: OpenCV may take the outline of the paper for the marker's.
+        """
+        names = np.array([each.name for each in self._families])
+        markers = self._read(pixels, rough, names[numbers])
+        inner: dict[str, Array] = {}
+        for number, name in enumerate(names):
+            own, read = rough[numbers == number], [marker for marker in markers if marker.family == name]
+            if len(read) < len(own):
+                inner[name] = inner_squares(pixels, own[~within(own, _squares(read))])
+        if inner:
+            inner_names = np.repeat([*inner], [len(each) for each in inner.values()])
+            markers += self._read(pixels, np.concatenate([*inner.values()]), inner_names)
+        return sorted(markers, key=lambda marker: names.tolist().index(marker.family))
+
+    def _read(self, pixels: Pixels, rough: Array, names: NDArray[np.str_]) -> list[Marker]:
+        """Refine rough squares (n, 4, 2) and read each as of the family with a name (n,)."""
+        if not len(rough):
             return []
-        rough = np.stack(within)
-        return read_squares(pixels, refine(pixels, rough), rough, one)
-
-    def _second_look(self, pixels: Pixels, rejected: Array, found: Array) -> list[Marker]:
-        """Read squares with a black rim that OpenCV could not read, the largest first."""
-        free = _outside(rejected, found)
-        rimmed = free[reading.has_black_rim(pixels, free)] if len(free) else free
-        largest = rimmed[np.argsort([-cv2.contourArea(quad.astype(np.float32)) for quad in rimmed])]
-        rough = largest[:MOST_LOOKED_AT_AGAIN]
         refined = refine(pixels, rough)
-        return [marker for one in self._families for marker in read_squares(pixels, refined, rough, one)]
+        own = [(each, names == each.name) for each in self._families]
+        return decode(pixels, [Candidates(each, refined[of_it], rough[of_it]) for each, of_it in own])
 
 
-def _key(marker: Marker) -> tuple[str, int]:
-    return marker.family, marker.id
-
-
-def _of(one: Family, markers: Sequence[Marker]) -> list[Marker]:
-    return [marker for marker in markers if marker.family == one.name]
-
-
-def _start_px(marker: Marker) -> Array:
-    """Begin where the refinement began before, that what stays is found just as it was; not where it has moved on."""
-    rough = marker.rough_px
-    stays = rough is not None and np.abs(rough.mean(axis=0) - marker.centre_px).max() <= STAYS_PX
-    return rough if rough is not None and stays else marker.corners_px
-
-
-def _searched(one: Family, ids: Collection[int]) -> Any:
-    """Leave out of a large family what is not wanted: time and false markers grow with the codes compared."""
-    return one.only(ids) if ids and len(one.codes) > SMALL_FAMILY else one.dictionary
-
-
-def _quads(corners: object) -> Array:
-    return np.asarray(corners, dtype=np.float64).reshape(-1, 4, 2)
+def _initial_px(marker: Marker) -> Array:
+    """Reuse the previous initial corners (4, 2) of a static marker, so that refinement repeats; else its corners."""
+    initial_px = marker.initial_px
+    if initial_px is None or np.abs(initial_px.mean(axis=0) - marker.centre_px).max() > STATIC_PX:
+        return marker.corners_px
+    return initial_px
 
 
 def _squares(markers: Sequence[Marker]) -> Array:
+    """Stack the corners of markers: (n, 4, 2)."""
     return np.array([marker.corners_px for marker in markers]).reshape(-1, 4, 2)
 
 
-def _outside(squares: Array, found: Array) -> Array:
-    """Leave out squares whose centre is in one that was found: cells of its code."""
-    outside: Array = squares[~_is_within(squares, found)]
-    return outside
-
-
-def _is_within(squares: Array, others: Array) -> NDArray[np.bool_]:
-    """Tell which squares (n, 4, 2) have their centre in another (m, 4, 2)."""
-    outlines = others.astype(np.float32)
-    centres = squares.mean(axis=1)
-    within = [
-        any(cv2.pointPolygonTest(quad, (float(x), float(y)), False) >= 0 for quad in outlines) for x, y in centres
-    ]
-    return np.array(within, dtype=bool)
-
-
-def _apart(markers: list[Marker]) -> list[Marker]:
+def _distinct(markers: list[Marker]) -> list[Marker]:
     """Keep one marker in each place: the one with the fewest wrong cells."""
     kept: list[Marker] = []
-    for marker in sorted(markers, key=lambda one: one.wrong):
-        reach_px = SAME_PLACE * marker.side_px
-        if not any(math.dist(marker.centre_px, one.centre_px) < reach_px for one in kept):
+    for marker in sorted(markers, key=lambda each: each.wrong):
+        reach_px = SAME_PLACE_SIDES * marker.side_px
+        if not any(math.dist(marker.centre_px, each.centre_px) < reach_px for each in kept):
             kept.append(marker)
     return kept

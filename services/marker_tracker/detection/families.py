@@ -1,4 +1,4 @@
-"""The families of markers: what cells each of their markers shows, and which marker shows given cells."""
+"""Marker families: the bit pattern of each marker, and which marker shows given cells."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -10,11 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 Cells = NDArray[np.bool_]
+"""The cells of markers, row by row, True where white."""
 Codes = NDArray[np.uint64]
+"""Cells without the border, packed into one number: the first cell is the lowest bit."""
 
 PREFIX = "DICT_"
-CORRECTED = 0.6
-"""In what part of the cells that a family could correct errors are corrected: OpenCV's own."""
+"""What OpenCV's names of families begin with."""
+CORRECTED_SHARE = 0.6
+"""Of the wrong cells that a family could correct, those that are corrected: OpenCV's own `errorCorrectionRate`."""
 
 
 class UnknownFamilyError(ValueError):
@@ -26,17 +29,31 @@ class UnknownMarkerError(ValueError):
 
 
 @dataclass(frozen=True)
-class Match:
-    """The marker that shows some cells: how many quarter turns its top left is on clockwise, and the wrong cells."""
+class Matches:
+    """The marker nearest to each of n readings of cells.
 
-    id: int
-    turns: int
-    wrong: int
+    Attributes:
+        ids: (n,) of the markers.
+        turns: (n,) quarter turns by which a marker's top left is further clockwise than the reading's.
+        wrong: (n,) cells that differ, the border not counted.
+    """
+
+    ids: NDArray[np.intp]
+    turns: NDArray[np.intp]
+    wrong: NDArray[np.int64]
 
 
 @dataclass(frozen=True)
 class Family:
-    """A dictionary of OpenCV: `cells` along a side without the border, `codes` (ids, 4) of each id in each turn."""
+    """A predefined dictionary of OpenCV.
+
+    Attributes:
+        name: OpenCV's.
+        cells: along a side, without the border.
+        corrected: wrong cells up to which a reading counts as a marker.
+        codes: (ids, 4) of each marker, as read in each of the four turns.
+        dictionary: OpenCV's own object.
+    """
 
     name: str
     cells: int
@@ -44,21 +61,21 @@ class Family:
     codes: Codes
     dictionary: Any
 
-    def match(self, cells: Cells) -> Match | None:
-        """Find the marker that shows cells (cells, cells), True where white, with no more errors than `corrected`."""
-        wrong = np.bitwise_count(self.codes ^ _code(cells))
-        at = int(np.argmin(wrong))
-        fewest = int(wrong.flat[at])
-        return Match(at // 4, at % 4, fewest) if fewest <= self.corrected else None
+    def match(self, cells: Cells) -> Matches:
+        """Find the marker with the fewest wrong cells for each reading (n, cells, cells) without border."""
+        wrong = np.bitwise_count(self.codes.reshape(1, -1) ^ _packed(cells)[:, None])
+        nearest = np.argmin(wrong, axis=1)
+        fewest = np.take_along_axis(wrong, nearest[:, None], axis=1)[:, 0].astype(np.int64)
+        return Matches(nearest // 4, nearest % 4, fewest)
 
     @cached_property
-    def shown(self) -> Cells:
-        """What each marker shows with its border, upright: (ids, cells + 2, cells + 2), True where white."""
+    def patterns(self) -> Cells:
+        """All markers upright with their black borders: (ids, cells + 2, cells + 2), True where white."""
         bits = self.codes[:, :1] >> np.arange(self.cells**2, dtype=np.uint64) & np.uint64(1)
         return np.pad(bits.astype(bool).reshape(-1, self.cells, self.cells), ((0, 0), (1, 1), (1, 1)))
 
     def only(self, ids: Collection[int]) -> Any:
-        """Make a dictionary of these ids alone, in rising order: every id it lacks costs no time and is no mistake."""
+        """Make an OpenCV dictionary of these ids alone, in rising order: others cost no time and no mistakes."""
         rows = np.ascontiguousarray(self.dictionary.bytesList[sorted(ids)])
         return cv2.aruco.Dictionary(rows, self.cells, self.dictionary.maxCorrectionBits)
 
@@ -87,17 +104,14 @@ def family(name: str) -> Family:
     """
     own = canonical(name)
     dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, own))
-    cells = int(dictionary.markerSize)
-    codes = np.array([_turned(dictionary, number) for number in range(len(dictionary.bytesList))], dtype=np.uint64)
-    return Family(own, cells, int(dictionary.maxCorrectionBits * CORRECTED), codes, dictionary)
+    cells, ids = int(dictionary.markerSize), range(len(dictionary.bytesList))
+    drawn = [cv2.aruco.generateImageMarker(dictionary, number, cells + 2)[1:-1, 1:-1] > 0 for number in ids]
+    codes = np.stack([_packed(np.rot90(drawn, turns, axes=(1, 2))) for turns in range(4)], axis=1)
+    return Family(own, cells, int(dictionary.maxCorrectionBits * CORRECTED_SHARE), codes, dictionary)
 
 
-def _turned(dictionary: Any, number: int) -> list[np.uint64]:
-    """Code a marker's cells as they are read when the reading starts 0 to 3 corners, clockwise, after its top left."""
-    drawn = cv2.aruco.generateImageMarker(dictionary, number, int(dictionary.markerSize) + 2)
-    return [_code(np.rot90(drawn[1:-1, 1:-1] > 0, turns)) for turns in range(4)]
-
-
-def _code(cells: Cells) -> np.uint64:
-    weights = np.uint64(1) << np.arange(cells.size, dtype=np.uint64)
-    return np.uint64((weights * cells.ravel()).sum(dtype=np.uint64))
+def _packed(cells: Cells) -> Codes:
+    """Pack cells (n, cells, cells) into codes (n,)."""
+    weights = np.uint64(1) << np.arange(cells.shape[1] * cells.shape[2], dtype=np.uint64)
+    packed: Codes = (cells.reshape(len(cells), -1) * weights).sum(axis=1, dtype=np.uint64)
+    return packed

@@ -1,46 +1,42 @@
-"""Each object's track: where it is and how it moves, also for a while when a hand covers its markers."""
+"""Object tracks: filtered position, velocity and rotation, predicted for a moment while an object is out of sight."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-from actum.geometry import quaternion_xyzw
+from actum import filters
+from actum.geometry import angle_between_rad, quaternion_xyzw
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
-from marker_tracker.pose import kalman
-from marker_tracker.pose.disambiguation import Facing
-from marker_tracker.pose.poses import Pose
-from marker_tracker.pose.rotations import Array, apart_rad, between
+from marker_tracker.pose.disambiguation import PoseDisambiguation
+from marker_tracker.pose.poses import Measurement, Pose
 
-REJOIN_S = 0.5
-"""What has been hidden for longer starts anew where it is seen again."""
-GATE = 60.0
-"""Squared Mahalanobis distance from which a sighting is doubted once, and believed when the next one agrees."""
-HIDDEN_GATE = 16.0
+Array = NDArray[np.float64]
+
+RESTART_S = 0.5
+"""Seconds out of sight after which a track starts anew: by then the object may be anywhere."""
+ACCELERATION_STD_MPS2 = 8.0
+"""Metres per second squared: what a hand does to an object within a frame."""
+INITIAL_SPEED_STD_MPS = 1.0
+"""Metres per second: an object may be moving when it is first seen."""
+MAX_NIS = 60.0
+"""Normalised innovation squared of a measurement that is doubted once, and believed when the next one agrees."""
+MAX_HIDDEN_NIS = 16.0
 """The same for a hidden object: what covers it may itself be hidden in part, and found in the wrong place."""
 PREDICTED_S = 0.3
-SLOWING_S = 0.15
-"""While predicted, an object comes to rest with this time constant."""
-MOVING = 16.0
-"""Squared velocity over its variance from which an object counts as moving, when that is also 5 cm/s."""
-SLOWEST_MPS = 0.05
-JITTER_RAD = 0.035
-"""Turns much smaller than this are smoothed, much larger ones followed at once."""
-
-
-@dataclass(frozen=True, eq=False)
-class Sighting:
-    """What one image says of an object, in the skeleton's camera frame.
-
-    `poses` are the one or two possible ones, the better first, `noise` (3, 3) the covariance of the position. A hidden
-    object is where what covers it has gone.
-    """
-
-    poses: Sequence[Pose]
-    noise: Array
-    confidence: float
-    hidden: bool = False
+"""Seconds for which motion is predicted: a hand's movement takes little longer."""
+SLOWING_TIME_CONSTANT_S = 0.15
+"""Seconds in which the predicted velocity falls to 1/e: what is out of sight is mostly about to be put down."""
+MIN_VELOCITY_RATIO = 16.0
+"""Squared velocity over its variance from which an object counts as moving: four standard deviations."""
+MIN_SPEED_MPS = 0.05
+"""Metres per second below which an object never counts as moving: hands tremble."""
+MIN_SEEN_FOR_VELOCITY = 3
+"""Measurements before which a velocity is too uncertain to predict by."""
+ROTATION_NOISE_RAD = 0.035
+"""Radians: much smaller rotations are smoothed, much larger ones followed at once."""
 
 
 class Track:
@@ -48,88 +44,93 @@ class Track:
 
     def __init__(self, number: int, name: str) -> None:
         self._number, self._name = number, name
-        self._motion: kalman.Motion | None = None
+        self._motion: filters.MotionEstimate | None = None
         self._rotation: Array | None = None
-        self._facing = Facing()
-        self._doubted: tuple[int, kalman.Motion] | None = None
-        self._sightings = 0
+        self._disambiguation = PoseDisambiguation()
+        self._doubted: tuple[int, filters.MotionEstimate] | None = None
+        self._measured = 0
         self._confidence = 0.0
-        self._followed = False
-        self.known_ns = 0
+        self._hidden = False
+        self.stamp_ns = 0
+        """Of the last measurement that was believed."""
 
-    def see(self, stamp_ns: int, sighting: Sighting) -> bool:
-        """Take in a sighting; false where it is too far off to be believed yet."""
-        seconds = (stamp_ns - self.known_ns) / SECOND_NS
-        if self._motion is None or seconds > REJOIN_S:
-            return self._begin(stamp_ns, sighting)
-        pose = self._facing.choose(sighting.poses, self._rotation)
-        position_m = pose.image_from_object[:3, 3]
-        motion, surprise = kalman.corrected(kalman.predicted(self._motion, seconds), position_m, sighting.noise)
-        if surprise > (HIDDEN_GATE if sighting.hidden else GATE):
-            if self._followed or self._agrees_with_doubted(stamp_ns, position_m, sighting.noise):
-                return self._begin(stamp_ns, sighting)
-            self._doubted = stamp_ns, kalman.started(position_m, sighting.noise)
+    def update(self, stamp_ns: int, measurement: Measurement) -> bool:
+        """Take in a measurement; false where it is too far off to be believed yet."""
+        seconds = (stamp_ns - self.stamp_ns) / SECOND_NS
+        if self._motion is None or seconds > RESTART_S:
+            return self._restart(stamp_ns, measurement)
+        pose = self._disambiguation.choose(measurement.poses, self._rotation)
+        position_m = pose.camera_from_object[:3, 3]
+        expected = filters.predicted(self._motion, seconds, ACCELERATION_STD_MPS2)
+        motion, nis = filters.updated(expected, position_m, measurement.noise_m2)
+        if nis > (MAX_HIDDEN_NIS if measurement.hidden else MAX_NIS):
+            if self._hidden or self._agrees_with_doubted(stamp_ns, position_m, measurement.noise_m2):
+                return self._restart(stamp_ns, measurement)
+            self._doubted = stamp_ns, filters.initial(position_m, measurement.noise_m2, INITIAL_SPEED_STD_MPS)
             return False
         self._motion = motion
-        self._turn(pose)
-        self._believed(stamp_ns, sighting)
+        self._rotation = _smoothed(self._rotation, pose)
+        self._believe(stamp_ns, measurement)
         return True
 
-    def _agrees_with_doubted(self, stamp_ns: int, position_m: Array, noise: Array) -> bool:
+    def _agrees_with_doubted(self, stamp_ns: int, position_m: Array, noise_m2: Array) -> bool:
         if self._doubted is None:
             return False
         doubted_ns, motion = self._doubted
-        seconds = (stamp_ns - doubted_ns) / SECOND_NS
-        return kalman.corrected(kalman.predicted(motion, seconds), position_m, noise)[1] <= GATE
+        expected = filters.predicted(motion, (stamp_ns - doubted_ns) / SECOND_NS, ACCELERATION_STD_MPS2)
+        return filters.updated(expected, position_m, noise_m2)[1] <= MAX_NIS
 
-    def now(self) -> TrackedObject:
-        """Describe the object as it was just seen or followed."""
+    def described(self, stamp_ns: int, memory_ns: int) -> TrackedObject:
+        """Describe the object at a stamp: as measured then, or as predicted if it is out of sight.
+
+        Out of sight, its confidence falls to 0 over the memory's length.
+        """
+        if stamp_ns == self.stamp_ns:
+            return self._described_measured()
         assert self._motion is not None
-        velocity = self._motion.velocity_mps.tolist() if self._sightings > 1 else None
-        seen = not self._followed
-        return self._described(self._motion.position_m, velocity, self._confidence, seen=seen, followed=self._followed)
+        seconds = (stamp_ns - self.stamp_ns) / SECOND_NS
+        slowing_s = SLOWING_TIME_CONSTANT_S
+        moved_s = slowing_s * (1 - np.exp(-min(seconds, PREDICTED_S) / slowing_s))
+        initial_mps = self._motion.velocity_mps if self._is_moving() else np.zeros(3)
+        return self._described(
+            self._motion.position_m + moved_s * initial_mps,
+            (np.exp(-seconds / slowing_s) * initial_mps).tolist() if seconds <= PREDICTED_S else None,
+            self._confidence * (1.0 - (stamp_ns - self.stamp_ns) / memory_ns),
+            predicted=seconds <= PREDICTED_S,
+        )
 
-    def hidden(self, stamp_ns: int, memory_ns: int) -> TrackedObject:
-        """Describe where the object should be; confidence falls to 0 over the memory's length."""
+    def _described_measured(self) -> TrackedObject:
         assert self._motion is not None
-        seconds = (stamp_ns - self.known_ns) / SECOND_NS
-        confidence = self._confidence * (1.0 - (stamp_ns - self.known_ns) / memory_ns)
-        moved_s = SLOWING_S * (1 - np.exp(-min(seconds, PREDICTED_S) / SLOWING_S))
-        start_mps = self._motion.velocity_mps if self._is_moving() else np.zeros(3)
-        velocity = (np.exp(-seconds / SLOWING_S) * start_mps).tolist() if seconds <= PREDICTED_S else None
-        position_m = self._motion.position_m + moved_s * start_mps
-        return self._described(position_m, velocity, confidence, predicted=seconds <= PREDICTED_S)
+        velocity_mps = self._motion.velocity_mps.tolist() if self._measured > 1 else None
+        seen, followed = not self._hidden, self._hidden
+        return self._described(self._motion.position_m, velocity_mps, self._confidence, seen=seen, followed=followed)
 
-    def _begin(self, stamp_ns: int, sighting: Sighting) -> bool:
-        """Begin anew, but at nothing hidden: what covered the object is no longer where that can be."""
-        if sighting.hidden:
+    def _restart(self, stamp_ns: int, measurement: Measurement) -> bool:
+        """Start anew at a measurement, unless it is of a hidden object: so far off, something else was tracked."""
+        if measurement.hidden:
             return False
-        pose = self._facing.choose(sighting.poses, None)
-        self._motion = kalman.started(pose.image_from_object[:3, 3], sighting.noise)
-        self._rotation = pose.image_from_object[:3, :3]
-        self._sightings = 0
-        self._believed(stamp_ns, sighting)
+        pose = self._disambiguation.choose(measurement.poses, None)
+        position_m = pose.camera_from_object[:3, 3]
+        self._motion = filters.initial(position_m, measurement.noise_m2, INITIAL_SPEED_STD_MPS)
+        self._rotation = pose.camera_from_object[:3, :3]
+        self._measured = 0
+        self._believe(stamp_ns, measurement)
         return True
 
-    def _believed(self, stamp_ns: int, sighting: Sighting) -> None:
+    def _believe(self, stamp_ns: int, measurement: Measurement) -> None:
         self._doubted = None
-        self._sightings += 1
-        self._confidence = sighting.confidence
-        self._followed = sighting.hidden
-        self.known_ns = stamp_ns
-
-    def _turn(self, pose: Pose) -> None:
-        assert self._rotation is not None
-        measured = pose.image_from_object[:3, :3]
-        angle = apart_rad(self._rotation, measured)
-        self._rotation = between(self._rotation, measured, angle / (angle + JITTER_RAD))
+        self._measured += 1
+        self._confidence = measurement.confidence
+        self._hidden = measurement.hidden
+        self.stamp_ns = stamp_ns
 
     def _is_moving(self) -> bool:
         assert self._motion is not None
         velocity = self._motion.velocity_mps
-        if self._followed or self._sightings < 3 or float(np.linalg.norm(velocity)) < SLOWEST_MPS:
+        slow = float(np.linalg.norm(velocity)) < MIN_SPEED_MPS
+        if self._hidden or self._measured < MIN_SEEN_FOR_VELOCITY or slow:
             return False
-        return float(velocity @ np.linalg.solve(self._motion.covariance[3:, 3:], velocity)) > MOVING
+        return float(velocity @ np.linalg.solve(self._motion.covariance[3:, 3:], velocity)) > MIN_VELOCITY_RATIO
 
     def _described(
         self,
@@ -156,28 +157,46 @@ class Track:
 
 
 class Tracks:
-    """The tracks of all objects that were seen or followed within the last `memory_ns`, by stamps."""
+    """The tracks of all objects that were measured within the last `memory_ns`, by stamps."""
 
     def __init__(self, memory_ns: int) -> None:
         self._memory_ns = memory_ns
         self._tracks: dict[int, Track] = {}
 
     def clear(self) -> None:
-        """Forget everything: the source has started anew."""
+        """Forget all tracks."""
         self._tracks.clear()
 
-    def see(self, stamp_ns: int, number: int, name: str, sighting: Sighting) -> bool:
-        """Take in one object's sighting; false where it is too far off to be believed yet."""
-        if sighting.hidden and number not in self._tracks:
-            return False
-        return self._tracks.setdefault(number, Track(number, name)).see(stamp_ns, sighting)
+    def update(self, stamp_ns: int, measurements: Sequence[Measurement]) -> list[Measurement]:
+        """Take in an image's measurements; return those that are too far off to be believed yet."""
+        return [each for each in measurements if not self._update_one(stamp_ns, each)]
 
     def listed(self, stamp_ns: int) -> list[TrackedObject]:
-        """List the objects known at an instant and the hidden ones, by id; drop those hidden for too long."""
+        """List the objects by id, also those out of sight; drop those out of sight for longer than the memory."""
         self._tracks = {
-            number: track for number, track in self._tracks.items() if stamp_ns - track.known_ns <= self._memory_ns
+            number: track for number, track in self._tracks.items() if stamp_ns - track.stamp_ns <= self._memory_ns
         }
-        return [
-            track.now() if track.known_ns == stamp_ns else track.hidden(stamp_ns, self._memory_ns)
-            for _, track in sorted(self._tracks.items())
-        ]
+        return [track.described(stamp_ns, self._memory_ns) for _, track in sorted(self._tracks.items())]
+
+    def _update_one(self, stamp_ns: int, measurement: Measurement) -> bool:
+        number = measurement.object_id
+        if number not in self._tracks:
+            if measurement.hidden:
+                return False
+            self._tracks[number] = Track(number, measurement.name)
+        return self._tracks[number].update(stamp_ns, measurement)
+
+
+def interpolated_rotation(start: Array, end: Array, share: float) -> Array:
+    """Turn from one rotation (3, 3) towards another by a share of the angle between them: (3, 3)."""
+    turn = cv2.Rodrigues(np.ascontiguousarray(start.T @ end))[0]
+    rotation: Array = start @ cv2.Rodrigues(share * turn)[0]
+    return rotation
+
+
+def _smoothed(rotation: Array | None, pose: Pose) -> Array:
+    """Turn a rotation (3, 3) towards a measured pose, by more of the way the further it is."""
+    assert rotation is not None
+    measured = pose.camera_from_object[:3, :3]
+    angle_rad = angle_between_rad(rotation, measured)
+    return interpolated_rotation(rotation, measured, angle_rad / (angle_rad + ROTATION_NOISE_RAD))
