@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from marker_tracker.corners import refine
+from marker_tracker.detection.corners import refine
 
 SUPERSAMPLING = 6
 SIZE = 140
