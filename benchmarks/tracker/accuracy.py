@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 SIDES_PX = (12, 16, 20, 24, 32, 40, 60)
 FAMILIES = ("DICT_4X4_50", "DICT_5X5_250", "DICT_6X6_250", "DICT_APRILTAG_36H11")
 SAME_PLACE, SAME_PLACE_PX = 0.2, 2.0
-"""A marker is found where no corner is further off than this part of a side, or so many pixels; else it is a wrong one."""
+"""A marker is found where no corner is further off than this part of its side, or so many pixels; else it is wrong."""
 DRAWS = 1000
 """Of scenes with replacement, for the intervals."""
 VIEW = CameraModel(CAMERA, np.zeros(0), np.eye(4))

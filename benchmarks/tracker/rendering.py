@@ -97,9 +97,10 @@ class Placed:
 def placed(
     printed: Print, centre_px: Sequence[float], side_px: float, steep_rad: float, turn_rad: float, axis_rad: float
 ) -> Placed:
-    """Place a marker whose side would be `side_px` if it faced the camera, its normal `steep_rad` from its line of sight.
+    """Place a marker whose side would be `side_px` if it faced the camera.
 
-    It is turned in its plane by `turn_rad`, and tilted about the direction `axis_rad` in the image.
+    Its normal is `steep_rad` from its line of sight; it is turned in its plane by `turn_rad`, and tilted about the
+    direction `axis_rad` in the image.
     """
     ray = np.linalg.solve(CAMERA, [*centre_px, 1.0])
     ray /= np.linalg.norm(ray)
