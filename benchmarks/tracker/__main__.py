@@ -46,7 +46,8 @@ which its origin differs); ours; and ours with one part left out by replacing it
 `no in-place reading`, small markers are not aligned where they were but read by their edges again;
 `every image searched`, nothing is read where it was; `no edge refinement`, OpenCV's rough corners are read;
 `no second look`, squares that OpenCV could not decode are left; `no inner squares`, where OpenCV takes the paper for
-the marker it is left; `no reading in shadow`, cells are parted in the middle between black and white alone.""",
+the marker it is left; `no reading in shadow`, cells are parted in the middle between black and white alone; `no
+sharpening`, narrow cells are read as they are.""",
 }
 
 

@@ -93,4 +93,5 @@ ROWS: Mapping[str, Row] = {
     "no second look": _ours((detector, "rimmed_squares", _no_squares)),
     "no inner squares": _ours((detector, "inner_squares", _no_squares)),
     "no reading in shadow": _ours((decoding, "SHADOW_THRESHOLD", 0.5)),
+    "no sharpening": _ours((decoding, "_sharpened", lambda levels: levels)),
 }

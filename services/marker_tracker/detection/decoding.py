@@ -103,13 +103,13 @@ def _read(levels: Array, corners_px: Array, family: Family) -> _Readings:
     sides_px = np.linalg.norm(corners_px - corners_px[:, [3, 0, 1, 2]], axis=2)
     narrow = sides_px.min(axis=1) <= NARROW_CELL_PX * (family.cells + 2)
     ids, turns, wrong = np.zeros((3, len(levels)), dtype=np.intp)
-    matched = np.zeros(len(levels), dtype=bool)
-    for tried, threshold, tolerated, among in (
-        (levels, 0.5, family.corrected, ~matched),
-        (levels, SHADOW_THRESHOLD, 0, ~matched),
+    any_width, matched = np.ones(len(levels), dtype=bool), np.zeros(len(levels), dtype=bool)
+    for tried, threshold, tolerated, width in (
+        (levels, 0.5, family.corrected, any_width),
+        (levels, SHADOW_THRESHOLD, 0, any_width),
         (_sharpened(levels), 0.5, family.corrected, narrow),
     ):
-        (unread,) = np.nonzero(among & ~matched)
+        (unread,) = np.nonzero(width & ~matched)
         if len(unread):
             found = _matched(tried[unread], threshold, family, tolerated)
             ids[unread], turns[unread], wrong[unread], matched[unread] = found
