@@ -1,4 +1,4 @@
-"""Bounds that several services must share: one that waits less, or keeps less, than another would lose what it answers."""
+"""Bounds that services share: one that waits less, or keeps less, than another would lose what that one answers."""
 
 from typing import Final
 
