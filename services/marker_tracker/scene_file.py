@@ -11,15 +11,14 @@ from typing import Annotated, Any
 import cv2
 import numpy as np
 import yaml
-from numpy.typing import NDArray
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
+from actum.arrays import Array
 from marker_tracker.detection.families import UnknownMarkerError, canonical, family
 from marker_tracker.detection.marker import Key
 from marker_tracker.pose.catalogue import Catalogue, MountedMarker
 from marker_tracker.settings import Settings
 
-Array = NDArray[np.float64]
 Degrees = Annotated[FiniteFloat, Field(ge=-360, le=360)]
 Metres = Annotated[FiniteFloat, Field(ge=-5, le=5)]
 FamilyName = Annotated[str, AfterValidator(canonical)]

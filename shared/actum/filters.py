@@ -3,9 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from actum.arrays import Array
+
+_NO_MOTION = np.eye(6)
+"""Transition matrix of a state within no time."""
+_AXES = np.eye(3)
+"""One matrix row for each axis, x, y, z."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,9 +43,9 @@ def predicted(estimate: MotionEstimate, seconds: float, acceleration_std_mps2: f
 
     The standard deviation of the acceleration is one for all axes, or one for each: (3,).
     """
-    transition = np.eye(6)
-    transition[:3, 3:] = seconds * np.eye(3)
-    disturbance = acceleration_std_mps2 * np.concatenate([seconds**2 / 2 * np.eye(3), seconds * np.eye(3)])
+    transition = _NO_MOTION.copy()
+    transition[:3, 3:] = seconds * _AXES
+    disturbance = acceleration_std_mps2 * np.concatenate([seconds**2 / 2 * _AXES, seconds * _AXES])
     covariance = transition @ estimate.covariance @ transition.T + disturbance @ disturbance.T
     return MotionEstimate(transition @ estimate.state, covariance)
 

@@ -7,12 +7,11 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Array, Indices, Mask
 from marker_tracker.detection.alignment import Alignment, align, sample_squares
 from marker_tracker.detection.families import Cells, Family
 from marker_tracker.detection.images import Pixels
 from marker_tracker.detection.marker import AlignmentStart, Marker
-
-Array = NDArray[np.float64]
 
 SAMPLES_PER_CELL = 3
 """Along each side of a cell; a cell is read by their mean."""
@@ -54,7 +53,7 @@ class _Readings:
     `index` (n,) is of the square, `corners_px` (n, 4, 2) begin at the marker's own top left; `wrong` counts cells.
     """
 
-    index: NDArray[np.intp]
+    index: Indices
     corners_px: Array
     ids: list[int]
     wrong: list[int]
@@ -107,9 +106,7 @@ def _read(levels: Array, corners_px: Array, family: Family) -> _Readings:
     return _Readings(index, np.array(upright).reshape(-1, 4, 2), ids[index].tolist(), wrong[index].tolist())
 
 
-def _matched(
-    cells: Cells, family: Family, tolerated: int
-) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.int64], NDArray[np.bool_]]:
+def _matched(cells: Cells, family: Family, tolerated: int) -> tuple[Indices, Indices, NDArray[np.int64], Mask]:
     """Find the marker nearest to each reading (n, across, across) with its border.
 
     Returns:

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from actum.arrays import Array
+
 Key = tuple[str, int]
 """Which marker: its family, by OpenCV's name, and its id there."""
 

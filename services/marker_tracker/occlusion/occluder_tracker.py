@@ -7,14 +7,12 @@ from typing import Self
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array
 from actum.node import SECOND_NS
 from marker_tracker.detection.images import Pixels
 from marker_tracker.detection.marker import Key, Marker
 from marker_tracker.occlusion.registration import Similarity, Template, blurred
-
-Array = NDArray[np.float64]
 
 RADIUS_SIDES = 0.8
 """Radius of what is tracked, in sides of the marker: a hand is somewhat larger than the marker it covers."""

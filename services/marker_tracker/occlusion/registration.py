@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Array
 from marker_tracker.detection.images import Pixels
 
-Array = NDArray[np.float64]
 Points = NDArray[np.complex128]
 """Points of an image as x + i y, in pixels."""
 

@@ -4,16 +4,14 @@ from collections.abc import Sequence
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from actum import filters
+from actum.arrays import Array
 from actum.geometry import angle_between_rad, quaternion_xyzw
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
 from marker_tracker.pose.disambiguation import PoseDisambiguation
 from marker_tracker.pose.poses import Measurement, Pose
-
-Array = NDArray[np.float64]
 
 RESTART_S = 0.5
 """Seconds out of sight after which a track starts anew: by then the object may be anywhere."""
