@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from actum import filters
 from actum.node import SECOND_NS
 from sensor_gateway.camera.landmarks import Array
 
@@ -36,46 +37,30 @@ WALKING_STD_MPS = 0.8
 
 @dataclass(frozen=True)
 class _Track:
-    """One person: place (m, camera frame) and velocity (m/s), with the variances and the covariance of each axis.
-
-    A Kalman filter for a constant velocity that is disturbed by an acceleration.
-    """
+    """One person's position and velocity in the camera frame, filtered up to a stamp."""
 
     agent: int
     stamp_ns: int
-    position_m: Array
-    velocity_mps: Array
-    variances: Array
-    """(3, 3): of the place, of place and velocity, of the velocity; one row each, x, y, z."""
+    motion: filters.MotionEstimate
 
     def expected_m(self, stamp_ns: int) -> Array:
-        return self.position_m + self.velocity_mps * min(stamp_ns - self.stamp_ns, COAST_NS) / SECOND_NS
+        coasting_s = min(stamp_ns - self.stamp_ns, COAST_NS) / SECOND_NS
+        return self.motion.position_m + self.motion.velocity_mps * coasting_s
 
     def reach_m(self, stamp_ns: int) -> float:
         return REACH_M + REACH_MPS * (stamp_ns - self.stamp_ns) / SECOND_NS
 
     def seen_at(self, stamp_ns: int, position_m: Array) -> "_Track":
         ahead = self.expected_at(stamp_ns)
-        place, both, velocity = ahead.variances
-        gain = np.array([place, both]) / (place + MEASURED_STD_M**2)
-        surprise = position_m - ahead.position_m
-        return replace(
-            ahead,
-            position_m=ahead.position_m + gain[0] * surprise,
-            velocity_mps=self.velocity_mps + gain[1] * surprise,
-            variances=np.array([(1 - gain[0]) * place, (1 - gain[0]) * both, velocity - gain[1] * both]),
-        )
+        motion, _ = filters.updated(ahead.motion, position_m, np.diag(MEASURED_STD_M**2))
+        return replace(ahead, motion=motion)
 
     def expected_at(self, stamp_ns: int) -> "_Track":
+        """Predict to a stamp; the position goes on no longer than `COAST_NS`, its uncertainty grows all the time."""
         interval_s = (stamp_ns - self.stamp_ns) / SECOND_NS
-        place, both, velocity = self.variances
-        disturbed = ACCELERATION_STD_MPS2**2 * interval_s**2
-        variances = (
-            place + 2 * interval_s * both + interval_s**2 * velocity + disturbed * interval_s**2 / 4,
-            both + interval_s * velocity + disturbed * interval_s / 2,
-            velocity + disturbed,
-        )
-        return replace(self, stamp_ns=stamp_ns, position_m=self.expected_m(stamp_ns), variances=np.array(variances))
+        ahead = filters.predicted(self.motion, interval_s, ACCELERATION_STD_MPS2)
+        state = np.concatenate([self.expected_m(stamp_ns), self.motion.velocity_mps])
+        return replace(self, stamp_ns=stamp_ns, motion=replace(ahead, state=state))
 
 
 class People:
@@ -121,8 +106,8 @@ class People:
 
     def _new(self, stamp_ns: int, position_m: Array) -> _Track:
         agent, self._next = self._next, self._next + 1
-        variances = np.array([MEASURED_STD_M**2, np.zeros(3), np.full(3, WALKING_STD_MPS**2)])
-        return _Track(agent, stamp_ns, position_m, np.zeros(3), variances)
+        motion = filters.initial(position_m, np.diag(MEASURED_STD_M**2), WALKING_STD_MPS)
+        return _Track(agent, stamp_ns, motion)
 
 
 def _cost(track: _Track, stamp_ns: int, position_m: Array) -> float:
