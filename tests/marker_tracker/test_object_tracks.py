@@ -102,7 +102,7 @@ def test_a_still_object_does_not_drift_while_covered() -> None:
     assert covered.position_m == seen.position_m
 
 
-def test_one_sighting_far_off_is_not_believed_but_two_are() -> None:
+def test_one_measurement_far_off_is_not_believed_but_two_are() -> None:
     tracks = Tracks(MEMORY_NS)
     for i in range(10):
         tracks.update(stamp(i), [measured(pose([0.0, 0.0, 1.5]))])
@@ -143,7 +143,7 @@ def test_tracks_are_the_same_wherever_the_frame_has_its_origin(start, shift) -> 
 
 
 @given(st.tuples(*[st.floats(-1, 1)] * 3), st.tuples(*[st.floats(-1, 1)] * 3), st.floats(0, 1))
-def test_turning_part_of_the_way_leaves_the_rest(one, other, part) -> None:
+def test_a_rotation_interpolated_part_of_the_way_leaves_the_rest(one, other, part) -> None:
     start, end = (cv2.Rodrigues(np.array(each))[0] for each in (one, other))
     angle = angle_between_rad(start, end)
     assert angle_between_rad(interpolated_rotation(start, end, part), end) == pytest.approx(
