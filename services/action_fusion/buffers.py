@@ -4,7 +4,7 @@ from collections import deque
 from itertools import pairwise
 from typing import Generic, TypeVar
 
-from action_fusion.samples import Sample
+from action_fusion.stream_samples import Sample
 from actum.node import SECOND_NS
 from actum.stamps import Order, StampGuard
 

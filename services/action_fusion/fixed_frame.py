@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from action_fusion.samples import Array
+from action_fusion.stream_samples import Array
 from actum import geometry
 
 FORM = "16 numbers of a rigid 4x4 transform (rows one after the other, metres), or a file that holds just these"

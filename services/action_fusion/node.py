@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from action_fusion.buffers import LATEST_ACTION_NS, Buffer, S
 from action_fusion.fusion import fuse, rejected
-from action_fusion.samples import ObjectsSample, PostureSample, objects_sample, posture_sample
 from action_fusion.settings import Settings
+from action_fusion.stream_samples import ObjectsSample, PostureSample, objects_sample, posture_sample
 from actum import keys
 from actum.messages import Action, Event, Message, Objects, Posture
 from actum.node import SECOND_NS, Tally, Tick

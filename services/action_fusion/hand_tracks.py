@@ -1,4 +1,4 @@
-"""Where the actor's hands were, in the camera's frame: there a thing that nobody moves stays where it is.
+"""Where the hands were, in the camera frame: there an object that nobody moves stays where it is.
 
 Distances are the same in it as in the egocentric frame, which is a rigid transform of it at every instant.
 """
@@ -9,29 +9,37 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from action_fusion.proximity import ARMS, Actor
-from action_fusion.samples import Array, Indices
+from action_fusion.actors import BOTH_HANDS, Actor
+from action_fusion.stream_samples import Array, Indices, Mask
 from actum.messages import Hand
 from actum.node import SECOND_NS
 
 MOST_INSTANTS = 600
+"""Of longer tracks every so-many-th instant is taken: 20 s at 30 Hz as they are, the longest segment at 8 Hz."""
+
 SMOOTHING_NS = SECOND_NS // 10
 """Positions are averaged over this long before and after: a joint's noise of a centimetre becomes four millimetres."""
 
 SPEED_NS = SECOND_NS // 10
 """A speed is measured over this long before and after, in which a joint's noise of a centimetre is 7 cm/s."""
 
-
 FURTHEST_SHARE = 0.8
+"""About furthest: at this share of the greatest distance or more, of which noise makes up the rest."""
 
 
 @dataclass(frozen=True)
-class HandPath:
-    """A hand's known instants: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera frame."""
+class HandTrack:
+    """A hand's n known instants: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera frame."""
 
-    hand: Hand
+    side: Hand
     stamps_ns: Array
     positions_m: Array
+
+    @property
+    def in_segment(self) -> Mask:
+        """Which instants (n,) are of the segment, not of the time before it."""
+        inside: Mask = self.stamps_ns >= 0
+        return inside
 
     def at(self, stamps_ns: Array) -> Array:
         """Interpolate linearly, holding the first and the last: (p,) to (p, 3); NaN where the hand was never known."""
@@ -39,42 +47,46 @@ class HandPath:
             return np.full((len(stamps_ns), 3), np.nan)
         return np.stack([np.interp(stamps_ns, self.stamps_ns, axis) for axis in self.positions_m.T], axis=1)
 
-    def speeds(self) -> Array:
-        """Measure the speed (n,) in m/s over a fifth of a second around each instant."""
+    def speeds_m_per_s(self) -> Array:
+        """Measure the speed (n,) over a fifth of a second around each instant."""
         before, after = self.stamps_ns - SPEED_NS, self.stamps_ns + SPEED_NS
         if not len(self.stamps_ns):
             return np.empty(0)
         first, last = self.stamps_ns[0], self.stamps_ns[-1]
         elapsed_s = (np.minimum(after, last) - np.maximum(before, first)) / SECOND_NS
-        moved: Array = np.linalg.norm(self.at(after) - self.at(before), axis=1)
-        speeds: Array = np.divide(moved, elapsed_s, out=np.zeros_like(moved), where=elapsed_s > 0)
+        distances: Array = np.linalg.norm(self.at(after) - self.at(before), axis=1)
+        speeds: Array = np.divide(distances, elapsed_s, out=np.zeros_like(distances), where=elapsed_s > 0)
         return speeds
 
 
 @dataclass(frozen=True)
-class Hands:
-    """The actor's hands that are known, and those of the others who are there."""
+class HandTracks:
+    """The actor's own hands that are known, and those of the other people who are there."""
 
-    own: Mapping[Hand, HandPath]
-    others: Sequence[HandPath] = ()
+    own: Mapping[Hand, HandTrack]
+    others: Sequence[HandTrack] = ()
 
     @property
-    def everybodys(self) -> list[HandPath]:
+    def everyones(self) -> list[HandTrack]:
         """All of them, the actor's first."""
         return [*self.own.values(), *self.others]
 
 
-def hand_path(actor: Actor, hand: Hand) -> HandPath:
-    """Take one hand of an actor's postures; of very many instants every so-many-th."""
-    in_ego = actor.joints_m[:, ARMS[hand][1]] - actor.translations
-    positions = np.einsum("pji,pj->pi", actor.rotations, in_ego)
-    known = np.flatnonzero(np.isfinite(positions).all(axis=1))
-    stamps, places = actor.stamps_ns[known], smoothed(positions[known], actor.stamps_ns[known])
+def hand_tracks(actor: Actor) -> dict[Hand, HandTrack]:
+    """Track an actor's hands in the camera frame; one that is never known is left out."""
+    tracks = [_hand_track(actor, side) for side in BOTH_HANDS]
+    return {track.side: track for track in tracks if len(track.stamps_ns)}
+
+
+def _hand_track(actor: Actor, side: Hand) -> HandTrack:
+    positions_m = actor.hand_in_camera_m(side)
+    known = np.flatnonzero(np.isfinite(positions_m).all(axis=1))
+    stamps_ns, smooth_m = actor.stamps_ns[known], _smoothed(positions_m[known], actor.stamps_ns[known])
     stride = max(1, math.ceil(len(known) / MOST_INSTANTS))
-    return HandPath(hand, stamps[::stride], places[::stride])
+    return HandTrack(side, stamps_ns[::stride], smooth_m[::stride])
 
 
-def smoothed(positions_m: Array, stamps_ns: Array) -> Array:
+def _smoothed(positions_m: Array, stamps_ns: Array) -> Array:
     """Average positions (n, 3) over a fifth of a second around each, less at both ends."""
     if not len(positions_m):
         return positions_m
@@ -87,25 +99,28 @@ def smoothed(positions_m: Array, stamps_ns: Array) -> Array:
     return mean
 
 
-def departures(positions_m: Array, step_m: float) -> Indices:
-    """Find, for each instant, the last one before it at which the thing was `step_m` or more from where it is now.
+def last_instants_away(positions_m: Array, step_m: float) -> Indices:
+    """Find, for each of n positions (n, 3), the last one before it that is `step_m` or more away from it.
 
     Returns:
         indices (n,), -1 where there is none.
     """
     found = np.full(len(positions_m), -1, dtype=np.int64)
-    for i, place in enumerate(positions_m):
-        away = np.flatnonzero(np.linalg.norm(positions_m[:i] - place, axis=1) >= step_m)
+    for i, position_m in enumerate(positions_m):
+        away = np.flatnonzero(np.linalg.norm(positions_m[:i] - position_m, axis=1) >= step_m)
         if len(away):
             found[i] = away[-1]
     return found
 
 
-def furthest(positions_m: Array, stamps_ns: Array, within_ns: float) -> Indices:
-    """Find, for each instant, when in the last `within_ns` the thing was about furthest from where it is now.
+def instants_furthest_away(positions_m: Array, stamps_ns: Array, within_ns: float) -> Indices:
+    """Find, for each of n positions (n, 3) at stamps (n,), when in the last `within_ns` it was about furthest away.
 
-    That is the last instant with at least four fifths of the greatest distance: a thing that was still has left.
-    Positions are (T, 3), stamps (T,), and so are the indices found.
+    That is the last instant with at least four fifths of the greatest distance, so that time at rest before a start
+    does not count.
+
+    Returns:
+        indices (n,), each up to its own.
     """
     if not len(positions_m):
         return np.empty(0, dtype=np.int64)
