@@ -1,4 +1,4 @@
-"""What became of an object, in the actor's words: lifted, pushed, 0.21 m to the right."""
+"""What became of an object, from its displacement in the actor's level frame: lifted, pushed, 0.21 m right."""
 
 from typing import Any
 

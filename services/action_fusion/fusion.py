@@ -42,17 +42,12 @@ def fuse(
     start_ns, sides = action.start_ns, acting_sides(action)
     actor = actor_of(postures, start_ns)
     acting = actor.in_segment()
-    hands = HandTracks(
-        hand_tracks(actor), [hand for other in others for hand in hand_tracks(actor_of(other, start_ns)).values()]
-    )
+    hands = hand_tracks(actor, [actor_of(other, start_ns) for other in others])
     tracks = _tracks(action, frames, hands, acting.median_depth_std_m(), settings)
     found = proximities(acting, tracks, sides)
     choice = choose(action, found, acting, hands, sides, settings)
     distances_m = {one.track.id: one.distance_m for one in found if np.isfinite(one.distance_m)}
-    likely = [
-        acted_object(track, distances_m[track.id], choice, hands.own, frames, start_ns, settings)
-        for track in choice.likely
-    ]
+    likely = [acted_object(t, distances_m[t.id], choice, hands.own, frames, start_ns, settings) for t in choice.likely]
     became = _became(action, choice, acting, settings)
     return Event(
         **_common(action),

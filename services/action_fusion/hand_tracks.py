@@ -15,7 +15,7 @@ from actum.messages import Hand
 from actum.node import SECOND_NS
 
 MOST_INSTANTS = 600
-"""Of longer tracks every so-many-th instant is taken: 20 s at 30 Hz as they are, the longest segment at 8 Hz."""
+"""Longer tracks are thinned to this many or fewer, to bound the time: 20 s at 30 Hz; a minute is left at 9 Hz."""
 
 SMOOTHING_NS = SECOND_NS // 10
 """Positions are averaged over this long before and after: a joint's noise of a centimetre becomes four millimetres."""
@@ -72,8 +72,12 @@ class HandTracks:
         return [*self.own.values(), *self.others]
 
 
-def hand_tracks(actor: Actor) -> dict[Hand, HandTrack]:
-    """Track an actor's hands in the camera frame; one that is never known is left out."""
+def hand_tracks(actor: Actor, others: Sequence[Actor]) -> HandTracks:
+    """Track the hands of the actor and of the other people there; hands that are never known are left out."""
+    return HandTracks(_tracks_of(actor), [track for other in others for track in _tracks_of(other).values()])
+
+
+def _tracks_of(actor: Actor) -> dict[Hand, HandTrack]:
     tracks = [_hand_track(actor, side) for side in BOTH_HANDS]
     return {track.side: track for track in tracks if len(track.stamps_ns)}
 

@@ -88,13 +88,13 @@ def _concerned(tracks: Sequence[ObjectTrack], own: Sequence[HandTrack], settings
     return [
         track
         for distance_m, track in nearest
-        if distance_m <= settings.reach_with_m or track.is_displaced(settings.moved_m)
+        if distance_m <= settings.reach_with_tool_m or track.is_displaced(settings.moved_m)
     ]
 
 
 def _is_pushed_with_tool(pair: Comotion, settings: Settings) -> bool:
     """Whether the object went as the hand did, as far from it as a tool reaches that may have no marker."""
-    with_tool = comotion(pair.hand, pair.track, settings.reach_with_m, settings.moved_m)
+    with_tool = comotion(pair.hand, pair.track, settings.reach_with_tool_m, settings.moved_m)
     return with_tool.is_transported(settings.moved_m)
 
 

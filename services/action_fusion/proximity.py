@@ -51,4 +51,4 @@ def nearest(near: Sequence[Proximity], settings: Settings) -> Choice | None:
 
 
 def _reach_m(track: ObjectTrack, settings: Settings) -> float:
-    return settings.reach_with_m if track.is_displaced(settings.moved_m) else settings.reach_m
+    return settings.reach_with_tool_m if track.is_displaced(settings.moved_m) else settings.reach_m

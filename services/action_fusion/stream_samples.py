@@ -15,7 +15,7 @@ Mask = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
 FURTHEST_M = 100.0
-"""Largest coordinate that is believed: far more than a camera sees of people, far less than what overflows."""
+"""Coordinates at or beyond this are errors: no camera tells people or markers at such distances."""
 
 UNIT_TOLERANCE = 0.1
 """How much a quaternion's length may differ from 1: rounding differs by less, what is no orientation by more."""
