@@ -44,7 +44,7 @@ class Buffer(Generic[S]):
         return self._samples[-1].stamp_ns if self._samples else -1
 
     def judge(self, sample: S) -> Order:
-        """Judge a sample's place in the stream: only a stamp that went back is a restart, not a new session by itself."""
+        """Judge a sample's place in the stream: only a stamp that went back is a restart, no new session."""
         order = self._guard.judge(sample.stamp_ns, sample.session_id)
         return Order.NEXT if sample.stamp_ns > self.newest_ns else order
 
