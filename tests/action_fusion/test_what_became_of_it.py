@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import fused
 from action_fusion.displacement import outcome
-from action_fusion.node import ActionFusion
-from action_fusion.settings import Settings
-from actum.messages import Event, Message
+from actum.messages import Event
 from scenes import Place, Scene, Stance, acting_on, action, moving, still
 
 CUP: Place = (0.1, 0.0, 0.45)
@@ -16,12 +15,8 @@ OTHERS = {2: (-0.25, 0.0, 0.5), 3: (0.45, 0.0, 0.5)}
 
 
 def event_of(scene: Scene, label: str, frame: str = "egocentric", **chosen: object) -> Event:
-    node = ActionFusion(Settings(**chosen))
     postures = [posture.model_copy(update={"frame": frame}) for posture in scene.postures()]
-    messages: list[Message] = [*postures, *scene.sightings(), action(label)]
-    (event,) = [event for message in messages for event in node.handle(message)]
-    assert isinstance(event, Event)
-    return event
+    return fused.event_of(*postures, *scene.sightings(), action(label), **chosen)
 
 
 @pytest.mark.parametrize(
@@ -149,14 +144,12 @@ def test_what_was_moved_before_the_segment_has_not_moved_in_it() -> None:
 def test_one_crooked_posture_at_the_start_turns_no_direction() -> None:
     scene = acting_on(CUP, (0.1, 0.0, 0.66), others=OTHERS)
     aside = replace(scene, stance=Stance(heading_rad=0.6))
-    node = ActionFusion(Settings())
     first = min(p.stamp_ns for p in scene.postures() if p.stamp_ns >= action("push").start_ns)
     turned = {p.stamp_ns: p for p in aside.postures()}
     postures = [
         turned[p.stamp_ns].model_copy(update={"joints_m": p.joints_m}) if p.stamp_ns == first else p
         for p in scene.postures()
     ]
-    messages: list[Message] = [*postures, *scene.sightings(), action("push")]
-    (event,) = [event for message in messages for event in node.handle(message)]
-    assert isinstance(event, Event) and event.motion is not None
+    event = fused.event_of(*postures, *scene.sightings(), action("push"))
+    assert event.motion is not None
     assert np.allclose(event.motion.displacement_m, (0.0, 0.0, 0.21), atol=0.01)

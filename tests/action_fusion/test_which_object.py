@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from action_fusion.node import ActionFusion
-from action_fusion.settings import Settings
-from actum.messages import Event, Hand, Message
+import fused
+from actum.messages import Event, Hand
+from fused import event_in
 from scenes import REST_LEFT, REST_RIGHT, Path, Place, Scene, acting_on, action, moving, still
 
 CUP: Place = (0.1, 0.0, 0.45)
@@ -22,12 +22,7 @@ def event_of(
     marked: Hand | None = None,
     **chosen: object,
 ) -> Event:
-    node = ActionFusion(Settings(**chosen))
-    act = action(label, start_s, end_s, hand=marked)
-    messages: list[Message] = [*scene.postures(), *scene.sightings(), act]
-    (event,) = [event for message in messages for event in node.handle(message)]
-    assert isinstance(event, Event)
-    return event
+    return event_in(scene, action(label, start_s, end_s, hand=marked), **chosen)
 
 
 def names(event: Event) -> tuple[str | None, str | None]:
@@ -170,20 +165,16 @@ def test_neither_noise_nor_lost_sightings_make_another_object_of_it(seed: int, t
         )
         for m in scene.sightings()
     ]
-    node = ActionFusion(Settings())
-    (event,) = [e for m in (*postures, *sightings, action("push")) for e in node.handle(m)]
-    assert isinstance(event, Event)
+    event = fused.event_of(*postures, *sightings, action("push"))
     assert event.object is not None and event.object.id == 1
 
 
 @pytest.mark.parametrize("measure", ["joint", "proximity"])
 def test_a_hand_seen_once_is_enough_to_be_near(measure: str) -> None:
     scene = acting_on(CUP, CUP)
-    node = ActionFusion(Settings(measure=measure))
     once = [p for p in scene.postures() if p.stamp_ns > action("x").start_ns + 1.9e9][:1]
-    messages: list[Message] = [*once, *scene.sightings(), scene.posture(3.0), action("touch")]
-    (event,) = [e for message in messages for e in node.handle(message)]
-    assert isinstance(event, Event) and event.object is not None
+    event = fused.event_of(*once, *scene.sightings(), scene.posture(3.0), action("touch"), measure=measure)
+    assert event.object is not None
 
 
 LEFT_BRINGS = moving((0.5, (-0.3, 0.08, 0.45)), (1.2, (0.0, 0.18, 0.5)), (1.5, (0.0, 0.18, 0.5)), (2.2, REST_LEFT))
