@@ -30,7 +30,7 @@ OTHERS = {2: (-0.25, 0.0, 0.5), 3: (0.45, 0.0, 0.5)}
         ("touch", (0.11, 0.01, 0.45), "unmoved"),
     ],
 )
-def test_the_carried_object_is_named_with_what_became_of_it(label, then, result) -> None:
+def test_the_object_in_the_hand_is_named_with_what_became_of_it(label, then, result) -> None:
     event = event_in(acting_on(CUP, then, others=OTHERS), action(label))
     assert event.object is not None and (event.object.id, event.object.name) == (1, "cup")
     assert event.motion is not None
@@ -46,7 +46,7 @@ def test_distances_are_the_smallest_from_hand_to_object() -> None:
     assert event.objects_present == [1, 3]
 
 
-def test_what_the_action_says_is_carried_over() -> None:
+def test_what_the_action_says_is_copied() -> None:
     act = action("push", activations={"push": 0.94, "pull": 0.1}, frames=61, missed=2)
     event = event_in(acting_on(CUP, CUP), act)
     kept = "stamp_ns sensor agent segment_id start_ns end_ns action confidence activations frames"
@@ -54,7 +54,7 @@ def test_what_the_action_says_is_carried_over() -> None:
     assert (event.valid, event.missed, event.held) == (True, 2, None)
 
 
-def test_an_object_covered_by_the_hand_is_followed_between_its_sightings() -> None:
+def test_an_object_occluded_by_the_hand_is_known_between_its_sightings() -> None:
     covered = acting_on(CUP, (0.1, 0.0, 0.65), others=OTHERS, hidden=lambda number, t: number == 1 and 0.7 < t < 1.7)
     event = event_in(covered, action("push"))
     assert event.object is not None and event.object.id == 1

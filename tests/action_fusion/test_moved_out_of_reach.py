@@ -1,4 +1,4 @@
-"""What moves where the hands never were is another's; what left the hand, or a thing in it, was acted on."""
+"""An object displaced where the hands never were is another's; one thrown or pushed with a tool was acted on."""
 
 import pytest
 
@@ -26,9 +26,8 @@ HANDS = {
 @pytest.mark.parametrize("cup", FAR_OFF.values(), ids=FAR_OFF)
 @pytest.mark.parametrize("measure", ["joint", "proximity"])
 def test_what_another_moves_out_of_reach_is_told_and_not_acted_on(cup: Path, hand: Path, measure: str) -> None:
-    event = event_in(
-        Scene(right_hand=hand, objects={1: cup, 2: still((0.0, 0.0, 1.5))}), action("drink"), measure=measure
-    )
+    scene = Scene(right_hand=hand, objects={1: cup, 2: still((0.0, 0.0, 1.5))})
+    event = event_in(scene, action("drink"), measure=measure)
     assert (event.object, event.candidates, event.outcome) == (None, [], None)
     assert event.why == 'no object within reach; another moved object 1 "cup"'
     assert event.sentence == f"drink, {event.why}, 0.94"
@@ -66,7 +65,7 @@ def test_what_slides_off_unseen_from_under_the_hand_is_acted_on() -> None:
     assert event.object is not None and event.object.name == "cup"
 
 
-def test_what_is_pushed_with_a_thing_that_has_no_marker_is_acted_on() -> None:
+def test_what_is_pushed_with_a_tool_that_has_no_marker_is_acted_on() -> None:
     hand = moving((0.2, REST_RIGHT), (0.7, (0.1, 0.05, 0.3)), (1.4, (0.1, 0.05, 0.5)))
     pushed = moving((0.7, (0.1, 0.0, 0.68)), (1.4, (0.1, 0.0, 0.88)))
     event = event_in(Scene(right_hand=hand, objects={1: pushed, 2: still(BOOK)}), action("push"))

@@ -77,7 +77,7 @@ def test_a_cup_that_was_touched_was_neither_taken_along_nor_is_in_the_hand() -> 
     assert (found.taken_along, found.in_hand_at_end) == (False, False)
 
 
-def test_how_a_covered_cup_has_turned_in_the_hand_nobody_knows() -> None:
+def test_an_occluded_cup_has_no_known_orientation() -> None:
     found = object_of(replace(LIFTING, hidden=lambda number, t: t > 0.75))
     assert found.pose is not None
     assert np.allclose(found.pose.position_m, LIFTING.stance.camera(LIFTED), atol=0.02)
@@ -86,7 +86,7 @@ def test_how_a_covered_cup_has_turned_in_the_hand_nobody_knows() -> None:
 
 
 def test_where_a_cup_is_does_not_depend_on_how_far_away_the_body_seems() -> None:
-    """The body stands half a decimetre nearer than it is: fusion brings the cup to the hand, and the pose back."""
+    """The body stands half a decimetre nearer than it is: fusion aligns the cup in depth, but not its pose."""
     scene = acting_on(CUP, LIFTED)
     postures = [p.model_copy(update={"depth_std_m": 0.15}) for p in replace(scene, stance=scene.stance).postures()]
     nearer = [

@@ -1,4 +1,4 @@
-"""Closeness, the reach's heading and moving together decide the object over the whole segment, not one frame."""
+"""Closeness, the reach's heading and co-motion decide the object over the whole segment, not one frame."""
 
 import numpy as np
 import pytest
@@ -56,7 +56,7 @@ def test_what_moves_with_the_hand_is_acted_on_though_another_thing_is_nearer() -
     assert names(plain) == ("box", None)
 
 
-def test_a_thing_that_another_hand_carries_past_is_not_this_hands() -> None:
+def test_an_object_that_another_hand_transports_past_is_not_this_hands() -> None:
     left = moving((0.3, (-0.3, 0.1, 0.5)), (1.0, (0.0, 0.1, 0.5)), (1.7, (-0.3, 0.1, 0.5)))
     scene = Scene(
         right_hand=still((0.1, 0.1, 0.5)),
@@ -123,18 +123,18 @@ def working(radius_m: float = 0.03) -> Scene:
     )
 
 
-def test_what_is_worked_at_is_acted_on_with_what_is_held() -> None:
+def test_what_a_held_tool_is_used_on_is_acted_on() -> None:
     event = event_of(working(), "stir")
     assert names(event) == ("cup", "box")
     assert event.sentence == 'stir object 1 "cup" with object 2 "box", unmoved, 0.94'
 
 
-def test_an_action_that_is_to_move_its_object_applies_no_tool() -> None:
+def test_an_action_that_is_to_move_its_object_uses_no_tool() -> None:
     assert names(event_of(working(), "push")) == ("box", "box")
     assert names(event_of(working(), "stir", expected_outcomes={"stir": "moved"})) == ("box", "box")
 
 
-def test_a_thing_carried_past_another_is_not_applied_to_it() -> None:
+def test_an_object_transported_past_another_is_not_used_on_it() -> None:
     hand = moving((0.2, (0.1, 0.1, 0.3)), (1.8, (0.1, 0.1, 0.65)))
     scene = Scene(right_hand=hand, objects={1: beyond(hand, (0.0, -0.08, 0.0)), 2: still((0.2, 0.0, 0.5))})
     assert names(event_of(scene)) == ("cup", "cup")
