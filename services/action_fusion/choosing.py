@@ -44,8 +44,8 @@ def choose(
     if settings.measure == "proximity":
         choice = nearest(near, settings)
     else:
-        uses_tool = action.action not in settings.expected_outcomes
-        choice = interacted_with([one.track for one in near], hands, sides, uses_tool, settings)
+        may_use_tool = action.action not in settings.expected_outcomes
+        choice = interacted_with([one.track for one in near], hands, sides, may_use_tool, settings)
     return choice or Choice(why=_why_none(near, hands, settings))
 
 
@@ -53,5 +53,5 @@ def _why_none(near: Sequence[Proximity], hands: HandTracks, settings: Settings) 
     """Say why nothing was acted on, and name what another moved."""
     why = LEFT_ALONE if any(one.distance_m <= settings.reach_m for one in near) else OUT_OF_REACH
     displaced = displaced_by_others([one.track for one in near], hands, settings)
-    named = " and ".join(f'object {track.id} "{track.name}"' for track in displaced[:MOST_NAMED])
+    named = " and ".join(track.label for track in displaced[:MOST_NAMED])
     return f"{why}; another moved {named}" if displaced else why

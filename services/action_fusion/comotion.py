@@ -20,6 +20,9 @@ STEADY_M = 0.05
 EXPLAINED = 0.5
 """The hand's step explains the object's where it takes away more than half of its square."""
 
+TransportingHands = Mapping[int, Sequence[HandTrack]]
+"""The hands that transport each object, by its id."""
+
 
 @dataclass(frozen=True)
 class Comotion:
@@ -101,7 +104,7 @@ def comotion(hand: HandTrack, track: ObjectTrack, reach_m: float, moved_m: float
     return Comotion(hand, track, object_m, hand_to_object_m, path_m, near, in_motion, in_motion & explained & near)
 
 
-def transporting_hands(pairs: Sequence[Comotion], moved_m: float) -> Mapping[int, Sequence[HandTrack]]:
+def transporting_hands(pairs: Sequence[Comotion], moved_m: float) -> TransportingHands:
     """List the hands that transport each object, together or one after another, by the object's id."""
     hands: dict[int, list[HandTrack]] = {}
     for pair in pairs:

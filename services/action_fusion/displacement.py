@@ -24,6 +24,8 @@ STEEPEST_SURFACE = 0.25
 def described(displacement_m: Array, moved_m: float, has_front: bool, expected: str | None) -> dict[str, Any]:
     """Describe a displacement as events do: `motion`, `result`, `outcome`, and whether it `agrees` with the expected.
 
+    The result tells the axis on which the object was displaced most, e.g. "0.21 m away", or "unmoved".
+
     Args:
         displacement_m: (3,), right, up, forward of the actor.
         moved_m: less is no displacement.
@@ -34,7 +36,7 @@ def described(displacement_m: Array, moved_m: float, has_front: bool, expected: 
     direction = _direction(displacement_m, moved_m, has_front)
     return {
         "motion": Motion(displacement_m=displacement_m.tolist(), direction=direction),
-        "result": _result(displacement_m, moved_m, has_front),
+        "result": UNMOVED if direction is None else f"{float(np.abs(displacement_m).max()):.2f} m {direction}",
         "outcome": became,
         "agrees": _agrees(became, expected),
     }
@@ -62,12 +64,6 @@ def _direction(displacement_m: Array, moved_m: float, has_front: bool) -> str | 
         return None
     axis = int(np.argmax(np.abs(displacement_m)))
     return DIRECTIONS[axis][float(displacement_m[axis]) < 0] if has_front or axis == 1 else "sideways"
-
-
-def _result(displacement_m: Array, moved_m: float, has_front: bool) -> str:
-    """Say how far the object was displaced along the axis on which it was most, e.g. "0.21 m away", or "unmoved"."""
-    word = _direction(displacement_m, moved_m, has_front)
-    return UNMOVED if word is None else f"{float(np.abs(displacement_m).max()):.2f} m {word}"
 
 
 def _agrees(became: str, expected: str | None) -> bool | None:

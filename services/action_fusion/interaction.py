@@ -1,11 +1,11 @@
 """Which object a hand interacts with, decided over the whole segment from closeness and from co-motion."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from action_fusion.choice import Choice
-from action_fusion.comotion import STEADY_M, Comotion, comotion, transporting_hands
+from action_fusion.comotion import STEADY_M, Comotion, TransportingHands, comotion, transporting_hands
 from action_fusion.hand_tracks import HandTrack, HandTracks
 from action_fusion.object_tracks import ObjectTrack
 from action_fusion.reaching import misses_m, nudge_m
@@ -22,51 +22,48 @@ MOST_OBJECTS = 32
 NUDGED_MORE = 3.0
 """One object was nudged and another was not where the first moved this many times as far."""
 
-HandsOf = Mapping[int, Sequence[HandTrack]]
-"""The hands that transport each object, by its id."""
-
 
 def interacted_with(
-    tracks: Sequence[ObjectTrack], hands: HandTracks, sides: Sequence[Hand], uses_tool: bool, settings: Settings
+    tracks: Sequence[ObjectTrack], hands: HandTracks, sides: Sequence[Hand], may_use_tool: bool, settings: Settings
 ) -> Choice | None:
     """Decide what was acted on; None where nothing was: an empty reach, a pantomime.
 
-    What a hand holds and transports comes first, or what it is used on as a tool (`uses_tool`); then what was displaced
-    while the hand was at it, for things do not move by themselves; then what the hand reached for and left where it
-    is, what it has just released, and last what was displaced away from it: thrown, or pushed with something. What is
+    In this order: what a hand holds and transports or, if it is used as a tool, what it is used on; what was displaced
+    while the hand was at it, for objects do not move by themselves; what the hand reached for and left where it is;
+    what it has just released; and what was displaced further away from it: thrown, or pushed with a tool. What is
     displaced where the actor's hands never were is another person's.
 
     Args:
         tracks: the objects, from some time before the segment to its end.
         hands: all hands over the same time: what another person moves is not this actor's.
         sides: the actor's hands that may have acted.
-        uses_tool: whether a held object may be a tool.
+        may_use_tool: whether a held object may be a tool.
         settings: thresholds.
     """
     concerned = _concerned(tracks, list(hands.own.values()), settings)
     pairs = _pairs(concerned, hands, settings)
-    hands_of = transporting_hands(pairs, settings.moved_m)
+    transporting = transporting_hands(pairs, settings.moved_m)
     acting = [hands.own[side] for side in sides if side in hands.own]
     own = [pair for hand in acting for pair in pairs if pair.hand is hand]
-    held = [pair for pair in own if _transports(hands_of, pair) and _is_held(pair, settings)]
+    held = [pair for pair in own if _transports(transporting, pair) and _is_held(pair, settings)]
     if held:
         best = max(held, key=lambda pair: (pair.transport_m(0.0), pair.transport_m()))
-        return _with_held(best, pairs, hands_of, uses_tool, settings)
-    free = [pair for pair in own if pair.track.id not in hands_of or _transports(hands_of, pair)]
+        return _with_held(best, pairs, transporting, may_use_tool, settings)
+    free = [pair for pair in own if pair.track.id not in transporting or _transports(transporting, pair)]
     displaced = [pair for pair in free if pair.track.is_displaced(settings.moved_m)]
     at_hand = [pair for pair in displaced if pair.in_motion_nearby]
     sent = [pair for pair in displaced if (pair.near & pair.recent).any() or _is_pushed_with_tool(pair, settings)]
-    return _nearest(at_hand) or _reached(acting, free, settings) or _released(own, hands_of) or _nearest(sent)
+    return _nearest(at_hand) or _reached(acting, free, settings) or _released(own, transporting) or _nearest(sent)
 
 
 def displaced_by_others(tracks: Sequence[ObjectTrack], hands: HandTracks, settings: Settings) -> list[ObjectTrack]:
     """List what was displaced, but not in the actor's hands nor, where no hand is known to have it, near them."""
     displaced = [track for track in tracks if track.is_displaced(settings.moved_m)]
     pairs = _pairs(displaced, hands, settings)
-    hands_of = transporting_hands(pairs, settings.moved_m)
+    transporting = transporting_hands(pairs, settings.moved_m)
     own = [pair for pair in pairs if any(pair.hand is hand for hand in hands.own.values())]
-    near = {pair.track.id for pair in own if pair.in_motion_nearby and pair.track.id not in hands_of}
-    in_hand = {pair.track.id for pair in own if _transports(hands_of, pair)}
+    near = {pair.track.id for pair in own if pair.in_motion_nearby and pair.track.id not in transporting}
+    in_hand = {pair.track.id for pair in own if _transports(transporting, pair)}
     return [track for track in displaced if track.id not in near | in_hand]
 
 
@@ -74,8 +71,8 @@ def _pairs(tracks: Sequence[ObjectTrack], hands: HandTracks, settings: Settings)
     return [comotion(hand, track, settings.reach_m, settings.moved_m) for hand in hands.everyones for track in tracks]
 
 
-def _transports(hands_of: HandsOf, pair: Comotion) -> bool:
-    return any(hand is pair.hand for hand in hands_of.get(pair.track.id, ()))
+def _transports(transporting: TransportingHands, pair: Comotion) -> bool:
+    return any(hand is pair.hand for hand in transporting.get(pair.track.id, ()))
 
 
 def _concerned(tracks: Sequence[ObjectTrack], own: Sequence[HandTrack], settings: Settings) -> list[ObjectTrack]:
@@ -111,10 +108,10 @@ def _is_held(pair: Comotion, settings: Settings) -> bool:
 
 
 def _with_held(
-    held: Comotion, pairs: Sequence[Comotion], hands_of: HandsOf, uses_tool: bool, settings: Settings
+    held: Comotion, pairs: Sequence[Comotion], transporting: TransportingHands, may_use_tool: bool, settings: Settings
 ) -> Choice:
-    others = [pair for pair in pairs if pair.hand is held.hand and pair.track.id not in hands_of]
-    target = tool_target(held, others, settings) if uses_tool else None
+    others = [pair for pair in pairs if pair.hand is held.hand and pair.track.id not in transporting]
+    target = tool_target(held, others, settings) if may_use_tool else None
     return Choice(held.track if target is None else target.track, held.hand.side, held.track)
 
 
@@ -146,9 +143,9 @@ def _nudged(pairs: Sequence[Comotion]) -> Comotion | None:
     return None if most_m == 0 or any(other_m * NUDGED_MORE > most_m for other_m in others) else best
 
 
-def _released(own: Sequence[Comotion], hands_of: HandsOf) -> Choice | None:
+def _released(own: Sequence[Comotion], transporting: TransportingHands) -> Choice | None:
     """Take what a hand has just released."""
-    released = [pair for pair in own if _transports(hands_of, pair)]
+    released = [pair for pair in own if _transports(transporting, pair)]
     latest = max(released, key=lambda pair: float(pair.hand.stamps_ns[pair.with_hand].max()), default=None)
     return None if latest is None else Choice(latest.track, latest.hand.side)
 

@@ -34,6 +34,11 @@ class ObjectTrack:
     depth_shift_m: Array = field(default_factory=lambda: np.zeros(3))
 
     @property
+    def label(self) -> str:
+        """What sentences call the object, e.g. `object 3 "cup"`."""
+        return f'object {self.id} "{self.name}"'
+
+    @property
     def is_occluded(self) -> bool:
         """Whether some positions are no sightings."""
         return not bool(self.seen.all())

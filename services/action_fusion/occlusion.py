@@ -25,7 +25,7 @@ SLIP_M = 0.10
 
 @dataclass(frozen=True)
 class Grasp:
-    """A hand has an object that is not seen from the instant `taken` of its track to the instant `released`.
+    """A hand has an object, unseen, from the instant `taken` of the hand's track to the instant `released`.
 
     `distance_m` is the hand's smallest distance from where the object was seen before.
     """
@@ -54,7 +54,7 @@ def fill_occlusions(
     Its position is the image-tracked one of what occludes it where there is one, and else that of the hand's joint.
     Only a hand that came within grasp of where the object was seen last can have it. Where the object is seen again, it
     has to be displaced and within reach of that hand. Of several that are not seen again a hand has the nearest, and
-    none if it transports one that is seen.
+    none if it transports another one that is seen.
     """
     grasped = [_keep_grasped(track, hands, settings) for track in tracks]
     bridged = [_bridge_gaps(track, hands, settings) for track in grasped if len(track.stamps_ns)]
@@ -83,7 +83,7 @@ def _holds(hand: HandTrack, track: ObjectTrack, first: int, last: int, settings:
     held = inside[_first_closest(distances) :]
     stamps_ns = hand.stamps_ns[held]
     to_hand = hand.positions_m[held] - track.at(stamps_ns)
-    early, late = (to_hand[np.abs(stamps_ns - end_ns) <= SETTLED_NS].mean(axis=0) for end_ns in stamps_ns[[0, -1]])
+    early, late = (to_hand[np.abs(stamps_ns - at_ns) <= SETTLED_NS].mean(axis=0) for at_ns in stamps_ns[[0, -1]])
     return bool(distances.min() <= settings.grasp_m and np.linalg.norm(late - early) <= SLIP_M)
 
 

@@ -45,10 +45,9 @@ def smallest_distance(object_ego: Array, hand_ego: Array) -> float:
 
 def nearest(near: Sequence[Proximity], settings: Settings) -> Choice | None:
     """Choose the object with the smallest distance, if a hand reached it; one displaced may be reached with a tool."""
-    reached = [one for one in near if one.distance_m <= _reach_m(one.track, settings)]
+    moved_m, reach_m, reach_with_tool_m = settings.moved_m, settings.reach_m, settings.reach_with_tool_m
+    reached = [
+        one for one in near if one.distance_m <= (reach_with_tool_m if one.track.is_displaced(moved_m) else reach_m)
+    ]
     best = min(reached, key=lambda one: one.distance_m, default=None)
     return None if best is None else Choice(best.track, best.hand)
-
-
-def _reach_m(track: ObjectTrack, settings: Settings) -> float:
-    return settings.reach_with_tool_m if track.is_displaced(settings.moved_m) else settings.reach_m

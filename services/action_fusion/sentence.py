@@ -1,7 +1,6 @@
 """An event as a sentence, e.g. `push object 3 "cup", 0.21 m away, 0.94`."""
 
 from action_fusion.choice import NO_HAND, NO_OBJECT, Choice
-from action_fusion.object_tracks import ObjectTrack
 from actum.messages import Action
 
 
@@ -19,10 +18,6 @@ def sentence(action: Action, choice: Choice, result: str | None) -> str:
 def _objects(choice: Choice) -> str:
     if choice.track is None:
         return ""
-    named = " or ".join(_name(track) for track in choice.likely)
+    named = " or ".join(track.label for track in choice.likely)
     tool = None if choice.held is None or choice.held.id == choice.track.id else choice.held
-    return f" {named}" if tool is None else f" {named} with {_name(tool)}"
-
-
-def _name(track: ObjectTrack) -> str:
-    return f'object {track.id} "{track.name}"'
+    return f" {named}" if tool is None else f" {named} with {tool.label}"
