@@ -33,10 +33,11 @@ from actum.settings import ServiceSettings
 from actum_command import processes
 from actum_command.scene import write_examples
 from actum_command.supervising import Supervisor
-from model_trainer.samples import samples_from
-from model_trainer.training import train
+from actum_model_trainer.samples import samples_from
+from actum_model_trainer.training import train
 from pose_preprocessor.node import PosePreprocessor
-from sensor_gateway.simulator import Simulator, balanced_programme, labelled_stream
+from scene_simulator.programme import balanced_programme
+from scene_simulator.source import Simulator, labelled_stream
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.presets import DEFAULT

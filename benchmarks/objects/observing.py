@@ -14,8 +14,10 @@ from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import ObjectSpec
 from marker_tracker.settings import Settings as TrackerSettings
 from pose_preprocessor.node import PosePreprocessor
-from sensor_gateway.simulator import Conditions, Sample, Simulator
-from sensor_gateway.simulator.actor import EYE
+from scene_simulator.actor import EYE
+from scene_simulator.conditions import Conditions
+from scene_simulator.programme import Sample
+from scene_simulator.source import Simulator
 
 from .trials import Trial
 

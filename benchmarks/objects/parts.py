@@ -4,7 +4,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import chain, count
 
-from sensor_gateway.simulator import NO_OBJECT, Conditions, Sample, load_conditions
+from scene_simulator.conditions import Conditions, load_conditions
+from scene_simulator.programme import NO_OBJECT, Sample
 
 from .observing import MEASURES, Scene
 from .trials import OURS, Trial, share

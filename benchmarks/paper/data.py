@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from actum.recording import Recording
 from actum_command.scene import write_examples
-from model_trainer.samples import SegmentSample, samples_from, select
+from actum_model_trainer.samples import SegmentSample, samples_from, select
 
 from .set1 import import_set1
 

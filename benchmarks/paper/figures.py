@@ -15,8 +15,9 @@ from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from actum_command.paper import TABLE_2
 from actum_command.scene import mark_of
-from model_trainer.training import train
-from sensor_gateway.simulator import Simulator, balanced_programme
+from actum_model_trainer.training import train
+from scene_simulator.programme import balanced_programme
+from scene_simulator.source import Simulator
 from som_classifier.model import Model
 
 from .data import TEST_SEED, TRAINED_EACH, TRAINING_SEED, Data

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from actum.messages import Agent, Skeleton
 from actum.skeletons import to_actum
-from actum_command.importing import ImportReport, Progress, import_takes
-from sensor_gateway.msr_action3d import CLASSES, FRAMES_PER_SECOND, SOURCE_JOINTS
-from sensor_gateway.takes import (
+from actum_dataset_importer.importing import ImportReport, Progress, import_takes
+from actum_dataset_importer.msr_action3d import CLASSES, FRAMES_PER_SECOND, SOURCE_JOINTS
+from actum_dataset_importer.takes import (
     DatasetError,
     Take,
     camera_joints,

@@ -6,7 +6,7 @@ from functools import partial
 from statistics import median
 from typing import Any
 
-from model_trainer.answering import encoded
+from actum_model_trainer.answering import encoded
 from som_classifier.movement import MovementFilter
 
 from .bench import Bench

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from model_trainer.answering import answer, encoded
+from actum_model_trainer.answering import answer, encoded
 from som_classifier.pyramid_model import PyramidModel
 
 from .bench import Bench

@@ -9,7 +9,7 @@ from action_fusion.samples import ObjectsSample, PostureSample, objects_sample, 
 from action_fusion.settings import Settings
 from actum import keys
 from actum.messages import Action, Event, Message, Objects, Posture
-from actum.node import SECOND_NS, Tally, Tick
+from actum.node import SECOND_NS, Counters, Tick
 from actum.stamps import Order
 
 SKEW_NS = 2 * SECOND_NS
@@ -45,7 +45,7 @@ class ActionFusion:
     inputs: tuple[keys.Topic, ...] = (keys.POSTURE, keys.OBJECTS, keys.ACTION)
 
     def __init__(self, settings: Settings) -> None:
-        self.tally = Tally()
+        self.counters = Counters()
         self._settings = settings
         self._postures: dict[int, Buffer[PostureSample]] = {}
         self._objects: Buffer[ObjectsSample] = Buffer()
@@ -58,7 +58,7 @@ class ActionFusion:
             case Posture():
                 return self._posture(message)
             case Objects():
-                return self._take(self._objects, objects_sample(message, self.tally), "objects")
+                return self._take(self._objects, objects_sample(message, self.counters), "objects")
             case Action(final=True):
                 return self._action(message)
             case Tick():
@@ -66,14 +66,14 @@ class ActionFusion:
         return []
 
     def _posture(self, posture: Posture) -> list[Event]:
-        sample = posture_sample(posture, self.tally)
+        sample = posture_sample(posture, self.counters)
         return self._take(self._buffer(posture.agent), sample, f"posture of agent {posture.agent}")
 
     def _take(self, buffer: Buffer[S], sample: S, what: str) -> list[Event]:
         """Add a sample to its stream and answer what waited for it; where time has gone back, all of the old time."""
         order = buffer.judge(sample)
         if order is Order.STALE:
-            self.tally.reject("stale_stamp", f"{what} at {sample.stamp_ns} after {buffer.newest_ns}")
+            self.counters.reject("stale_stamp", f"{what} at {sample.stamp_ns} after {buffer.newest_ns}")
             return []
         events = []
         if order is Order.RESTART:
@@ -82,7 +82,7 @@ class ActionFusion:
             self._forget_later(sample.stamp_ns + SKEW_NS)
             self._answered.clear()
         if buffer.too_late(sample.stamp_ns):
-            self.tally.reject("late", f"{what} at {sample.stamp_ns}, after its segment was answered")
+            self.counters.reject("late", f"{what} at {sample.stamp_ns}, after its segment was answered")
         buffer.append(sample)
         return events + self._complete()
 
@@ -97,7 +97,9 @@ class ActionFusion:
     def _action(self, action: Action) -> list[Event]:
         segment = (action.segment_id, action.start_ns, action.end_ns, action.reason)
         if segment in self._answered:
-            self.tally.reject("duplicate_segment", f"{action.segment_id!r} from {action.start_ns} to {action.end_ns}")
+            self.counters.reject(
+                "duplicate_segment", f"{action.segment_id!r} from {action.start_ns} to {action.end_ns}"
+            )
             return []
         self._answered[segment] = None
         if len(self._answered) > REMEMBERED:
@@ -105,7 +107,7 @@ class ActionFusion:
         if not action.valid:
             return [rejected(action, action.reason or "rejected without a reason")]
         if action.action is None or action.end_ns is None or action.end_ns < action.start_ns:
-            self.tally.reject("bad_action", f"final action of {action.segment_id!r} without a label or an end")
+            self.counters.reject("bad_action", f"final action of {action.segment_id!r} without a label or an end")
             return [rejected(action, "final action without a label or an end")]
         bare = action.model_copy(update={"maps": None, "trace": None})
         self._pending.append(Pending(bare, action.end_ns))

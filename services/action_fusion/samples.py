@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from actum import geometry
 from actum.messages import Joint, Objects, Posture
-from actum.node import Tally
+from actum.node import Counters
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -65,20 +65,20 @@ class ObjectsSample(Sample):
     quaternions_xyzw: dict[int, Array] = field(default_factory=dict)
 
 
-def posture_sample(posture: Posture, tally: Tally) -> PostureSample:
+def posture_sample(posture: Posture, counters: Counters) -> PostureSample:
     """Read a posture; one that says it is valid and cannot be is counted as `bad_posture`, a joint as `bad_joint`."""
-    body = _body(posture, tally) if posture.valid else None
+    body = _body(posture, counters) if posture.valid else None
     if posture.valid and body is None:
-        tally.reject("bad_posture", f"agent {posture.agent} at {posture.stamp_ns}: no joints_m or no rigid frame")
+        counters.reject("bad_posture", f"agent {posture.agent} at {posture.stamp_ns}: no joints_m or no rigid frame")
     return PostureSample(posture.stamp_ns, posture.session_id, posture.seq, body, tuple(posture.agents))
 
 
-def objects_sample(message: Objects, tally: Tally) -> ObjectsSample:
+def objects_sample(message: Objects, counters: Counters) -> ObjectsSample:
     """Read the objects that were seen or followed, not remembered; absurdly far ones are counted as `bad_object`."""
     known = [found for found in message.objects if found.seen or found.followed] if message.valid else []
     near = [found for found in known if max(map(abs, found.position_m)) < FURTHEST_M]
     if len(near) < len(known):
-        tally.reject("bad_object", f"an object beyond {FURTHEST_M:g} m at {message.stamp_ns}")
+        counters.reject("bad_object", f"an object beyond {FURTHEST_M:g} m at {message.stamp_ns}")
     return ObjectsSample(
         message.stamp_ns,
         message.session_id,
@@ -95,7 +95,7 @@ def _unit(quaternion: list[float]) -> Array | None:
     return np.array(quaternion) / length if abs(length - 1) <= UNIT_TOLERANCE else None
 
 
-def _body(posture: Posture, tally: Tally) -> Body | None:
+def _body(posture: Posture, counters: Counters) -> Body | None:
     if posture.joints_m is None or posture.ego_from_camera is None:
         return None
     ego_from_camera = geometry.from_flat(posture.ego_from_camera)
@@ -104,7 +104,7 @@ def _body(posture: Posture, tally: Tally) -> Body | None:
     joints_m = _joints(posture.joints_m)
     known = np.isfinite(joints_m).all(axis=1)
     if np.count_nonzero(~known) > posture.joints_m.count(None):
-        tally.reject("bad_joint", f"agent {posture.agent} at {posture.stamp_ns}: a joint not finite or absurdly far")
+        counters.reject("bad_joint", f"agent {posture.agent} at {posture.stamp_ns}: a joint not finite or absurdly far")
     depth_std_m = min(posture.depth_std_m or 0.0, FURTHEST_M)
     up_in_camera = LEVEL if posture.up_in_camera is None else tuple(posture.up_in_camera)
     return Body(ego_from_camera, joints_m, posture.frame != "world", depth_std_m, up_in_camera)

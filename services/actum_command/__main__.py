@@ -14,7 +14,7 @@ with needs_extra("actum-command"):
         demo,
         doctor,
         drawing,
-        importing_commands,
+        import_commands,
         inspecting,
         learning,
         marker_sheets,
@@ -61,7 +61,7 @@ app.add_typer(marks.app, name="segment")
 app.command("record")(streaming.record)
 app.command("play")(streaming.play)
 app.add_typer(takes_commands.app, name="takes")
-app.add_typer(importing_commands.app, name="import")
+app.add_typer(import_commands.app, name="import")
 app.add_typer(models.app, name="models")
 app.command("draw")(drawing.draw_command)
 app.command("markers")(marker_sheets.markers)

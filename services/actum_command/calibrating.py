@@ -9,17 +9,17 @@ import typer
 
 from actum.calibration import Calibration, CalibrationError
 from actum.keys import CHUNK
+from actum_calibrator.board import Board, PatternError
+from actum_calibrator.coverage_picture import coverage_picture
+from actum_calibrator.extrinsics import Extrinsics, find_extrinsics, with_extrinsics
+from actum_calibrator.intrinsics import GOOD_COVERAGE, Intrinsics, PoorSetError, calibration_of, find_intrinsics
+from actum_calibrator.pairs import Pair, PairingError, pair_files, pictures_in
+from actum_calibrator.pictures import UnusablePictureError, complaints, read_picture
+from actum_calibrator.views import BoardFinder, View
 from actum_command.context import console, fail, refuse_ending, say
 from actum_command.finding_up import up
 from actum_command.live_views import live_pairs, live_views
 from actum_command.plain_help import PlainTyper
-from calibrator.board import Board, PatternError
-from calibrator.coverage_picture import coverage_picture
-from calibrator.extrinsics import Extrinsics, find_extrinsics, with_extrinsics
-from calibrator.intrinsics import GOOD_COVERAGE, Intrinsics, PoorSetError, calibration_of, find_intrinsics
-from calibrator.pairs import Pair, PairingError, pair_files, pictures_in
-from calibrator.pictures import UnusablePictureError, complaints, read_picture
-from calibrator.views import BoardFinder, View
 
 app = PlainTyper(no_args_is_help=True, help="Calibrate cameras; most need the board of actum markers --board.")
 app.command("up")(up)

@@ -23,11 +23,11 @@ from actum_command.progress import bars
 from actum_command.scene import write_examples
 from actum_command.supervising import Supervisor
 from actum_command.system import log_file, refuse_taken, restart_ended
-from model_trainer.baseline import nearest_neighbour
-from model_trainer.evaluation import Evaluation, evaluate
-from model_trainer.samples import samples_from
-from model_trainer.training import train
-from sensor_gateway.simulator import ACTIONS
+from actum_model_trainer.baseline import nearest_neighbour
+from actum_model_trainer.evaluation import Evaluation, evaluate
+from actum_model_trainer.samples import samples_from
+from actum_model_trainer.training import train
+from scene_simulator.programme import ACTIONS
 from som_classifier.presets import DEFAULT
 from som_classifier.storage import load_model
 
@@ -98,20 +98,20 @@ def _run_live(
         with connect(READY_S) as client:
             _wait_until_ready(client, stop)
             console.print(
-                f"router, {', '.join(processes.SERVICES)} and sensor_gateway run as processes of their own",
+                f"router, {', '.join(processes.SERVICES)} and scene_simulator run as processes of their own",
                 soft_wrap=True,
             )
             listening = client.listen(keys.everything(here.sensor))
             for done, actor in enumerate(actors, start=1):
-                gateway = processes.gateway(here, _acting(actor, repetitions))
-                supervisor.start(gateway)
+                simulator = processes.simulator(here, _acting(actor, repetitions))
+                supervisor.start(simulator)
                 _collect(listening, score, done * each, supervisor, stop)
-                supervisor.end(gateway)
+                supervisor.end(simulator)
     return score
 
 
 def _acting(actor: int, repetitions: int) -> list[str]:
-    chosen = {"source": "simulator", "actor": actor, "seed": TEST_SEED, "repetitions": repetitions}
+    chosen = {"actor": actor, "seed": TEST_SEED, "repetitions": repetitions}
     return [word for name, value in chosen.items() for word in (f"--{name}", str(value))]
 
 

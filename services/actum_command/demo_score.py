@@ -9,7 +9,7 @@ from rich.table import Table
 from actum.messages import Event, Truth
 from actum_command.describing import describe_event
 from actum_command.paper import TABLE_2
-from model_trainer.evaluation import Evaluation, wilson_interval
+from actum_model_trainer.evaluation import Evaluation, wilson_interval
 
 
 @dataclass

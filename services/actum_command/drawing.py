@@ -8,7 +8,7 @@ import numpy as np
 import typer
 
 from actum.messages import Skeleton
-from actum.node import SECOND_NS, Tally
+from actum.node import SECOND_NS, Counters
 from actum_command.context import fail, refuse_unwritable, say
 from sensor_gateway.camera.drawing import Pixels, drawn, sheet
 from sensor_gateway.camera.perceiving import Optics, Perceiver
@@ -57,7 +57,7 @@ def _drawn(video: Path, settings: Settings, optics: Optics, count: int) -> tuple
     with estimator_of(settings) as estimator:
         frames = sum(1 for _ in pictures_of(video))
         chosen = _evenly(count, frames)
-        perceiver = Perceiver(estimator, optics, settings.sensor, video.stem, Tally())
+        perceiver = Perceiver(estimator, optics, settings.sensor, video.stem, Counters())
         seen = ((picture, perceiver.skeleton(picture)) for picture in pictures_of(video))
         pictures = [_with_joints(*frame, optics) for i, frame in enumerate(seen) if i in chosen]
     return pictures, frames

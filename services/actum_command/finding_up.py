@@ -12,8 +12,8 @@ from actum.messages import Skeleton
 from actum.node import SECOND_NS
 from actum.recording import Recording, RecordingError
 from actum.runtime import stop_on_signals
+from actum_calibrator.standing import Up, UpFinder
 from actum_command.context import connect, fail, say
-from calibrator.standing import Up, UpFinder
 
 SILENCE_S = 10.0
 POLL_S = 0.01

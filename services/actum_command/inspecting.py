@@ -54,12 +54,12 @@ def inspect_command(
 
 def _inspect(model: Model, recordings: list[Recording], folder: Path, ending: str) -> int:
     """Write pictures and page, and return how many pictures there are."""
-    from model_inspector.anatomy import anatomy_of  # Matplotlib takes its time and need not be installed
-    from model_inspector.answered import answered_segments
-    from model_inspector.folder import note
-    from model_inspector.inspection import pictures, write
-    from model_inspector.page import page
-    from model_trainer.evaluation import evaluate
+    from actum_model_inspector.anatomy import anatomy_of  # Matplotlib takes its time and need not be installed
+    from actum_model_inspector.answered import answered_segments
+    from actum_model_inspector.folder import note
+    from actum_model_inspector.inspection import pictures, write
+    from actum_model_inspector.page import page
+    from actum_model_trainer.evaluation import evaluate
 
     anatomy = anatomy_of(model)
     with bars() as progress:

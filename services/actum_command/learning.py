@@ -12,12 +12,12 @@ import typer
 from actum.recording import Recording, RecordingError
 from actum_command.context import console, fail, refuse_ending, refuse_unwritable, say
 from actum_command.progress import bars
-from model_trainer.evaluation import Evaluation, evaluate
-from model_trainer.leaving_out import leave_one_person_out
-from model_trainer.report import report
-from model_trainer.samples import samples_from, select
-from model_trainer.training import TrainingError, train
-from model_trainer.warnings import warnings_of
+from actum_model_trainer.evaluation import Evaluation, evaluate
+from actum_model_trainer.leaving_out import leave_one_person_out
+from actum_model_trainer.report import report
+from actum_model_trainer.samples import samples_from, select
+from actum_model_trainer.training import TrainingError, train
+from actum_model_trainer.warnings import warnings_of
 from som_classifier.attention import CHOICES
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, PaperPreset, Preset
 from som_classifier.storage import ModelError, load_model

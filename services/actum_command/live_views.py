@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from actum import keys
 from actum.messages import Image
 from actum.runtime import Client, stop_on_signals
+from actum_calibrator.collecting import PairCollector, ViewCollector
+from actum_calibrator.pairs import Pair
+from actum_calibrator.pictures import UnusablePictureError, picture_of
+from actum_calibrator.views import BoardFinder, View
 from actum_command.context import connect, console, fail
-from calibrator.collecting import PairCollector, ViewCollector
-from calibrator.pairs import Pair
-from calibrator.pictures import UnusablePictureError, picture_of
-from calibrator.views import BoardFinder, View
 
 SILENCE_S = 10.0
 POLL_S = 0.01

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
+from actum_calibrator.board import Board, Paper, PatternError
 from actum_command.context import fail, refuse_ending, say
-from calibrator.board import Board, Paper, PatternError
 
 MOST_IDS = 1000
 
@@ -20,8 +20,8 @@ def markers(
     board: Annotated[bool, typer.Option("--board", help="instead of markers, the board for actum calibrate")] = False,
 ) -> None:
     """Write a PDF of markers to put on objects, or of the calibration board, in true size."""
-    from calibrator.board_sheet import board_sheet  # the PDF library is needed here alone
-    from calibrator.marker_sheet import marker_sheet
+    from actum_calibrator.board_sheet import board_sheet  # the PDF library is needed here alone
+    from actum_calibrator.marker_sheet import marker_sheet
 
     refuse_ending(output, ".pdf")
     try:

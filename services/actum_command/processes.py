@@ -8,7 +8,7 @@ from types import MappingProxyType
 from actum.settings import ServiceSettings
 from actum_command.service_flags import Given, arguments_of
 from actum_command.supervising import Program
-from sensor_gateway.simulator.parameters import load_parameters
+from scene_simulator.parameters import load_parameters
 
 SERVICES = ("pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
@@ -47,6 +47,11 @@ def services(
 def gateway(settings: ServiceSettings, arguments: Sequence[str]) -> Program:
     """The sensor gateway with its own arguments."""
     return Program("sensor_gateway", "sensor_gateway", arguments, common(settings))
+
+
+def simulator(settings: ServiceSettings, arguments: Sequence[str]) -> Program:
+    """The simulated scene, in the gateway's place."""
+    return Program("scene_simulator", "scene_simulator", arguments, common(settings))
 
 
 def scene(settings: ServiceSettings) -> Program:

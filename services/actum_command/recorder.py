@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from actum import keys
 from actum.codec import DecodeError
 from actum.messages import MANUAL, Action, Message, Posture, Segment, Skeleton
-from actum.node import SECOND_NS, Tally
+from actum.node import SECOND_NS, Counters
 from actum.recording import Recorder
 
 STREAMS = frozenset(
@@ -53,7 +53,7 @@ class StreamRecorder:
         unended: the segments that have a start and no end so far.
         left_out: how many actions were marked by others, by origin.
         undecodable: payloads that are no message, by kind.
-        tally: marks that were thrown away.
+        counters: marks that were thrown away.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class StreamRecorder:
         self.unended: set[str] = set()
         self.left_out: Counter[str] = Counter()
         self.undecodable: Counter[str] = Counter()
-        self.tally = Tally()
+        self.counters = Counters()
         self._recorder = recorder
         self._topics = topics
         self._label = label
@@ -138,7 +138,7 @@ class StreamRecorder:
 
     def _place(self, held: _Held, stamp_ns: int | None) -> None:
         if stamp_ns is None:
-            self.tally.reject("mark_without_stamp", f"{held.mark.segment_id}: it came before any frame")
+            self.counters.reject("mark_without_stamp", f"{held.mark.segment_id}: it came before any frame")
             return
         self._store(held.mark.model_copy(update={"stamp_ns": stamp_ns}), held.received_ns)
 

@@ -11,6 +11,7 @@ from pydantic.fields import FieldInfo
 import action_fusion.settings
 import marker_tracker.settings
 import pose_preprocessor.settings
+import scene_simulator.settings
 import sensor_gateway.settings
 import som_classifier.settings
 from actum.command_line import explained, placeholder
@@ -18,7 +19,7 @@ from actum.settings import ServiceSettings
 
 DECLARED: Mapping[str, type[ServiceSettings]] = {
     service.__name__: service.settings.Settings
-    for service in (sensor_gateway, pose_preprocessor, som_classifier, marker_tracker, action_fusion)
+    for service in (sensor_gateway, scene_simulator, pose_preprocessor, som_classifier, marker_tracker, action_fusion)
 }
 """What each service can be told."""
 

@@ -92,8 +92,8 @@ def _report(stream: StreamRecorder, output: Path, label: str | None) -> None:
         say(f"  without an end, so nothing is learnt from them: {', '.join(sorted(stream.unended))}", style="yellow")
     for origin, count in (+stream.left_out).items():
         say(f"  {count} marked by {origin} left out: --marks {origin} or --marks {ALL} takes such")
-    if stream.tally.rejects:
-        say(f"not stored: {_listed(stream.tally.rejects)} (the last: {stream.tally.last_error})", style="yellow")
+    if stream.counters.rejects:
+        say(f"not stored: {_listed(stream.counters.rejects)} (the last: {stream.counters.last_error})", style="yellow")
     if stream.undecodable:
         say(f"not decodable: {stream.undecodable.total()} ({_listed(stream.undecodable)})", style="yellow")
     if not stream.stored:

@@ -25,7 +25,7 @@ NO_FILES = {
     "none": "--source recording",
     "camera": "a video file in ACTUM_CAMERA",
 }
-NO_CAMERA = ("simulator", "recording", "msr-action3d", "utkinect")
+NO_CAMERA = ("simulator", "recording")
 NO_MARKS = "nobody marks actions here: 'actum segment toggle' does, and 'actum play' beside --source none"
 NO_MODEL = (
     "no --model: every action is answered with 'no model'. For the simulated scene: "
@@ -53,7 +53,7 @@ def up(
     source: Annotated[
         str | None,
         typer.Option(
-            help="simulator, camera, realsense, openni2, recording, msr-action3d, utkinect or none; default: camera "
+            help="simulator, camera, realsense, openni2, recording or none; default: camera "
             "where --camera names one, else simulator"
         ),
     ] = None,
@@ -72,11 +72,11 @@ def up(
         fail(f"source {source} takes no --path: to have {path} played, name {NO_FILES[source]}")
     objects = processes.simulated_objects() if source == "simulator" else {}
     programs = processes.services(here, model, objects, given)
-    if source != "none":
+    if source == "simulator":
+        programs += [processes.simulator(here, arguments_of("scene_simulator", given)), processes.scene(here)]
+    elif source != "none":
         play = ["--path", str(path)] if path else []
         programs.append(processes.gateway(here, ["--source", source, *play, *arguments_of("sensor_gateway", given)]))
-    if source == "simulator":
-        programs.append(processes.scene(here))
     say(f"actum starts on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
     if source != "simulator":
         say(NO_MARKS)
@@ -90,18 +90,15 @@ def up(
 
 def _source(named: str | None, given: Given) -> str:
     """Tell which source is meant, or fail where what is given would be told to nobody."""
-    if named is None:
-        return "camera" if "camera" in given else "simulator"
-    unheard = [name for name in given if not any(name in DECLARED[service].model_fields for service in _started(named))]
-    if unheard:
-        fail(f"{flag_of(unheard[0])} is a setting of sensor_gateway, which --source none does not start")
-    if "camera" in given and named in NO_CAMERA:
-        fail(f"source {named} takes no --camera: leave --source out, or name camera")
-    return named
-
-
-def _started(source: str) -> list[str]:
-    return [*processes.SERVICES, *(() if source == "none" else ("sensor_gateway",))]
+    source = named or ("camera" if "camera" in given else "simulator")
+    if "camera" in given and source in NO_CAMERA:
+        fail(f"source {source} takes no --camera: leave --source out, or name camera")
+    sensor = {"none": [], "simulator": ["scene_simulator"]}.get(source, ["sensor_gateway"])
+    heard = {name for service in (*processes.SERVICES, *sensor) for name in DECLARED[service].model_fields}
+    for name in given.keys() - heard:
+        service = next(service for service, settings in DECLARED.items() if name in settings.model_fields)
+        fail(f"{flag_of(name)} is a setting of {service}, which --source {source} does not start")
+    return source
 
 
 def supervise(supervisor: Supervisor, programs: list[Program], stop: threading.Event) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from actum import keys
 from actum.messages import Image, Message, Objects, TrackedObject
-from actum.node import SECOND_NS, Tally, Tick
+from actum.node import SECOND_NS, Counters, Tick
 from actum.stamps import Order, StampGuard
 from marker_tracker.catalogue import Carried, Catalogue, Key, plain
 from marker_tracker.decoding import Marker
@@ -38,7 +38,7 @@ class MarkerTracker:
         Raises:
             SceneFileError: the scene file cannot be used.
         """
-        self.tally = Tally()
+        self.counters = Counters()
         self._settings = settings
         self._catalogue = _catalogue(settings)
         self._watch = Watch(self._catalogue.wanted())
@@ -52,7 +52,7 @@ class MarkerTracker:
             return []
         order = self._order.judge(message.stamp_ns, message.session_id)
         if order is Order.STALE:
-            self.tally.reject("stale_stamp", f"image at {message.stamp_ns} after {self._order.newest_ns}")
+            self.counters.reject("stale_stamp", f"image at {message.stamp_ns} after {self._order.newest_ns}")
             return []
         if order is Order.RESTART:
             self._tracks.clear()
@@ -69,7 +69,7 @@ class MarkerTracker:
             if not markers:
                 refuse_black(pixels)
         except UnusableImageError as error:
-            self.tally.reject(error.kind, f"image at {image.stamp_ns}: {error.detail}")
+            self.counters.reject(error.kind, f"image at {image.stamp_ns}: {error.detail}")
             return _answer(image, [], str(error))
         for number, of_object in self._carried(self._once(markers)).items():
             self._see(image.stamp_ns, number, of_object, view)
@@ -80,7 +80,7 @@ class MarkerTracker:
         kept: dict[Key, Marker] = {}
         for marker in sorted(markers, key=self._moved_px):
             if kept.setdefault((marker.family, marker.id), marker) is not marker:
-                self.tally.reject("repeated_marker", f"marker {marker.id} of {marker.family} twice in one image")
+                self.counters.reject("repeated_marker", f"marker {marker.id} of {marker.family} twice in one image")
         self._places_px |= {key: marker.centre_px for key, marker in kept.items()}
         return list(kept.values())
 
@@ -94,7 +94,9 @@ class MarkerTracker:
         for marker in sorted(markers, key=lambda one: -one.side_px):
             carried = self._catalogue.find(marker.family, marker.id)
             if carried is None:
-                self.tally.reject("unknown_marker", f"marker {marker.id} of {marker.family} is on none of the objects")
+                self.counters.reject(
+                    "unknown_marker", f"marker {marker.id} of {marker.family} is on none of the objects"
+                )
             else:
                 objects.setdefault(carried.object_id, []).append((marker, carried))
         return objects
@@ -106,16 +108,16 @@ class MarkerTracker:
         try:
             poses = self._poses(name, markers, view)
         except BadPoseError as error:
-            self.tally.reject("bad_pose", str(error))
+            self.counters.reject("bad_pose", str(error))
             return
         if not self._tracks.see(stamp_ns, number, name, _sighting(poses, markers, view)):
-            self.tally.reject("outlying_pose", f"{name} far from where it was a moment before {stamp_ns}")
+            self.counters.reject("outlying_pose", f"{name} far from where it was a moment before {stamp_ns}")
 
     def _poses(self, name: str, markers: OnObject, view: Camera) -> list[Pose]:
         poses = solve(markers, view)
         if len(markers) > 1 and poses[0].error_px > WORST_ERROR_PX:
             ids = ", ".join(str(marker.id) for marker, _ in markers)
-            self.tally.reject("markers_disagree", f"markers {ids} of {name} are not where the scene file puts them")
+            self.counters.reject("markers_disagree", f"markers {ids} of {name} are not where the scene file puts them")
             return solve(markers[:1], view)
         return poses
 

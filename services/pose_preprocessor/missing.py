@@ -2,17 +2,17 @@
 
 from collections.abc import Sequence
 
-from actum.node import SECOND_NS, Tally
+from actum.node import SECOND_NS, Counters
 from actum.skeletons import JOINTS
 
 LATELY_NS = 2 * SECOND_NS
 
 
 class MissingLately:
-    """Joints missing from usable frames within the last two seconds, told in the tally's state."""
+    """Joints missing from usable frames within the last two seconds, told in the counters's state."""
 
-    def __init__(self, tally: Tally) -> None:
-        self._tally = tally
+    def __init__(self, counters: Counters) -> None:
+        self._counters = counters
         self._last_ns: dict[str, int] = {}
 
     def note(self, stamp_ns: int, missing: Sequence[str]) -> None:
@@ -25,4 +25,4 @@ class MissingLately:
             return
         self._last_ns = {name: ns for name, ns in self._last_ns.items() if 0 <= stamp_ns - ns <= LATELY_NS}
         names = ", ".join(name for name in JOINTS if name in self._last_ns)
-        self._tally.state = f"running without {names}" if names else "running"
+        self._counters.state = f"running without {names}" if names else "running"

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from actum import geometry, keys
 from actum.messages import Agent, Joint, Message, Posture, Skeleton
-from actum.node import Tally, Tick
+from actum.node import Counters, Tick
 from actum.skeletons import INDEX, JOINTS
 from actum.stamps import Order, StampGuard
 from pose_preprocessor.checks import BadFrameError, as_array, check, missing_joints
@@ -28,10 +28,10 @@ class PosePreprocessor:
     inputs = (keys.SKELETON,)
 
     def __init__(self, settings: Settings | None = None) -> None:
-        self.tally = Tally()
+        self.counters = Counters()
         self._settings = settings or Settings()
         self._order = StampGuard()
-        self._missing = MissingLately(self.tally)
+        self._missing = MissingLately(self.counters)
         self._persons: dict[int, Person] = {}
         self._previous_ns: int | None = None
         self._last_seq: int | None = None
@@ -42,7 +42,7 @@ class PosePreprocessor:
             return []
         order = self._order.judge(message.stamp_ns, message.session_id)
         if order is Order.STALE:
-            self.tally.reject("stale_stamp", f"skeleton at {message.stamp_ns} after {self._order.newest_ns}")
+            self.counters.reject("stale_stamp", f"skeleton at {message.stamp_ns} after {self._order.newest_ns}")
             return []
         if order is Order.RESTART:
             self._persons.clear()
@@ -76,18 +76,18 @@ class PosePreprocessor:
     def _distinct_agents(self, message: Skeleton) -> list[Agent]:
         agents = {agent.agent: agent for agent in message.agents}
         if len(agents) < len(message.agents):
-            self.tally.reject("repeated_agent", f"{len(message.agents)} agents, {len(agents)} distinct")
+            self.counters.reject("repeated_agent", f"{len(message.agents)} agents, {len(agents)} distinct")
         return list(agents.values())
 
     def _posture(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
         if not frame.valid:
-            self.tally.reject("invalid_skeleton", f"agent {agent.agent} at {frame.stamp_ns}: {frame.reason}")
+            self.counters.reject("invalid_skeleton", f"agent {agent.agent} at {frame.stamp_ns}: {frame.reason}")
             return self._invalid(frame, agent.agent, frame.reason or "invalid skeleton", missed, present)
         try:
             return self._valid(frame, agent, missed, present)
         except (BadFrameError, geometry.DegenerateError) as error:
             kind = error.kind if isinstance(error, BadFrameError) else "coincident_joints"
-            self.tally.reject(kind, f"agent {agent.agent} at {frame.stamp_ns}: {error}")
+            self.counters.reject(kind, f"agent {agent.agent} at {frame.stamp_ns}: {error}")
             return self._invalid(frame, agent.agent, f"{kind}: {error}", missed, present)
 
     def _valid(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:

@@ -16,7 +16,7 @@ class AmendedSource:
 
     def __init__(self, source: Source, amend: Amend) -> None:
         self._source, self._amend = source, amend
-        self.name, self.paced, self.tally = source.name, source.paced, source.tally
+        self.name, self.paced, self.counters = source.name, source.paced, source.counters
 
     def frames(self) -> Iterator[list[Message]]:
         """Yield the source's frames."""

@@ -13,8 +13,8 @@ class CalibratedSource:
     def __init__(self, source: Source, calibration: Calibration) -> None:
         self._source = source
         self._calibration = calibration
-        self.name, self.paced, self.tally = source.name, source.paced, source.tally
-        self.tally.details["calibration"] = calibration.id
+        self.name, self.paced, self.counters = source.name, source.paced, source.counters
+        self.counters.details["calibration"] = calibration.id
 
     def frames(self) -> Iterator[list[Message]]:
         """Yield the source's frames; an image of another size than was calibrated is counted and marked invalid."""
@@ -28,5 +28,5 @@ class CalibratedSource:
             return message.model_copy(update=self._calibration.image_fields())
         width, height = self._calibration.image_size
         reason = f"image_size_mismatch: {message.width}x{message.height}, calibrated for {width}x{height}"
-        self.tally.reject("image_size_mismatch", reason)
+        self.counters.reject("image_size_mismatch", reason)
         return message.model_copy(update={"valid": False, "reason": reason})

@@ -8,9 +8,7 @@ from sensor_gateway.settings import Settings
 
 
 def description(settings: Settings) -> str:
-    """Say what the settings have the gateway read: a simulated scene, a file or folder, or which camera."""
-    if settings.source == "simulator":
-        return "simulated scene, no camera (--source names one)"
+    """Say what the settings have the gateway read: a file or folder, or which camera."""
     if settings.source in ("camera", "marker-camera"):
         return _camera(settings.source.replace("-", " "), settings.camera)
     if settings.path is None:

@@ -9,13 +9,7 @@ from actum.messages import Direction
 from actum.settings import ServiceSettings
 from sensor_gateway.camera.model_file import default_model
 
-SourceName = Literal[
-    "simulator", "recording", "msr-action3d", "utkinect", "camera", "marker-camera", "realsense", "openni2"
-]
-
-
-def _number(text: object) -> object:
-    return int(text) if isinstance(text, str) and text.isdecimal() else text
+SourceName = Literal["camera", "marker-camera", "realsense", "openni2", "recording"]
 
 
 def _text(number: object) -> object:
@@ -25,17 +19,11 @@ def _text(number: object) -> object:
 class Settings(ServiceSettings):
     """What the gateway can be told beside what every service can."""
 
-    source: SourceName = Field("simulator", description="where the frames come from")
+    source: SourceName | None = Field(None, description="where the frames come from")
     path: Path | None = Field(
-        None, description="the recording or data set: a file, or a folder played in order; a depth camera's recording"
+        None, description="the recording: a file, or a folder played in order; a depth camera's recording"
     )
     loop: bool = Field(False, description="files: play them again and again, a second between two rounds")
-    actor: int = Field(0, ge=0, description="simulator: who acts")
-    seed: int = Field(1, ge=0, description="simulator: which repetitions")
-    repetitions: int = Field(0, ge=0, description="simulator: how often each action is done; 0 goes on for ever")
-    image_hz: Annotated[Literal[0, 5, 10, 15, 30], BeforeValidator(_number)] = Field(
-        15, description="simulator: colour images a second; 0 for none"
-    )
     calibration: Path | None = Field(
         None, description="a file of `actum calibrate`: where given, its camera is put with each colour image"
     )

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from actum.node import Tally
+from actum.node import Counters
 from som_classifier.model import Model
 from som_classifier.storage import ModelError, load_model
 
@@ -15,7 +15,7 @@ class ModelFile:
         self._seen: tuple[int, int] | None = None
         self._loaded = False
 
-    def poll(self, tally: Tally) -> Model | None:
+    def poll(self, counters: Counters) -> Model | None:
         """Return the model if the file is new or changed and sound.
 
         Where it is not, `bad_model` is counted, and the state says so, as where there has been none yet.
@@ -24,10 +24,10 @@ class ModelFile:
             stat = self._path.stat()
         except FileNotFoundError:
             if not self._loaded:
-                tally.state = f"no model: there is no {self._path} yet"
+                counters.state = f"no model: there is no {self._path} yet"
             return None
         except OSError as error:
-            self._refuse(tally, str(error))
+            self._refuse(counters, str(error))
             return None
         version = (stat.st_mtime_ns, stat.st_size)
         if version == self._seen:
@@ -36,11 +36,11 @@ class ModelFile:
         try:
             model = load_model(self._path)
         except ModelError as error:
-            self._refuse(tally, str(error))
+            self._refuse(counters, str(error))
             return None
         self._loaded = True
         return model
 
-    def _refuse(self, tally: Tally, why: str) -> None:
-        tally.reject("bad_model", why)
-        tally.state = f"{'model not renewed' if self._loaded else 'no model'}: {why}"
+    def _refuse(self, counters: Counters, why: str) -> None:
+        counters.reject("bad_model", why)
+        counters.state = f"{'model not renewed' if self._loaded else 'no model'}: {why}"

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from actum.messages import Hand, Posture, Segment
-from actum.node import SECOND_NS, Tally, Tick
+from actum.node import SECOND_NS, Counters, Tick
 from actum.stamps import Order
 from som_classifier.streams import LONGEST_NS, SKEW_NS, Encode, Frame, Streams
 
@@ -70,8 +70,8 @@ class _Answered:
 class Segmenter:
     """Keeps the open segments of one sensor and closes each exactly once."""
 
-    def __init__(self, tally: Tally) -> None:
-        self._tally = tally
+    def __init__(self, counters: Counters) -> None:
+        self._counters = counters
         self._streams = Streams()
         self._open: OrderedDict[str, OpenSegment] = OrderedDict()
         self._answered: OrderedDict[str, _Answered] = OrderedDict()
@@ -89,14 +89,14 @@ class Segmenter:
         late = any(posture.agent == agent and posture.stamp_ns in stamps for agent, stamps in self._late)
         what = f"posture of agent {posture.agent} at {posture.stamp_ns}"
         if frame is None:
-            self._tally.reject("late" if late else "stale_stamp", what)
+            self._counters.reject("late" if late else "stale_stamp", what)
             return None, closed
         if posture.valid and not frame.valid:
-            self._tally.reject("bad_posture", f"{what}: missing, non-finite or absurd joints or motion")
+            self._counters.reject("bad_posture", f"{what}: missing, non-finite or absurd joints or motion")
         if order is Order.RESTART:
             closed += self._close_all("the source started anew")
         elif late:
-            self._tally.reject("late", f"{what}, after its segment was answered")
+            self._counters.reject("late", f"{what}, after its segment was answered")
         self._begin_or_go_on(posture.stamp_ns)
         return frame, closed + self._settle()
 
@@ -188,7 +188,7 @@ class Segmenter:
 
     def _start(self, mark: Segment) -> list[Closed]:
         if mark.segment_id in self._open:
-            self._tally.reject("duplicate_mark", f"second start of {mark.segment_id!r}")
+            self._counters.reject("duplicate_mark", f"second start of {mark.segment_id!r}")
             return []
         start_ns = self._streams.newest_ns if mark.stamp_ns is None else mark.stamp_ns
         self._open[mark.segment_id] = OpenSegment(mark.segment_id, start_ns, mark.agent, mark.hand, mark.label)
@@ -199,7 +199,7 @@ class Segmenter:
         if segment is None:
             return [self._end_without_start(mark)]
         if segment.end_ns is not None:
-            self._tally.reject("duplicate_mark", f"second end of {mark.segment_id!r}")
+            self._counters.reject("duplicate_mark", f"second end of {mark.segment_id!r}")
             return []
         newest_ns = self._streams.newest_ns if self._streams.newest_ns is not None else segment.start_ns or 0
         segment.end_ns = newest_ns if mark.stamp_ns is None else mark.stamp_ns
@@ -221,13 +221,13 @@ class Segmenter:
         is_start = mark.kind == "start"
         known_ns = answered.start_ns if is_start else answered.end_ns
         if not is_start and (answered.reused or mark.stamp_ns is None):
-            self._tally.reject("duplicate_mark", f"end of the answered segment {mark.segment_id!r}")
+            self._counters.reject("duplicate_mark", f"end of the answered segment {mark.segment_id!r}")
         elif not is_start and known_ns is None:
-            self._tally.reject("late", f"end of {mark.segment_id!r} after it was given up")
+            self._counters.reject("late", f"end of {mark.segment_id!r} after it was given up")
         elif mark.stamp_ns is not None and mark.stamp_ns == known_ns:
-            self._tally.reject("duplicate_mark", f"{mark.kind} of the answered segment {mark.segment_id!r}")
+            self._counters.reject("duplicate_mark", f"{mark.kind} of the answered segment {mark.segment_id!r}")
         elif is_start and answered.reused and mark.stamp_ns is None:
-            self._tally.reject("duplicate_mark", f"{mark.segment_id!r} is used up")
+            self._counters.reject("duplicate_mark", f"{mark.segment_id!r} is used up")
         else:
             stamp_ns = mark.stamp_ns if mark.stamp_ns is not None else self._streams.newest_ns or 0
             answered.reused, answered.start_ns = True, stamp_ns if is_start else answered.start_ns

@@ -22,7 +22,7 @@ class Tick:
 
 
 @dataclass
-class Tally:
+class Counters:
     """What a node counts: rejects by kind, the newest complaint, its state in one word or two.
 
     `details` says what is in use (`model`, `calibration`, `source`), for `info`.
@@ -43,7 +43,7 @@ class Tally:
 class Node(Protocol):
     """A service's core: state inside; no socket, no clock, no sleep."""
 
-    tally: Tally
+    counters: Counters
 
     @property
     def name(self) -> str:
@@ -63,7 +63,7 @@ class Node(Protocol):
 class Source(Protocol):
     """A sensor: frames in the order of their stamps. The runtime decides when each is put."""
 
-    tally: Tally
+    counters: Counters
 
     @property
     def name(self) -> str:

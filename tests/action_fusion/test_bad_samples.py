@@ -41,7 +41,7 @@ def test_a_posture_that_is_valid_only_in_name_is_counted(node, fields) -> None:
     bad = [posture.model_copy(update=fields) for posture in TOUCH.postures(end_s=1.5)]
     good = TOUCH.postures(start_s=1.5)
     (event,) = told(node, *bad, *good, *TOUCH.sightings(), action("touch"))
-    assert node.tally.rejects == {"bad_posture": len(bad)}
+    assert node.counters.rejects == {"bad_posture": len(bad)}
     assert event.object is not None and event.object.id == 1
 
 
@@ -73,7 +73,7 @@ def test_an_absurdly_far_object_is_counted_and_left_out(node, far_m) -> None:
     scene = Scene(right_hand=TOUCH.right_hand, objects={1: still((0.1, 0.0, 0.45)), 2: still((far_m, 0.0, 0.0))})
     (event,) = told(node, *scene.postures(), *scene.sightings(), action("touch"))
     assert event.objects_present == [1]
-    assert node.tally.rejects == {"bad_object": len(scene.sightings())}
+    assert node.counters.rejects == {"bad_object": len(scene.sightings())}
 
 
 def test_an_actor_who_lies_down_has_no_forward(node) -> None:

@@ -23,7 +23,7 @@ def event_of(scene: Scene, act: Action, **chosen: object) -> Event:
     messages: list[Message] = [*scene.postures(), *scene.sightings(), act]
     (event,) = [event for message in messages for event in node.handle(message)]
     assert isinstance(event, Event)
-    assert not node.tally.rejects
+    assert not node.counters.rejects
     return event
 
 

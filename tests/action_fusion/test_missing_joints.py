@@ -35,7 +35,7 @@ def event_of(
     messages: list[Message] = [*postures, *sightings, action(label, part=part)]
     (event,) = [event for message in messages for event in node.handle(message)]
     assert isinstance(event, Event)
-    assert not node.tally.rejects
+    assert not node.counters.rejects
     return event
 
 

@@ -125,7 +125,7 @@ def test_invalid_messages_only_tell_that_time_went_on(node) -> None:
     assert told(node, blind) == []
     (event,) = told(node, lost)
     assert event.result == "0.20 m away"
-    assert not node.tally.rejects
+    assert not node.counters.rejects
 
 
 def test_an_objects_stream_that_never_comes_is_waited_for_no_longer_than_it_may_lag(node) -> None:
@@ -152,7 +152,7 @@ def test_what_comes_after_the_answer_changes_nothing_and_is_counted_late(node) -
     told(node, *PUSH.postures(), *PUSH.sightings(end_s=1.0), action("push"))
     assert len(ticked(node, 3.0)) == 1
     assert told(node, PUSH.objects_seen(1.5), PUSH.objects_seen(1.6), PUSH.objects_seen(2.1)) == []
-    assert node.tally.rejects == {"late": 2}
+    assert node.counters.rejects == {"late": 2}
 
 
 def test_frames_after_the_end_do_not_count() -> None:
@@ -181,13 +181,13 @@ def test_a_rejection_without_an_end_ends_where_it_started(node) -> None:
 def test_a_recognition_without_label_or_end_is_answered_as_a_rejection(node, broken) -> None:
     (event,) = told(node, broken)
     assert not event.valid
-    assert node.tally.rejects == {"bad_action": 1}
+    assert node.counters.rejects == {"bad_action": 1}
 
 
 def test_a_segment_is_answered_once(node) -> None:
     told(node, *PUSH.postures(), *PUSH.sightings())
     assert len(told(node, action("push"), action("push"))) == 1
-    assert node.tally.rejects == {"duplicate_segment": 1}
+    assert node.counters.rejects == {"duplicate_segment": 1}
 
 
 def test_a_segment_that_still_waits_is_not_taken_twice(node) -> None:
@@ -204,7 +204,7 @@ def test_an_id_used_again_is_answered_with_its_rejection(node) -> None:
 def test_older_and_repeated_stamps_are_counted_and_dropped(node) -> None:
     told(node, PUSH.posture(1.0), PUSH.posture(1.0), PUSH.posture(0.5))
     told(node, PUSH.objects_seen(1.0), PUSH.objects_seen(0.9))
-    assert node.tally.rejects == {"stale_stamp": 3}
+    assert node.counters.rejects == {"stale_stamp": 3}
 
 
 def test_time_that_goes_back_answers_what_waits_and_forgets_the_past(node) -> None:

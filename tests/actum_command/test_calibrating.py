@@ -11,10 +11,10 @@ from typer.testing import CliRunner
 
 from actum.calibration import Calibration
 from actum.recording import Recorder
+from actum_calibrator.board import Board
 from actum_command import finding_up
 from actum_command.__main__ import app
 from boards import Lens, facing, good_poses, photograph
-from calibrator.board import Board
 from people import FRAME_NS, STANDING, lacking, reaches, skeleton
 
 BOARD, LENS = Board(), Lens()

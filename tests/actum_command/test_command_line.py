@@ -284,7 +284,7 @@ def supervised(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 @pytest.mark.parametrize(
     ("source", "beside", "told"),
     [
-        ("simulator", ["sensor_gateway", "scene"], False),
+        ("simulator", ["scene_simulator", "scene"], False),
         ("camera", ["sensor_gateway"], True),
         ("none", [], True),
     ],

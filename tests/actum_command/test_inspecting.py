@@ -8,7 +8,7 @@ from typer.testing import CliRunner, Result
 
 from actum.recording import Recorder
 from actum_command.__main__ import app
-from model_inspector.folder import LIST
+from actum_model_inspector.folder import LIST
 from people import FRAME_NS
 from performers import HAND_PATHS, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
 from recognisers import tiny_model
@@ -24,7 +24,7 @@ def model(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
 
 @pytest.fixture(autouse=True)
 def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("model_inspector.style.DOTS_PER_INCH", 30)
+    monkeypatch.setattr("actum_model_inspector.style.DOTS_PER_INCH", 30)
 
 
 def recorded(path: Path, actions: list[str], person: str = "2") -> Path:

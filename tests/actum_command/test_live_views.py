@@ -11,11 +11,11 @@ import pytest
 from typer.testing import CliRunner
 
 from actum.messages import Image, Message
+from actum_calibrator.board import Board
+from actum_calibrator.views import BoardFinder, View
 from actum_command import live_views
 from actum_command.__main__ import app
 from boards import Lens, good_poses, photograph
-from calibrator.board import Board
-from calibrator.views import BoardFinder, View
 from empty_messages import image, skeleton
 
 MISMATCH = "image_size_mismatch: 1280x720, calibrated for 640x480"

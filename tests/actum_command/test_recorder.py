@@ -7,13 +7,14 @@ from mcap.reader import make_reader
 
 from actum import keys
 from actum.messages import MANUAL, REPLAY, SIMULATOR, Image, Message, Segment, Skeleton, Truth
-from actum.node import SECOND_NS, Tally
+from actum.node import SECOND_NS, Counters
 from actum.recording import Recorder, Recording
 from actum_command import marks
 from actum_command.recorder import IMAGES, SKEW_NS, STREAMS, StreamRecorder
 from actum_command.scene import mark_of
 from empty_messages import action, image, mark, skeleton, status
-from sensor_gateway.simulator import Simulator, balanced_programme, labelled_stream
+from scene_simulator.programme import balanced_programme
+from scene_simulator.source import Simulator, labelled_stream
 
 
 class Take:
@@ -21,7 +22,7 @@ class Take:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.tally = Tally()
+        self.counters = Counters()
 
     def record(self, *messages: Message, apart_ns: int = 1_000_000, **options: object) -> list[Message]:
         with Recorder(self.path, person="1", source="live") as recorder:
@@ -29,7 +30,7 @@ class Take:
             for i, message in enumerate(messages):
                 stream.take(message, received_ns=i * apart_ns)
             stream.close()
-            self.tally = stream.tally
+            self.counters = stream.counters
         return list(Recording(self.path).messages())
 
     def marks(self, *messages: Message, **options: object) -> list[tuple[str, int]]:
@@ -87,7 +88,7 @@ def test_an_end_that_the_answer_does_not_know_gets_the_newest_frames_stamp(take:
 
 def test_a_mark_before_any_frame_cannot_be_placed_and_is_counted(take: Take) -> None:
     assert take.marks(mark("start")) == []
-    assert take.tally.rejects == {"mark_without_stamp": 1}
+    assert take.counters.rejects == {"mark_without_stamp": 1}
 
 
 def test_the_label_is_given_to_start_marks_that_have_none(take: Take) -> None:

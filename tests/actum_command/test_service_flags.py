@@ -83,8 +83,8 @@ def test_what_nobody_would_heed_is_refused(arguments: tuple[str, ...], reason: s
 
 def test_without_any_the_simulated_scene_is_started(started: BY_NAME) -> None:
     up()
-    assert set(started) == {"sensor_gateway", *processes.SERVICES, "scene"}
-    assert started["sensor_gateway"] == ["--source", "simulator"]
+    assert set(started) == {"scene_simulator", *processes.SERVICES, "scene"}
+    assert started["scene_simulator"] == []
 
 
 def test_every_setting_of_every_service_stands_in_the_help() -> None:

@@ -84,4 +84,4 @@ def test_what_is_bridged_is_still_named_in_the_state() -> None:
     node = PosePreprocessor()
     put(node, 0, walking(0))
     put(node, FRAME_NS, lacking(walking(1), "right_hand"))
-    assert node.tally.state == "running without right_hand"
+    assert node.counters.state == "running without right_hand"

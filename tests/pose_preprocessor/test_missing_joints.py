@@ -74,7 +74,7 @@ def test_whatever_is_missing_the_rest_is_published_or_the_frame_is_named_unusabl
             assert known(posture.joints) == known(posture.upright) == reachable(missing)
         else:
             assert posture.reason == f"missing_joint: no {', '.join(name for name in JOINTS if name in missing)}"
-    assert node.tally.rejects == ({} if usable(missing) else {"missing_joint": 2})
+    assert node.counters.rejects == ({} if usable(missing) else {"missing_joint": 2})
 
 
 @given(SUBSETS.filter(lambda missing: usable(missing) and not missing & (HIPS | SHOULDERS)))
@@ -145,30 +145,30 @@ def test_what_is_there_is_still_checked() -> None:
     folded[INDEX["right_hand"]] = folded[INDEX["right_elbow"]]
     made = postures([far_knee, far_hand, folded, lacking(reaching(0.5), "left_foot")], node)
     assert [posture.valid for posture in made] == [False, False, False, True]
-    assert node.tally.rejects == {"absurd_bone": 1, "absurd_joint": 1, "coincident_joints": 1}
+    assert node.counters.rejects == {"absurd_bone": 1, "absurd_joint": 1, "coincident_joints": 1}
 
 
 def test_a_repeated_frame_is_repeated_with_joints_missing_too() -> None:
     node = PosePreprocessor()
     first, again = postures([lacking(STANDING, *FEET)] * 2, node)
     assert (first.valid, again.valid) == (True, False)
-    assert node.tally.rejects == {"repeated_joints": 1}
+    assert node.counters.rejects == {"repeated_joints": 1}
 
 
 def test_the_state_names_what_was_missing_lately_and_nothing_is_rejected() -> None:
     node = PosePreprocessor()
     postures([lacking(reaching(0.1), *FEET), reaching(0.2)], node)
-    assert node.tally.state == "running without left_foot, right_foot"
+    assert node.counters.state == "running without left_foot, right_foot"
     postures([lacking(reaching(0.3), "head")], node, first_ns=10**9)
-    assert node.tally.state == "running without head, left_foot, right_foot"
+    assert node.counters.state == "running without head, left_foot, right_foot"
     postures([reaching(0.4)], node, first_ns=25 * 10**8)
-    assert node.tally.state == "running without head"
+    assert node.counters.state == "running without head"
     list(node.handle(skeleton(4 * 10**9)))
-    assert (node.tally.state, node.tally.rejects) == ("running", {})
+    assert (node.counters.state, node.counters.rejects) == ("running", {})
 
 
 def test_the_state_does_not_outlive_a_restart_of_the_source() -> None:
     node = PosePreprocessor()
     list(node.handle(skeleton(10**12, lacking(STANDING, "head"))))
     list(node.handle(skeleton(0, STANDING, session_id="other")))
-    assert node.tally.state == "running"
+    assert node.counters.state == "running"

@@ -94,7 +94,7 @@ def test_a_bad_frame_is_published_invalid_counted_and_survived(kind: str, frame:
     assert not posture.valid
     assert posture.reason and kind in posture.reason
     assert posture.joints is None
-    assert node.tally.rejects[kind] == 1
+    assert node.counters.rejects[kind] == 1
     [after] = postures(skeleton(2, STANDING), node=node)
     assert after.valid
 
@@ -105,14 +105,14 @@ def test_a_tracker_that_repeats_itself_has_lost_the_person() -> None:
         skeleton(0, STANDING), skeleton(FRAME_NS, STANDING), skeleton(2 * FRAME_NS, reaching(0.1)), node=node
     )
     assert (first.valid, again.valid, moved.valid) == (True, False, True)
-    assert node.tally.rejects["repeated_joints"] == 1
+    assert node.counters.rejects["repeated_joints"] == 1
 
 
 def test_older_and_repeated_stamps_are_dropped_and_counted() -> None:
     node = PosePreprocessor()
     frames = [skeleton(stamp, reaching(i / 9)) for i, stamp in enumerate((10, 20, 20, 15, 30))]
     assert [posture.stamp_ns for posture in postures(*frames, node=node)] == [10, 20, 30]
-    assert node.tally.rejects["stale_stamp"] == 2
+    assert node.counters.rejects["stale_stamp"] == 2
 
 
 def test_nobody_there_still_lets_time_pass() -> None:

@@ -13,7 +13,8 @@ from chain import answers, by_key, delayed
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings
 from pose_preprocessor.node import PosePreprocessor
-from sensor_gateway.simulator import Simulator, balanced_programme
+from scene_simulator.programme import balanced_programme
+from scene_simulator.source import Simulator
 from wire import without_seq
 
 SKEW_NS = 2 * SECOND_NS

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from actum.messages import Agent, Event, Message, Posture, Segment
-from actum.node import SECOND_NS, Tally
+from actum.node import SECOND_NS, Counters
 from camera_bodies import Array, as_seen, landmark_points
 from chain import answers, by_key, delayed
 from people import reaching
@@ -60,7 +60,7 @@ class Crossing:
 
 @pytest.fixture(scope="module")
 def frames() -> list[list[Agent]]:
-    perceiver = Perceiver(Crossing(), Optics(), "kinect0", "test", Tally())
+    perceiver = Perceiver(Crossing(), Optics(), "kinect0", "test", Counters())
     return [perceiver.skeleton(Picture(DARK, (i + 1) * FRAME_NS)).agents for i in range(FRAMES)]
 
 
@@ -88,7 +88,7 @@ def _torsos_x(frames: Sequence[list[Agent]], number: int) -> list[float]:
 
 @pytest.mark.parametrize("acting", [1, 2])
 def test_the_event_names_the_agent_that_was_marked(frames, acting: int) -> None:
-    perceiver, preprocessor = Perceiver(Crossing(), Optics(), "kinect0", "test", Tally()), PosePreprocessor()
+    perceiver, preprocessor = Perceiver(Crossing(), Optics(), "kinect0", "test", Counters()), PosePreprocessor()
     messages: list[Message] = []
     for i in range(FRAMES):
         messages += preprocessor.handle(perceiver.skeleton(Picture(DARK, (i + 1) * FRAME_NS)))

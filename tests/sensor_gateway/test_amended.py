@@ -16,13 +16,13 @@ from sensor_gateway.sources import source_of
 UP = [0.0, -0.97, 0.24]
 
 
-def first_messages(**told: object) -> list[Skeleton | Image]:
-    source = source_of(Settings(repetitions=1, **told), start_ns=0)  # type: ignore[arg-type]
+def first_messages(recording: Path, **told: object) -> list[Skeleton | Image]:
+    source = source_of(Settings(source="recording", path=recording, **told), start_ns=0)  # type: ignore[arg-type]
     return next(messages for messages in source.frames() if any(isinstance(m, Image) for m in messages))  # type: ignore[return-value]
 
 
-def test_each_skeleton_says_which_way_is_up() -> None:
-    told = first_messages(up_in_camera=UP)
+def test_each_skeleton_says_which_way_is_up(recorded_scene: Path) -> None:
+    told = first_messages(recorded_scene, up_in_camera=UP)
     assert [m.up_in_camera for m in told if isinstance(m, Skeleton)] == [UP]
     assert any(isinstance(m, Image) for m in told)
 
@@ -32,8 +32,8 @@ def test_it_reads_it_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> No
     assert Settings().up_in_camera == UP
 
 
-def test_nothing_is_said_where_nothing_is_known() -> None:
-    assert [m.up_in_camera for m in first_messages() if isinstance(m, Skeleton)] == [None]
+def test_nothing_is_said_where_nothing_is_known(recorded_scene: Path) -> None:
+    assert [m.up_in_camera for m in first_messages(recorded_scene) if isinstance(m, Skeleton)] == [None]
 
 
 @pytest.mark.parametrize("up", [[0, 0, 0], [0, 1e9, 0], [0, -1]])
@@ -59,7 +59,7 @@ def test_a_recording_played_again_begins_anew_for_those_who_listen(recording: Pa
         made.append([posture for message in messages for posture in node.handle(message)])
     assert [len(postures) for postures in made] == [20, 20]
     assert all(isinstance(posture, Posture) and posture.valid for postures in made for posture in postures)
-    assert not node.tally.rejects
+    assert not node.counters.rejects
 
 
 def test_the_longest_session_name_still_fits(recording: Path) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from actum.messages import Joint, Skeleton
-from actum.node import SECOND_NS, Tally
+from actum.node import SECOND_NS, Counters
 from actum.skeletons import INDEX
 from sensor_gateway.camera.perceiving import Optics, Perceiver
 from sensor_gateway.camera.pose import BLANK, PoseEstimator, PoseModelError
@@ -26,7 +26,7 @@ RAISED_HAND = "florence3d_rgb/GestureRecording_Id1actor1idAction1category1.mp4"
 
 def seen(path: Path, model: Path, optics: Optics, people: int = 1, doubled: bool = False) -> list[Skeleton]:
     with PoseEstimator(model, people) as estimator:
-        perceiver = Perceiver(estimator, optics, "kinect0", "test", Tally())
+        perceiver = Perceiver(estimator, optics, "kinect0", "test", Counters())
         return [perceiver.skeleton(twice(picture) if doubled else picture) for picture in pictures_of(path)]
 
 

@@ -76,7 +76,7 @@ def test_a_stream_that_ends_is_lost_and_comes_back_by_itself(camera: str) -> Non
     assert sizes == {(64, 48)}
     assert told[0].valid
     assert {skeleton.reason for skeleton in told} == {None, "camera lost: it gives no more pictures"}
-    assert source.tally.state == "running"
+    assert source.counters.state == "running"
     stamps = [skeleton.stamp_ns for skeleton in told]
     assert stamps == sorted(set(stamps))
 

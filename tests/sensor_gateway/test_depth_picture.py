@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from actum.calibration import Calibration
 from actum.messages import Image, Skeleton
-from actum.node import Tally
+from actum.node import Counters
 from realsense_devices import Known
 from rendered_bodies import depth_of, landmarks_of, person
 from sensor_gateway.camera.capture import OPENING_S, SILENT_S, CameraLostError
@@ -36,7 +36,7 @@ def calibration(width: int) -> Calibration:
 
 def seen(optics: DepthOptics, one: Picture) -> tuple[list[Image], Skeleton]:
     marks = landmarks_of(BODY, LENS, model_size=1.05)
-    *images, skeleton = Perceiver(Known(marks), optics, "kinect0", "test", Tally()).messages(one)
+    *images, skeleton = Perceiver(Known(marks), optics, "kinect0", "test", Counters()).messages(one)
     assert isinstance(skeleton, Skeleton)
     return [image for image in images if isinstance(image, Image)], skeleton
 

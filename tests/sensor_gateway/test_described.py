@@ -13,7 +13,6 @@ from sensor_gateway.settings import Settings
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        ({}, "simulated scene, no camera (--source names one)"),
         ({"source": "camera"}, "camera 0"),
         ({"source": "camera", "camera": "/dev/video2"}, "camera /dev/video2"),
         ({"source": "camera", "camera": "nowhere/wave.MP4"}, "file nowhere/wave.MP4 (camera)"),
@@ -23,7 +22,7 @@ from sensor_gateway.settings import Settings
         ({"source": "realsense"}, "depth camera (realsense)"),
         ({"source": "openni2", "path": "walk.oni"}, "file walk.oni (openni2)"),
         ({"source": "recording", "path": "a.mcap"}, "file a.mcap (recording)"),
-        ({"source": "utkinect", "path": "."}, "folder . (utkinect)"),
+        ({"source": "recording", "path": "."}, "folder . (recording)"),
     ],
 )
 def test_a_sensor_is_told_by_what_it_is(settings: dict[str, Any], said: str) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from actum.calibration import Calibration
 from actum.messages import Image, Skeleton
-from actum.node import Tally
+from actum.node import Counters
 from actum.skeletons import INDEX, JOINTS
 from sensor_gateway.camera.bodies import Nobody
 from sensor_gateway.camera.capture import CameraLostError
@@ -95,7 +95,7 @@ def test_its_people_are_put_with_the_image_they_came_with() -> None:
     agents = tuple(Users(lambda _: None).agents([user(1)]))
     lens = Lens.of_field_of_view(64, 48, 58.0)
     image, depth = np.zeros((48, 64, 3), np.uint8), np.zeros((48, 64), np.float32)
-    perceiver = UsersPerceiver(Nobody(), DepthOptics(), "kinect0", "test", Tally())
+    perceiver = UsersPerceiver(Nobody(), DepthOptics(), "kinect0", "test", Counters())
 
     sent = list(perceiver.messages(UsersPicture(image, 5, depth, lens, agents)))
 
@@ -108,15 +108,15 @@ def test_images_of_another_size_than_was_calibrated_show_nobody_and_that_is_said
     agents = tuple(Users(lambda _: None).agents([user(1)]))
     image, depth = np.zeros((48, 64, 3), np.uint8), np.zeros((48, 64), np.float32)
     calibration = Calibration(image_size=(640, 480), K=[500, 0, 320, 0, 500, 240, 0, 0, 1], distortion=[])
-    tally = Tally()
-    perceiver = UsersPerceiver(Nobody(), DepthOptics(calibration=calibration), "kinect0", "test", tally)
+    counters = Counters()
+    perceiver = UsersPerceiver(Nobody(), DepthOptics(calibration=calibration), "kinect0", "test", counters)
 
     [sent] = perceiver.messages(UsersPicture(image, 5, depth, Lens.of_field_of_view(64, 48, 58.0), agents))
 
     assert isinstance(sent, Skeleton)
     assert (sent.valid, sent.agents) == (False, [])
     assert sent.reason == "image_size_mismatch: 64x48, calibrated for 640x480"
-    assert tally.rejects == {"image_size_mismatch": 1}
+    assert counters.rejects == {"image_size_mismatch": 1}
 
 
 class Tracker:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from actum.messages import Action, Message, Posture, Segment, Skeleton
-from actum.node import Tally, Tick, replay
+from actum.node import Counters, Tick, replay
 from actum.skeletons import INDEX
-from model_trainer.answering import answer, encoded
-from model_trainer.samples import SegmentSample
+from actum_model_trainer.answering import answer, encoded
+from actum_model_trainer.samples import SegmentSample
 from people import FRAME_NS, lacking, skeleton
 from performers import FRAMES, HAND_PATHS, PAUSE_FRAMES, TINY, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
 from pose_preprocessor.bridging import BRIDGED_NS
@@ -72,7 +72,7 @@ class Box:
     def __init__(self) -> None:
         self.model: Model | None = None
 
-    def poll(self, tally: Tally) -> Model | None:
+    def poll(self, counters: Counters) -> Model | None:
         model, self.model = self.model, None
         return model
 
@@ -236,7 +236,7 @@ def test_a_posture_without_any_joint_is_none(preset: Preset, fields: tuple[str, 
     blank = [p.model_copy(update=dict.fromkeys(fields, [None] * 15)) for p in postures]
     (final,) = finals(live(node, [*marks, *blank]))
     assert (final.reason, final.frames) == ("no usable frame", 0)
-    assert node.tally.rejects["bad_posture"] == FRAMES + PAUSE_FRAMES
+    assert node.counters.rejects["bad_posture"] == FRAMES + PAUSE_FRAMES
 
 
 @each_preset

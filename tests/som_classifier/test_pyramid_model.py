@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
-from model_trainer.answering import answer, encoded
-from model_trainer.samples import SegmentSample
+from actum_model_trainer.answering import answer, encoded
+from actum_model_trainer.samples import SegmentSample
 from recognisers import in_a_mirror, tiny_model, tiny_samples
 from som_classifier.attention import PART_NAMES, attended
 from som_classifier.codes import Code, seen_share

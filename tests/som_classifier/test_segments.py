@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from actum.messages import Posture, Segment
-from actum.node import SECOND_NS, TICK_NS, Tally, Tick
+from actum.node import SECOND_NS, TICK_NS, Counters, Tick
 from people import FRAME_NS, STANDING, reaches, reaching, skeleton
 from pose_preprocessor.node import PosePreprocessor
 from som_classifier.segments import Closed, Segmenter
@@ -24,8 +24,8 @@ class Run:
     """A segmenter fed step by step."""
 
     def __init__(self) -> None:
-        self.tally = Tally()
-        self.segmenter = Segmenter(self.tally)
+        self.counters = Counters()
+        self.segmenter = Segmenter(self.counters)
         self.closed: list[Closed] = []
         self._now_ns = 0
 
@@ -74,7 +74,7 @@ def test_what_comes_after_the_answer_is_late_and_changes_nothing() -> None:
     run = Run().feed(*postures(10), mark("start", 0), mark("end", 20 * FRAME_NS)).wait(2.3)
     run.feed(*postures(15)[10:])
     assert len(run.closed) == 1
-    assert run.tally.rejects["late"] == 5
+    assert run.counters.rejects["late"] == 5
 
 
 def test_marks_after_the_fact_find_their_frames() -> None:
@@ -145,7 +145,7 @@ def test_the_same_mark_again_is_counted_and_not_answered_twice(stamp_ns: int | N
     run = Run().feed(*frames[:1], mark("start", stamp_ns), mark("start", stamp_ns), *frames[1:])
     run.feed(mark("end", 9 * FRAME_NS), mark("end", 9 * FRAME_NS))
     assert run.reasons == [None]
-    assert run.tally.rejects["duplicate_mark"] == 2
+    assert run.counters.rejects["duplicate_mark"] == 2
 
 
 def test_an_answered_id_with_another_stamp_is_rejected_once() -> None:

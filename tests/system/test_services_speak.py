@@ -33,7 +33,7 @@ def diagnosed(running: System) -> str:
 
 
 def test_a_gateway_of_a_simulated_scene_says_so_without_a_router_and_doctor_does_with_one(running: System) -> None:
-    gateway = running.start("sensor_gateway")
+    gateway = running.start("scene_simulator")
     wait_for_line(gateway, "sensor_gateway: sensor kinect0: simulated scene, no camera")
     running.start_router()
     with running.client() as client:

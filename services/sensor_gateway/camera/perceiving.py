@@ -8,7 +8,7 @@ import numpy as np
 
 from actum.calibration import Calibration
 from actum.messages import Image, Message, Skeleton
-from actum.node import Tally
+from actum.node import Counters
 from sensor_gateway.camera.bodies import Bodies, Estimator
 from sensor_gateway.camera.landmarks import Landmarks
 from sensor_gateway.camera.lens import Lens
@@ -71,12 +71,12 @@ class Optics:
 class Perceiver:
     """Makes an image and a skeleton of each picture; the image comes first, so that markers are sought meanwhile."""
 
-    def __init__(self, estimator: Estimator, optics: Optics, sensor: str, session_id: str, tally: Tally) -> None:
+    def __init__(self, estimator: Estimator, optics: Optics, sensor: str, session_id: str, counters: Counters) -> None:
         self._bodies = Bodies(estimator)
         self._optics = optics
         self._sensor = sensor
         self._session_id = session_id
-        self._tally = tally
+        self._counters = counters
 
     def messages(self, picture: Picture) -> Iterator[Message]:
         """Yield a picture's image, then its skeletons; stamps rise."""
@@ -117,7 +117,7 @@ class Perceiver:
         height, width = picture.image_bgr.shape[:2]
         calibrated = "x".join(map(str, self._optics.calibration.image_size))
         reason = f"image_size_mismatch: {width}x{height}, calibrated for {calibrated}"
-        self._tally.reject(OTHER_SIZE, reason)
+        self._counters.reject(OTHER_SIZE, reason)
         return self.nobody(picture.stamp_ns, reason)
 
     def _image(self, picture: Picture, lens: Lens) -> Image:

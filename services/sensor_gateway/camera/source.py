@@ -8,7 +8,7 @@ from pathlib import Path
 
 from actum.calibration import Calibration, CalibrationError
 from actum.messages import Message
-from actum.node import SECOND_NS, Tally
+from actum.node import SECOND_NS, Counters
 from sensor_gateway.camera.bodies import Estimator
 from sensor_gateway.camera.capture import CameraLostError, Capture, CaptureEndedError, capture_of
 from sensor_gateway.camera.perceiving import SAME_CAMERA, Optics, Perceiver
@@ -73,7 +73,7 @@ def camera_of(settings: Settings, start_ns: int) -> "CameraSource":
         sensor=settings.sensor,
         session_id=f"camera-{start_ns}",
     )
-    source.tally.details["model"] = settings.pose_model.name
+    source.counters.details["model"] = settings.pose_model.name
     return source
 
 
@@ -107,8 +107,8 @@ class CameraSource:
         now_ns: Callable[[], int] = time.time_ns,
         pause: Callable[[float], None] = time.sleep,
     ) -> None:
-        self.tally = Tally()
-        self.tally.details["calibration"] = str(optics)
+        self.counters = Counters()
+        self.counters.details["calibration"] = str(optics)
         self._open_estimator, self._open_capture = open_estimator, open_capture
         self._optics, self._sensor, self._session_id = optics, sensor, session_id
         self._perceiver, self._now_ns, self._pause = perceiver, now_ns, pause
@@ -119,7 +119,7 @@ class CameraSource:
     def frames(self) -> Iterator[list[Message]]:
         """Yield an image, then the skeletons seen in it; nothing now and then, so that the source can be stopped."""
         with self._open_estimator() as estimator:
-            perceiver = self._perceiver(estimator, self._optics, self._sensor, self._session_id, self.tally)
+            perceiver = self._perceiver(estimator, self._optics, self._sensor, self._session_id, self.counters)
             for seen in self._all_seen():
                 yield from self._of(seen, perceiver)
 
@@ -173,8 +173,8 @@ class CameraSource:
         """Say at once that there is nothing to see, and again every second."""
         now_ns = self._now_ns()
         if self._said is None or self._said[0] != reason:
-            self.tally.reject("camera_lost", reason)
-            self.tally.state = f"camera lost: {reason}"
+            self.counters.reject("camera_lost", reason)
+            self.counters.state = f"camera lost: {reason}"
         elif now_ns - self._said[1] < REMINDER_NS:
             return []
         self._said = reason, now_ns
@@ -183,7 +183,7 @@ class CameraSource:
     def _found(self) -> None:
         if self._said is not None:
             self._said = None
-            self.tally.state = "running"
+            self.counters.state = "running"
 
     def _rising(self, stamp_ns: int) -> int:
         """Keep stamps rising where the clock is set back, and the time between them right after that."""

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import zenoh
 
 from actum.health import write_health
-from actum.node import Tally
+from actum.node import Counters
 from actum.runtime.meter import Meter
 from actum.runtime.outbox import Outbox
 from actum.runtime.place import Place
@@ -24,14 +24,14 @@ WELL = "running"
 class Told:
     """Says each change of a service's state once; what is in use without trouble changes silently."""
 
-    def __init__(self, tally: Tally) -> None:
-        self._tally = tally
+    def __init__(self, counters: Counters) -> None:
+        self._counters = counters
         self._trouble: str | None = None
 
     def tell(self) -> None:
         """Say what is wrong if that is new, or that nothing is any more."""
-        trouble = None if self._tally.state.startswith(WELL) else self._tally.state
-        source = self._tally.details.get("source")
+        trouble = None if self._counters.state.startswith(WELL) else self._counters.state
+        source = self._counters.details.get("source")
         if trouble is not None and trouble != self._trouble:
             log.warning("%s", f"{trouble} ({source})" if source else trouble)
         elif trouble is None and self._trouble is not None:

@@ -1,0 +1,113 @@
+"""Draws a frame of the scene as the colour camera sees it, far things first."""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scene_simulator.chance import stream
+from scene_simulator.clutter import draw_clutter
+from scene_simulator.exposure import averaged
+from scene_simulator.figure import Figure, Stroke
+from scene_simulator.motion import Array
+from scene_simulator.paint import Canvas, Pinhole
+from scene_simulator.props import Prop
+from scene_simulator.scene import CLOSED, Scene, SceneState
+from scene_simulator.stage import WALL_Z_M, draw_room, draw_table
+
+SLACK_PX = 64
+VISIBLE_RISER_M = 0.004
+
+
+class Renderer:
+    """Draws the states of one scene; `rng` feeds the sensor's noise."""
+
+    def __init__(self, scene: Scene, rng: np.random.Generator) -> None:
+        parameters = scene.parameters
+        self.camera = Pinhole.of(parameters.camera)
+        self._table_y_m = parameters.table_y_m
+        self._items, self._seeds, self._conditions = scene.items, scene.seeds, scene.conditions
+        self._props = [Prop(item, parameters.objects.marker_size_m) for item in scene.items]
+        self._figure = Figure(scene.actor)
+        self._room = draw_room(self.camera, parameters.camera.height_m)
+        names = [item.name for item in scene.items]
+        self._table, self._table_mask = draw_table(self.camera, parameters, names, scene.places_x_m)
+        if self._conditions.clutter:
+            self._draw_clutter(scene)
+        self._blur_sd_px = parameters.image.blur_sd_px
+        self._rng = rng
+        size = (self.camera.height + SLACK_PX, self.camera.width + SLACK_PX, 3)
+        self._grain = np.round(rng.normal(0, parameters.image.grey_noise_sd, size)).astype(np.int16)
+
+    def image(self, *states: SceneState) -> Canvas:
+        """Draw one frame, BGR, with the camera's blur and grain, from its instants while the shutter is open."""
+        taken = averaged([self.clean_image(state) for state in states])
+        if self._conditions.defocus_sd_px:
+            taken = np.asarray(cv2.GaussianBlur(taken, (0, 0), self._conditions.defocus_sd_px), dtype=np.uint8)
+        blurred = cv2.GaussianBlur(taken, (3, 3), self._blur_sd_px)
+        x, y = self._rng.integers(SLACK_PX, size=2)
+        grain = self._grain[y : y + self.camera.height, x : x + self.camera.width]
+        return np.asarray(cv2.add(blurred, grain, dtype=cv2.CV_8U), dtype=np.uint8)
+
+    def clean_image(self, state: SceneState) -> Canvas:
+        """Draw one frame, BGR, as it is."""
+        canvas = self._room.copy()
+        self._figure.draw_below(canvas, self.camera, state.joints_m)
+        cv2.copyTo(self._table, self._table_mask, canvas)
+        for row, prop in enumerate(self._props):
+            prop.draw_shadow(canvas, self.camera, state.positions_m[row], self._table_y_m)
+        strokes = [*self._figure.strokes(self.camera, state), *self._prop_strokes(state)]
+        for _, draw in sorted(strokes, key=lambda stroke: -stroke[0]):
+            draw(canvas)
+        return canvas
+
+    def _prop_strokes(self, state: SceneState) -> list[Stroke]:
+        dazzling = self._dazzling(state.frame)
+        strokes = [self._object_stroke(state, row, bool(dazzling[row])) for row in range(len(self._props))]
+        strokes += [
+            self._riser_stroke(row, state.riser_tops_m[row])
+            for row in range(len(self._props))
+            if self._table_y_m - state.riser_tops_m[row, 1] > VISIBLE_RISER_M
+        ]
+        if state.grip > 0 and state.target is not None:
+            strokes.append(self._finger_stroke(state, state.target))
+        if state.grip > CLOSED and state.target is not None and self._conditions.covers_marker:
+            strokes.append(self._palm_stroke(state, state.target))
+        return strokes
+
+    def _dazzling(self, frame: int) -> NDArray[np.bool_]:
+        """Tell on which objects' cards light is reflected in a frame (n,)."""
+        share, count = self._conditions.unread_share, len(self._props)
+        return stream("unread", *self._seeds, frame).random(count) < share if share else np.zeros(count, dtype=bool)
+
+    def _object_stroke(self, state: SceneState, row: int, dazzling: bool) -> Stroke:
+        pose, prop = state.camera_from_object(row), self._props[row]
+        draw = prop.draw_dazzling if dazzling else prop.draw
+        return float(state.positions_m[row, 2]), lambda canvas: draw(canvas, self.camera, pose)
+
+    def _riser_stroke(self, row: int, top_m: Array) -> Stroke:
+        prop = self._props[row]
+        return float(top_m[2]) + 0.005, lambda canvas: prop.draw_riser(canvas, self.camera, top_m, self._table_y_m)
+
+    def _finger_stroke(self, state: SceneState, target: int) -> Stroke:
+        """The closed hand's fingers lie before the face they hold."""
+        position = state.positions_m[target]
+        edge = position - (0.0, self._items[target].size_m[1] / 2, 0.0)
+        down = np.array([0.0, max(state.finger_overlap_m, 0.0), 0.0])
+        depth = float(position[2]) - 0.01
+        return depth, lambda canvas: self._figure.draw_fingers(canvas, self.camera, state, (edge, down))
+
+    def _palm_stroke(self, state: SceneState, target: int) -> Stroke:
+        """The hand lies over the card of what it holds."""
+        middle, radius_m = state.positions_m[target] - (0.0, 0.0, 0.02), self._props[target].card_reach_m
+        return float(middle[2]), lambda canvas: self._figure.draw_palm_over(canvas, self.camera, middle, radius_m)
+
+    def _draw_clutter(self, scene: Scene) -> None:
+        """Fill the wall and the table with things."""
+        wall_seed, table_seed = stream("clutter", *self._seeds).integers(2**31, size=2).tolist()
+        half, top = np.array([2.2, 1.6]), scene.parameters.table
+        wall = np.array([[2 * half[0], 0.0, 0.0], [0.0, 2 * half[1], 0.0]])
+        corner = np.array([-half[0], -half[1], WALL_Z_M])
+        draw_clutter(self._room, self.camera, corner, wall, self._conditions.clutter, wall_seed)
+        corner = np.array([-top.width_m / 2, self._table_y_m, top.near_z_m])
+        sides = np.array([[top.width_m, 0.0, 0.0], [0.0, 0.0, top.far_z_m - top.near_z_m]])
+        draw_clutter(self._table, self.camera, corner, sides, self._conditions.clutter, table_seed)
