@@ -41,26 +41,25 @@ class Outcomes:
 
 def unknown_actions(bench: Bench) -> Iterator[str]:
     """Three actions left out of training, again and again."""
-    outcomes = Outcomes()
+    drawn = Outcomes()
     for unknown, split in actions_left_out(odd_even(bench.data.msr)):
-        _test(bench, outcomes, unknown, split)
+        _test(bench, drawn, unknown, split)
     yield f"""MSR Action3D, odd people trained, even people tested; {LEFT_OUT} of the 20 actions, drawn {DRAWS} times,
 are left out of training and tested with the others. AUROC: how often a trained action scores higher than one left out
 (0.5 is chance). Differences are paired by draw, ± standard error."""
-    yield table(("score", "AUROC, mean", "s.d.", "minus MiniRocket's margin"), _area_rows(outcomes))
+    yield table(("score", "AUROC, mean", "s.d.", "minus MiniRocket's margin"), _area_rows(drawn))
     yield f"""At the threshold that our model sets by itself, over all draws: of the answers to trained actions
-{_of(outcomes.flagged)} are wrongly flagged `unknown`, of those to actions left out {_of(outcomes.caught)} are caught."""
+{_of(drawn.flagged)} are wrongly flagged `unknown`, of those to actions left out {_of(drawn.caught)} are caught."""
     rows = (
-        [", ".join(names), *(f"{own[i]:.3f}" for own in outcomes.areas.values())]
-        for i, names in enumerate(outcomes.unknown)
+        [", ".join(names), *(f"{own[i]:.3f}" for own in drawn.areas.values())] for i, names in enumerate(drawn.unknown)
     )
-    yield table(("left out", *outcomes.areas), rows)
+    yield table(("left out", *drawn.areas), rows)
 
 
-def _test(bench: Bench, outcomes: Outcomes, unknown: list[str], split: Split) -> None:
+def _test(bench: Bench, drawn: Outcomes, unknown: list[str], split: Split) -> None:
     answers = bench.maps(OURS, split.training).recognitions(split.test)
     decisions = bench.rocket(MINIROCKET, split.training).decisions(split.test)
-    outcomes.add(unknown, _known(split.test, unknown), answers, decisions)
+    drawn.add(unknown, _known(split.test, unknown), answers, decisions)
 
 
 def _known(examples: Sequence[Example], unknown: Sequence[str]) -> list[bool]:
@@ -77,9 +76,9 @@ def _scores(answers: Sequence[Recognition], decisions: Floats) -> dict[str, Floa
     }
 
 
-def _area_rows(outcomes: Outcomes) -> Iterator[list[str]]:
-    margins = np.array(outcomes.areas[MARGIN])
-    for name, areas in outcomes.areas.items():
+def _area_rows(drawn: Outcomes) -> Iterator[list[str]]:
+    margins = np.array(drawn.areas[MARGIN])
+    for name, areas in drawn.areas.items():
         gap = Difference(np.array(areas) - margins)
         beside = "" if name == MARGIN else f"{gap.mean:+.3f} ± {gap.standard_error:.3f}"
         yield [name, f"{np.mean(areas):.3f}", f"{np.std(areas, ddof=1):.3f}", beside]
