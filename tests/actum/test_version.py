@@ -9,7 +9,7 @@ from pathlib import Path
 import yaml
 
 import actum
-from actum.node import Tally
+from actum.node import Counters
 from actum.runtime.meter import Meter
 from actum.settings import ServiceSettings
 
@@ -29,7 +29,7 @@ def test_the_command_prints_it() -> None:
 
 
 def test_a_service_tells_it_in_info() -> None:
-    assert Meter("pose_preprocessor", Tally(), ServiceSettings()).info().version == STATED
+    assert Meter("pose_preprocessor", Counters(), ServiceSettings()).info().version == STATED
 
 
 def test_no_source_file_states_it_again() -> None:
