@@ -59,7 +59,8 @@ class ActionFusion:
         """Take one posture, objects message, action or tick; return the events it completes."""
         match message:
             case Posture():
-                return self._posture(message)
+                sample = posture_sample(message, self.counters)
+                return self._take(self._buffer(message.agent), sample, f"posture of agent {message.agent}")
             case Objects():
                 return self._take(self._objects, objects_sample(message, self.counters), "objects")
             case Action(final=True):
@@ -67,10 +68,6 @@ class ActionFusion:
             case Tick():
                 return self._tick(message)
         return []
-
-    def _posture(self, posture: Posture) -> list[Event]:
-        sample = posture_sample(posture, self.counters)
-        return self._take(self._buffer(posture.agent), sample, f"posture of agent {posture.agent}")
 
     def _take(self, buffer: Buffer[S], sample: S, what: str) -> list[Event]:
         """Add a sample to its stream and answer what waited for it; after a restart, also all of the time before."""

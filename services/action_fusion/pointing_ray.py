@@ -67,12 +67,12 @@ def pointing_angle(object_ego: Array, tip_ego: Array, origin_ego: Array) -> floa
     known = np.flatnonzero(np.isfinite(tip_ego + origin_ego).all(axis=1))
     if not len(known):
         return np.inf
-    rays, sights = tip_ego[known] - origin_ego[known], object_ego[known] - origin_ego[known]
-    last = np.median(rays[-len(_last_part(known)) :], axis=0)
-    out = np.linalg.norm(rays - last, axis=1) <= POINTING_M
-    ray, sight = (np.median(rays[out], axis=0), np.median(sights[out], axis=0)) if out.any() else (last, sights[-1])
-    length = float(np.linalg.norm(ray) * np.linalg.norm(sight))
-    return float(np.arccos(np.clip(ray @ sight / max(length, SMALLEST_M), -1.0, 1.0)))
+    to_tip, to_object = tip_ego[known] - origin_ego[known], object_ego[known] - origin_ego[known]
+    last = np.median(to_tip[-len(_last_part(known)) :], axis=0)
+    out = np.linalg.norm(to_tip - last, axis=1) <= POINTING_M
+    a, b = (np.median(to_tip[out], axis=0), np.median(to_object[out], axis=0)) if out.any() else (last, to_object[-1])
+    length = float(np.linalg.norm(a) * np.linalg.norm(b))
+    return float(np.arccos(np.clip(a @ b / max(length, SMALLEST_M), -1.0, 1.0)))
 
 
 def _angles(tracks: Sequence[ObjectTrack], actor: Actor, side: Hand) -> list[float]:
@@ -90,6 +90,7 @@ def _angles(tracks: Sequence[ObjectTrack], actor: Actor, side: Hand) -> list[flo
 
 
 def _outstretched_m(actor: Actor, side: Hand) -> float:
+    """Measure how far the finger is from the line of hips and head; minus infinity where it is never known."""
     tip, head = fingertip_m(actor, side), actor.joint_m("head")
     last = _last_part(np.flatnonzero(np.isfinite(tip + head).all(axis=1)))
     if not len(last):
