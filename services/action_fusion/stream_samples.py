@@ -1,4 +1,4 @@
-"""What fusion keeps of a posture and of an objects message: the few numbers it needs, checked once."""
+"""Samples of the input streams: what fusion keeps of a posture and of an objects message, checked once."""
 
 import math
 from dataclasses import dataclass, field
@@ -15,29 +15,37 @@ Mask = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
 FURTHEST_M = 100.0
+"""Coordinates at or beyond this are errors: no camera tells people or markers at such distances."""
+
 UNIT_TOLERANCE = 0.1
+"""How much a quaternion's length may differ from 1: rounding differs by less, what is no orientation by more."""
+
 MISSING = [math.nan] * 3
+"""The coordinates of a joint that is not known."""
+
 LEVEL = (0.0, -1.0, 0.0)
+"""Up in the frame of a level camera, whose y axis points down."""
 
 
 @dataclass(frozen=True)
 class Body:
-    """A valid posture's frame, and its joints (15, 3), metric egocentric, NaN where one is missing.
+    """A valid posture: `ego_from_camera` (4, 4), and joints (15, 3) in metres, egocentric, NaN where one is missing.
 
-    `faces` is false where the frame is no body's, so that its forward is nobody's. `depth_std_m` is 0 where the
-    distance along the line of sight was measured, `up_in_camera` points against gravity.
+    `has_front` is false where the egocentric frame is not a body's, so that its forward axis says nothing.
+    `depth_std_m` is the standard deviation of the body's distance from the camera, 0 where that was measured.
+    `up_in_camera` points against gravity.
     """
 
     ego_from_camera: Array
     joints_m: Array
-    faces: bool = True
+    has_front: bool = True
     depth_std_m: float = 0.0
     up_in_camera: tuple[float, ...] = LEVEL
 
 
 @dataclass(frozen=True)
 class Sample:
-    """What every sample carries: its capture stamp, and the session of its source."""
+    """What all samples have: the capture stamp, and the session of the source."""
 
     stamp_ns: int
     session_id: str
@@ -45,7 +53,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class PostureSample(Sample):
-    """A posture of one of the `agents` who are there; `body` is None where it only tells that time went on."""
+    """One posture; `body` is None where it was invalid, `agents` are all who were in the image with this one."""
 
     seq: int | None
     body: Body | None
@@ -54,14 +62,15 @@ class PostureSample(Sample):
 
 @dataclass(frozen=True)
 class ObjectsSample(Sample):
-    """The objects known in one image: positions (3,) in the camera frame, and names, by id.
+    """The objects of one image by id: positions (3,) in metres in the camera frame, and names.
 
-    Those `followed` were not seen: what covers them was. `quaternions_xyzw` (4,) are of those that were seen.
+    Those `image_tracked` were occluded; their position is that of what occludes them, tracked in the image.
+    `quaternions_xyzw` (4,) are there for those that were seen.
     """
 
     positions_m: dict[int, Array]
     names: dict[int, str]
-    followed: frozenset[int] = frozenset()
+    image_tracked: frozenset[int] = frozenset()
     quaternions_xyzw: dict[int, Array] = field(default_factory=dict)
 
 
@@ -74,7 +83,7 @@ def posture_sample(posture: Posture, counters: Counters) -> PostureSample:
 
 
 def objects_sample(message: Objects, counters: Counters) -> ObjectsSample:
-    """Read the objects that were seen or followed, not remembered; absurdly far ones are counted as `bad_object`."""
+    """Read the seen and the image-tracked objects, no remembered ones; absurdly far ones count as `bad_object`."""
     known = [found for found in message.objects if found.seen or found.followed] if message.valid else []
     near = [found for found in known if max(map(abs, found.position_m)) < FURTHEST_M]
     if len(near) < len(known):
@@ -85,7 +94,7 @@ def objects_sample(message: Objects, counters: Counters) -> ObjectsSample:
         {found.id: np.array(found.position_m, dtype=np.float64) for found in near},
         {found.id: found.name for found in near},
         frozenset(found.id for found in near if not found.seen),
-        {found.id: turned for found in near if found.seen and (turned := _unit(found.quaternion_xyzw)) is not None},
+        {found.id: unit for found in near if found.seen and (unit := _unit(found.quaternion_xyzw)) is not None},
     )
 
 
@@ -111,7 +120,7 @@ def _body(posture: Posture, counters: Counters) -> Body | None:
 
 
 def _joints(joints: list[Joint]) -> Array:
-    """Read joints; missing, non-finite and absurd ones become NaN."""
+    """Read joints as (n, 3); missing, non-finite and absurdly far ones become NaN."""
     read = np.array([MISSING if joint is None else joint for joint in joints], dtype=np.float64)
     read[~(np.abs(read) < FURTHEST_M).all(axis=1)] = np.nan
     return read

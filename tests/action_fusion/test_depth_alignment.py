@@ -1,13 +1,12 @@
-"""A body whose distance is only guessed: what the hand came to in the image counts, as far as the guess may be off."""
+"""Objects are aligned in depth with a body whose distance is only guessed, as far as the guess may be off."""
 
 from dataclasses import dataclass
 
 import pytest
 
-from action_fusion.node import ActionFusion
-from action_fusion.settings import Settings
 from actum import geometry
-from actum.messages import Event, Message, Posture
+from actum.messages import Event, Posture
+from fused import event_in
 from scenes import REST_RIGHT, Place, Scene, acting_on, action, moving, still
 
 CUP: Place = (0.1, 0.0, 0.45)
@@ -35,14 +34,6 @@ def misplaced(scene: Scene, share: float, depth_std_m: float | None) -> Misplace
     return Misplaced(**vars(scene), share=share, depth_std_m=depth_std_m)
 
 
-def event_of(scene: Scene, label: str = "act") -> Event:
-    node = ActionFusion(Settings())
-    messages: list[Message] = [*scene.postures(), *scene.sightings(), action(label)]
-    (event,) = [event for message in messages for event in node.handle(message)]
-    assert isinstance(event, Event)
-    return event
-
-
 def name(event: Event) -> str | None:
     return event.object and event.object.name
 
@@ -54,35 +45,36 @@ def reach_for_the_cup() -> Scene:
 
 @pytest.mark.parametrize("share", [-0.18, 0.18])
 def test_an_object_is_found_though_the_body_is_placed_too_near_or_too_far(share: float) -> None:
-    assert name(event_of(misplaced(reach_for_the_cup(), share, None))) is None
-    told = event_of(misplaced(reach_for_the_cup(), share, depth_std_m=0.15))
+    assert name(event_in(misplaced(reach_for_the_cup(), share, None), action("act"))) is None
+    told = event_in(misplaced(reach_for_the_cup(), share, depth_std_m=0.15), action("act"))
     assert name(told) == "cup"
     assert told.object is not None
     assert told.object.distance_m < 0.13
 
 
-def test_what_is_beside_the_hand_across_the_line_of_sight_is_trusted_and_stays_beside() -> None:
+def test_what_is_beside_the_hand_in_the_image_stays_beside_it() -> None:
     scene = reach_for_the_cup()
     beside = Scene(right_hand=scene.right_hand, objects={1: still((CUP[0] + 0.35, CUP[1], CUP[2]))})
-    assert name(event_of(misplaced(beside, 0.0, depth_std_m=0.15))) is None
+    assert name(event_in(misplaced(beside, 0.0, depth_std_m=0.15), action("act"))) is None
 
 
-def test_what_is_much_further_behind_than_the_body_can_be_misplaced_is_not_at_the_hand() -> None:
+def test_an_object_further_behind_the_hand_than_the_depth_may_be_wrong_is_not_at_the_hand() -> None:
     scene = reach_for_the_cup()
     behind = Scene(right_hand=scene.right_hand, objects={1: still((CUP[0], CUP[1], CUP[2] - 0.7))})
-    assert name(event_of(misplaced(behind, 0.0, depth_std_m=0.15))) is None
-    assert name(event_of(misplaced(behind, 0.0, depth_std_m=0.4))) == "cup"
+    assert name(event_in(misplaced(behind, 0.0, depth_std_m=0.15), action("act"))) is None
+    assert name(event_in(misplaced(behind, 0.0, depth_std_m=0.4), action("act"))) == "cup"
 
 
-def test_an_objects_own_way_is_told_as_it_was_seen() -> None:
+def test_the_displacement_is_as_it_was_seen() -> None:
     pushed = acting_on(CUP, (0.1, 0.0, 0.65))
-    exact, guessed = event_of(pushed, "push"), event_of(misplaced(pushed, 0.08, depth_std_m=0.15), "push")
+    exact = event_in(pushed, action("push"))
+    guessed = event_in(misplaced(pushed, 0.08, depth_std_m=0.15), action("push"))
     assert (name(exact), name(guessed)) == ("cup", "cup")
     assert exact.motion is not None
     assert guessed.motion is not None
     assert guessed.motion.displacement_m == pytest.approx(exact.motion.displacement_m, abs=0.01)
 
 
-def test_a_measured_distance_changes_nothing() -> None:
+def test_a_measured_distance_needs_no_alignment() -> None:
     pushed = acting_on(CUP, (0.1, 0.0, 0.65), others={2: (0.3, 0.0, 0.5)})
-    assert event_of(misplaced(pushed, 0.0, None), "push") == event_of(pushed, "push")
+    assert event_in(misplaced(pushed, 0.0, None), action("push")) == event_in(pushed, action("push"))

@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from action_fusion.node import ActionFusion
-from action_fusion.settings import Settings
-from actum.messages import Event, Message, Objects, Posture
+import fused
+from actum.messages import Event, Objects, Posture
 from actum.skeletons import INDEX, JOINTS
 from scenes import HEAD, NAMES, Scene, acting_on, action, at, moving, still
 
@@ -30,13 +29,8 @@ def lacking(posture: Posture, *names: str) -> Posture:
 def event_of(
     postures: Sequence[Posture], sightings: Sequence[Objects], label: str, part: str | None = "right_arm"
 ) -> Event:
-    """Let fusion hear postures and objects, then the action; a null is no bad joint."""
-    node = ActionFusion(Settings())
-    messages: list[Message] = [*postures, *sightings, action(label, part=part)]
-    (event,) = [event for message in messages for event in node.handle(message)]
-    assert isinstance(event, Event)
-    assert not node.counters.rejects
-    return event
+    """Feed fusion postures and objects, then the action; a null is no bad joint, and so counted as none."""
+    return fused.event_of(*postures, *sightings, action(label, part=part))
 
 
 @pytest.mark.parametrize("label", ["touch", "point"])

@@ -1,24 +1,14 @@
-"""What moves where the hands never were is another's; what left the hand, or a thing in it, was acted on."""
+"""An object displaced where the hands never were is another's; one thrown or pushed with a tool was acted on."""
 
 import pytest
 
-from action_fusion.node import ActionFusion
-from action_fusion.settings import Settings
-from actum.messages import Event, Message
+from fused import event_in, event_of
 from scenes import REST_RIGHT, Path, Place, Scene, action, moving, still
 
 CUP: Place = (0.1, 0.0, 0.45)
 BOOK: Place = (-0.4, 0.0, 0.5)
 AT_CUP: Place = (0.1, 0.08, 0.4)
 AT_MOUTH: Place = (0.05, 0.6, 0.15)
-
-
-def event_of(scene: Scene, label: str = "act", **chosen: object) -> Event:
-    node = ActionFusion(Settings(**chosen))
-    messages: list[Message] = [*scene.postures(), *scene.sightings(), action(label)]
-    (event,) = [event for message in messages for event in node.handle(message)]
-    assert isinstance(event, Event)
-    return event
 
 
 FAR_OFF = {
@@ -36,7 +26,8 @@ HANDS = {
 @pytest.mark.parametrize("cup", FAR_OFF.values(), ids=FAR_OFF)
 @pytest.mark.parametrize("measure", ["joint", "proximity"])
 def test_what_another_moves_out_of_reach_is_told_and_not_acted_on(cup: Path, hand: Path, measure: str) -> None:
-    event = event_of(Scene(right_hand=hand, objects={1: cup, 2: still((0.0, 0.0, 1.5))}), "drink", measure=measure)
+    scene = Scene(right_hand=hand, objects={1: cup, 2: still((0.0, 0.0, 1.5))})
+    event = event_in(scene, action("drink"), measure=measure)
     assert (event.object, event.candidates, event.outcome) == (None, [], None)
     assert event.why == 'no object within reach; another moved object 1 "cup"'
     assert event.sentence == f"drink, {event.why}, 0.94"
@@ -44,21 +35,21 @@ def test_what_another_moves_out_of_reach_is_told_and_not_acted_on(cup: Path, han
 
 def test_what_a_hand_reaches_for_is_acted_on_though_another_moves_a_thing_elsewhere() -> None:
     scene = Scene(right_hand=moving((0.2, REST_RIGHT), (0.9, AT_CUP)), objects={1: still(CUP), 2: FAR_OFF["pushed"]})
-    event = event_of(scene, "touch")
+    event = event_in(scene, action("touch"))
     assert (event.object and event.object.name, event.why) == ("cup", None)
 
 
 def test_what_the_other_hand_of_the_same_person_moves_is_not_anothers() -> None:
     left = moving((0.5, (-0.4, 0.08, 0.5)), (1.2, (-0.4, 0.3, 0.5)))
     scene = Scene(left_hand=left, objects={1: moving((0.5, BOOK), (1.2, (-0.4, 0.22, 0.5)))})
-    event = event_of(scene, "act")
+    event = event_in(scene, action("act"))
     assert (event.hand, event.object, event.why) == ("right", None, "no object within reach")
 
 
 def test_what_is_thrown_is_acted_on() -> None:
     thrown = moving((0.8, CUP), (1.1, (0.1, 0.3, 0.6)), (1.3, (0.1, 0.5, 1.6)), (1.5, (0.1, 0.0, 2.6)))
     hand = moving((0.2, REST_RIGHT), (0.8, AT_CUP), (1.1, (0.1, 0.38, 0.55)), (1.6, REST_RIGHT))
-    event = event_of(Scene(right_hand=hand, objects={1: thrown, 2: still(BOOK)}), "throw")
+    event = event_in(Scene(right_hand=hand, objects={1: thrown, 2: still(BOOK)}), action("throw"))
     assert event.object is not None and event.object.name == "cup"
 
 
@@ -70,22 +61,21 @@ def test_what_slides_off_unseen_from_under_the_hand_is_acted_on() -> None:
         hidden=lambda number, t: number == 1 and 0.9 < t < 1.5,
     )
     seen = [p for p in scene.postures() if not 0.9e9 < p.stamp_ns - action("x").start_ns < 1.5e9]
-    node = ActionFusion(Settings())
-    (event,) = [e for m in (*seen, *scene.sightings(), action("flick")) for e in node.handle(m)]
-    assert isinstance(event, Event) and event.object is not None and event.object.name == "cup"
+    event = event_of(*seen, *scene.sightings(), action("flick"))
+    assert event.object is not None and event.object.name == "cup"
 
 
-def test_what_is_pushed_with_a_thing_that_has_no_marker_is_acted_on() -> None:
+def test_what_is_pushed_with_a_tool_that_has_no_marker_is_acted_on() -> None:
     hand = moving((0.2, REST_RIGHT), (0.7, (0.1, 0.05, 0.3)), (1.4, (0.1, 0.05, 0.5)))
     pushed = moving((0.7, (0.1, 0.0, 0.68)), (1.4, (0.1, 0.0, 0.88)))
-    event = event_of(Scene(right_hand=hand, objects={1: pushed, 2: still(BOOK)}), "push")
+    event = event_in(Scene(right_hand=hand, objects={1: pushed, 2: still(BOOK)}), action("push"))
     assert (event.object and event.object.name, event.outcome) == ("cup", "pushed")
 
 
 def test_what_moves_otherwise_than_a_hand_near_it_is_anothers() -> None:
     hand = moving((0.2, REST_RIGHT), (0.7, (0.1, 0.05, 0.3)), (1.4, (0.1, 0.05, 0.15)))
     taken = moving((0.7, (0.1, 0.0, 0.68)), (1.4, (0.1, 0.0, 0.88)))
-    assert event_of(Scene(right_hand=hand, objects={1: taken}), "pull").object is None
+    assert event_in(Scene(right_hand=hand, objects={1: taken}), action("pull")).object is None
 
 
 def test_a_far_thing_is_pointed_at_while_another_moves() -> None:
@@ -98,5 +88,5 @@ def test_a_far_thing_is_pointed_at_while_another_moves() -> None:
         right_elbow=still(elbow),  # type: ignore[arg-type]
         objects={1: still(far), 2: FAR_OFF["lifted"]},  # type: ignore[dict-item]
     )
-    event = event_of(scene, "point")
+    event = event_in(scene, action("point"))
     assert event.object is not None and event.object.name == "cup"
