@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from actum.filters import initial, predicted, updated
+from actum.filters import MotionEstimate
 
 NOISE_M2 = np.diag([0.01, 0.02, 0.05]) ** 2
 ACCELERATION_STD_MPS2 = np.array([2.0, 1.0, 0.5])
@@ -23,9 +23,9 @@ def walked(steps: int, seed: int):
 
 
 def filtered(measured):
-    estimate, innovations = initial(measured[0], NOISE_M2, 1.0), []
+    estimate, innovations = MotionEstimate.initial(measured[0], NOISE_M2, 1.0), []
     for position_m in measured[1:]:
-        estimate, nis = updated(predicted(estimate, STEP_S, ACCELERATION_STD_MPS2), position_m, NOISE_M2)
+        estimate, nis = estimate.predicted(STEP_S, ACCELERATION_STD_MPS2).updated(position_m, NOISE_M2)
         innovations.append(nis)
     return estimate, innovations
 
@@ -52,13 +52,13 @@ def test_axes_that_share_no_noise_are_filtered_each_by_itself() -> None:
 
 
 def test_one_standard_deviation_for_all_axes_is_one_for_each() -> None:
-    estimate = initial(np.ones(3), NOISE_M2, 1.0)
-    one, each = predicted(estimate, 0.1, 2.0), predicted(estimate, 0.1, np.full(3, 2.0))
+    estimate = MotionEstimate.initial(np.ones(3), NOISE_M2, 1.0)
+    one, each = estimate.predicted(0.1, 2.0), estimate.predicted(0.1, np.full(3, 2.0))
     assert np.array_equal(one.covariance, each.covariance)
 
 
 def test_without_measurements_it_goes_on_and_becomes_less_certain() -> None:
     estimate, _ = filtered(walked(50, 1))
-    ahead = predicted(estimate, 0.5, ACCELERATION_STD_MPS2)
+    ahead = estimate.predicted(0.5, ACCELERATION_STD_MPS2)
     assert ahead.position_m == pytest.approx(estimate.position_m + 0.5 * estimate.velocity_mps)
     assert (np.diag(ahead.covariance) > np.diag(estimate.covariance)).all()

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
-from actum import filters
 from actum.arrays import Array
+from actum.filters import MotionEstimate
 from actum.geometry import angle_between_rad, quaternion_xyzw
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
@@ -42,10 +42,10 @@ class Track:
 
     def __init__(self, number: int, name: str) -> None:
         self._number, self._name = number, name
-        self._motion: filters.MotionEstimate | None = None
+        self._motion: MotionEstimate | None = None
         self._rotation: Array | None = None
         self._disambiguation = PoseDisambiguation()
-        self._doubted: tuple[int, filters.MotionEstimate] | None = None
+        self._doubted: tuple[int, MotionEstimate] | None = None
         self._measured = 0
         self._confidence = 0.0
         self._hidden = False
@@ -59,12 +59,12 @@ class Track:
             return self._restart(stamp_ns, measurement)
         pose = self._disambiguation.choose(measurement.poses, self._rotation)
         position_m = pose.camera_from_object[:3, 3]
-        expected = filters.predicted(self._motion, seconds, ACCELERATION_STD_MPS2)
-        motion, nis = filters.updated(expected, position_m, measurement.noise_m2)
+        expected = self._motion.predicted(seconds, ACCELERATION_STD_MPS2)
+        motion, nis = expected.updated(position_m, measurement.noise_m2)
         if nis > (MAX_HIDDEN_NIS if measurement.hidden else MAX_NIS):
             if self._hidden or self._agrees_with_doubted(stamp_ns, position_m, measurement.noise_m2):
                 return self._restart(stamp_ns, measurement)
-            self._doubted = stamp_ns, filters.initial(position_m, measurement.noise_m2, INITIAL_SPEED_STD_MPS)
+            self._doubted = stamp_ns, MotionEstimate.initial(position_m, measurement.noise_m2, INITIAL_SPEED_STD_MPS)
             return False
         self._motion = motion
         self._rotation = _smoothed(self._rotation, pose)
@@ -75,8 +75,8 @@ class Track:
         if self._doubted is None:
             return False
         doubted_ns, motion = self._doubted
-        expected = filters.predicted(motion, (stamp_ns - doubted_ns) / SECOND_NS, ACCELERATION_STD_MPS2)
-        return filters.updated(expected, position_m, noise_m2)[1] <= MAX_NIS
+        expected = motion.predicted((stamp_ns - doubted_ns) / SECOND_NS, ACCELERATION_STD_MPS2)
+        return expected.updated(position_m, noise_m2)[1] <= MAX_NIS
 
     def described(self, stamp_ns: int, memory_ns: int) -> TrackedObject:
         """Describe the object at a stamp: as measured then, or as predicted if it is out of sight.
@@ -109,7 +109,7 @@ class Track:
             return False
         pose = self._disambiguation.choose(measurement.poses, None)
         position_m = pose.camera_from_object[:3, 3]
-        self._motion = filters.initial(position_m, measurement.noise_m2, INITIAL_SPEED_STD_MPS)
+        self._motion = MotionEstimate.initial(position_m, measurement.noise_m2, INITIAL_SPEED_STD_MPS)
         self._rotation = pose.camera_from_object[:3, :3]
         self._measured = 0
         self._believe(stamp_ns, measurement)
