@@ -41,7 +41,7 @@ def test_pixels_that_are_two_off_and_bones_that_are_two_centimetres_off_cost_lit
         seen.image_px + rng.normal(0, 2, (33, 2)), seen.world_m + rng.normal(0, 0.02, (33, 3)), seen.visibility
     )
     offsets = placed(noisy, MEASURED).joints_m - joints_of(body)
-    assert np.linalg.norm(offsets.mean(axis=0)[:2]) < 0.02
+    assert np.linalg.norm(offsets.mean(axis=0)[:2]) < 0.025  # five standard deviations
     assert abs(offsets.mean(axis=0)[2]) < 0.10
 
 
