@@ -33,6 +33,7 @@ REACH_US = 1_500_000
 """How far a segment reaches from its action point at most: half the usual 3 s between two, where people move least."""
 
 SOURCE_JOINTS = 20
+"""Of Kinect's skeleton, before they are reduced to the fifteen."""
 PATTERN = "p*.npz"
 PARTS = ("xyz_mm", "t_us", "tags_us")
 DAMAGED = (OSError, ValueError, EOFError, BadZipFile, zlib.error)

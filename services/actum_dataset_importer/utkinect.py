@@ -20,6 +20,7 @@ from actum_dataset_importer.takes import DatasetError, Take, camera_joints, file
 IMAGES_PER_SECOND = 30
 """The camera's rate, by which images are numbered."""
 SOURCE_JOINTS = 20
+"""Of Kinect's skeleton, before they are reduced to the fifteen."""
 PATTERN = "joints_s*_e*.txt"
 NAME = re.compile(r"joints_(s(?P<person>\d\d)_e(?P<execution>\d\d))\.txt")
 LABELS = "actionLabel_modified.txt"

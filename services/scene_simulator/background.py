@@ -9,6 +9,7 @@ from actum.arrays import Array
 from scene_simulator.drawing_primitives import Canvas, Colour, Pinhole, line, polygon, shade
 from scene_simulator.parameters import Parameters
 
+# Colours (BGR).
 WALL: tuple[Colour, Colour] = ((226, 222, 214), (196, 194, 190))
 FLOOR: Colour = (138, 150, 164)
 WOOD: Colour = (108, 150, 190)
@@ -17,12 +18,13 @@ INK: Colour = (60, 60, 60)
 WALL_Z_M = 3.6
 """Behind wherever the person may stand."""
 LEG_SIDE_M = 0.05
+"""Of the table."""
 PLANKS = 5
 """Whose seams cross the table top."""
 
 
 def draw_room(camera: Pinhole, camera_height_m: float) -> Canvas:
-    """Draw wall, floor, a window and a picture."""
+    """Draw wall, floor, a window and a picture: (height, width, 3)."""
     rows = np.linspace(0, 1, camera.height)[:, None, None]
     wall = (1 - rows) * np.array(WALL[0]) + rows * np.array(WALL[1])
     room = np.broadcast_to(wall, (camera.height, camera.width, 3)).astype(np.uint8).copy()

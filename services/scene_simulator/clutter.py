@@ -18,6 +18,7 @@ SIZE_RANGE_M = (0.06, 0.22)
 TEXTURE_PX = 48
 """Side of a texture before it is drawn in perspective."""
 UNIT_SQUARE = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
+"""Its corners (4, 2)."""
 
 
 def draw_clutter(canvas: Canvas, camera: Pinhole, origin_m: Array, sides_m: Array, count: int, seed: int) -> None:

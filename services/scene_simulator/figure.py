@@ -24,6 +24,7 @@ from scene_simulator.simulated_scene import SceneState
 Stroke = tuple[float, Callable[[Canvas], None]]
 """The depth of a part (m), and the function that draws it: far parts are drawn first."""
 
+# Colours (BGR), of which a person's seed chooses.
 SHIRTS: tuple[Colour, ...] = ((160, 120, 70), (90, 140, 90), (120, 80, 130), (70, 110, 170), (140, 140, 80))
 SKINS: tuple[Colour, ...] = ((165, 195, 232), (130, 165, 208), (90, 125, 175), (70, 95, 140))
 HAIRS: tuple[Colour, ...] = ((35, 45, 60), (45, 75, 115), (70, 130, 175), (60, 60, 60))
@@ -48,7 +49,7 @@ class Figure:
         self._shirt, self._skin, self._hair = (tones[rng.integers(len(tones))] for tones in (SHIRTS, SKINS, HAIRS))
 
     def draw_below(self, canvas: Canvas, camera: Pinhole, joints_m: Array) -> None:
-        """Draw what stands behind and below the table: the legs and the hips."""
+        """Draw what is behind and below the table, the legs and the hips, from joints (15, 3; m)."""
         for side in ("left", "right"):
             hip, knee, foot = (joints_m[INDEX[f"{side}_{part}"]] for part in ("hip", "knee", "foot"))
             limb(canvas, camera, np.stack([knee, foot]), self._radii(0.06, 0.045), TROUSERS)
@@ -68,7 +69,7 @@ class Figure:
     def draw_fingers(self, canvas: Canvas, camera: Pinhole, state: SceneState, over_m: tuple[Array, Array]) -> None:
         """Draw the acting hand's fingers around what it holds: from the palm over an edge point to the tips.
 
-        `over_m` is the middle of the held face's upper edge and how far the fingers go down from it.
+        `over_m` is the middle (3,) of the held face's upper edge, and how far (3,) the fingers go down from it.
         """
         palm = state.joints_m[INDEX[f"{self._actor.hand}_hand"]]
         edge, down = over_m
@@ -80,7 +81,7 @@ class Figure:
                 limb(canvas, camera, np.stack(ends), FINGER_RADII_M, self._skin)
 
     def draw_palm_over(self, canvas: Canvas, camera: Pinhole, middle_m: Array, radius_m: float) -> None:
-        """Draw the hand laid flat over something, with its fingers side by side."""
+        """Draw the hand laid flat over something around `middle_m` (3,), with its fingers side by side."""
         ends = np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]) * radius_m
         limb(canvas, camera, middle_m + ends, (radius_m, radius_m), self._skin)
         for side in FINGER_SIDES_M:

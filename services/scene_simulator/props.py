@@ -25,7 +25,9 @@ FACES = (
 )
 """Corners of a cuboid's visible faces, and how bright each is."""
 RISER_COLOUR: Colour = (150, 160, 170)
+"""Unlike the table's and the objects'."""
 GLARE: Colour = (250, 250, 250)
+"""Of a card that reflects a light: as bright as its white."""
 TURN = np.linspace(0, 2 * np.pi, 32, endpoint=False)
 """Angles (32,; rad) at which round things are drawn."""
 
@@ -47,11 +49,11 @@ class MarkerCard:
         return float(np.linalg.norm(self._corners_m[0]))
 
     def draw_with_glare(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
-        """Draw the card with glare on it, which hides the print."""
+        """Draw the card at a pose (4, 4) with glare on it, which hides the print."""
         polygon(canvas, camera.project(_transformed(camera_from_object, self._corners_m)), GLARE)
 
     def draw(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
-        """Draw the card through the homography of its face, oversampled and averaged."""
+        """Draw the card through the homography of its face at a pose (4, 4), oversampled and averaged."""
         corners = camera.project(_transformed(camera_from_object, self._corners_m))
         low = np.maximum(np.floor(corners.min(axis=0)).astype(int) - 1, 0)
         high = np.minimum(np.ceil(corners.max(axis=0)).astype(int) + 2, (camera.width, camera.height))
@@ -82,12 +84,12 @@ class Prop:
         self._draw_body = {"cuboid": self._draw_cuboid, "cup": self._draw_cup}[item.shape]
 
     def draw(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
-        """Draw body and card."""
+        """Draw body and card at a pose (4, 4)."""
         self._draw_body(canvas, camera, camera_from_object)
         self._card.draw(canvas, camera, camera_from_object)
 
     def draw_with_glare(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
-        """Draw body and card, with glare on the card."""
+        """Draw body and card at a pose (4, 4), with glare on the card."""
         self._draw_body(canvas, camera, camera_from_object)
         self._card.draw_with_glare(canvas, camera, camera_from_object)
 
@@ -97,7 +99,7 @@ class Prop:
         return self._card.reach_m
 
     def draw_shadow(self, canvas: Canvas, camera: Pinhole, position_m: Array, ground_y_m: float) -> None:
-        """Darken the ground under the object; the higher it hangs, the smaller the shadow."""
+        """Darken the ground under the object at `position_m` (3,); the higher it hangs, the smaller the shadow."""
         width, height, depth = self._item.size_m
         lift = max(ground_y_m - position_m[1] - height / 2, 0.0)
         radius = 0.62 * max(1 - 2.0 * lift, 0.4)
@@ -106,7 +108,7 @@ class Prop:
         _darken(canvas, camera.project(centre + ring))
 
     def draw_riser(self, canvas: Canvas, camera: Pinhole, top_m: Array, table_y_m: float) -> None:
-        """Draw the raised plate under the object's place; `top_m` is below the marked face's middle."""
+        """Draw the raised plate under the object's place; `top_m` (3,) is below the marked face's middle."""
         width, _, depth = self._item.size_m
         upright = np.eye(4)
         upright[1, 1] = upright[2, 2] = -1

@@ -103,7 +103,7 @@ def draw_timing(parameters: TrialParameters, actor: Actor, action: str, rng: np.
 def draw_layout(
     parameters: Parameters, actor: Actor, action: str, places: Array, target: int | None, rng: np.random.Generator
 ) -> Layout:
-    """Draw where things stand, the target perhaps on a riser; a pantomime has no target."""
+    """Draw where things stand, the target (none in a pantomime) perhaps on a riser; `places` (3,) are the lanes."""
     objects, items = parameters.objects, parameters.objects.items
     risers = np.zeros(len(items))
     if rng.random() < RISER_PROBABILITY.get(action, parameters.trial.riser_probability) and target is not None:
