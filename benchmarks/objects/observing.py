@@ -16,7 +16,7 @@ from marker_tracker.settings import Settings as TrackerSettings
 from pose_preprocessor.node import PosePreprocessor
 from scene_simulator.actor import EYE
 from scene_simulator.conditions import Conditions
-from scene_simulator.programme import Sample
+from scene_simulator.programme import Task
 from scene_simulator.simulator import Simulator
 
 from .trials import Trial
@@ -31,7 +31,7 @@ LEFT_M = 0.005
 class Scene:
     """One person who does a programme under conditions; the same numbers, the same scene."""
 
-    programme: Sequence[Sample]
+    programme: Sequence[Task]
     person: int
     conditions: Conditions
     image_hz: int
