@@ -17,7 +17,7 @@ from pose_preprocessor.node import PosePreprocessor
 from scene_simulator.actor import EYE
 from scene_simulator.conditions import Conditions
 from scene_simulator.programme import Sample
-from scene_simulator.source import Simulator
+from scene_simulator.simulator import Simulator
 
 from .trials import Trial
 

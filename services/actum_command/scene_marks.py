@@ -8,7 +8,7 @@ from actum.messages import SIMULATOR, Segment, Truth
 from actum.recording import Recorder
 from actum.runtime import Client
 from scene_simulator.programme import balanced_programme
-from scene_simulator.source import Simulator, labelled_stream
+from scene_simulator.simulator import Simulator, labelled_stream
 
 POLL_S = 0.005  # a sixth of a frame's interval: marks come well before the next frame
 SUBSCRIBER_POLL_S = 0.5  # how soon a request to stop is heeded while nobody listens to marks

@@ -23,8 +23,8 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train
 from scene_simulator.programme import ACTIONS
+from som_classifier.model_loading import load_model
 from som_classifier.presets import DEFAULT
-from som_classifier.storage import load_model
 
 ACTOR = 0  # who is learnt from; those tested are the ones after
 PEOPLE = 9  # the paper tests each action 9 times: once with each of so many people

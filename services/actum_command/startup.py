@@ -10,7 +10,7 @@ from actum.runtime import Client, RouterUnreachableError
 from actum.settings import ServiceSettings, SettingsError, host_and_port
 from actum_command.processes import SERVICES
 from actum_command.service_settings import DECLARED, Given, flag_of, service_of
-from som_classifier.storage import ModelError, load_model
+from som_classifier.model_loading import ModelError, load_model
 
 CHECK_S = 0.2  # how often the router is asked for: soon enough that nobody notices the wait
 ROUTER_S = 5.0  # a router is up within a second; services wait for it by themselves where it takes longer

@@ -10,9 +10,10 @@ from pathlib import Path
 from actum.messages import Segment, Skeleton
 from actum.node import Counters
 from actum_dataset_importer.takes import DatasetError, Take
-from sensor_gateway.camera.bodies import Estimator
-from sensor_gateway.camera.perceiving import Optics, Perceiver
-from sensor_gateway.camera.video import SUFFIXES, VideoError, pictures_of
+from sensor_gateway.devices.video import SUFFIXES, VideoError, pictures_of
+from sensor_gateway.optics import Optics
+from sensor_gateway.people.pose_estimator import Estimator
+from sensor_gateway.perceiver import Perceiver
 
 DEFAULT_PATTERN = r"(?P<action>[^_]+)_(?P<person>[^_]+)(_.*)?"
 """`wave_anna.mp4`, `wave_anna_2.mp4`: the action, the person, anything."""

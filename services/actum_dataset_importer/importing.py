@@ -11,8 +11,9 @@ from actum_dataset_importer import bimacs, msr_action3d, msrc12, utkinect
 from actum_dataset_importer.bimacs import HandsTake
 from actum_dataset_importer.clips import Naming, check_names, clip_files, read_clip
 from actum_dataset_importer.takes import Take
-from sensor_gateway.camera.bodies import Estimator
-from sensor_gateway.camera.perceiving import OTHER_SIZE, Optics
+from sensor_gateway.optics import Optics
+from sensor_gateway.people.pose_estimator import Estimator
+from sensor_gateway.perceiver import OTHER_SIZE
 
 SENSOR = "kinect0"
 MOST_NAMES = 12

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from actum.arrays import Array
 from actum.messages import Hand
 from actum.skeletons import INDEX, JOINTS
 from scene_simulator.chance import normal, normals, stream
-from scene_simulator.motion import Array
 from scene_simulator.parameters import ActorParameters
 
 HIP_HEIGHT, TRUNK, HEAD, SPINE = 0.53, 0.29, 0.115, 0.14

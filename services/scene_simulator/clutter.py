@@ -5,7 +5,7 @@ from collections.abc import Callable
 import cv2
 import numpy as np
 
-from scene_simulator.motion import Array
+from actum.arrays import Array
 from scene_simulator.paint import Canvas, Colour, Pinhole
 from scene_simulator.props import DICTIONARY
 

@@ -6,7 +6,7 @@ from actum.messages import Message
 from actum.node import SECOND_NS, Counters, Source
 from scene_simulator.programme import balanced_programme
 from scene_simulator.settings import Settings
-from scene_simulator.source import GATEWAY, Simulator
+from scene_simulator.simulator import GATEWAY, Simulator
 
 REPETITIONS = 4
 """How often each action is done before an endless scene is drawn anew."""

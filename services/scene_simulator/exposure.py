@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 
 from scene_simulator.paint import Canvas
-from scene_simulator.scene import SceneState
+from scene_simulator.simulated_scene import SceneState
 
 INSTANTS = 3
 MOVING = ("joints_m", "fingertip_m", "positions_m", "yaw_rad", "riser_tops_m", "grip", "pointing")

@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from actum.arrays import Array
 from actum.skeletons import INDEX
 from scene_simulator.actor import FINGER, Actor
-from scene_simulator.motion import Array
 from scene_simulator.paint import (
     Canvas,
     Colour,
@@ -19,7 +19,7 @@ from scene_simulator.paint import (
     polygon,
     shade,
 )
-from scene_simulator.scene import SceneState
+from scene_simulator.simulated_scene import SceneState
 
 Stroke = tuple[float, Callable[[Canvas], None]]
 """How far away something is, and how it is drawn."""

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from actum.arrays import Array
 from actum.skeletons import INDEX, JOINTS
-from scene_simulator.motion import Array
 from scene_simulator.parameters import NoiseParameters, SwayParameters
 
 HANDS = (INDEX["left_hand"], INDEX["right_hand"])

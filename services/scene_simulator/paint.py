@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_simulator.motion import Array
+from actum.arrays import Array
 from scene_simulator.parameters import CameraParameters
 
 Canvas = NDArray[np.uint8]

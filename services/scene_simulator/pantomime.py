@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from actum.arrays import Array
 from scene_simulator.actor import Actor
 from scene_simulator.chance import uniform
-from scene_simulator.motion import Array
 from scene_simulator.parameters import Parameters
 from scene_simulator.programme import Sample
 from scene_simulator.trial import Layout, Trial, draw_bulge, draw_displacement, draw_layout, draw_timing

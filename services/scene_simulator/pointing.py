@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from actum.arrays import Array
 from actum.skeletons import INDEX
 from scene_simulator.actor import Actor, Stance, eye, fingertip, pose
-from scene_simulator.motion import Array
 
 STRETCH = 0.97
 ITERATIONS = 25

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from scene_simulator.motion import Array
+from actum.arrays import Array
 from scene_simulator.paint import Canvas, Colour, Pinhole, hull, line, polygon, shade
 from scene_simulator.parameters import ObjectItem
 

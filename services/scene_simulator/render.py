@@ -4,14 +4,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Array
 from scene_simulator.chance import stream
 from scene_simulator.clutter import draw_clutter
 from scene_simulator.exposure import averaged
 from scene_simulator.figure import Figure, Stroke
-from scene_simulator.motion import Array
 from scene_simulator.paint import Canvas, Pinhole
 from scene_simulator.props import Prop
-from scene_simulator.scene import CLOSED, Scene, SceneState
+from scene_simulator.simulated_scene import CLOSED, Scene, SceneState
 from scene_simulator.stage import WALL_Z_M, draw_room, draw_table
 
 SLACK_PX = 64

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
-from scene_simulator.motion import Array
+from actum.arrays import Array
 from scene_simulator.paint import Canvas, Colour, Pinhole, line, polygon, shade
 from scene_simulator.parameters import Parameters
 

@@ -4,8 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scene_simulator.motion import Array, arc, carry, glide, minimum_jerk, phase, reach, set_down
+from actum.arrays import Array
 from scene_simulator.parameters import Parameters
+from scene_simulator.trajectories import arc, carry, glide, minimum_jerk, phase, reach, set_down
 from scene_simulator.trial import Trial
 
 CLOSING_S = 0.2

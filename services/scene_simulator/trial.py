@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from actum.arrays import Array
 from scene_simulator.actor import HIP_HEIGHT, Actor, Stance
 from scene_simulator.chance import normal, normals, uniform
-from scene_simulator.motion import Array
 from scene_simulator.parameters import ObjectItem, Parameters, TrialParameters
 from scene_simulator.pointing import aim
 from scene_simulator.programme import Sample

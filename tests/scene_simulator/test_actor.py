@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from actum.arrays import Array
 from actum.skeletons import INDEX, JOINTS
 from scene_simulator.actor import FOREARM, UPPER_ARM, Actor, Stance, draw_actor, eye, fingertip, pose
-from scene_simulator.motion import Array
 from scene_simulator.parameters import load_parameters
 from scene_simulator.pointing import aim
 

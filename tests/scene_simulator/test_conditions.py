@@ -14,8 +14,8 @@ from scene_simulator.conditions import Conditions, load_conditions
 from scene_simulator.exposure import averaged, while_open
 from scene_simulator.programme import NO_OBJECT, Sample
 from scene_simulator.render import Renderer
-from scene_simulator.scene import CLOSED, Scene, SceneState
-from scene_simulator.source import Simulator
+from scene_simulator.simulated_scene import CLOSED, Scene, SceneState
+from scene_simulator.simulator import Simulator
 
 PROGRAMME = [Sample("push", 1), Sample("lift", 2), Sample("put", 3)]
 CONTACT = ("push", "pull", "put", "lift")

@@ -4,12 +4,12 @@ import cv2
 import numpy as np
 import pytest
 
+from actum.arrays import Array
 from scene_simulator.chance import stream
-from scene_simulator.motion import Array
 from scene_simulator.parameters import load_parameters
 from scene_simulator.programme import Sample
 from scene_simulator.render import Renderer
-from scene_simulator.scene import Scene, SceneState
+from scene_simulator.simulated_scene import Scene, SceneState
 
 HALF_M = 0.04
 CORNERS_M = np.array([[-HALF_M, HALF_M, 0], [HALF_M, HALF_M, 0], [HALF_M, -HALF_M, 0], [-HALF_M, -HALF_M, 0]])

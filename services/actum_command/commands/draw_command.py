@@ -7,9 +7,9 @@ import cv2
 import typer
 
 from actum_command.commands.terminal import fail, refuse_unwritable, say
+from actum_command.skeleton_overlay import sheet
 from actum_command.video_joints import joint_pictures
-from sensor_gateway.camera.drawing import sheet
-from sensor_gateway.camera.source import optics_of
+from sensor_gateway.cameras import optics_of
 from sensor_gateway.settings import Settings
 
 COLUMNS = 3  # pictures side by side: two rows for the six that are drawn by default

@@ -12,7 +12,7 @@ from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
 from actum_command.commands.terminal import fail, say
 from actum_command.inspection_page import NoSegmentError, write_inspection
-from som_classifier.storage import ModelError, load_model
+from som_classifier.model_loading import ModelError, load_model
 
 FORMATS = ("png", "svg")
 """Formats that pictures can be written in."""

@@ -10,7 +10,7 @@ from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, Trans
 from actum_command.commands.plain_help import PlainTyper
 from actum_command.commands.terminal import errors, fail, refuse_ending, say
 from actum_command.model_download import POSE_MODEL, FetchError, Published, fetch
-from sensor_gateway.camera.model_file import default_model
+from sensor_gateway.settings import default_pose_model
 
 app = PlainTyper(no_args_is_help=True, help="Get the model that finds people's poses in a camera's images.")
 
@@ -30,7 +30,7 @@ def fetch_command(
     """Download MediaPipe's pose model (9 MB, Apache-2.0) and check its digest."""
     if output is not None:
         refuse_ending(output, ".task")
-    path = output or default_model()
+    path = output or default_pose_model()
     published = replace(POSE_MODEL, url=url)
     if published.is_at(path):
         say(f"the pose model is already at {path}")

@@ -18,8 +18,8 @@ from actum_model_trainer.report import report
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import TrainingError, train
 from actum_model_trainer.warnings import warnings_of
+from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
-from som_classifier.storage import ModelError, load_model
 
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of them")]
 PresetOption = Annotated[str, typer.Option(help=f"one of {', '.join(PRESETS)}")]
@@ -60,7 +60,7 @@ def train_command(
         f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
         f"{time.monotonic() - began_s:.1f} s, written to {output}"
     )
-    for warning in warnings_of(samples.usable, model.about.held_out_answers):
+    for warning in warnings_of(samples.usable, model.metadata.held_out_answers):
         say(warning, style="yellow")
 
 
