@@ -1,8 +1,8 @@
 """Which object the hands of the OptiTrack takes act on: the plain proximity measure and the joint one, as Markdown.
 
-python benchmarks/bimacs.py DIR [--varied], the folder of the takes (see sensor_gateway.bimacs). Fusion gets the hands,
-objects and the bounds of each segment; what is done in it, and to what, is compared afterwards. With --varied it gets
-them also as another person, other things or poorer cameras would have given them (see bimacs_variations).
+python benchmarks/bimacs.py DIR [--varied], the folder of the takes (see actum_dataset_importer.bimacs). Fusion gets the
+hands, objects and the bounds of each segment; what is done in it, and to what, is compared afterwards. With --varied it
+gets them also as another person, other things or poorer cameras would have given them (see bimacs_variations).
 """
 
 import sys
@@ -23,9 +23,9 @@ from action_fusion.settings import Settings
 from actum.messages import Action, Event, Message, Segment, Truth
 from actum.node import replay
 from actum.recording import Recording
-from actum_command.importing import import_bimacs
-from model_trainer.evaluation import wilson_interval
-from sensor_gateway.bimacs import read_take, take_files
+from actum_dataset_importer.bimacs import read_take, take_files
+from actum_dataset_importer.importing import import_bimacs
+from actum_model_trainer.evaluation import wilson_interval
 
 ACTIONS = ("lift", "place", "hold", "approach", "retreat", "pour", "stir", "idle")
 APPLIED = ("pour", "stir")

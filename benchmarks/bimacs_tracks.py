@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from actum.messages import Hand, Message, Objects, Posture, Segment, Truth
 from actum.skeletons import INDEX
-from sensor_gateway.bimacs import HandsTake
+from actum_dataset_importer.bimacs import HandsTake
 
 Array = NDArray[np.float64]
 HANDS: tuple[Hand, Hand] = ("left", "right")

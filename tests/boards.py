@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from calibrator.board import Board
+from actum_calibrator.board import Board
 
 Array = NDArray[np.float64]
 Pixels = NDArray[np.uint8]

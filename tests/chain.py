@@ -18,7 +18,7 @@ class Clocked:
     """A node that notes at what time it puts each message."""
 
     def __init__(self, node: Node) -> None:
-        self.tally, self.name, self.inputs = node.tally, node.name, node.inputs
+        self.counters, self.name, self.inputs = node.counters, node.name, node.inputs
         self.put: list[Arrival] = []
         self._node = node
         self._arrival_ns = 0

@@ -4,7 +4,7 @@ import numpy as np
 
 from actum.messages import Segment
 from actum.skeletons import INDEX
-from sensor_gateway.takes import Take
+from actum_dataset_importer.takes import Take
 
 SOURCE_JOINTS = [
     "hip_center",

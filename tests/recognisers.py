@@ -7,8 +7,8 @@ from pathlib import Path
 
 from actum.recording import Recorder, Recording
 from actum.skeletons import PARTS
-from model_trainer.samples import SegmentSample, samples_from
-from model_trainer.training import train
+from actum_model_trainer.samples import SegmentSample, samples_from
+from actum_model_trainer.training import train
 from performers import HAND_PATHS, TINY, performance
 from som_classifier.handedness import mirrored
 from som_classifier.model import Model

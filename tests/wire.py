@@ -45,13 +45,13 @@ class Wire:
 
     @property
     def rejects(self) -> int:
-        return sum(self.node.tally.rejects.values())
+        return sum(self.node.counters.rejects.values())
 
     def put(self, key: str, payload: bytes, encoding: str = "") -> list[Message]:
         try:
             message = codec.decode(key, payload, encoding)
         except codec.DecodeError as error:
-            self.node.tally.reject(error.kind, str(error))
+            self.node.counters.reject(error.kind, str(error))
             return []
         return self.handle(message)
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from model_trainer.samples import select
+from actum_model_trainer.samples import select
 
 from ..recognition.datasets import Example, examples_of
 from ..recognition.ours import OURS, PAPERS

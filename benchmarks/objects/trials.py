@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from actum.messages import Event, Truth
-from model_trainer.evaluation import wilson_interval
-from sensor_gateway.simulator import NO_OBJECT
+from actum_model_trainer.evaluation import wilson_interval
+from scene_simulator.programme import NO_OBJECT
 
 OURS = "joint"
 NEAR_M, NEAR_SHARE = 0.02, 0.10

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from model_trainer.answering import answer, encoded
-from model_trainer.training import train
+from actum_model_trainer.answering import answer, encoded
+from actum_model_trainer.training import train
 from som_classifier.attention import ALL, MOVING, Axes, Origin, PostureInput
 from som_classifier.presets import PAPER, PaperPreset, Preset
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from sensor_gateway.msr_action3d import CLASSES
+from actum_dataset_importer.msr_action3d import CLASSES
 
 from .bench import RECOGNISERS, Bench
 from .peers import MINIROCKET, MULTIROCKET, Recogniser

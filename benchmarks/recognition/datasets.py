@@ -14,14 +14,14 @@ from actum import geometry, keys
 from actum.messages import Agent, Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
-from actum_command.importing import (
+from actum_dataset_importer.importing import (
     ImportReport,
     Progress,
     import_msr_action3d,
     import_msrc12,
     import_utkinect,
 )
-from model_trainer.samples import SegmentSample, samples_from, select
+from actum_model_trainer.samples import SegmentSample, samples_from, select
 
 from .videos import Pieces, import_exercise, import_florence
 

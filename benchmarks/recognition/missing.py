@@ -9,8 +9,8 @@ from actum import keys
 from actum.messages import Message, Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
-from model_trainer.answering import answer, encoded
-from model_trainer.samples import samples_from
+from actum_model_trainer.answering import answer, encoded
+from actum_model_trainer.samples import samples_from
 
 from .bench import Bench
 from .ours import OURS, PAPERS

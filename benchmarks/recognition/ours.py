@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from model_trainer.answering import answer, encoded
-from model_trainer.training import train
+from actum_model_trainer.answering import answer, encoded
+from actum_model_trainer.training import train
 from som_classifier.model import Model
 from som_classifier.presets import DEFAULT, PAPER, Preset
 from som_classifier.recognition import Recognition

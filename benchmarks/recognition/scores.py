@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from model_trainer.evaluation import wilson_interval
+from actum_model_trainer.evaluation import wilson_interval
 
 from .datasets import Example
 

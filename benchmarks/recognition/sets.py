@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from model_trainer.evaluation import wilson_interval
+from actum_model_trainer.evaluation import wilson_interval
 
 from .bench import Bench
 from .development import DevelopmentSet, development_sets, said_of_videos

@@ -20,7 +20,7 @@ MARGIN, LARGEST = "MiniRocket + ridge, largest minus second", "MiniRocket + ridg
 
 
 @dataclass
-class Tally:
+class Outcomes:
     """What the draws gave: areas under the curve by score, and flags at our own threshold."""
 
     unknown: list[list[str]] = field(default_factory=list)
@@ -41,25 +41,25 @@ class Tally:
 
 def unknown_actions(bench: Bench) -> Iterator[str]:
     """Three actions left out of training, again and again."""
-    tally = Tally()
+    drawn = Outcomes()
     for unknown, split in actions_left_out(odd_even(bench.data.msr)):
-        _test(bench, tally, unknown, split)
+        _test(bench, drawn, unknown, split)
     yield f"""MSR Action3D, odd people trained, even people tested; {LEFT_OUT} of the 20 actions, drawn {DRAWS} times,
 are left out of training and tested with the others. AUROC: how often a trained action scores higher than one left out
 (0.5 is chance). Differences are paired by draw, ± standard error."""
-    yield table(("score", "AUROC, mean", "s.d.", "minus MiniRocket's margin"), _area_rows(tally))
+    yield table(("score", "AUROC, mean", "s.d.", "minus MiniRocket's margin"), _area_rows(drawn))
     yield f"""At the threshold that our model sets by itself, over all draws: of the answers to trained actions
-{_of(tally.flagged)} are wrongly flagged `unknown`, of those to actions left out {_of(tally.caught)} are caught."""
+{_of(drawn.flagged)} are wrongly flagged `unknown`, of those to actions left out {_of(drawn.caught)} are caught."""
     rows = (
-        [", ".join(names), *(f"{own[i]:.3f}" for own in tally.areas.values())] for i, names in enumerate(tally.unknown)
+        [", ".join(names), *(f"{own[i]:.3f}" for own in drawn.areas.values())] for i, names in enumerate(drawn.unknown)
     )
-    yield table(("left out", *tally.areas), rows)
+    yield table(("left out", *drawn.areas), rows)
 
 
-def _test(bench: Bench, tally: Tally, unknown: list[str], split: Split) -> None:
+def _test(bench: Bench, drawn: Outcomes, unknown: list[str], split: Split) -> None:
     answers = bench.maps(OURS, split.training).recognitions(split.test)
     decisions = bench.rocket(MINIROCKET, split.training).decisions(split.test)
-    tally.add(unknown, _known(split.test, unknown), answers, decisions)
+    drawn.add(unknown, _known(split.test, unknown), answers, decisions)
 
 
 def _known(examples: Sequence[Example], unknown: Sequence[str]) -> list[bool]:
@@ -76,9 +76,9 @@ def _scores(answers: Sequence[Recognition], decisions: Floats) -> dict[str, Floa
     }
 
 
-def _area_rows(tally: Tally) -> Iterator[list[str]]:
-    margins = np.array(tally.areas[MARGIN])
-    for name, areas in tally.areas.items():
+def _area_rows(drawn: Outcomes) -> Iterator[list[str]]:
+    margins = np.array(drawn.areas[MARGIN])
+    for name, areas in drawn.areas.items():
         gap = Difference(np.array(areas) - margins)
         beside = "" if name == MARGIN else f"{gap.mean:+.3f} ± {gap.standard_error:.3f}"
         yield [name, f"{np.mean(areas):.3f}", f"{np.std(areas, ddof=1):.3f}", beside]

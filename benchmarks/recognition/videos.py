@@ -11,9 +11,9 @@ from actum import keys
 from actum.messages import Message, Segment, Skeleton
 from actum.node import SECOND_NS
 from actum.recording import Recording
-from actum_command.importing import ImportReport, Progress, import_video
-from sensor_gateway.camera.clips import Naming
-from sensor_gateway.camera.source import estimator_of, optics_of
+from actum_dataset_importer.clips import Naming
+from actum_dataset_importer.importing import ImportReport, Progress, import_video
+from sensor_gateway.cameras import estimator_of, optics_of
 from sensor_gateway.settings import Settings
 
 FLORENCE_NAMING = Naming.of(

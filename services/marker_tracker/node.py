@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from actum import keys
 from actum.messages import Image, Message, Objects, TrackedObject
-from actum.node import SECOND_NS, Tally, Tick
+from actum.node import SECOND_NS, Counters, Tick
 from actum.stamps import Order, StampGuard
 from marker_tracker.detection.detector import MarkerDetector
 from marker_tracker.detection.images import UnusableImageError, gray, refuse_black
@@ -12,7 +12,7 @@ from marker_tracker.occlusion.occluder_tracker import OccluderTracker
 from marker_tracker.occlusion.partial_occlusion import PartialOcclusionTracker
 from marker_tracker.pose.camera_model import camera_model
 from marker_tracker.pose.catalogue import MarkerAssignment
-from marker_tracker.pose.object_tracks import Tracks
+from marker_tracker.pose.pose_tracks import Tracks
 from marker_tracker.pose.poses import measure
 from marker_tracker.scene_file import catalogue
 from marker_tracker.settings import Settings
@@ -31,7 +31,7 @@ class MarkerTracker:
             SceneFileError: the scene file cannot be used.
             UnknownMarkerError: the settings name a marker that its dictionary does not have.
         """
-        self.tally = Tally()
+        self.counters = Counters()
         self._calibrated_size_px = settings.calibrated_size_px
         self._order = StampGuard()
         self._image_shape: tuple[int, ...] = ()
@@ -39,7 +39,7 @@ class MarkerTracker:
         self._detector = MarkerDetector(scene.wanted())
         self._partial_occlusion = PartialOcclusionTracker()
         self._occluders = OccluderTracker()
-        self._assignment = MarkerAssignment(scene, self.tally)
+        self._assignment = MarkerAssignment(scene, self.counters)
         self._tracks = Tracks(round(settings.memory_s * SECOND_NS))
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
@@ -48,7 +48,7 @@ class MarkerTracker:
             return []
         order = self._order.judge(message.stamp_ns, message.session_id)
         if order is Order.STALE:
-            self.tally.reject("stale_stamp", f"image at {message.stamp_ns} after {self._order.newest_ns}")
+            self.counters.reject("stale_stamp", f"image at {message.stamp_ns} after {self._order.newest_ns}")
             return []
         if order is Order.RESTART:
             self._forget_images()
@@ -59,7 +59,7 @@ class MarkerTracker:
         try:
             return [_answer(message, self._objects(message))]
         except UnusableImageError as error:
-            self.tally.reject(error.kind, f"image at {message.stamp_ns}: {error.detail}")
+            self.counters.reject(error.kind, f"image at {message.stamp_ns}: {error.detail}")
             return [_answer(message, [], str(error))]
 
     def _objects(self, image: Image) -> list[TrackedObject]:
@@ -73,9 +73,9 @@ class MarkerTracker:
         markers = [*markers, *self._occluders.update(stamp_ns, pixels, markers)]
         if not markers:
             refuse_black(pixels)
-        measurements = measure(self._assignment.objects(markers), camera, self.tally)
+        measurements = measure(self._assignment.objects(markers), camera, self.counters)
         for outlier in self._tracks.update(stamp_ns, measurements):
-            self.tally.reject("outlying_pose", f"{outlier.name} far from where it was a moment before {stamp_ns}")
+            self.counters.reject("outlying_pose", f"{outlier.name} far from where it was a moment before {stamp_ns}")
         return self._tracks.listed(stamp_ns)
 
     def _forget_images(self) -> None:

@@ -11,15 +11,14 @@ from typing import Annotated, Any
 import cv2
 import numpy as np
 import yaml
-from numpy.typing import NDArray
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
+from actum.arrays import Array
 from marker_tracker.detection.families import UnknownMarkerError, canonical, family
 from marker_tracker.detection.marker import Key
 from marker_tracker.pose.catalogue import Catalogue, MountedMarker
 from marker_tracker.settings import Settings
 
-Array = NDArray[np.float64]
 Degrees = Annotated[FiniteFloat, Field(ge=-360, le=360)]
 Metres = Annotated[FiniteFloat, Field(ge=-5, le=5)]
 FamilyName = Annotated[str, AfterValidator(canonical)]
@@ -137,13 +136,13 @@ def _from_settings(settings: Settings) -> Catalogue:
 
 def _from_scene(path: Path, root: yaml.Node, scene: SceneFile) -> Catalogue:
     markers: dict[Key, MountedMarker] = {}
-    for place, key, mounted in _mounted_markers(path, root, scene):
+    for location, key, mounted in _mounted_markers(path, root, scene):
         owner = markers.get(key)
         if owner is not None:
             raise _refusal(
                 path,
                 root,
-                place,
+                location,
                 f"marker {key[1]} of {key[0]} is already on object {owner.object_id}: "
                 f"give object {mounted.object_id} another marker",
             )
@@ -157,16 +156,18 @@ def _mounted_markers(path: Path, root: yaml.Node, scene: SceneFile) -> Iterator[
     """Yield each marker with its location in the file, family and size filled in from the object's or the file's."""
     for number, entry in scene.objects.items():
         for index, marker in enumerate(entry.markers or [MarkerEntry(id=number)]):
-            place: Location = ("objects", number) + (("markers", index) if entry.markers else ())
+            location: Location = ("objects", number) + (("markers", index) if entry.markers else ())
             name = marker.family or entry.family or scene.family
             size_m = marker.size_m or entry.size_m or scene.size_m
             if name is None or size_m is None:
                 lacking = "family" if name is None else "size_m"
-                raise _refusal(path, root, place, f"`{lacking}` is given neither here nor for the whole file: add it")
+                raise _refusal(
+                    path, root, location, f"`{lacking}` is given neither here nor for the whole file: add it"
+                )
             ids = len(family(name).codes)
             if marker.id >= ids:
-                raise _refusal(path, root, place, f"{name} has no marker {marker.id}: use 0 to {ids - 1}")
-            yield place, (name, marker.id), MountedMarker(number, size_m, marker.object_from_marker.transform())
+                raise _refusal(path, root, location, f"{name} has no marker {marker.id}: use 0 to {ids - 1}")
+            yield location, (name, marker.id), MountedMarker(number, size_m, marker.object_from_marker.transform())
 
 
 def _refuse_shared_codes(path: Path, families: tuple[str, ...]) -> None:
@@ -201,14 +202,14 @@ def _problem(path: Path, root: yaml.Node, error: Any) -> str:
     return str(_refusal(path, root, error["loc"], said))
 
 
-def _refusal(path: Path, root: yaml.Node, place: Location, said: str) -> SceneFileError:
-    field = ".".join(str(part) for part in place if part != "[key]")
-    return SceneFileError(f"{path}, line {_line(root, place)}: {field}: {said}")
+def _refusal(path: Path, root: yaml.Node, location: Location, said: str) -> SceneFileError:
+    field = ".".join(str(part) for part in location if part != "[key]")
+    return SceneFileError(f"{path}, line {_line(root, location)}: {field}: {said}")
 
 
-def _line(node: yaml.Node, place: Location) -> int:
+def _line(node: yaml.Node, location: Location) -> int:
     """Find the line of a location, or of as much of it as the file has."""
-    for part in place:
+    for part in location:
         if isinstance(node, yaml.MappingNode):
             inner = [(key, value) for key, value in node.value if key.value == str(part)]
             if not inner:

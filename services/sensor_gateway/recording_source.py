@@ -1,14 +1,15 @@
-"""A recording as a sensor: its skeletons and images once more, at their own pace."""
+"""Recordings as a sensor: their skeletons and images again, at their own pace."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import chain, groupby
+from operator import attrgetter
 from pathlib import Path
 
 from actum import keys
 from actum.joining import joined
 from actum.messages import Message
-from actum.node import Tally
+from actum.node import Counters, Source
 from actum.recording import Recording, RecordingError
-from sensor_gateway.takes import files_of, instants
 
 TOPICS = (keys.SKELETON, keys.COLOR, keys.DEPTH)
 
@@ -16,34 +17,60 @@ TOPICS = (keys.SKELETON, keys.COLOR, keys.DEPTH)
 class RecordingSource:
     """Plays the skeletons and images of one recording, or of a folder's in order of name, as the given sensor's.
 
-    One that is damaged is played up to there.
-
     Stamps, numbers and session ids are the recorded ones; from a folder's second recording on, stamps and numbers are
-    shifted so that they go on rising.
+    shifted so that they continue to rise. A damaged recording is played up to the damage.
 
     Raises:
-        DatasetError: the folder holds no recording.
-        RecordingError: one of the files is no recording.
+        RecordingError: the folder holds no recording, or one of the files is none.
     """
 
     name = "sensor_gateway"
     paced = True
 
     def __init__(self, path: Path, sensor: str) -> None:
-        self.tally = Tally()
+        self.counters = Counters()
         self._sensor = sensor
-        self._recordings = [Recording(file) for file in files_of(path, "*.mcap")]
+        self._recordings = [Recording(file) for file in _files(path)]
 
     def frames(self) -> Iterator[list[Message]]:
-        """Yield what was captured at one instant, instant by instant."""
-        return instants(joined(self._messages(recording) for recording in self._recordings))
+        """Yield the messages of one stamp after another."""
+        return _by_stamp(joined(self._messages(recording) for recording in self._recordings))
 
     def _messages(self, recording: Recording) -> Iterator[Message]:
         try:
             for message in recording.messages(TOPICS):
                 yield message.model_copy(update={"sensor": self._sensor})
         except RecordingError as error:
-            self.tally.reject("damaged_recording", str(error))
-        self.tally.rejects.update(recording.skipped)
+            self.counters.reject("damaged_recording", str(error))
+        self.counters.rejects.update(recording.skipped)
         if recording.truncated:
-            self.tally.reject("truncated_recording", str(recording.path))
+            self.counters.reject("truncated_recording", str(recording.path))
+
+
+class LoopedSource:
+    """A source of recordings, played again and again; stamps and numbers continue to rise."""
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self.name, self.paced, self.counters = source.name, source.paced, source.counters
+
+    def frames(self) -> Iterator[list[Message]]:
+        """Yield the source's frames again and again; nothing where it has none."""
+        return _by_stamp(joined(self._rounds()))
+
+    def _rounds(self) -> Iterator[Iterable[Message]]:
+        while (first := next(frames := self._source.frames(), None)) is not None:
+            yield chain(first, chain.from_iterable(frames))
+
+
+def _files(path: Path) -> list[Path]:
+    files = [path] if path.is_file() else sorted(path.glob("*.mcap"))
+    if not files:
+        raise RecordingError(path, "no *.mcap there", "name such a file or the folder that holds them")
+    return files
+
+
+def _by_stamp(messages: Iterable[Message]) -> Iterator[list[Message]]:
+    """Group successive messages of the same stamp."""
+    for _, group in groupby(messages, key=attrgetter("stamp_ns")):
+        yield list(group)

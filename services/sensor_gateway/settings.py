@@ -1,5 +1,7 @@
 """Settings of the sensor gateway."""
 
+import os
+import sys
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -7,15 +9,23 @@ from pydantic import BeforeValidator, Field
 
 from actum.messages import Direction
 from actum.settings import ServiceSettings
-from sensor_gateway.camera.model_file import default_model
 
-SourceName = Literal[
-    "simulator", "recording", "msr-action3d", "utkinect", "camera", "marker-camera", "realsense", "openni2"
-]
+SourceName = Literal["camera", "marker-camera", "realsense", "openni2", "recording"]
 
 
-def _number(text: object) -> object:
-    return int(text) if isinstance(text, str) and text.isdecimal() else text
+POSE_MODEL = "pose_landmarker_full.task"
+
+
+def default_pose_model() -> Path:
+    """Return where `actum models fetch` puts the pose model: among the program data of this system's user."""
+    home = Path.home()
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = home / "Library" / "Application Support"
+    else:
+        base = Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share")
+    return base / "actum" / POSE_MODEL
 
 
 def _text(number: object) -> object:
@@ -25,17 +35,11 @@ def _text(number: object) -> object:
 class Settings(ServiceSettings):
     """What the gateway can be told beside what every service can."""
 
-    source: SourceName = Field("simulator", description="where the frames come from")
+    source: SourceName | None = Field(None, description="where the frames come from")
     path: Path | None = Field(
-        None, description="the recording or data set: a file, or a folder played in order; a depth camera's recording"
+        None, description="the recording: a file, or a folder played in order; a depth camera's recording"
     )
     loop: bool = Field(False, description="files: play them again and again, a second between two rounds")
-    actor: int = Field(0, ge=0, description="simulator: who acts")
-    seed: int = Field(1, ge=0, description="simulator: which repetitions")
-    repetitions: int = Field(0, ge=0, description="simulator: how often each action is done; 0 goes on for ever")
-    image_hz: Annotated[Literal[0, 5, 10, 15, 30], BeforeValidator(_number)] = Field(
-        15, description="simulator: colour images a second; 0 for none"
-    )
     calibration: Path | None = Field(
         None, description="a file of `actum calibrate`: where given, its camera is put with each colour image"
     )
@@ -58,7 +62,7 @@ class Settings(ServiceSettings):
     )
     mirrored: bool = Field(False, description="camera: its images are mirrored, and are to be turned back")
     pose_model: Path = Field(
-        default_factory=default_model, description="any camera: the pose model that `actum models fetch` gets"
+        default_factory=default_pose_model, description="any camera: the pose model that `actum models fetch` gets"
     )
     person_height_m: float | None = Field(
         None, gt=0.5, lt=2.5, description="any camera: how tall the person is; where given, distances rest on it"

@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 
 from actum import keys
 from actum.messages import Action, Message, Posture, Segment, Tensor
-from actum.node import Tally, Tick
+from actum.node import Counters, Tick
 from actum.skeletons import JOINTS
+from som_classifier.frames import Frame
 from som_classifier.model import Model
-from som_classifier.model_file import ModelFile
 from som_classifier.recognition import Recognition
-from som_classifier.segments import Closed, OpenSegment, Segmenter
+from som_classifier.segments import ClosedSegment, OpenSegment, Segmenter
 from som_classifier.settings import Settings
-from som_classifier.streams import Frame
+from som_classifier.watched_model import WatchedModel
 
 POLL_TICKS = 5
 
@@ -23,7 +23,7 @@ POLL_TICKS = 5
 class ModelSource(Protocol):
     """Where a new model may come from while the node runs."""
 
-    def poll(self, tally: Tally) -> Model | None:
+    def poll(self, counters: Counters) -> Model | None:
         """Return a model that is new since the last call."""
         ...
 
@@ -37,8 +37,8 @@ class SomClassifier:
     def __init__(
         self, model: Model | None = None, source: ModelSource | None = None, publish_maps: bool = False
     ) -> None:
-        self.tally = Tally(state="running" if model else "no model")
-        self._segmenter = Segmenter(self.tally)
+        self.counters = Counters(state="running" if model else "no model")
+        self._segmenter = Segmenter(self.counters)
         self._model: Model | None = None
         if model is not None:
             self._use(model)
@@ -50,9 +50,9 @@ class SomClassifier:
     @classmethod
     def configured(cls, settings: Settings) -> "SomClassifier":
         """Build the node as the settings say; the model file need not exist yet."""
-        node = cls(source=ModelFile(settings.model) if settings.model else None, publish_maps=settings.publish_maps)
+        node = cls(source=WatchedModel(settings.model) if settings.model else None, publish_maps=settings.publish_maps)
         if settings.model is None:
-            node.tally.state = "no model: --model (ACTUM_MODEL) names none"
+            node.counters.state = "no model: --model (ACTUM_MODEL) names none"
         node._reload()
         return node
 
@@ -77,13 +77,13 @@ class SomClassifier:
         return [self._answer(closed) for closed in self._segmenter.tick(tick)]
 
     def _reload(self) -> None:
-        model = self._source.poll(self.tally) if self._source else None
+        model = self._source.poll(self.counters) if self._source else None
         if model is not None:
             self._use(model)
 
     def _use(self, model: Model) -> None:
-        self._model, self.tally.state = model, "running"
-        self.tally.details["model"] = model.id
+        self._model, self.counters.state = model, "running"
+        self.counters.details["model"] = model.id
         self._segmenter.use(lambda: model.encoder().encode)
 
     def _posture(self, posture: Posture) -> Iterator[Action]:
@@ -122,11 +122,11 @@ class SomClassifier:
             return None
         return self._model.recognise(usable, complete)
 
-    def _answer(self, closed: Closed) -> Action:
+    def _answer(self, closed: ClosedSegment) -> Action:
         recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
         reason = closed.reason or (None if recognition else self._why_not(closed))
         if reason:
-            self.tally.reject("rejected_segment", f"{closed.segment_id}: {reason}")
+            self.counters.reject("rejected_segment", f"{closed.segment_id}: {reason}")
         return Action(
             stamp_ns=closed.end_ns,
             sensor=self._sensor,
@@ -157,7 +157,7 @@ class SomClassifier:
         maps = {name: _tensor(activity) for name, activity in self._model.maps(usable).items()}
         return {"maps": maps, "trace": _tensor(self._model.trace(usable))}
 
-    def _why_not(self, closed: Closed) -> str:
+    def _why_not(self, closed: ClosedSegment) -> str:
         if self._model is None:
             return "no model"
         frames = sum(frame.valid for frame in closed.frames)

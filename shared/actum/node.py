@@ -9,9 +9,13 @@ from actum import keys
 from actum.messages import Message
 
 SECOND_NS = 1_000_000_000
+"""Nanoseconds in a second."""
 TICK_NS = SECOND_NS // 10
+"""Between two ticks (ns): nothing waits more finely."""
 SETTLE_NS = 70 * SECOND_NS
+"""How long ticks go on after a replay (ns): longer than anything waits, segments of 60 s with 2 s of skew."""
 LONGEST_COMPLAINT = 500
+"""Characters kept of a complaint: part of what is complained of may be a megabyte."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +26,7 @@ class Tick:
 
 
 @dataclass
-class Tally:
+class Counters:
     """What a node counts: rejects by kind, the newest complaint, its state in one word or two.
 
     `details` says what is in use (`model`, `calibration`, `source`), for `info`.
@@ -43,7 +47,7 @@ class Tally:
 class Node(Protocol):
     """A service's core: state inside; no socket, no clock, no sleep."""
 
-    tally: Tally
+    counters: Counters
 
     @property
     def name(self) -> str:
@@ -63,7 +67,7 @@ class Node(Protocol):
 class Source(Protocol):
     """A sensor: frames in the order of their stamps. The runtime decides when each is put."""
 
-    tally: Tally
+    counters: Counters
 
     @property
     def name(self) -> str:

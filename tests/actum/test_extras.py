@@ -13,6 +13,7 @@ from actum.runtime.serving import UNUSABLE
     ("service", "package", "extra"),
     [
         ("sensor_gateway", "cv2", "sensor-gateway"),
+        ("scene_simulator", "cv2", "scene-simulator"),
         ("marker_tracker", "cv2", "marker-tracker"),
         ("actum_command", "typer", "actum-command"),
     ],

@@ -1,11 +1,11 @@
-from actum.node import Tally
+from actum.node import Counters
 from actum.runtime.meter import MOST_KEYS, MOST_ORIGINS, Meter
 from actum.settings import ServiceSettings
 from people import STANDING, skeleton
 
 
 def meter() -> Meter:
-    return Meter("pose_preprocessor", Tally(), ServiceSettings())
+    return Meter("pose_preprocessor", Counters(), ServiceSettings())
 
 
 def test_missing_numbers_are_drops_and_falling_ones_a_restart() -> None:

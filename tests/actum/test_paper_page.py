@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 PAGE = Path(__file__).parents[2] / "docs" / "paper.md"
-OURS = "actum|action_fusion|marker_tracker|model_trainer|pose_preprocessor|sensor_gateway|som_classifier"
+OURS = "actum|action_fusion|marker_tracker|actum_model_trainer|pose_preprocessor|sensor_gateway|som_classifier"
 NAMES = sorted(set(re.findall(rf"`((?:{OURS})\.[\w.]+)`", PAGE.read_text(encoding="utf-8"))))
 
 

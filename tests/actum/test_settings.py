@@ -71,7 +71,8 @@ PYTHONS_WORDS = re.compile(
 
 
 @pytest.mark.parametrize(
-    "service", ["sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion"]
+    "service",
+    ["sensor_gateway", "scene_simulator", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion"],
 )
 def test_a_service_explains_its_flags_without_pythons_types(
     service: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from actum_command.__main__ import app
 from marker_tracker.settings import Settings
-from sensor_gateway.simulator.parameters import load_parameters
+from scene_simulator.parameters import load_parameters
 
 ROOT = Path(__file__).parents[2]
 USUAL_M = Settings.model_fields["marker_size_m"].default
@@ -24,7 +24,7 @@ def test_what_is_printed_is_what_the_tracker_expects(tmp_path: Path, monkeypatch
         printed_mm.append(size_mm)
         return b"PDF"
 
-    monkeypatch.setattr("calibrator.marker_sheet.marker_sheet", sheet)
+    monkeypatch.setattr("actum_calibrator.marker_sheet.marker_sheet", sheet)
     assert CliRunner().invoke(app, ["markers", "-o", str(tmp_path / "m.pdf")]).exit_code == 0
     assert printed_mm == [1000 * USUAL_M]
 

@@ -9,8 +9,8 @@ from typer.testing import CliRunner
 from actum.messages import Message, Segment, Skeleton
 from actum.recording import Recorder, Recording
 from actum_command.__main__ import app
+from actum_model_trainer.samples import samples_from
 from empty_messages import action
-from model_trainer.samples import samples_from
 from people import FRAME_NS, reaches
 from performers import mark
 

@@ -6,7 +6,7 @@ import pytest
 from benchmarks.recognition.datasets import Example, interpolated
 from benchmarks.recognition.splits import FEW_DRAWS, FEW_TESTED, complete_people, few_examples, folds_of_people
 
-from model_trainer.samples import SegmentSample
+from actum_model_trainer.samples import SegmentSample
 
 LABELS = ("bow", "kick", "wave")
 PEOPLE = range(1, 9)

@@ -92,7 +92,7 @@ def test_a_required_field_that_is_absent_or_of_another_type_is_counted(case: Cas
         others = {key: value for key, value in fields.items() if key != name}
         for wrong in (others, fields | {name: msgpack.ExtType(5, b"")}):
             assert wire.put(keys.key_of(message), msgpack.packb(wrong)) == []
-    assert wire.node.tally.rejects == {"wrong_fields": 2 * len(required)}
+    assert wire.node.counters.rejects == {"wrong_fields": 2 * len(required)}
 
 
 @every_kind_of_input
@@ -100,7 +100,7 @@ def test_unknown_fields_are_ignored(case: Case, message: Message) -> None:
     told, plain = Wire(case.build()), Wire(case.build())
     outputs = told.put(keys.key_of(message), msgpack.packb(fields_of(message) | {"mood": [{"sunny": math.nan}]}))
     assert without_seq(outputs) == without_seq(plain.send(message))
-    assert told.node.tally.rejects == plain.node.tally.rejects
+    assert told.node.counters.rejects == plain.node.counters.rejects
 
 
 @every_kind_of_input
@@ -109,7 +109,7 @@ def test_a_higher_version_is_named(case: Case, message: Message, version: int) -
     wire = Wire(case.build())
     encoding = f"application/msgpack;{message.SCHEMA}/{version}"
     assert wire.put(keys.key_of(message), packed(message), encoding) == []
-    assert wire.node.tally.rejects == {"higher_version": 1}
+    assert wire.node.counters.rejects == {"higher_version": 1}
 
 
 WRONG_PAYLOADS: dict[str, tuple[str, bytes]] = {
@@ -128,7 +128,7 @@ WRONG_PAYLOADS: dict[str, tuple[str, bytes]] = {
 def test_a_payload_that_is_no_message_is_named(case: Case, message: Message, kind: str, payload: bytes) -> None:
     wire = Wire(case.build())
     assert wire.put(keys.key_of(message), payload) == []
-    assert wire.node.tally.rejects == {kind: 1}
+    assert wire.node.counters.rejects == {kind: 1}
 
 
 @every_kind_of_input
@@ -138,7 +138,7 @@ def test_a_message_of_another_key_is_named(case: Case, message: Message) -> None
     assert wire.put(key, msgpack.packb(fields_of(message) | {"sensor": "elsewhere"})) == []
     assert wire.put(f"{key}/more", packed(message)) == []
     assert wire.put(key, packed(message), "application/msgpack;actum.status/1") == []
-    assert wire.node.tally.rejects == {"wrong_key": 1, "unknown_key": 1, "wrong_schema": 1}
+    assert wire.node.counters.rejects == {"wrong_key": 1, "unknown_key": 1, "wrong_schema": 1}
 
 
 def empty_maps(rows: int) -> bytes:
@@ -168,7 +168,7 @@ def hundred_megabytes() -> bytes:
 def test_a_hundred_megabytes_are_not_even_unpacked(case: Case, message: Message, hundred_megabytes: bytes) -> None:
     wire = Wire(case.build())
     assert wire.put(keys.key_of(message), hundred_megabytes) == []
-    assert wire.node.tally.rejects == {"too_large": 1}
+    assert wire.node.counters.rejects == {"too_large": 1}
 
 
 @every_kind_of_input
@@ -177,4 +177,4 @@ def test_complaints_stay_short(case: Case, message: Message) -> None:
     wire = Wire(case.build())
     fields: dict[str, Any] = fields_of(message) | {"sensor": "a" * 100_000}
     assert wire.put(keys.key_of(message), msgpack.packb(fields)) == []
-    assert len(wire.node.tally.last_error or "") <= 500
+    assert len(wire.node.counters.last_error or "") <= 500

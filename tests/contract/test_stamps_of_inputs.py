@@ -34,7 +34,7 @@ def test_a_repeated_or_older_stamp_is_counted_and_changes_nothing(case: Case, me
     wire = Wire(case.build())
     wire.send(message)
     assert wire.send(stamped(message, message.stamp_ns - back_ns)) == []
-    assert wire.node.tally.rejects == {"stale_stamp": 1}
+    assert wire.node.counters.rejects == {"stale_stamp": 1}
 
 
 @every_stream
@@ -43,10 +43,10 @@ def test_time_that_runs_backwards_is_counted_until_it_is_taken_for_a_new_start(c
     wire.send(message)
     for i in range(10):
         wire.send(stamped(message, message.stamp_ns - FAR_NS - i))
-    assert wire.node.tally.rejects == {"stale_stamp": 10}
+    assert wire.node.counters.rejects == {"stale_stamp": 10}
     for i in range(4):
         wire.send(stamped(message, message.stamp_ns - 2 * FAR_NS + i))
-    assert wire.node.tally.rejects["stale_stamp"] == 12
+    assert wire.node.counters.rejects["stale_stamp"] == 12
 
 
 @every_node
@@ -104,4 +104,4 @@ def test_a_segment_far_ahead_does_not_make_everything_after_it_late(case: Case) 
     answered = [output for i in range(30) for output in wire.handle(Tick(i * SECOND_NS // 10))]
     assert [output.segment_id for output in answered] == ["ahead"]
     wire.send(*case.messages())
-    assert set(wire.node.tally.rejects) <= {"rejected_segment"}
+    assert set(wire.node.counters.rejects) <= {"rejected_segment"}

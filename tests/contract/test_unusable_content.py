@@ -169,9 +169,9 @@ each_bad_message = pytest.mark.parametrize(
 def test_it_is_counted_by_kind(case: Case, kind: str, message: Message) -> None:
     wire = Wire(case.build())
     wire.send(message)
-    assert wire.node.tally.rejects[kind] >= 1
-    assert set(wire.node.tally.rejects) == {kind}
-    assert kind in (wire.node.tally.last_error or "")
+    assert wire.node.counters.rejects[kind] >= 1
+    assert set(wire.node.counters.rejects) == {kind}
+    assert kind in (wire.node.counters.last_error or "")
 
 
 @each_bad_message

@@ -66,7 +66,7 @@ def test_what_a_finger_covers_is_told_and_misleads_little(finger) -> None:
     assert 0.02 < found.covered[0] < 0.5
 
 
-def test_a_similarity_is_by_shift_turn_and_size_alone() -> None:
+def test_alignment_by_similarity_is_by_shift_rotation_and_scale_alone() -> None:
     truth, start = square(25.0, 32.3, 31.8, 0.05), square(24.0)
     found = align_by_similarity(drawn(truth), start[None], PATTERN[None]).corners_px[0]
     sides = np.linalg.norm(found - np.roll(found, 1, axis=0), axis=1)
@@ -74,7 +74,7 @@ def test_a_similarity_is_by_shift_turn_and_size_alone() -> None:
     assert np.abs(found - truth).max() < 0.1
 
 
-def test_what_would_run_away_stays() -> None:
+def test_corners_that_would_diverge_stay() -> None:
     start = square(24.0)[None]
     nothing = np.random.default_rng(0).integers(0, 255, (64, 64), dtype=np.uint8)
     assert np.abs(align(nothing, start, PATTERN[None]).corners_px - start).max() <= 1.5
@@ -88,14 +88,14 @@ def test_several_at_once_are_as_each_alone() -> None:
 
 
 @pytest.mark.parametrize(("side_px", "small"), [(30.0, True), (60.0, False)])
-def test_small_is_by_the_cells(side_px, small) -> None:
+def test_markers_are_aligned_if_their_cells_are_small(side_px, small) -> None:
     rough = square(side_px)[None]
     (marker,) = decode(drawn(square(side_px)), [Candidates(FAMILY, rough, rough)])
     assert (marker.start is not None) == small
 
 
 @pytest.mark.parametrize("number", [0, 17, 49])
-def test_a_family_tells_what_its_markers_show(number) -> None:
+def test_the_patterns_of_a_family_are_as_printed(number) -> None:
     picture = cv2.aruco.generateImageMarker(FAMILY.dictionary, number, FAMILY.cells + 2)
     assert np.array_equal(FAMILY.patterns[number], picture > 0)
 

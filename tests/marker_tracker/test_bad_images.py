@@ -73,7 +73,7 @@ CASES = {
 def test_it_is_counted_by_kind_and_answered_as_invalid(image, kind) -> None:
     tracker = MarkerTracker(Settings())
     (answer,) = tracker.handle(image)
-    assert tracker.tally.rejects == {kind: 1}
+    assert tracker.counters.rejects == {kind: 1}
     assert (answer.valid, answer.objects, answer.stamp_ns) == (False, [], image.stamp_ns)
     assert answer.reason.startswith(kind)
 
@@ -89,7 +89,7 @@ OTHER_SIZES = {
 def test_a_size_that_the_calibration_cannot_be_of_is_counted(image) -> None:
     tracker = MarkerTracker(Settings())
     (answer,) = tracker.handle(image)
-    assert tracker.tally.rejects == {"calibration_size_mismatch": 1}
+    assert tracker.counters.rejects == {"calibration_size_mismatch": 1}
     assert (answer.valid, answer.objects) == (False, [])
     assert f"{image.width}x{image.height}" in answer.reason
 
@@ -97,7 +97,7 @@ def test_a_size_that_the_calibration_cannot_be_of_is_counted(image) -> None:
 def test_a_calibration_of_another_aspect_is_counted() -> None:
     tracker = MarkerTracker(Settings(calibrated_size_px=(64, 64)))
     (answer,) = tracker.handle(small())
-    assert tracker.tally.rejects == {"calibration_size_mismatch": 1}
+    assert tracker.counters.rejects == {"calibration_size_mismatch": 1}
     assert "an image of 64x48, but calibrated at 64x64" in answer.reason
 
 
@@ -133,7 +133,7 @@ def test_a_marker_in_the_dark_is_found(image_of, pose_at) -> None:
 def test_random_bytes_are_survived(tail, head) -> None:
     tracker = MarkerTracker(Settings())
     (answer,) = tracker.handle(small(format="jpeg", data=head + tail))
-    assert answer.valid == (not tracker.tally.rejects)
+    assert answer.valid == (not tracker.counters.rejects)
 
 
 @settings(max_examples=100)
@@ -142,7 +142,7 @@ def test_tiny_images_of_noise_are_survived(width, height, random) -> None:
     tracker = MarkerTracker(Settings())
     k = [60.0, 0.0, width / 2, 0.0, 60.0, height / 2, 0.0, 0.0, 1.0]
     (answer,) = tracker.handle(small(width=width, height=height, data=random.randbytes(width * height * 3), K=k))
-    assert (answer.valid, answer.objects) == (not tracker.tally.rejects, [])
+    assert (answer.valid, answer.objects) == (not tracker.counters.rejects, [])
 
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
@@ -162,6 +162,6 @@ def test_no_calibration_breaks_the_tracker(image_of, pose_at) -> None:
         tracker = MarkerTracker(Settings())
         (answer,) = tracker.handle(image.model_copy(update={"K": matrix, "distortion": distortion}))
         assert all(math.isfinite(number) for found in answer.objects for number in found.position_m)
-        assert answer.objects or tracker.tally.rejects
+        assert answer.objects or tracker.counters.rejects
 
     check()

@@ -85,7 +85,7 @@ def test_a_marker_on_none_of_the_objects_is_counted_and_left_out(image_of, pose_
     tracker = MarkerTracker(Settings(objects={1: ObjectSpec(name="cup")}))
     (answer,) = tracker.handle(image_of([(7, 0.12, pose_at((0.0, 0.0, 0.8)))]))
     assert answer.objects == []
-    assert tracker.tally.rejects == {"unknown_marker": 1}
+    assert tracker.counters.rejects == {"unknown_marker": 1}
 
 
 def test_the_same_marker_twice_is_one_object_and_counted(image_of, pose_at) -> None:
@@ -93,7 +93,7 @@ def test_the_same_marker_twice_is_one_object_and_counted(image_of, pose_at) -> N
     twice = [(3, 0.12, pose_at((-0.2, 0.0, 0.8))), (3, 0.12, pose_at((0.2, 0.0, 0.8), (0.0, 0.7, 0.0)))]
     (answer,) = tracker.handle(image_of(twice))
     assert [found.id for found in answer.objects] == [3]
-    assert tracker.tally.rejects == {"repeated_marker": 1}
+    assert tracker.counters.rejects == {"repeated_marker": 1}
 
 
 def test_of_a_marker_seen_twice_the_one_that_was_followed_is(image_of, pose_at) -> None:
@@ -104,7 +104,7 @@ def test_of_a_marker_seen_twice_the_one_that_was_followed_is(image_of, pose_at) 
         (answer,) = tracker.handle(image_of(twice, stamp_ns=frame * SECOND_NS // 15))
         places.append(answer.objects[0].position_m[0])
     assert np.allclose(places, -0.2, atol=0.01)
-    assert tracker.tally.rejects == {"repeated_marker": 4}
+    assert tracker.counters.rejects == {"repeated_marker": 4}
 
 
 def test_another_dictionary_is_chosen_by_name(image_of, pose_at) -> None:

@@ -23,7 +23,7 @@ def seen(image_of, pose_at):
             shown = [(number, 0.12, pose_at(place)) for number, place in markers]
             (answer,) = tracker.handle(image_of(shown, stamp_ns=i * every_ns))
             answers.append({found.id: found.position_m for found in answer.objects if found.seen})
-        return answers, tracker.tally
+        return answers, tracker.counters
 
     return watch
 
@@ -60,5 +60,5 @@ def test_what_comes_before_a_slow_camera_is_seen_at_once(seen) -> None:
 
 
 def test_an_unknown_marker_is_told_soon_though_nothing_is_missing(seen) -> None:
-    _, tally = seen([(3, CUP), (5, BOX)], *[[(3, CUP), (5, BOX), (7, OTHER)]] * 6, every_ns=SLOW_NS)
-    assert tally.rejects["unknown_marker"] > 0
+    _, counters = seen([(3, CUP), (5, BOX)], *[[(3, CUP), (5, BOX), (7, OTHER)]] * 6, every_ns=SLOW_NS)
+    assert counters.rejects["unknown_marker"] > 0

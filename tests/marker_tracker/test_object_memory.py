@@ -62,7 +62,7 @@ def test_older_and_repeated_stamps_are_counted_and_dropped(tracker, cup) -> None
     list(tracker.handle(at(cup, 10.0)))
     assert list(tracker.handle(at(cup, 10.0))) == []
     assert list(tracker.handle(at(cup, 9.0))) == []
-    assert tracker.tally.rejects == {"stale_stamp": 2}
+    assert tracker.counters.rejects == {"stale_stamp": 2}
 
 
 def test_an_invalid_image_is_passed_on_as_invalid_objects(tracker, cup) -> None:

@@ -7,7 +7,8 @@ import pytest
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
 from marker_tracker.node import MarkerTracker
-from marker_tracker.occlusion.occluder_tracker import MAX_TRACKED, Crop
+from marker_tracker.occlusion.crop import Crop
+from marker_tracker.occlusion.occluder_tracker import MAX_TRACKED
 from marker_tracker.settings import Settings
 
 SIZE_M, FOCAL_PX, MIDDLE_PX = 0.08, 525.0, np.array([319.5, 239.5])

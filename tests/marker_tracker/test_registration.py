@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from marker_tracker.occlusion.registration import Similarity, Template, blurred
+from marker_tracker.occlusion.crop import blurred
+from marker_tracker.occlusion.registration import Similarity, Template
 
 SIZE = 96
 FINE = cv2.GaussianBlur(np.random.default_rng(0).normal(0.0, 1.0, (4 * SIZE, 4 * SIZE)), (0, 0), 10)

@@ -63,7 +63,7 @@ def test_markers_that_are_not_where_the_scene_puts_them_are_counted(tracker, ima
     apart = [(1, 0.08, pose_at((-0.2, 0.0, 0.9))), (2, 0.08, pose_at((0.2, 0.0, 0.9)))]
     (answer,) = tracker.handle(image_of(apart))
     assert [found.id for found in answer.objects] == [9]
-    assert tracker.tally.rejects == {"markers_disagree": 1}
+    assert tracker.counters.rejects == {"markers_disagree": 1}
 
 
 def test_only_families_of_the_scene_are_searched(tracker, image_of, pose_at) -> None:

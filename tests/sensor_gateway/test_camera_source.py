@@ -13,11 +13,12 @@ from actum.messages import Image, Message, Skeleton
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from camera_bodies import K, as_seen, standing_at
-from sensor_gateway.camera.capture import CameraLostError, CaptureEndedError
-from sensor_gateway.camera.landmarks import Landmarks
-from sensor_gateway.camera.perceiving import Optics
-from sensor_gateway.camera.source import CameraSource, optics_of
-from sensor_gateway.camera.video import Picture
+from sensor_gateway.camera_source import CameraSource
+from sensor_gateway.cameras import optics_of
+from sensor_gateway.captured_picture import Picture
+from sensor_gateway.devices.capture import CameraLostError, CaptureEndedError
+from sensor_gateway.optics import Optics
+from sensor_gateway.people.landmarks import Landmarks
 from sensor_gateway.settings import Settings
 
 FRAME_NS = SECOND_NS // 20
@@ -140,7 +141,7 @@ def test_images_of_another_size_than_was_calibrated_show_nothing() -> None:
     source = world.source(Optics(calibration=calibration))
     [skeleton] = [message for listed in source.frames() for message in listed]
     assert (skeleton.valid, skeleton.reason) == (False, "image_size_mismatch: 640x480, calibrated for 1280x720")
-    assert source.tally.rejects == {"image_size_mismatch": 1}
+    assert source.counters.rejects == {"image_size_mismatch": 1}
 
 
 def test_a_calibration_of_a_camera_beside_this_one_is_refused(tmp_path: Path) -> None:
@@ -159,9 +160,9 @@ def test_a_calibration_of_a_camera_beside_this_one_is_refused(tmp_path: Path) ->
 
 
 def test_info_tells_how_well_the_camera_is_known() -> None:
-    assert "assumed: 60 degrees" in World().source().tally.details["calibration"]
+    assert "assumed: 60 degrees" in World().source().counters.details["calibration"]
     calibration = Calibration(image_size=(640, 480), K=K.ravel().tolist(), distortion=[0.0] * 5)
-    assert World().source(Optics(calibration=calibration)).tally.details["calibration"] == calibration.id
+    assert World().source(Optics(calibration=calibration)).counters.details["calibration"] == calibration.id
 
 
 def test_a_lost_camera_is_told_at_once_and_tried_again_ever_later_until_it_is_back() -> None:
@@ -169,12 +170,12 @@ def test_a_lost_camera_is_told_at_once_and_tried_again_ever_later_until_it_is_ba
     source = world.source()
     states: list[tuple[bool, str]] = []
     for listed in source.frames():
-        states += [(message.valid, source.tally.state) for message in listed if isinstance(message, Skeleton)]
+        states += [(message.valid, source.counters.state) for message in listed if isinstance(message, Skeleton)]
     assert states[0] == (True, "running")
     assert states[1] == (False, "camera lost: unplugged")
     assert states[-1] == (True, "running")
-    assert source.tally.rejects == {"camera_lost": 1}
-    assert source.tally.last_error == "camera_lost: unplugged"
+    assert source.counters.rejects == {"camera_lost": 1}
+    assert source.counters.last_error == "camera_lost: unplugged"
     waits_s = np.diff(world.opened[:4]) / SECOND_NS
     assert waits_s.tolist() == pytest.approx([0.5 + 0.1, 1 + 0.05, 2 + 0.05])
 
@@ -220,8 +221,8 @@ def test_a_camera_that_stays_black_is_opened_again_until_it_is_not_and_told_once
     assert {message.reason for message in found[first:last]} == {
         "camera lost: black: nothing can be seen; is the lens covered?"
     }
-    assert source.tally.rejects == {"camera_lost": 1}
-    assert source.tally.state == "running"
+    assert source.counters.rejects == {"camera_lost": 1}
+    assert source.counters.state == "running"
     assert world.closed == len(world.opened) == 4
     assert (np.diff(world.opened) / SECOND_NS).tolist() == pytest.approx([5.55, 6.05, 7.05], abs=0.15)
 

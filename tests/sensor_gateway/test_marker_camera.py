@@ -29,7 +29,7 @@ def told(folder: Path, **settings: object) -> tuple[list[Message], dict[str, int
     chosen = {"source": "marker-camera", "camera": str(video), "calibration": calibration(folder)} | settings
     source = source_of(Settings(**chosen), start_ns=1)  # type: ignore[arg-type]
     messages = [message for instant in source.frames() for message in instant]
-    return messages, dict(source.tally.rejects)
+    return messages, dict(source.counters.rejects)
 
 
 def test_its_images_say_where_the_peoples_camera_is(tmp_path: Path) -> None:
@@ -52,7 +52,7 @@ def test_a_lost_one_says_nothing_of_the_people(tmp_path: Path) -> None:
     source = source_of(Settings(**chosen), start_ns=1)  # type: ignore[arg-type]
     frames = source.frames()
     assert [next(frames) for _ in range(3)] == [[], [], []]
-    assert source.tally.state.startswith("camera lost")
+    assert source.counters.state.startswith("camera lost")
 
 
 @pytest.mark.parametrize("aside", [None, "no file"])
@@ -62,8 +62,8 @@ def test_it_must_know_where_it_is(tmp_path: Path, aside: str | None) -> None:
         source_of(Settings(source="marker-camera", calibration=path), start_ns=1)
 
 
-def test_the_peoples_gateway_can_leave_the_images_to_it() -> None:
-    source = source_of(Settings(repetitions=1, images=False), start_ns=0)
+def test_the_peoples_gateway_can_leave_the_images_to_it(recorded_scene: Path) -> None:
+    source = source_of(Settings(source="recording", path=recorded_scene, images=False), start_ns=0)
     kinds = {
         type(message).__name__ for _, instant in zip(range(40), source.frames(), strict=False) for message in instant
     }

@@ -11,8 +11,7 @@ from actum.joining import PAUSE_NS
 from actum.messages import Message, Objects, Segment
 from actum.recording import Recorder, RecordingError
 from empty_messages import image, skeleton
-from sensor_gateway.recording_source import RecordingSource
-from sensor_gateway.takes import DatasetError, LoopedSource
+from sensor_gateway.recording_source import LoopedSource, RecordingSource
 
 
 def record(path: Path, *messages: Message) -> Path:
@@ -67,7 +66,7 @@ def test_bad_messages_of_a_file_are_counted(tmp_path: Path) -> None:
         writer.finish()
     source = RecordingSource(tmp_path / "a.mcap", "kinect0")
     assert [[frame.stamp_ns for frame in instant] for instant in source.frames()] == [[3]]
-    assert source.tally.rejects == {"not_msgpack": 1}
+    assert source.counters.rejects == {"not_msgpack": 1}
 
 
 def test_a_broken_end_is_counted(tmp_path: Path) -> None:
@@ -75,7 +74,7 @@ def test_a_broken_end_is_counted(tmp_path: Path) -> None:
     path.write_bytes(path.read_bytes()[:-20])
     source = RecordingSource(path, "kinect0")
     assert len(list(source.frames())) == 1
-    assert source.tally.rejects == {"truncated_recording": 1}
+    assert source.counters.rejects == {"truncated_recording": 1}
 
 
 def test_what_is_no_recording_is_refused_at_once(tmp_path: Path) -> None:
@@ -85,7 +84,7 @@ def test_what_is_no_recording_is_refused_at_once(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_recordings_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match=r"no \*\.mcap there"):
+    with pytest.raises(RecordingError, match=r"no \*\.mcap there"):
         RecordingSource(tmp_path, "kinect0")
 
 
@@ -99,4 +98,4 @@ def test_a_damaged_file_is_played_up_to_there_and_counted(tmp_path: Path) -> Non
     source = RecordingSource(tmp_path, "kinect0")
     *_, [first], [second] = source.frames()
     assert second.stamp_ns - first.stamp_ns == 5
-    assert source.tally.rejects == {"damaged_recording": 1}
+    assert source.counters.rejects == {"damaged_recording": 1}

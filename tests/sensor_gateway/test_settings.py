@@ -8,19 +8,6 @@ from pydantic import ValidationError
 from sensor_gateway.settings import Settings
 
 
-@pytest.mark.parametrize("rate", ["0", "5", "10", "15", "30"])
-def test_the_image_rate_is_read_from_text(rate: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ACTUM_IMAGE_HZ", rate)
-    assert Settings().image_hz == int(rate)
-
-
-@pytest.mark.parametrize("rate", ["7", "", "-5", "fast"])
-def test_other_rates_are_refused(rate: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ACTUM_IMAGE_HZ", rate)
-    with pytest.raises(ValidationError, match="image_hz"):
-        Settings()
-
-
 @pytest.mark.parametrize("written", ["1", '"1"'])
 def test_a_cameras_number_in_a_file_may_be_a_number(
     written: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

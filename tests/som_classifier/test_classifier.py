@@ -8,20 +8,22 @@ import numpy as np
 import pytest
 
 from actum.messages import Action, Message, Posture, Segment, Skeleton
-from actum.node import Tally, Tick, replay
+from actum.node import Counters, Tick, replay
 from actum.skeletons import INDEX
-from model_trainer.answering import answer, encoded
-from model_trainer.samples import SegmentSample
+from actum_model_trainer.answering import answer, encoded
+from actum_model_trainer.samples import SegmentSample
 from people import FRAME_NS, lacking, skeleton
 from performers import FRAMES, HAND_PATHS, PAUSE_FRAMES, TINY, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
 from pose_preprocessor.bridging import BRIDGED_NS
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from recognisers import tiny_model, tiny_samples
+from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.node import POLL_TICKS, SomClassifier
 from som_classifier.presets import Preset
 from som_classifier.pyramid_model import PyramidModel
-from som_classifier.streams import Frame, Stream
+from som_classifier.streams import Stream
 from wire import Wire, without_seq
 
 each_preset = pytest.mark.parametrize("preset", TINY_OF_EACH_KIND, ids=lambda preset: preset.name)
@@ -30,7 +32,7 @@ BESIDE_M = np.array([1.0, 0.0, 1.0])
 
 
 def postures_of(skeletons: Iterable[Message]) -> list[Posture]:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     return [p for frame in skeletons for p in node.handle(frame) if isinstance(p, Posture)]
 
 
@@ -72,7 +74,7 @@ class Box:
     def __init__(self) -> None:
         self.model: Model | None = None
 
-    def poll(self, tally: Tally) -> Model | None:
+    def poll(self, counters: Counters) -> Model | None:
         model, self.model = self.model, None
         return model
 
@@ -151,7 +153,7 @@ def test_an_end_before_the_usual_time_ends_the_action_all_the_same() -> None:
 def test_what_is_unfamiliar_is_told_at_the_end() -> None:
     model = tiny_model()
     assert isinstance(model, PyramidModel)
-    strict = replace(model, description=model.description.model_copy(update={"familiar": 1e9}))
+    strict = replace(model, metadata=model.metadata.model_copy(update={"familiar": 1e9}))
     actions = live(SomClassifier(strict), scene())
     assert [action.unknown for action in actions] == [action.final for action in actions]
     assert all((action.familiarity is None) != action.final for action in actions)
@@ -236,7 +238,7 @@ def test_a_posture_without_any_joint_is_none(preset: Preset, fields: tuple[str, 
     blank = [p.model_copy(update=dict.fromkeys(fields, [None] * 15)) for p in postures]
     (final,) = finals(live(node, [*marks, *blank]))
     assert (final.reason, final.frames) == ("no usable frame", 0)
-    assert node.tally.rejects["bad_posture"] == FRAMES + PAUSE_FRAMES
+    assert node.counters.rejects["bad_posture"] == FRAMES + PAUSE_FRAMES
 
 
 @each_preset

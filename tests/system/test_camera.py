@@ -12,14 +12,14 @@ from actum import keys
 from actum.messages import Event, Image, Objects, Segment, Skeleton, Status
 from actum.recording import Recording
 from actum.runtime import Client, Listening
-from actum_command.importing import import_video
+from actum_dataset_importer.clips import Naming
+from actum_dataset_importer.importing import import_video
+from actum_model_trainer.samples import samples_from, select
+from actum_model_trainer.training import train
 from live import System, collect, wait_until
-from model_trainer.samples import samples_from, select
-from model_trainer.training import train
 from models import QUICK
-from sensor_gateway.camera.clips import Naming
-from sensor_gateway.camera.perceiving import Optics
-from sensor_gateway.camera.pose import PoseEstimator
+from sensor_gateway.optics import Optics
+from sensor_gateway.people.pose_estimator import PoseEstimator
 
 pytestmark = [pytest.mark.system, pytest.mark.pose_model, pytest.mark.data]
 

@@ -18,7 +18,7 @@ from compose_files import DEPLOY, MAIN, ROOT, services_of
 from live import System, wait_until
 
 ROUTER_CONFIG = DEPLOY / "zenoh" / "router.json5"
-FIVE = {"sensor_gateway", *SERVICES}
+FIVE = {"scene_simulator", *SERVICES}
 UNCHECKED = {"trainer", "scene"}
 ACTIONS = {"push", "pull", "put", "lift", "point"}
 STOPPED_WITHIN_S = 10.0

@@ -26,8 +26,11 @@ def services() -> dict[str, dict[str, Any]]:
 
 def test_the_host_runs_router_gateway_and_tracker(services):
     assert tuple(services) == SERVICES
-    extends = {name: service["extends"] for name, service in services.items()}
-    assert extends == {name: {"file": "../docker-compose.yml", "service": name} for name in SERVICES}
+    extends = {name: service.get("extends") for name, service in services.items()}
+    shared = {name: {"file": "../docker-compose.yml", "service": name} for name in ("router", "marker_tracker")}
+    assert extends == shared | {"sensor_gateway": None}  # one host has a simulated scene in its place
+    assert services["sensor_gateway"]["init"]
+    assert services["sensor_gateway"]["restart"] == "unless-stopped"
 
 
 @pytest.mark.parametrize(

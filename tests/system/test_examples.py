@@ -48,7 +48,7 @@ def test_coloured_things_do_as_well_as_marked_ones(
         for topic in (keys.COLOR, keys.TRUTH, keys.OBJECTS):
             assert client.wait_for_subscriber(topic, timeout_s=20.0), topic
         events, truths = (client.listen(keys.pattern(topic, client.sensor)) for topic in (keys.EVENT, keys.TRUTH))
-        running.start("sensor_gateway", "--actor", "0", "--seed", "2", "--repetitions", "1")
+        running.start("scene_simulator", "--actor", "0", "--seed", "2", "--repetitions", "1")
         answered = collect(events, Event, lambda found: len(found) >= ANSWERS)
         done = {truth.segment_id: truth for truth in collect(truths, Truth, lambda found: len(found) >= 2 * ANSWERS)}
         assert not [key for key in client.alive() if "marker_tracker" in key]

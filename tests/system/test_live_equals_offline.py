@@ -11,16 +11,16 @@ import pytest
 from actum import keys
 from actum.messages import Event
 from actum.recording import Recording
-from actum_command.importing import import_msr_action3d, import_utkinect
+from actum_dataset_importer.importing import import_msr_action3d, import_utkinect
+from actum_dataset_importer.msr_action3d import EXCLUDED, NAME, sequence_files
+from actum_dataset_importer.utkinect import LABELS
+from actum_model_trainer.evaluation import Evaluation, evaluate
+from actum_model_trainer.samples import samples_from, select
+from actum_model_trainer.training import train
 from live import System, collect
-from model_trainer.evaluation import Evaluation, evaluate
-from model_trainer.samples import samples_from, select
-from model_trainer.training import train
 from models import QUICK, QUICK_PAPER
-from sensor_gateway.msr_action3d import EXCLUDED, NAME, sequence_files
-from sensor_gateway.utkinect import LABELS
+from som_classifier.model_loading import load_model
 from som_classifier.presets import PRESETS
-from som_classifier.storage import load_model
 
 pytestmark = [pytest.mark.system, pytest.mark.data]
 

@@ -15,7 +15,14 @@ from live import PATIENCE_S, Running, System, collect, wait_until
 from people import reaches
 from sensors import marker_camera
 
-SERVICES = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
+SERVICES = (
+    ("sensor_gateway", "scene_simulator"),
+    ("pose_preprocessor", "pose_preprocessor"),
+    ("som_classifier", "som_classifier"),
+    ("marker_tracker", "marker_tracker"),
+    ("action_fusion", "action_fusion"),
+)
+"""Each service and what is run for it: the simulated scene stands in the gateway's place."""
 pytestmark = pytest.mark.system
 
 
@@ -49,13 +56,13 @@ def assert_answered_once(client: Client) -> None:
     assert [posture.stamp_ns for posture in found] == [frame.stamp_ns for frame in frames]
 
 
-@pytest.mark.parametrize("service", SERVICES)
-def test_the_second_of_a_kind_says_so_and_ends(running: System, service: str) -> None:
+@pytest.mark.parametrize(("service", "program"), SERVICES)
+def test_the_second_of_a_kind_says_so_and_ends(running: System, service: str, program: str) -> None:
     running.start_router()
-    first = start(running, "one", service=service)
+    first = start(running, "one", service=program)
     with running.client() as client:
         wait_for_tokens(client, f"{service}/one")
-        second = start(running, "a-second", service=service)
+        second = start(running, "a-second", service=program)
         assert code_of(second) == TAKEN
         [complaint] = [line for line in second.said().splitlines() if "another" in line]
         assert re.search(
@@ -164,7 +171,7 @@ def test_one_that_waits_for_its_place_can_be_stopped(running: System) -> None:
 
 def test_a_camera_for_the_markers_lives_beside_the_sensors_gateway(running: System, tmp_path: Path) -> None:
     running.start_router()
-    gateway = start(running, "one", service="sensor_gateway")
+    gateway = start(running, "one", service="scene_simulator")
     beside = start(running, "one", *marker_camera(tmp_path), service="sensor_gateway")
     with running.client() as client:
         wait_for_tokens(client, "marker_camera/one", "sensor_gateway/one")

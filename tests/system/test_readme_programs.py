@@ -61,7 +61,7 @@ def test_one_reads_events_and_the_other_marks_them(scene: System, plain_python: 
             assert marker.stdin is not None
             skeletons = client.listen(keys.pattern(keys.SKELETON, client.sensor))
             events = client.listen(keys.pattern(keys.EVENT, client.sensor))
-            scene.start("sensor_gateway", "--source", "simulator")
+            scene.start("scene_simulator")
             collect(skeletons, Skeleton, lambda found: len(found) >= 35)
             marker.stdin.write(b"\n")
             marker.stdin.flush()

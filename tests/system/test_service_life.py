@@ -12,14 +12,21 @@ from actum.runtime.outbox import MOST_PUBLISHERS
 from live import Running, System, collect, described, wait_until
 from people import STANDING, reaches, skeleton
 
-SERVICES = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
+PROGRAMS = {
+    "sensor_gateway": "scene_simulator",
+    "pose_preprocessor": "pose_preprocessor",
+    "som_classifier": "som_classifier",
+    "marker_tracker": "marker_tracker",
+    "action_fusion": "action_fusion",
+}
+"""What is run for each service: the simulated scene stands in the gateway's place."""
 pytestmark = pytest.mark.system
 
 
 @pytest.fixture
 def waiting(running: System) -> dict[str, Running]:
     """Every service, started without a router, each with a sensor of its own."""
-    services = {name: running.start(name, "--sensor", name) for name in SERVICES}
+    services = {name: running.start(program, "--sensor", name) for name, program in PROGRAMS.items()}
     wait_until(lambda: all("waiting for it" in it.said() for it in services.values()), "each says that it waits")
     return services
 
@@ -34,7 +41,7 @@ def test_services_started_before_the_router_wait_for_it_serve_and_leave(
     running: System, waiting: dict[str, Running]
 ) -> None:
     running.start_router()
-    for name in SERVICES:
+    for name in PROGRAMS:
         with running.client(sensor=name) as client:
             running.wait_for_services(client, name)
             status = collect(client.listen(keys.pattern(keys.STATUS, client.sensor)), Status, bool)[0]
@@ -43,7 +50,7 @@ def test_services_started_before_the_router_wait_for_it_serve_and_leave(
             assert "actum.skeleton/1" in info.schemas
             assert info.joint_names[0] == "head"
     assert_leave_cleanly(waiting)
-    assert {name: it.said().count("waiting for it") for name, it in waiting.items()} == dict.fromkeys(SERVICES, 1)
+    assert {name: it.said().count("waiting for it") for name, it in waiting.items()} == dict.fromkeys(PROGRAMS, 1)
 
 
 def test_services_that_never_found_their_router_leave_cleanly_too(waiting: dict[str, Running]) -> None:
@@ -127,13 +134,14 @@ def test_tokens_go_with_their_process(running: System) -> None:
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
+        (["sensor_gateway"], "name a --source (ACTUM_SOURCE)"),
         (["sensor_gateway", "--source", "recording"], "needs --path"),
         (["sensor_gateway", "--source", "recording", "--path", "/nowhere"], "/nowhere"),
         (["sensor_gateway", "--source", "camera", "--pose-model", "/nowhere"], "'actum models fetch'"),
         (["marker_tracker", "--dictionary", "DICT_NONE"], "dictionary: "),
         (["pose_preprocessor", "--sensor", "Kinect 0"], "sensor: "),
         (["pose_preprocessor", "--connect", "127.0.0.1:7551"], "'127.0.0.1:7551' is no endpoint: use tcp/host:port"),
-        (["sensor_gateway", "--connect", "foo"], "'foo' is no endpoint: use tcp/host:port"),
+        (["scene_simulator", "--connect", "foo"], "'foo' is no endpoint: use tcp/host:port"),
         (["action_fusion", "--zenoh-config", "/nowhere.json5"], "/nowhere.json5 is no Zenoh configuration"),
         (["action_fusion", "--zenoh-config", __file__], f"{__file__} is no Zenoh configuration"),
     ],

@@ -6,7 +6,7 @@ import pytest
 
 from actum import keys
 from actum.messages import Skeleton
-from actum_command.doctor import STATUS_S
+from actum_command.diagnosis import STATUS_S
 from camera_videos import write_video
 from live import Running, System, collect, described, wait_until
 from people import reaches
@@ -33,7 +33,7 @@ def diagnosed(running: System) -> str:
 
 
 def test_a_gateway_of_a_simulated_scene_says_so_without_a_router_and_doctor_does_with_one(running: System) -> None:
-    gateway = running.start("sensor_gateway")
+    gateway = running.start("scene_simulator")
     wait_for_line(gateway, "sensor_gateway: sensor kinect0: simulated scene, no camera")
     running.start_router()
     with running.client() as client:

@@ -10,12 +10,10 @@ from functools import cache
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array, Mask
 from marker_tracker.detection.families import Cells
 from marker_tracker.detection.images import Pixels
-
-Array = NDArray[np.float64]
 
 SAMPLES_PER_CELL = 3
 """Along each side: the least that show where within a cell an edge lies."""
@@ -63,7 +61,7 @@ class Alignment:
     corners_px: Array
     covered: Array
     photometric: Array
-    converged: NDArray[np.bool_]
+    converged: Mask
 
 
 def align(pixels: Pixels, corners_px: Array, patterns: Cells, photometric: Array | None = None) -> Alignment:
@@ -144,7 +142,7 @@ def _initial_photometric(pixels: Pixels, corners_px: Array, white: Array) -> Arr
     return np.stack([blur, dark, np.maximum(light - dark, MIN_CONTRAST)], axis=1)
 
 
-def _medians(levels: Array, chosen: NDArray[np.bool_]) -> Array:
+def _medians(levels: Array, chosen: Mask) -> Array:
     """Return the median (n,) of each row's chosen levels (n, m); every row has at least one."""
     ordered, count = np.sort(np.where(chosen, levels, np.inf), axis=1), np.count_nonzero(chosen, axis=1)
     rows = np.arange(len(ordered))

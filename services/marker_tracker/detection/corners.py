@@ -6,11 +6,9 @@ gradients around each corner (OpenCV's `cornerSubPix`): lens and paper bend long
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array
 from marker_tracker.detection.images import Pixels
-
-Array = NDArray[np.float64]
 
 NEXT = [1, 2, 3, 0]
 """Index of the corner that ends the side which begins at a corner."""

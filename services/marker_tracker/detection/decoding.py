@@ -7,12 +7,11 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Array, Indices, Mask
 from marker_tracker.detection.alignment import Alignment, align, sample_squares
 from marker_tracker.detection.families import Cells, Family
 from marker_tracker.detection.images import Pixels
 from marker_tracker.detection.marker import AlignmentStart, Marker
-
-Array = NDArray[np.float64]
 
 SAMPLES_PER_CELL = 3
 """Along each side of a cell; a cell is read by their mean."""
@@ -58,7 +57,7 @@ class _Readings:
     `index` (n,) is of the square, `corners_px` (n, 4, 2) begin at the marker's own top left; `wrong` counts cells.
     """
 
-    index: NDArray[np.intp]
+    index: Indices
     corners_px: Array
     ids: list[int]
     wrong: list[int]
@@ -129,7 +128,7 @@ def _sharpened(levels: Array) -> Array:
 
 def _matched(
     levels: Array, threshold: float, family: Family, tolerated: int
-) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.int64], NDArray[np.bool_]]:
+) -> tuple[Indices, Indices, NDArray[np.int64], Mask]:
     """Find the marker nearest to each reading of levels, as of `_sampled_cells`, with its border.
 
     Returns:
@@ -181,7 +180,7 @@ def _read_in_place(pixels: Pixels, markers: Sequence[Marker], family: Family) ->
     wrong = (_binarised(levels) != patterns).sum(axis=(1, 2))
     shows_code = (wrong <= family.corrected) & (_correlation(levels, patterns) >= MIN_CORRELATION)
     (index,) = np.nonzero(shows_code & found.converged & (found.covered <= MAX_COVERED_CLEAR))
-    return [_moved(*before[at], found, at, int(wrong[at])) for at in index.tolist()]
+    return [_moved(before[at][0], before[at][1], found, at, int(wrong[at])) for at in index.tolist()]
 
 
 def _moved(marker: Marker, start: AlignmentStart, found: Alignment, at: int, wrong: int) -> Marker:

@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Array
 from actum.node import SECOND_NS
 from marker_tracker.detection.corners import refine
 from marker_tracker.detection.decoding import Candidates, decode, read_in_place
@@ -13,8 +14,6 @@ from marker_tracker.detection.families import family
 from marker_tracker.detection.images import Pixels
 from marker_tracker.detection.marker import Marker
 from marker_tracker.detection.quads import QuadDetector, inner_squares, rimmed_squares, within
-
-Array = NDArray[np.float64]
 
 SEARCH_INTERVAL_NS = SECOND_NS // 3
 """Nanoseconds between whole searches with nothing missing: unknown markers and second copies are to be told, too."""

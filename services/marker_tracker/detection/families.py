@@ -9,7 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-Cells = NDArray[np.bool_]
+from actum.arrays import Indices, Mask
+
+Cells = Mask
 """The cells of markers, row by row, True where white."""
 Codes = NDArray[np.uint64]
 """Cells without the border, packed into one number: the first cell is the lowest bit."""
@@ -38,8 +40,8 @@ class Matches:
         wrong: (n,) cells that differ, the border not counted.
     """
 
-    ids: NDArray[np.intp]
-    turns: NDArray[np.intp]
+    ids: Indices
+    turns: Indices
     wrong: NDArray[np.int64]
 
 

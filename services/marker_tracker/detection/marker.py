@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from actum.arrays import Array
+
 Key = tuple[str, int]
 """Which marker: its family, by OpenCV's name, and its id there."""
 
@@ -37,7 +37,7 @@ class Marker:
         corners_px: (4, 2), clockwise from the marker's own top left.
         wrong: cells that were misread, the border's included.
         covered: the share of a small marker, 0 to 1, whose grey levels are not of its pattern.
-        initial_px: (4, 2) from which the corners were refined, in any turn.
+        initial_px: (4, 2) from which the corners were refined, clockwise from any of them.
         start: where alignment begins in the next image, if the marker was aligned and is clear.
         hidden: it is wholly covered; its corners moved with what covers it.
     """

@@ -8,11 +8,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Array, Mask
 from marker_tracker.detection.alignment import sample_squares
 from marker_tracker.detection.families import Family
 from marker_tracker.detection.images import Pixels
-
-Array = NDArray[np.float64]
 
 SMALL_FAMILY = 50
 """Markers up to which a family is searched as a whole, at little cost, so that unknown markers are found and told."""
@@ -51,7 +50,7 @@ class Quads:
 
     decoded: Array
     family: NDArray[np.int_]
-    new: NDArray[np.bool_]
+    new: Mask
     rejected: Array
 
 
@@ -71,7 +70,7 @@ class QuadDetector:
         return Quads(decoded, family, ~within(decoded, known), _array(rejected))
 
 
-def within(squares: Array, others: Array) -> NDArray[np.bool_]:
+def within(squares: Array, others: Array) -> Mask:
     """Tell which squares (n, 4, 2) have their centre in one of the others (m, 4, 2)."""
     outlines = others.astype(np.float32)
     centres = squares.mean(axis=1)
@@ -140,7 +139,7 @@ def _inner_square(pixels: Pixels, corners_px: Array) -> Array | None:
     return square if cv2.contourArea(found, oriented=True) > 0 else square[::-1]
 
 
-def _has_black_rim(pixels: Pixels, corners_px: Array) -> NDArray[np.bool_]:
+def _has_black_rim(pixels: Pixels, corners_px: Array) -> Mask:
     """Tell which squares (n, 4, 2) are darker just inside than just outside, on at least three sides.
 
     Rough corners may miss a side of a small square by as much as the black border is wide.

@@ -3,18 +3,14 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Self
 
-import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from actum.node import SECOND_NS
 from marker_tracker.detection.images import Pixels
 from marker_tracker.detection.marker import Key, Marker
-from marker_tracker.occlusion.registration import Similarity, Template, blurred
-
-Array = NDArray[np.float64]
+from marker_tracker.occlusion.crop import Crop
+from marker_tracker.occlusion.registration import Similarity, Template
 
 RADIUS_SIDES = 0.8
 """Radius of what is tracked, in sides of the marker: a hand is somewhat larger than the marker it covers."""
@@ -48,10 +44,8 @@ LOG_SCALE_NOISE = 0.02
 """How far the logarithm of the scale may be from the expected one: what seems to be further off is hidden in part."""
 LOG_SCALE_PER_S2 = 5.0
 """How that grows with time, as an acceleration: arms reach that towards the camera."""
-SAME_PLACE_SIDES = 0.5
-"""Distance, in sides, within which another marker lies on a marker's place."""
-HALF_PX = 0.5 + 0.5j
-"""Pixels from a pixel's corner to its centre."""
+OVERLAP_SIDES = 0.5
+"""Distance of centres, in sides, below which another marker lies on a marker's place."""
 
 
 @dataclass(frozen=True)
@@ -128,9 +122,7 @@ class OccluderTracker:
 
 def _lies_under(last: LastDetection, visible: Sequence[Marker]) -> bool:
     """Tell whether another marker covers a marker's place: an object lies on it, and no hand."""
-    return any(
-        abs(complex(*each.centre_px) - last.centre_px) < SAME_PLACE_SIDES * last.marker.side_px for each in visible
-    )
+    return any(abs(complex(*each.centre_px) - last.centre_px) < OVERLAP_SIDES * last.marker.side_px for each in visible)
 
 
 def _tracked(stamp_ns: int, pixels: Pixels, last: LastDetection, occluder: Occluder | None) -> Occluder | None:
@@ -198,7 +190,7 @@ def _found(
 
 
 def _registered(
-    crop: "Crop", occluder: Occluder, start_px: complex, passed_ns: int, min_correlation: float
+    crop: Crop, occluder: Occluder, start_px: complex, passed_ns: int, min_correlation: float
 ) -> Similarity | None:
     """Register an occluder from a start in a crop; None where it does not correlate or has another scale."""
     start = Similarity(start_px, occluder.place.scale_rotation)
@@ -224,38 +216,3 @@ def _carried(marker: Marker, place: Similarity) -> Marker:
     corners = place.centre_px + place.scale_rotation * around
     corners_px = np.stack([corners.real, corners.imag], axis=1)
     return replace(marker, corners_px=corners_px, covered=1.0, hidden=True, start=None)
-
-
-@dataclass(frozen=True)
-class Crop:
-    """Part of an image.
-
-    Attributes:
-        levels: (height, width), blurred grey levels, scaled by `scale`.
-        origin_px: its top left pixel in the image.
-        scale: at most 1.
-    """
-
-    levels: Array
-    origin_px: complex
-    scale: float
-
-    @classmethod
-    def around(cls, pixels: Pixels, centre_px: complex, radius_px: float, scale: float) -> Self:
-        """Cut a square out of a grey image (height, width), as far as the image goes."""
-        left, top = max(round(centre_px.real - radius_px), 0), max(round(centre_px.imag - radius_px), 0)
-        right, bottom = max(round(centre_px.real + radius_px), 0) + 1, max(round(centre_px.imag + radius_px), 0) + 1
-        part = pixels[top:bottom, left:right]
-        if scale * min(part.shape) < 1:
-            part = part[:0, :0]
-        elif scale < 1:
-            part = np.asarray(cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), dtype=np.uint8)
-        return cls(blurred(part), complex(left, top), scale)
-
-    def from_image(self, point_px: complex) -> complex:
-        """Map a point of the image into the crop."""
-        return (point_px - self.origin_px + HALF_PX) * self.scale - HALF_PX
-
-    def to_image(self, point_px: complex) -> complex:
-        """Map a point of the crop into the image."""
-        return (point_px + HALF_PX) / self.scale - HALF_PX + self.origin_px

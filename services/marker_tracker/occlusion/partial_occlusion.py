@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from actum.node import SECOND_NS
 from marker_tracker.detection.alignment import align, align_by_similarity
@@ -16,7 +15,6 @@ from marker_tracker.detection.families import family
 from marker_tracker.detection.images import Pixels
 from marker_tracker.detection.marker import Key, Marker
 
-Array = NDArray[np.float64]
 Box = tuple[int, int, int, int]
 """Left, top, right and bottom in whole pixels, the last two exclusive."""
 

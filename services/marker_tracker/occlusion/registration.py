@@ -6,14 +6,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from marker_tracker.detection.images import Pixels
+from actum.arrays import Array
 
-Array = NDArray[np.float64]
 Points = NDArray[np.complex128]
 """Points of an image as x + i y, in pixels."""
 
-BLUR_PX = 0.8
-"""Standard deviation in pixels: takes the noise off slopes, and leaves what a hand shows."""
 MAX_ITERATIONS = 8
 """Gauss-Newton steps: starts may be as far off as the template's details are wide."""
 CONVERGED_PX = 0.02
@@ -103,13 +100,6 @@ class Template:
         one, other = levels - share @ levels, self._levels - share @ self._levels
         scale = float(np.sqrt((share @ one**2) * (share @ other**2)))
         return float(share @ (one * other)) / scale if scale > 0 else 0.0
-
-
-def blurred(pixels: Pixels) -> Array:
-    """Take the noise off grey levels (height, width)."""
-    if not pixels.size:
-        return np.zeros(pixels.shape)
-    return np.asarray(cv2.GaussianBlur(pixels.astype(np.float32), (0, 0), BLUR_PX), dtype=np.float64)
 
 
 def _sampled(image: Array, points_px: Points) -> Array:

@@ -3,13 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from actum import geometry
+from actum.arrays import Array
+from actum.limits import MAX_COORDINATE_M
 from actum.messages import Image
 from marker_tracker.detection.images import UnusableImageError
-
-Array = NDArray[np.float64]
 
 LARGEST_FOCAL_PX = 1e5
 """Pixels: a hundred times the focal length of usual cameras; a larger one is a mistake of units."""
@@ -21,8 +20,6 @@ ASPECT_TOLERANCE = 0.01
 """Relative: sizes are whole pixels, so that scaled ones keep their aspect only nearly."""
 DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
 """Numbers of distortion coefficients that OpenCV takes."""
-FURTHEST_M = 100.0
-"""Metres between the colour camera and the skeleton's: more is a mistake of units."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +50,7 @@ def camera_model(image: Image, calibrated_size_px: tuple[int, int] | None = None
     if not np.array_equal(matrix[2], (0, 0, 1)):
         raise UnusableImageError("bad_calibration", f"the last row of K is {matrix[2].tolist()}, not [0, 0, 1]")
     skeleton_from_image = geometry.from_flat(image.skeleton_from_image)
-    if not geometry.is_rigid(skeleton_from_image, FURTHEST_M):
+    if not geometry.is_rigid(skeleton_from_image, MAX_COORDINATE_M):
         raise UnusableImageError("bad_calibration", "skeleton_from_image is no rigid transform")
     matrix = _matrix_for_size(matrix, (image.width, image.height), calibrated_size_px)
     return CameraModel(matrix, _distortion(image.distortion), skeleton_from_image)

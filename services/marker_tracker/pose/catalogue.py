@@ -6,13 +6,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from actum import geometry
-from actum.node import Tally
+from actum.arrays import Array
+from actum.node import Counters
 from marker_tracker.detection.marker import Key, Marker
-
-Array = NDArray[np.float64]
 
 SQUARE_FROM_MARKER = np.diag([1.0, -1.0, -1.0, 1.0])
 """Transform (4, 4). With y down a marker that faces the camera is close to the identity. With y up it is a half turn,
@@ -93,10 +91,10 @@ class MarkedObject:
 class MarkerAssignment:
     """Assigns the markers of each image to the catalogue's objects."""
 
-    def __init__(self, catalogue: Catalogue, tally: Tally) -> None:
-        """Count in the tally what is on no object or seen twice."""
+    def __init__(self, catalogue: Catalogue, counters: Counters) -> None:
+        """Assign to these objects; `counters` take in markers that are on none of them or are seen twice."""
         self._catalogue = catalogue
-        self._tally = tally
+        self._counters = counters
         self._last_px: dict[Key, Array] = {}
 
     def clear(self) -> None:
@@ -109,7 +107,8 @@ class MarkerAssignment:
         for marker in sorted(self._without_copies(markers), key=lambda each: -each.side_px):
             found = self._catalogue.find(*marker.key)
             if found is None:
-                self._tally.reject("unknown_marker", f"marker {marker.id} of {marker.family} is on none of the objects")
+                detail = f"marker {marker.id} of {marker.family} is on none of the objects"
+                self._counters.reject("unknown_marker", detail)
             else:
                 mounted.setdefault(found.object_id, []).append((marker, found))
         names = self._catalogue.names
@@ -123,7 +122,7 @@ class MarkerAssignment:
         kept: dict[Key, Marker] = {}
         for marker in sorted(markers, key=self._moved_px):
             if kept.setdefault(marker.key, marker) is not marker:
-                self._tally.reject("repeated_marker", f"marker {marker.id} of {marker.family} twice in one image")
+                self._counters.reject("repeated_marker", f"marker {marker.id} of {marker.family} twice in one image")
         self._last_px |= {key: marker.centre_px for key, marker in kept.items()}
         return list(kept.values())
 

@@ -3,12 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array
 from actum.geometry import angle_between_rad
 from marker_tracker.pose.poses import Pose
-
-Array = NDArray[np.float64]
 
 CORNER_NOISE_PX = 0.25
 """Standard deviation in pixels of a corner's coordinates."""

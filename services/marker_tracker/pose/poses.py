@@ -6,20 +6,18 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array
 from actum.geometry import angle_between_rad
-from actum.node import Tally
+from actum.limits import MAX_COORDINATE_M
+from actum.node import Counters
 from marker_tracker.detection.marker import Marker
 from marker_tracker.pose.camera_model import CameraModel
 from marker_tracker.pose.catalogue import MarkedObject, MountedMarker
 
-Array = NDArray[np.float64]
 Solution = tuple[Array, Array, float]
 """Of one marker: rotation vector (3, 1), translation (3, 1) in metres, root mean square reprojection error in px."""
 
-FURTHEST_M = 100.0
-"""Metres from the camera: no marker is legible so far off."""
 FULL_SIDE_PX = 24.0
 """Pixels: from this side on, four for each cell of a 4x4 marker with its border, size costs no confidence."""
 MAX_ERROR_PX = 4.0
@@ -82,18 +80,19 @@ class BadPoseError(ValueError):
     """Corners that no marker in front of the camera can have."""
 
 
-def measure(objects: Sequence[MarkedObject], camera: CameraModel, tally: Tally) -> list[Measurement]:
-    """Measure the poses of an image's objects; count in the tally where no pose is possible, or markers disagree."""
+def measure(objects: Sequence[MarkedObject], camera: CameraModel, counters: Counters) -> list[Measurement]:
+    """Measure the poses of an image's objects; count those without a possible pose, or with markers that disagree."""
     measurements = []
     for each in objects:
         try:
             poses = solve(each.markers, camera)
             if len(each.markers) > 1 and poses[0].error_px > MAX_ERROR_PX:
                 ids = ", ".join(str(marker.id) for marker, _ in each.markers)
-                tally.reject("markers_disagree", f"markers {ids} of {each.name} are not where the scene file puts them")
+                detail = f"markers {ids} of {each.name} are not where the scene file puts them"
+                counters.reject("markers_disagree", detail)
                 poses = solve(each.markers[:1], camera)
         except BadPoseError as error:
-            tally.reject("bad_pose", str(error))
+            counters.reject("bad_pose", str(error))
         else:
             measurements.append(_measurement(each, poses, camera))
     return measurements
@@ -106,7 +105,7 @@ def solve(markers: Sequence[tuple[Marker, MountedMarker]], camera: CameraModel) 
     error over the corners of all of them (Gauss-Newton), unless that makes it worse.
 
     Raises:
-        BadPoseError: no solution is finite, in front of the camera and nearer than `FURTHEST_M`.
+        BadPoseError: no solution is finite, in front of the camera and nearer than `MAX_COORDINATE_M`.
     """
     corners_px = np.concatenate([marker.corners_px for marker, _ in markers])
     points_m = np.concatenate([mounted.corners_in_object_m for _, mounted in markers])
@@ -217,4 +216,4 @@ def _is_possible(error_px: float, least_px: float) -> bool:
 
 def _is_usable(pose: Pose) -> bool:
     finite = math.isfinite(pose.error_px) and math.isfinite(float(pose.camera_from_object.sum()))
-    return finite and 0 < pose.camera_from_object[2, 3] < FURTHEST_M
+    return finite and 0 < pose.camera_from_object[2, 3] < MAX_COORDINATE_M

@@ -9,11 +9,12 @@ import numpy as np
 from actum import __version__
 from actum.codec import schema_name
 from actum.messages import MESSAGES, Info, Message, Status
-from actum.node import Tally
+from actum.node import Counters
 from actum.settings import ServiceSettings
 from actum.skeletons import JOINTS
 
 LATENCIES = 1000
+"""Latencies kept for the percentiles: half a minute of one stream."""
 MOST_KEYS = 256
 """Keys of agents who left long ago make room for new ones."""
 MOST_ORIGINS = 16
@@ -23,9 +24,9 @@ MOST_ORIGINS = 16
 class Meter:
     """Counts what comes in, per key, and how long handling takes; thread-safe under the runtime's lock."""
 
-    def __init__(self, name: str, tally: Tally, settings: ServiceSettings) -> None:
+    def __init__(self, name: str, counters: Counters, settings: ServiceSettings) -> None:
         self._name = name
-        self._tally = tally
+        self._counters = counters
         self._settings = settings
         self._started_ns = time.monotonic_ns()
         self._reported_ns = self._started_ns
@@ -59,7 +60,7 @@ class Meter:
 
     def rejected(self, kind: str, detail: str) -> None:
         """Count a payload that is no message."""
-        self._tally.reject(kind, detail)
+        self._counters.reject(kind, detail)
 
     def took(self, milliseconds: float) -> None:
         """Note how long one message took from arrival to the last put."""
@@ -80,10 +81,10 @@ class Meter:
             rates=rates,
             handled=dict(self._handled),
             drops={key: n for key, n in self._drops.items() if n},
-            rejects=dict(self._tally.rejects),
-            last_error=self._tally.last_error,
+            rejects=dict(self._counters.rejects),
+            last_error=self._counters.last_error,
             latency_ms=_percentiles(list(self._latencies_ms)),
-            state=self._tally.state,
+            state=self._counters.state,
         )
 
     def info(self) -> Info:
@@ -96,10 +97,10 @@ class Meter:
             version=__version__,
             schemas=[schema_name(message) for message in MESSAGES],
             joint_names=list(JOINTS),
-            model=self._tally.details.get("model"),
-            calibration=self._tally.details.get("calibration"),
+            model=self._counters.details.get("model"),
+            calibration=self._counters.details.get("calibration"),
             host=socket.gethostname(),
-            source=self._tally.details.get("source"),
+            source=self._counters.details.get("source"),
         )
 
 

@@ -17,13 +17,13 @@ from actum import keys
 from actum.codec import DecodeError, decode, encode
 from actum.command_line import from_command_line
 from actum.messages import Message
-from actum.node import TICK_NS, Node, Source, Tally, Tick
+from actum.node import TICK_NS, Counters, Node, Source, Tick
 from actum.runtime.inbox import Inbox
 from actum.runtime.meter import Meter
 from actum.runtime.outbox import Outbox
 from actum.runtime.parent import end_with_parent
 from actum.runtime.place import RETURNING_S, SETTLING_S, Place, PlaceTakenError
-from actum.runtime.reporting import Reporter, Told
+from actum.runtime.reporting import Reporter, StateLog
 from actum.runtime.session import RETRY_S, client_config, open_session
 from actum.runtime.waiting import Pace, stop_on_signals, wait_for
 from actum.settings import ServiceSettings, complaint
@@ -87,20 +87,20 @@ def _live(service: "Service", settings: ServiceSettings) -> None:
 class Service(ABC):
     """What nodes and sources share: the way in and out, the place, the report and the description."""
 
-    def __init__(self, name: str, tally: Tally, settings: ServiceSettings) -> None:
+    def __init__(self, name: str, counters: Counters, settings: ServiceSettings) -> None:
         self.name = name
         self.failed = False
         self._settings = settings
-        self._tally = tally
-        self._told = Told(tally)
-        self._meter = Meter(name, tally, settings)
+        self._counters = counters
+        self._state_log = StateLog(counters)
+        self._meter = Meter(name, counters, settings)
         self._lock = threading.Lock()
 
     def introduce(self) -> None:
         """Say what is read, and what is wrong already."""
-        if "source" in self._tally.details:
-            log.info("sensor %s: %s", self._settings.sensor, self._tally.details["source"])
-        self._told.tell()
+        if "source" in self._counters.details:
+            log.info("sensor %s: %s", self._settings.sensor, self._counters.details["source"])
+        self._state_log.log_change()
 
     def serve(self, session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
         """Work until stopped, once no other does the same.
@@ -113,7 +113,7 @@ class Service(ABC):
             return
         info = keys.key(keys.INFO, self._settings.sensor, self.name)
         queryable = session.declare_queryable(info, self._answer_info)
-        reporter = Reporter(self._meter, self._told, self._settings, self._lock)
+        reporter = Reporter(self._meter, self._state_log, self._settings, self._lock)
         reporting = threading.Thread(target=reporter.report, args=(session, place, stop, self._healthy), daemon=True)
         reporting.start()
         try:
@@ -142,7 +142,7 @@ class NodeService(Service):
     """A node: messages in, messages out, ticks between."""
 
     def __init__(self, node: Node, settings: ServiceSettings) -> None:
-        super().__init__(node.name, node.tally, settings)
+        super().__init__(node.name, node.counters, settings)
         self._node = node
         self._inbox: Inbox | None = None
 
@@ -194,7 +194,7 @@ class SourceService(Service):
     """A source: each frame is put when its stamp is due."""
 
     def __init__(self, source: Source, settings: ServiceSettings) -> None:
-        super().__init__(source.name, source.tally, settings)
+        super().__init__(source.name, source.counters, settings)
         self._source = source
 
     def _work(self, _session: zenoh.Session, outbox: Outbox, stop: threading.Event, _vacant_s: float) -> None:
@@ -209,6 +209,6 @@ class SourceService(Service):
             if stop.is_set():
                 return
         with self._lock:
-            self._source.tally.state = "source ended"
-            self._told.tell()
+            self._source.counters.state = "source ended"
+            self._state_log.log_change()
         wait_for(stop)

@@ -1,0 +1,128 @@
+"""Printed patterns: single markers and the ChArUco board, by their measures."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import cv2
+import numpy as np
+
+from actum.arrays import Array, Mask
+
+FEWEST_SQUARES = 3  # each way: fewer have no inner corners to speak of
+MOST_SQUARES = 50  # each way: more are too small to be seen
+LARGEST_SQUARE_M = 1.0  # a larger number is one in mm, given by mistake
+
+
+class PatternError(ValueError):
+    """A marker or a board that cannot be: what is wrong, and what can be."""
+
+
+def families() -> list[str]:
+    """List the marker families by OpenCV's names."""
+    return sorted(entry for entry in dir(cv2.aruco) if entry.startswith("DICT_"))
+
+
+def canonical(family: str) -> str:
+    """Turn a family's name, with or without DICT_ and in any case, into OpenCV's.
+
+    Raises:
+        PatternError: there is none of that name.
+    """
+    if family in families():
+        return family
+    sought = "DICT_" + family.upper().removeprefix("DICT_")
+    alike = [name for name in families() if name.upper() == sought]
+    if not alike:
+        raise PatternError(f"{family!r} is no marker family: use one of {', '.join(families())}")
+    return alike[-1]
+
+
+def dictionary_of(family: str) -> Any:
+    """Return OpenCV's dictionary of a family.
+
+    Raises:
+        PatternError: there is none of that name.
+    """
+    return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, canonical(family)))
+
+
+def black_cells(family: str, marker_id: int) -> Mask:
+    """Tell which cells (n, n) of a marker are black, its black border included, row by row from its top left.
+
+    Raises:
+        PatternError: the family has no such id.
+    """
+    dictionary = dictionary_of(family)
+    count = len(dictionary.bytesList)
+    if not 0 <= marker_id < count:
+        raise PatternError(f"{family} has no id {marker_id}: use 0 to {count - 1}")
+    side = dictionary.markerSize + 2
+    black: Mask = np.asarray(cv2.aruco.generateImageMarker(dictionary, marker_id, side)) == 0
+    return black
+
+
+@dataclass(frozen=True)
+class Board:
+    """A ChArUco board: `columns` x `rows` squares, a marker in each white one.
+
+    Its frame has the origin at the top left outer corner, x to the right, y down, z into the print.
+
+    Raises:
+        PatternError: the measures make no board.
+    """
+
+    columns: int = 7
+    rows: int = 5
+    square_m: float = 0.035
+    marker_m: float = 0.026
+    family: str = "DICT_5X5_100"
+
+    def __post_init__(self) -> None:
+        if not all(FEWEST_SQUARES <= count <= MOST_SQUARES for count in (self.columns, self.rows)):
+            raise PatternError(f"a board of {self.columns}x{self.rows} squares: use 3 to 50 each way")
+        if not 0 < self.marker_m < self.square_m <= LARGEST_SQUARE_M:
+            raise PatternError(
+                f"markers of {self.marker_m * 1000:g} mm in squares of {self.square_m * 1000:g} mm: a marker is "
+                "smaller than its square, and a square at most 1 m"
+            )
+        if (needed := self.columns * self.rows // 2) > (there := len(dictionary_of(self.family).bytesList)):
+            raise PatternError(f"the board needs {needed} markers, {self.family} has {there}")
+
+    @property
+    def width_m(self) -> float:
+        """Width of all squares."""
+        return self.columns * self.square_m
+
+    @property
+    def height_m(self) -> float:
+        """Height of all squares."""
+        return self.rows * self.square_m
+
+    @property
+    def margin_m(self) -> float:
+        """White between a marker and the edge of its square."""
+        return (self.square_m - self.marker_m) / 2
+
+    @cached_property
+    def corners_m(self) -> Array:
+        """Inner corners by id (n, 3), m, z = 0."""
+        return np.asarray(self.opencv.getChessboardCorners(), dtype=np.float64)
+
+    @cached_property
+    def outline_m(self) -> Array:
+        """The four outer corners (4, 2), m, clockwise from the origin."""
+        return np.array([[0, 0], [self.width_m, 0], [self.width_m, self.height_m], [0, self.height_m]])
+
+    @cached_property
+    def opencv(self) -> Any:
+        """The same as OpenCV's board."""
+        size = (self.columns, self.rows)
+        return cv2.aruco.CharucoBoard(size, self.square_m, self.marker_m, dictionary_of(self.family))
+
+    def __str__(self) -> str:
+        """Say it as the options of the command do."""
+        return (
+            f"{self.columns}x{self.rows} squares of {self.square_m * 1000:g} mm, "
+            f"markers {self.family} of {self.marker_m * 1000:g} mm"
+        )

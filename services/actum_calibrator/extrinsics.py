@@ -1,0 +1,181 @@
+"""Where the camera that sees people sees the one that sees markers, from pairs of pictures of one board."""
+
+import datetime
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from actum import geometry
+from actum.arrays import Array
+from actum.calibration import Calibration, ExtrinsicsQuality
+from actum_calibrator.board_views import View
+from actum_calibrator.bundle_adjustment import BundleAdjuster, BundleAdjustment, CameraModel, compose, invert, rms_px
+from actum_calibrator.pairs import Pair
+from actum_calibrator.view_set import PoorSetError
+
+FEWEST_PAIRS = 3  # each pair alone has two candidate transforms; the third pair decides where two disagree
+ROBUST_SCALE_OF_NOISE = 2.0  # residuals beyond twice the noise of single cameras are taken for a moved board or camera
+MISMATCH = 3.0  # times the RMS error of its own calibration: the calibration is another camera's
+LEAST_MISMATCH_OF_DIAGONAL = 2.5e-4  # 0.2 px in 640x480: so little is the noise of corners
+OUTLIER = 3.0  # times the noise of a pair's single cameras: a camera or the board has moved
+LEAST_OUTLIER_OF_DIAGONAL = 5e-4  # 0.4 px in 640x480: so little is the noise of two calibrations
+MOST_POSITION_DEVIATION_MM = 5.0  # small beside the distances of objects from each other
+MOST_ROTATION_DEVIATION_DEG = 0.5  # 17 mm at a distance of 2 m
+
+
+@dataclass(frozen=True)
+class Extrinsics:
+    """The transform (4, 4; m) from the marker camera's frame to the people camera's, and how well the pairs fit it."""
+
+    skeleton_from_image: Array
+    rms_px: float
+    rms_of_pairs_px: list[float]
+    position_deviation_mm: float
+    rotation_deviation_deg: float
+
+
+def estimate_extrinsics(pairs: Sequence[Pair], markers: Calibration, people: Calibration) -> Extrinsics:
+    """Fit one transform to all pairs, minimising the reprojection error in both cameras.
+
+    Raises:
+        PoorSetError: too few pairs, pairs that contradict each other, or that do not determine the transform.
+        CalibrationError: a picture has another size than its camera's calibration.
+    """
+    if len(pairs) < FEWEST_PAIRS:
+        raise PoorSetError(
+            [f"too few pairs: {len(pairs)} usable, at least {FEWEST_PAIRS} are needed; 6 to 10 are good: take more"]
+        )
+    for pair in pairs:
+        markers.check_size(*pair.markers.size, pair.markers.name)
+        people.check_size(*pair.people.size, pair.people.name)
+    cameras = CameraModel.of(markers), CameraModel.of(people)
+    markers_noise_px = [_noise_px(pair.markers, cameras[0]) for pair in pairs]
+    people_noise_px = [_noise_px(pair.people, cameras[1]) for pair in pairs]
+    if reasons := [*_mismatch("markers", markers_noise_px, markers), *_mismatch("people", people_noise_px, people)]:
+        raise PoorSetError(reasons)
+    both = zip(markers_noise_px, people_noise_px, strict=True)
+    noise_px = [math.sqrt((one**2 + other**2) / 2) for one, other in both]
+    found = _adjusted(pairs, *cameras, float(np.median(noise_px)))
+    if reasons := _contradictions(found, pairs, noise_px) or _undetermined(found):
+        raise PoorSetError(reasons)
+    return _extrinsics(found)
+
+
+def _noise_px(view: View, camera: CameraModel) -> float:
+    """Return the RMS reprojection error where one camera alone may see the board anywhere."""
+    candidates = camera.pose_candidates(view)
+    return min((rms_px(camera.reprojection_errors_px(view, pose)) for pose in candidates), default=math.inf)
+
+
+def _mismatch(what: str, noise_px: Sequence[float], calibration: Calibration) -> list[str]:
+    """Say that a calibration is not the camera's: corners fit it worse than those that it was made from."""
+    least_px = LEAST_MISMATCH_OF_DIAGONAL * math.hypot(*calibration.image_size)
+    made_px = calibration.intrinsics.rms_px if calibration.intrinsics else 2 * least_px / MISMATCH
+    limit_px, typical_px = max(MISMATCH * made_px, least_px), float(np.median(noise_px))
+    if typical_px <= limit_px:
+        return []
+    return [
+        f"the calibration of the camera that sees {what} does not fit its pictures: {typical_px:.2f} px, at most "
+        f"{limit_px:.2f}: is it this camera's, at this zoom and focus, and is the board that of the options?"
+    ]
+
+
+def _adjusted(pairs: Sequence[Pair], markers: CameraModel, people: CameraModel, noise_px: float) -> BundleAdjustment:
+    """Start from the transform that single pairs propose and that suits most pairs, then adjust to all."""
+    in_markers = [markers.pose_candidates(pair.markers) for pair in pairs]
+    in_people = [people.pose_candidates(pair.people) for pair in pairs]
+    proposals = [
+        compose(people_pose, invert(markers_pose))
+        for markers_poses, people_poses in zip(in_markers, in_people, strict=True)
+        for markers_pose in markers_poses
+        for people_pose in people_poses
+    ]
+
+    def likeliest_board(people_from_markers: Array, i: int) -> tuple[float, Array]:
+        """Return the pose of a pair's board in the marker camera, of all candidates, with the least error in both."""
+        from_people = [compose(invert(people_from_markers), pose) for pose in in_people[i]]
+        rated = [
+            (_error_px(people_from_markers, pose, pairs[i], markers, people), pose)
+            for pose in [*in_markers[i], *from_people]
+        ]
+        return min(rated, key=lambda one: one[0])
+
+    errors_px = [np.median([likeliest_board(proposal, i)[0] for i in range(len(pairs))]) for proposal in proposals]
+    start = proposals[int(np.argmin(errors_px))]
+    adjuster = BundleAdjuster(markers, people, pairs, ROBUST_SCALE_OF_NOISE * noise_px)
+    return adjuster.adjust(start, [likeliest_board(start, i)[1] for i in range(len(pairs))])
+
+
+def _error_px(
+    people_from_markers: Array, markers_from_board: Array, pair: Pair, markers: CameraModel, people: CameraModel
+) -> float:
+    """Return the RMS reprojection error of a pair in both images."""
+    in_markers = markers.reprojection_errors_px(pair.markers, markers_from_board)
+    in_people = people.reprojection_errors_px(pair.people, compose(people_from_markers, markers_from_board))
+    return rms_px(np.vstack([in_markers, in_people]))
+
+
+def _contradictions(found: BundleAdjustment, pairs: Sequence[Pair], noise_px: Sequence[float]) -> list[str]:
+    """Name the pairs that the transform of the others does not suit."""
+    views: list[View] = [view for pair in pairs for view in (pair.markers, pair.people)]
+    least_px = LEAST_OUTLIER_OF_DIAGONAL * max(view.diagonal_px for view in views)
+    limits_px = [max(OUTLIER * noise, least_px) for noise in noise_px]
+    rated = zip(pairs, found.rms_px, limits_px, strict=True)
+    outliers = [f"{pair.name} ({error:.1f} px, at most {limit:.1f})" for pair, error, limit in rated if error > limit]
+    if 2 * len(outliers) > len(pairs):
+        return [
+            f"the pairs fit no transform: {len(outliers)} of {len(pairs)} contradict each other, RMS "
+            f"{_rms_px(found):.2f} px: are the two calibrations these cameras', at this size, zoom and focus, and did "
+            f"nothing move between the two pictures of a pair? {', '.join(outliers)}"
+        ]
+    if outliers:
+        return [
+            f"{len(outliers)} of {len(pairs)} pairs contradict the others: {', '.join(outliers)}: a camera moved, or "
+            "the board moved between the two pictures. Leave these out; if a camera moved for good, take all pairs anew"
+        ]
+    return []
+
+
+def _undetermined(found: BundleAdjustment) -> list[str]:
+    position_mm, rotation_deg = _deviations(found)
+    if position_mm <= MOST_POSITION_DEVIATION_MM and rotation_deg <= MOST_ROTATION_DEVIATION_DEG:
+        return []
+    return [
+        f"not determined: standard deviation {position_mm:.1f} mm and {rotation_deg:.2f} deg, at most "
+        f"{MOST_POSITION_DEVIATION_MM:g} mm and {MOST_ROTATION_DEVIATION_DEG:g} deg: show the board nearer, tilted, "
+        "and at different places in both images"
+    ]
+
+
+def _extrinsics(found: BundleAdjustment) -> Extrinsics:
+    """Write the transform as a matrix (4, 4), with its quality."""
+    transform = np.eye(4)
+    transform[:3, :3], _ = cv2.Rodrigues(found.people_from_markers[:3])
+    transform[:3, 3] = found.people_from_markers[3:]
+    return Extrinsics(transform, _rms_px(found), found.rms_px, *_deviations(found))
+
+
+def _deviations(found: BundleAdjustment) -> tuple[float, float]:
+    """Return the standard deviations of the position (mm) and of the rotation (deg), over all three axes."""
+    variances = np.diag(found.covariance)
+    return 1000 * math.sqrt(float(variances[3:].sum())), math.degrees(math.sqrt(float(variances[:3].sum())))
+
+
+def _rms_px(found: BundleAdjustment) -> float:
+    return float(np.sqrt(np.mean(np.square(found.rms_px))))
+
+
+def with_extrinsics(markers: Calibration, found: Extrinsics, date: datetime.date) -> Calibration:
+    """Return the marker camera's calibration with the transform in it."""
+    quality = ExtrinsicsQuality(
+        date=date,
+        pairs=len(found.rms_of_pairs_px),
+        rms_px=round(found.rms_px, 4),
+        position_standard_deviation_mm=round(found.position_deviation_mm, 3),
+        rotation_standard_deviation_deg=round(found.rotation_deviation_deg, 4),
+    )
+    numbers = [round(value, 9) for value in geometry.flat(found.skeleton_from_image)]
+    return markers.model_copy(update={"skeleton_from_image": numbers, "extrinsics": quality})

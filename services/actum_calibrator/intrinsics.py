@@ -1,0 +1,194 @@
+"""One camera's intrinsics from views of the board (Zhang 2000), and what speaks against what was found."""
+
+import datetime
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from actum.arrays import Array, Mask
+from actum.calibration import Calibration, IntrinsicsQuality
+from actum_calibrator.board_deformation import FLAT, Deformation, deformed_corners_m, estimate_deformation
+from actum_calibrator.board_views import View
+from actum_calibrator.view_set import PoorSetError, covered_cells, nominal_tilts_deg, shortcomings, tilt_deg, untilted
+
+MOST_FOCAL_DEVIATION = 0.005  # standard deviation of the focal length in parts of it: 10 mm at 2 m
+MOST_RMS_OF_DIAGONAL = 1e-3  # 0.8 px in 640x480; sharp views of a flat board have a quarter of it
+SIGNIFICANT_DEVIATIONS = 4.0  # standard deviations by which a focal length differs for certain
+MOST_BEND_OF_DIAGONAL = 0.01  # of the board's diagonal: beyond it a quadratic surface no longer describes the bend
+CAMERA_UNKNOWNS = 9  # fx, fy, cx, cy, k1, k2, p1, p2, k3
+POSE_UNKNOWNS = 6  # of each view: a rotation and a translation
+
+
+@dataclass(frozen=True)
+class Intrinsics:
+    """A camera found from views.
+
+    Attributes:
+        size: the image's width and height.
+        matrix: K (3, 3).
+        distortion: k1, k2, p1, p2, k3.
+        rms_px: the root mean square reprojection error over all views.
+        deviations_px: the standard deviations of fx, fy, cx and cy (4,).
+        residuals_px: each view's corners as found minus as projected (n, 2).
+        tilts_deg: each view's angle between the board and the image plane.
+        covered: the cells of the image in which the board has been (rows, columns).
+        bend_mm: how far the board is from flat, from its lowest to its highest corner; it is allowed for.
+    """
+
+    size: tuple[int, int]
+    matrix: Array
+    distortion: Array
+    rms_px: float
+    deviations_px: Array
+    residuals_px: list[Array]
+    tilts_deg: list[float]
+    covered: Mask
+    bend_mm: float = 0.0
+
+    @property
+    def coverage(self) -> float:
+        """Share of the image in which the board has been."""
+        return float(self.covered.mean())
+
+    def rms_of_views_px(self) -> list[float]:
+        """Return each view's root mean square reprojection error."""
+        return [rms(residuals) for residuals in self.residuals_px]
+
+
+def rms(residuals_px: Array) -> float:
+    """Return the root mean square length of residuals (n, 2)."""
+    return math.sqrt(float((residuals_px**2).sum(axis=1).mean()))
+
+
+def estimate_intrinsics(views: Sequence[View]) -> Intrinsics:
+    """Calibrate one camera (Zhang 2000), allowing for the board's deformation where the views tell one.
+
+    Raises:
+        PoorSetError: the views do not determine it.
+    """
+    if reasons := shortcomings(views):
+        raise PoorSetError([*reasons, *untilted(nominal_tilts_deg(views))])
+    found = _calibrated(views)
+    if reasons := [*untilted(found.tilts_deg), *_ill_fitting(found, views)] or _contradiction(found, views):
+        raise PoorSetError(reasons)
+    found = _with_deformation(found, views)
+    if reasons := _bent(found, views) or _undetermined(found):
+        raise PoorSetError(reasons)
+    return found
+
+
+def _with_deformation(flat: Intrinsics, views: Sequence[View]) -> Intrinsics:
+    """Calibrate anew with the board's deformation, where the views tell one."""
+
+    def residuals_of(deformation: Deformation) -> Array:
+        return np.concatenate(_calibrated(views, deformation, flat).residuals_px).ravel()
+
+    deformation = estimate_deformation(residuals_of, CAMERA_UNKNOWNS + POSE_UNKNOWNS * len(views))
+    return flat if deformation is FLAT else _calibrated(views, deformation, flat)
+
+
+def _calibrated(views: Sequence[View], deformation: Deformation = FLAT, start: Intrinsics | None = None) -> Intrinsics:
+    """Calibrate with a board of some deformation (3,); only a flat one needs no camera to start from."""
+    board_m = deformed_corners_m(views[0].board, deformation)
+    objects = [board_m[view.ids].astype(np.float32) for view in views]
+    images = [view.corners_px.astype(np.float32) for view in views]
+    guess = (np.eye(3), np.zeros(5)) if start is None else (start.matrix.copy(), start.distortion.copy())
+    try:
+        error, matrix, distortion, rotations, positions, deviations, _, _ = cv2.calibrateCameraExtended(
+            objects, images, views[0].size, *guess, flags=0 if start is None else cv2.CALIB_USE_INTRINSIC_GUESS
+        )
+    except cv2.error:
+        raise PoorSetError(["no camera fits these views: tilt the board more, and differently in each view"]) from None
+    residuals = []
+    for view, rotation, position in zip(views, rotations, positions, strict=True):
+        projected, _ = cv2.projectPoints(board_m[view.ids], rotation, position, matrix, distortion)
+        residuals.append(view.corners_px - projected.reshape(-1, 2))
+    return Intrinsics(
+        size=views[0].size,
+        matrix=np.asarray(matrix),
+        distortion=np.ravel(distortion),
+        rms_px=float(error),
+        deviations_px=np.ravel(deviations)[:4].astype(np.float64),
+        residuals_px=residuals,
+        tilts_deg=[tilt_deg(np.asarray(rotation)) for rotation in rotations],
+        covered=covered_cells(views),
+        bend_mm=1000 * float(np.ptp(board_m[:, 2])),
+    )
+
+
+def _contradiction(found: Intrinsics, views: Sequence[View]) -> list[str]:
+    """Name the view that fits worst, where without it the focal length is another, or is determined only then."""
+    worst = int(np.argmax(found.rms_of_views_px()))
+    without = _calibrated([view for i, view in enumerate(views) if i != worst])
+    focal, others, deviations = np.diag(found.matrix)[:2], np.diag(without.matrix)[:2], without.deviations_px[:2]
+    limits = np.maximum(SIGNIFICANT_DEVIATIONS * deviations, MOST_FOCAL_DEVIATION * others)
+    only_without = _focal_deviation(without) <= MOST_FOCAL_DEVIATION < _focal_deviation(found)
+    if not only_without and (np.abs(focal - others) <= limits).all():
+        return []
+    return [
+        f"one picture contradicts the others: {views[worst].name}; with it the focal length is "
+        f"{focal[0]:.1f} x {focal[1]:.1f} px, without it {others[0]:.1f} x {others[1]:.1f}: was the zoom, the focus or "
+        "the board another? Leave it out or take it again"
+    ]
+
+
+def _focal_deviation(found: Intrinsics) -> float:
+    """Return the standard deviation of the focal length, in parts of it, along the axis in which it is worse."""
+    return max(
+        float(found.deviations_px[axis] / found.matrix[axis, axis]) if found.matrix[axis, axis] > 0 else math.inf
+        for axis in (0, 1)
+    )
+
+
+def _bent(found: Intrinsics, views: Sequence[View]) -> list[str]:
+    board = views[0].board
+    limit_mm = 1000 * MOST_BEND_OF_DIAGONAL * math.hypot(board.width_m, board.height_m)
+    if found.bend_mm <= limit_mm:
+        return []
+    return [
+        f"the board is bent by {found.bend_mm:.1f} mm, at most {limit_mm:.1f}: glue it to something flat and stiff, "
+        "and take the pictures anew"
+    ]
+
+
+def _undetermined(found: Intrinsics) -> list[str]:
+    share = _focal_deviation(found)
+    if share <= MOST_FOCAL_DEVIATION:
+        return []
+    return [
+        f"focal length not determined: its standard deviation is {share:.1%}, at most {MOST_FOCAL_DEVIATION:.1%}: "
+        "add views with the board tilted by about 30 deg, left, right, up and down, and near enough to fill half the "
+        "image"
+    ]
+
+
+def _ill_fitting(found: Intrinsics, views: Sequence[View]) -> list[str]:
+    limit_px = MOST_RMS_OF_DIAGONAL * views[0].diagonal_px
+    if found.rms_px <= limit_px:
+        return []
+    order = sorted(zip(found.rms_of_views_px(), (view.name for view in views), strict=True), reverse=True)
+    worst = ", ".join(f"{name} {error:.1f} px" for error, name in order[:3])
+    return [
+        f"corners do not fit: RMS {found.rms_px:.2f} px, at most {limit_px:.2f}; worst {worst}: is the print flat, "
+        "is it the board that the options name, was it held still, was zoom and focus fixed? Leave the worst out or "
+        "take them again"
+    ]
+
+
+def calibration_of(found: Intrinsics, date: datetime.date) -> Calibration:
+    """Write a camera down as services read it."""
+    return Calibration(
+        image_size=found.size,
+        K=[round(float(value), 4) for value in found.matrix.ravel()],
+        distortion=[round(float(value), 7) for value in found.distortion],
+        intrinsics=IntrinsicsQuality(
+            date=date,
+            views=len(found.residuals_px),
+            rms_px=round(found.rms_px, 4),
+            standard_deviations_px=[round(float(value), 3) for value in found.deviations_px],
+            coverage=round(found.coverage, 3),
+        ),
+    )

@@ -1,0 +1,1 @@
+"""Public data sets and video clips as recordings: `actum import`."""

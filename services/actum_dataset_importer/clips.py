@@ -1,0 +1,118 @@
+"""Video clips named with an action and a person, as labelled takes: the whole clip is one segment."""
+
+import re
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+
+from actum.node import Counters
+from actum_dataset_importer.takes import DatasetError, Take, segment_marks
+from sensor_gateway.devices.video import SUFFIXES, VideoError, pictures_of
+from sensor_gateway.optics import Optics
+from sensor_gateway.people.pose_estimator import Estimator
+from sensor_gateway.perceiver import Perceiver
+
+DEFAULT_PATTERN = r"(?P<action>[^_]+)_(?P<person>[^_]+)(_.*)?"
+"""`wave_anna.mp4`, `wave_anna_2.mp4`: the action, the person, anything."""
+
+NOT_IN_NAMES = re.compile(r"[^\w.-]+")
+"""What not every file system takes in a name."""
+
+
+@dataclass(frozen=True)
+class Naming:
+    """How a clip's file name, without its ending, tells the action and the person.
+
+    Attributes:
+        pattern: matches the whole name; has a group `action`, and may have one `person`.
+        actions: other names for what the group `action` matches.
+    """
+
+    pattern: re.Pattern[str]
+    actions: Mapping[str, str]
+
+    @classmethod
+    def of(cls, pattern: str, names: str) -> "Naming":
+        """Parse the command line's regular expression, and names such as `1=wave,2=drink`.
+
+        Raises:
+            DatasetError: either is not of that form.
+        """
+        try:
+            compiled = re.compile(pattern)
+        except re.error as error:
+            raise DatasetError(f"--pattern {pattern!r} is no regular expression: {error}") from None
+        if "action" not in compiled.groupindex:
+            raise DatasetError(f"--pattern {pattern!r} has no group (?P<action>…)")
+        pairs = [pair.partition("=") for pair in names.split(",") if pair]
+        if not all(key.strip() and name.strip() for key, _, name in pairs):
+            raise DatasetError(f"--names {names!r} is not like 1=wave,2=drink")
+        return cls(compiled, {key.strip(): name.strip() for key, _, name in pairs})
+
+    def read(self, path: Path) -> tuple[str, str]:
+        """Return a clip's action and person ("" where the name does not tell).
+
+        Raises:
+            DatasetError: the name does not match.
+        """
+        match = self.pattern.fullmatch(path.stem)
+        action = "" if match is None else (match["action"] or "").strip()
+        if match is None or not action:
+            raise DatasetError(
+                f"{path.name}: the name does not tell the action; it is to match {self.pattern.pattern!r}, "
+                "or give --pattern (a regular expression with the groups action and person)"
+            )
+        person = match["person"] if "person" in self.pattern.groupindex else ""
+        return self.actions.get(action, action), (person or "").strip()
+
+
+def clip_files(folder: Path) -> list[Path]:
+    """List the clips of a folder and of those below it, in order of name.
+
+    Raises:
+        DatasetError: there is none.
+    """
+    files = sorted(file for file in folder.rglob("*") if file.suffix.lower() in SUFFIXES)
+    if not files:
+        raise DatasetError(f"{folder}: no video there ({', '.join(sorted(SUFFIXES))})")
+    return files
+
+
+def recording_name(path: Path) -> str:
+    """Return the name of a clip's recording: the clip's, unusual characters replaced."""
+    return NOT_IN_NAMES.sub("_", path.stem)
+
+
+def check_names(files: Sequence[Path]) -> None:
+    """Check that no two clips get the same recording.
+
+    Raises:
+        DatasetError: two would.
+    """
+    taken: dict[str, Path] = {}
+    for file in files:
+        other = taken.setdefault(recording_name(file).casefold(), file)
+        if other is not file:
+            raise DatasetError(f"{other} and {file} would both be {recording_name(file)}.mcap: rename one of them")
+
+
+def read_clip(
+    path: Path, naming: Naming, sensor: str, optics: Optics, opened: Callable[[], AbstractContextManager[Estimator]]
+) -> Take:
+    """Find the people of a clip as the camera source does, with a new estimator: none remembers the clip before.
+
+    Raises:
+        DatasetError: the name does not tell the action, or the file is no video.
+    """
+    action, person = naming.read(path)
+    name, counters = recording_name(path), Counters()
+    try:
+        with opened() as estimator:
+            perceiver = Perceiver(estimator, optics, sensor, name, counters)
+            frames = [perceiver.skeleton(picture) for picture in pictures_of(path)]
+    except VideoError as error:
+        raise DatasetError(str(error)) from None
+    marks = segment_marks(frames[0].stamp_ns, frames[-1].stamp_ns, sensor, name, action)
+    return Take(name, person, frames, marks, {"lens": str(optics)}, oddities=Counter(counters.rejects))

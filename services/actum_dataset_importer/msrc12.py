@@ -1,0 +1,157 @@
+"""MSRC-12: streams of one repeated gesture each, twenty joints, millimetres, x left and y up, with action points.
+
+An action point is the instant at which a gesture can be told (Fothergill, Mentis, Kohli, Nowozin 2012); nobody wrote
+down starts and ends. A segment here lasts from half way to the point before to half way to the next, at most 1.5 s to
+either side. `p01.npz` holds a person's streams, of each three arrays: `NAME.xyz_mm` (frames, 20, 3), all zero where
+nobody was found, `NAME.t_us` (frames,) and `NAME.tags_us` (points,), all integers.
+"""
+
+import re
+import zlib
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from zipfile import BadZipFile
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.messages import Agent, Segment, Skeleton
+from actum.skeletons import JOINTS, to_actum
+from actum_dataset_importer.takes import (
+    DatasetError,
+    Take,
+    camera_joints,
+    files_of,
+    frame_without_person,
+    segment_marks,
+)
+
+Integers = NDArray[np.int64]
+
+REACH_US = 1_500_000
+"""How far a segment reaches from its action point at most: half the usual 3 s between two, where people move least."""
+
+SOURCE_JOINTS = 20
+"""Of Kinect's skeleton, before they are reduced to the fifteen."""
+PATTERN = "p*.npz"
+PARTS = ("xyz_mm", "t_us", "tags_us")
+DAMAGED = (OSError, ValueError, EOFError, BadZipFile, zlib.error)
+"""What reading arrays raises where a file is none of them, or broken."""
+
+NAME = re.compile(r"P(?P<instruction>\d)_(?P<set>\d)_(?P<gesture>(?P<number>\d+)A?)_p(?P<person>\d\d)")
+
+GESTURES: tuple[str, ...] = (
+    "lift arms",
+    "duck",
+    "push right",
+    "goggles",
+    "wind up",
+    "shoot",
+    "bow",
+    "throw",
+    "had enough",
+    "change weapon",
+    "beat both",
+    "kick",
+)
+"""Names of the gestures 1 … 12."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stream:
+    """One stream as it is stored.
+
+    Attributes:
+        xyz_mm: (frames, 20, 3).
+        stamps_us: (frames,), rising.
+        points_us: (points,), rising.
+    """
+
+    xyz_mm: Integers
+    stamps_us: Integers
+    points_us: Integers
+
+
+def stream_names(path: Path) -> list[tuple[Path, str]]:
+    """List the streams of one file, or of all of the set's folder, each with the file that holds it.
+
+    Raises:
+        DatasetError: there is no file, or one is damaged.
+    """
+    return [(file, name) for file in files_of(path, PATTERN) for name in _names(file)]
+
+
+def read_stream(path: Path, name: str, sensor: str) -> Take:
+    """Read one stream and mark a segment about each action point; frames without a skeleton become invalid frames.
+
+    Raises:
+        DatasetError: the name or the content is not of the set's form.
+    """
+    match = NAME.fullmatch(name)
+    if match is None or not 1 <= int(match["number"]) <= len(GESTURES):
+        raise DatasetError(f"{path}: {name!r} is not named like P1_1_10A_p01; keep the set's own names")
+    stream = _stream(path, name)
+    label = GESTURES[int(match["number"]) - 1]
+    spans_us = spans_about(stream.points_us, int(stream.stamps_us[0]), int(stream.stamps_us[-1]))
+    ids = {f"{name}-{number:02d}": span_us for number, span_us in enumerate(spans_us, start=1)}
+    return Take(
+        name,
+        person=str(int(match["person"])),
+        frames=[_skeleton(*frame, sensor, name) for frame in zip(stream.stamps_us, stream.xyz_mm, strict=True)],
+        marks=[mark for segment_id, span_us in ids.items() for mark in _marks(span_us, sensor, segment_id, label)],
+        metadata={kind: match[kind] for kind in ("instruction", "set", "gesture")},
+        skipped=[segment_id for segment_id, span_us in ids.items() if span_us is None],
+    )
+
+
+def spans_about(points_us: Integers, first_us: int, last_us: int) -> list[tuple[int, int] | None]:
+    """Return start and end (µs) of the segment about each action point; None where the stream does not reach.
+
+    Args:
+        points_us: (points,), rising.
+        first_us, last_us: the stream's first and last stamp.
+    """
+    points = points_us.tolist()
+    bounds = [first_us, *((before + after) // 2 for before, after in pairwise(points)), last_us]
+    spans = [
+        (max(start, point - REACH_US, first_us), min(end, point + REACH_US, last_us))
+        for point, (start, end) in zip(points, pairwise(bounds), strict=False)  # no point: one pair of bounds
+    ]
+    return [span if span[0] < span[1] else None for span in spans]
+
+
+def _names(file: Path) -> list[str]:
+    try:
+        with file.open("rb") as stored, np.load(stored) as arrays:
+            return sorted({array.rpartition(".")[0] for array in arrays.files})
+    except DAMAGED:
+        raise DatasetError(f"{file}: not a file of streams; fetch it anew") from None
+
+
+def _stream(path: Path, name: str) -> Stream:
+    try:
+        with path.open("rb") as stored, np.load(stored) as arrays:
+            xyz_mm, stamps_us, points_us = (arrays[f"{name}.{part}"] for part in PARTS)
+    except (KeyError, *DAMAGED):
+        raise DatasetError(f"{path}: {name} is not whole there; fetch it anew") from None
+    stamps_rise = stamps_us.size and (np.diff(stamps_us) > 0).all()
+    if xyz_mm.shape != (len(stamps_us), SOURCE_JOINTS, 3) or not stamps_rise or not (np.diff(points_us) > 0).all():
+        raise DatasetError(f"{path}: {name} is not frames of {SOURCE_JOINTS} joints with rising stamps; fetch it anew")
+    return Stream(xyz_mm, stamps_us, points_us)
+
+
+def _skeleton(stamp_us: int, joints_mm: Integers, sensor: str, session_id: str) -> Skeleton:
+    stamp_ns = int(stamp_us) * 1000
+    if not joints_mm.any():
+        return frame_without_person(stamp_ns, sensor, session_id)
+    joints_m: list[list[float]] = to_actum((joints_mm / 1000).tolist(), "kinect-v1-20")
+    agent = Agent(agent=1, joints=camera_joints(joints_m), confidence=[1.0] * len(JOINTS))
+    return Skeleton(stamp_ns=stamp_ns, sensor=sensor, agents=[agent], session_id=session_id)
+
+
+def _marks(span_us: tuple[int, int] | None, sensor: str, segment_id: str, label: str) -> list[Segment]:
+    if span_us is None:
+        return []
+    start_us, end_us = span_us
+    return segment_marks(1000 * start_us, 1000 * end_us, sensor, segment_id, label)

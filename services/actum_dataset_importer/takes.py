@@ -1,0 +1,88 @@
+"""One take of a public skeleton set, and the functions that reading any of them needs."""
+
+import warnings
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.messages import Segment, Skeleton
+from actum.node import SECOND_NS
+
+
+class DatasetError(ValueError):
+    """A file or folder does not have the data set's form: which, what is wrong, what to do."""
+
+
+@dataclass(frozen=True)
+class Take:
+    """One recorded file: its frames, and its labelled segments as start and end marks.
+
+    Attributes:
+        metadata: written into the recording beside person and source.
+        oddities: how often reading dropped or found something unusual, by kind.
+        skipped: names of the segments that could not be marked.
+    """
+
+    name: str
+    person: str
+    frames: list[Skeleton]
+    marks: list[Segment] = field(default_factory=list)
+    metadata: dict[str, str] = field(default_factory=dict)
+    oddities: Counter[str] = field(default_factory=Counter)
+    skipped: list[str] = field(default_factory=list)
+
+
+def files_of(path: Path, pattern: str) -> list[Path]:
+    """Return the file itself, or the folder's files of that pattern in order of name.
+
+    Raises:
+        DatasetError: there is none.
+    """
+    files = [path] if path.is_file() else sorted(path.glob(pattern))
+    if not files:
+        raise DatasetError(f"{path}: no {pattern} there; name such a file or the folder that holds them")
+    return files
+
+
+def read_rows(path: Path, columns: int) -> NDArray[np.float64]:
+    """Read a text file of finite numbers (rows, columns).
+
+    Raises:
+        DatasetError: it is anything else.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "loadtxt: input contained no data")
+            rows = np.loadtxt(path, ndmin=2)
+    except (OSError, ValueError) as error:
+        raise DatasetError(f"{path}: not rows of {columns} numbers ({error}); fetch it anew") from None
+    if rows.shape[0] == 0 or rows.shape[1] != columns or not np.isfinite(rows).all():
+        raise DatasetError(f"{path}: not rows of {columns} finite numbers; fetch it anew")
+    return rows
+
+
+def frame_without_person(stamp_ns: int, sensor: str, session_id: str) -> Skeleton:
+    """Return an invalid frame, for one in which the set has no skeleton."""
+    reason = "no skeleton in the source"
+    return Skeleton(stamp_ns=stamp_ns, sensor=sensor, valid=False, reason=reason, agents=[], session_id=session_id)
+
+
+def segment_marks(start_ns: int, end_ns: int, sensor: str, segment_id: str, label: str) -> list[Segment]:
+    """Return the start and the end mark of a labelled segment."""
+    return [
+        Segment(stamp_ns=start_ns, sensor=sensor, kind="start", segment_id=segment_id, label=label),
+        Segment(stamp_ns=end_ns, sensor=sensor, kind="end", segment_id=segment_id),
+    ]
+
+
+def camera_joints(positions_m: list[list[float]]) -> list[list[float] | None]:
+    """Turn positions (n, 3; m; x left, y up, z forward) into the camera frame (x right, y down, z forward)."""
+    return [[-x, -y, z] for x, y, z in positions_m]
+
+
+def stamp_of(index: int, rate_hz: int) -> int:
+    """Return the stamp (ns, to the nearest) of a frame counted at a fixed rate."""
+    return (2 * index * SECOND_NS + rate_hz) // (2 * rate_hz)

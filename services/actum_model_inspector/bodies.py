@@ -1,0 +1,182 @@
+"""Stick figures: joints in space as lines on the page, seen from in front, a little from the actor's left and above."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.colors import to_rgba
+from numpy.typing import NDArray
+
+from actum.geometry import BONES
+from actum.skeletons import INDEX, JOINTS, PARTS
+from actum_model_inspector.style import INK, LEFT, PAPER, RIGHT
+
+Floats = NDArray[Any]
+
+ASIDE_RAD, ABOVE_RAD = np.deg2rad(20.0), np.deg2rad(12.0)
+"""So that an arm that is stretched forward does not vanish behind its own hand."""
+HEIGHT_M = 1.75
+"""From the feet to a raised hand."""
+MIDDLE_M = -0.22
+"""The middle of that, above the torso."""
+HEAD_M = 0.11
+LONGEST_ARROW_M, SHORTEST_ARROW_M = 0.9, 0.06
+"""How long the arrow of the fastest joint of a map is on a figure; shorter ones than the second are left out."""
+
+_HIP_TO_TORSO_M = 0.24
+_HALF = {
+    "hip": (0.10, 0.0, 0.0), "knee": (0.11, -0.42, 0.02), "foot": (0.12, -0.86, 0.0),
+    "shoulder": (0.18, 0.46, 0.0), "elbow": (0.22, 0.19, -0.02), "hand": (0.24, -0.12, 0.05),
+}  # fmt: skip
+_MIDDLE = {"torso": (0.0, 0.24, 0.0), "neck": (0.0, 0.48, 0.0), "head": (0.0, 0.68, 0.0)}
+
+
+def _standing(joint: str) -> tuple[float, float, float]:
+    if joint in _MIDDLE:
+        left, up, forward = _MIDDLE[joint]
+    else:
+        side, name = joint.split("_")
+        left, up, forward = _HALF[name]
+        left = left if side == "left" else -left
+    return left, up - _HIP_TO_TORSO_M, forward
+
+
+STANDING = np.array([_standing(joint) for joint in JOINTS])
+"""Somebody who stands still, metres to the left, up and forward from the torso, (15, 3)."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """What is drawn between points.
+
+    Attributes:
+        bones: pairs of points.
+        head: the point that is a head, if one is.
+    """
+
+    bones: tuple[tuple[int, int], ...]
+    head: int | None
+
+
+@dataclass(frozen=True)
+class Pen:
+    """How figures are drawn.
+
+    Attributes:
+        width: of the lines, in points.
+        colour: of all bones; by the actor's side where None.
+        strength: the opacity.
+        zorder: what lies above what.
+    """
+
+    width: float = 1.2
+    colour: str | None = None
+    strength: float = 1.0
+    zorder: float = 2.0
+
+
+WHOLE = Figure(tuple((parent, child) for parent, child, _ in BONES), INDEX["head"])
+LIMB = Figure(((0, 1), (1, 2)), None)
+
+
+def projected(points: Floats) -> Floats:
+    """Return how far right and up on the page points (…, 3) lie, in metres, shape (…, 2)."""
+    left, up, forward = np.moveaxis(points, -1, 0)
+    right = left * np.cos(ASIDE_RAD) - forward * np.sin(ASIDE_RAD)
+    towards = forward * np.cos(ASIDE_RAD) + left * np.sin(ASIDE_RAD)
+    return np.stack([right, up * np.cos(ABOVE_RAD) - towards * np.sin(ABOVE_RAD)], axis=-1)
+
+
+def placed(points: Floats, places: Floats, size: float) -> Floats:
+    """Return points (n, k, 3) on the page, each figure's middle at its place (x, y), y down, `size` high, (n, k, 2)."""
+    flat = (projected(points) - [0.0, MIDDLE_M]) * (size / HEIGHT_M)
+    laid: Floats = places[:, None, :] + flat * [1.0, -1.0]
+    return laid
+
+
+def draw_bodies(
+    axes: Axes, points: Floats, places: Floats, size: float, figure: Figure = WHOLE, pen: Pen = Pen()
+) -> None:
+    """Draw figures.
+
+    Args:
+        axes: whose y goes down.
+        points: (n, k, 3), metres, relative to the torso; NaN where missing.
+        places: (n, 2), x and y of each figure's middle.
+        size: how high a figure may be.
+        figure: what is drawn between the points.
+        pen: to draw with.
+    """
+    laid, colours = placed(points, places, size), _colours(points, figure, pen)
+    lines = laid[:, figure.bones]
+    known = np.isfinite(lines).all(axis=(2, 3))
+    bones = LineCollection(
+        list(lines[known]), colors=colours[known], linewidths=pen.width, capstyle="round", zorder=pen.zorder
+    )
+    axes.add_collection(bones)
+    if figure.head is not None:
+        _draw_heads(axes, laid[:, figure.head], 2 * HEAD_M * size / HEIGHT_M, pen)
+
+
+def draw_arrows(
+    axes: Axes, points: Floats, steps_m: Floats, places: Floats, size: float, width_in: float = 0.03
+) -> None:
+    """Draw arrows from joints.
+
+    Args:
+        axes: whose y goes down.
+        points: (n, 15, 3), as `draw_bodies` takes them.
+        steps_m: (n, 15, 3), how far the arrows reach on the figure.
+        places: (n, 2), x and y of each figure's middle.
+        size: how high a figure may be.
+        width_in: of the arrows' shafts, inches.
+    """
+    tails = placed(points, places, size).reshape(-1, 2)
+    arrows = placed(points + steps_m, places, size).reshape(-1, 2) - tails
+    moving = np.hypot(*arrows.T) > SHORTEST_ARROW_M * size / HEIGHT_M
+    colours = np.tile([_side(joint) for joint in JOINTS], len(points))
+    axes.quiver(
+        *tails[moving].T, *arrows[moving].T, color=colours[moving], angles="xy", scale_units="xy", scale=1,
+        units="inches", width=width_in, headwidth=4, headlength=4, headaxislength=3.6, zorder=3,
+    )  # fmt: skip
+
+
+def _draw_heads(axes: Axes, centres: Floats, diameter: float, pen: Pen) -> None:
+    known = np.isfinite(centres).all(axis=1)
+    heads = EllipseCollection(
+        [diameter], [diameter], [0.0], units="xy", offsets=centres[known], offset_transform=axes.transData,
+        facecolors=PAPER, edgecolors=to_rgba(pen.colour or INK, pen.strength), linewidths=pen.width, zorder=pen.zorder,
+    )  # fmt: skip
+    axes.add_collection(heads)
+
+
+def _colours(points: Floats, figure: Figure, pen: Pen) -> Floats:
+    """Return the colour of each bone of each figure, (n, bones, 4)."""
+    if pen.colour is not None:
+        names = [[pen.colour] * len(figure.bones)] * len(points)
+    elif figure is LIMB:
+        names = [[_side(part)] * len(figure.bones) for part in _parts(points)]
+    else:
+        names = [[_side(JOINTS[child]) for _, child in figure.bones]] * len(points)
+    colours = [to_rgba(name, pen.strength) for row in names for name in row]
+    return np.array(colours).reshape(len(points), len(figure.bones), 4)
+
+
+def _side(name: str) -> str:
+    if name.endswith(("shoulder", "hip")):
+        return INK
+    return RIGHT if name.startswith("right") else LEFT if name.startswith("left") else INK
+
+
+def _parts(points: Floats) -> list[str]:
+    """Guess whose three joints these are by the nearest first joint of somebody who stands."""
+    first = np.array([STANDING[joints[0]] for joints in PARTS.values()])
+    distances = np.linalg.norm(points[:, None, 0] - first, axis=-1)
+    return [tuple(PARTS)[index] for index in distances.argmin(axis=1)]
+
+
+def rest(count: int) -> Floats:
+    """Return somebody who stands, so many times, (count, 15, 3)."""
+    return np.broadcast_to(STANDING, (count, *STANDING.shape))

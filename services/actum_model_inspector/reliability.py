@@ -1,0 +1,66 @@
+"""Whether the confidence can be trusted: how often the answer was right when it was so sure."""
+
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from actum_model_inspector.answered import Answered
+from actum_model_inspector.style import ACCENT, FAINT, INK, canvas, explain, in_house_style
+from actum_model_trainer.evaluation import wilson_interval
+from actum_model_trainer.reliability import FEWEST, Bin, binned, calibration_error
+
+WIDTH_IN = 6.8
+
+
+def judged(segments: Sequence[Answered]) -> list[Answered]:
+    """Return the segments that have a label and an answer."""
+    return [segment for segment in segments if segment.label is not None and segment.recognition is not None]
+
+
+def bins(segments: Sequence[Answered]) -> list[Bin]:
+    """Sort judged segments by confidence; bins without a segment are left out."""
+    answers = [(segment.recognition.confidence, segment.correct) for segment in segments if segment.recognition]
+    return binned([confidence for confidence, _ in answers], [correct for _, correct in answers])
+
+
+@in_house_style
+def reliability_picture(segments: Sequence[Answered]) -> Figure:
+    """Draw accuracy over confidence, and how many answers each point stands for.
+
+    Raises:
+        ValueError: fewer than `FEWEST` segments have a label and an answer.
+    """
+    known = judged(segments)
+    if len(known) < FEWEST:
+        raise ValueError(f"{len(known)} labelled and answered segments are too few: at least {FEWEST} are needed")
+    found = bins(known)
+    figure = canvas(
+        WIDTH_IN, 7.0, f"Confidence is {calibration_error(found):.2f} off on average ({len(known)} answers)"
+    )
+    upper, lower = figure.subplots(2, 1, height_ratios=[4, 1], sharex=True)
+    _draw_accuracy(upper, found)
+    _draw_counts(lower, found)
+    return figure
+
+
+def _draw_accuracy(axes: Axes, found: Sequence[Bin]) -> None:
+    axes.plot([0, 1], [0, 1], color=FAINT, linewidth=1, linestyle=(0, (4, 3)))
+    axes.text(0.03, 0.95, "more often right than it says", color=FAINT, va="top")
+    axes.text(0.98, 0.03, "less often right than it says", color=FAINT, ha="right")
+    for each in found:
+        axes.plot([each.confidence] * 2, wilson_interval(each.correct, each.n), color=ACCENT, linewidth=1.4)
+    confidences, accuracies = [each.confidence for each in found], [each.accuracy for each in found]
+    axes.plot(confidences, accuracies, color=ACCENT, linewidth=0.6)
+    axes.scatter(confidences, accuracies, s=[30 + each.n for each in found], color=ACCENT, zorder=3, clip_on=False)
+    axes.set(ylabel="share of right answers", xlim=(0, 1), ylim=(0, 1.02))
+    reading = "on the dashed line, eight in ten of the answers given with 0.8 are right; bars: 95 % interval"
+    explain(axes, reading, WIDTH_IN - 1)
+
+
+def _draw_counts(axes: Axes, found: Sequence[Bin]) -> None:
+    axes.bar([each.low + 0.05 for each in found], [each.n for each in found], 0.085, color=ACCENT, alpha=0.35)
+    for each in found:
+        axes.text(each.low + 0.05, each.n, str(each.n), ha="center", va="bottom", color=INK)
+    axes.set(xlabel="confidence of the answer", ylabel="answers")
+    axes.margins(y=0.25)

@@ -1,0 +1,107 @@
+"""The yardstick: one nearest neighbour on the raw path of the hand.
+
+A path is the acting hand's position relative to the torso in camera axes and metres, as measured: no scaling, no
+egocentric frame, no map. Of the two hands it is the one with the longer path. Frames within the segment in which
+torso and both hands are finite are resampled, linearly in time, to 32 instants at equal intervals. The answer is the
+label of the training path at the smallest Euclidean distance over the 96 numbers.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum import keys
+from actum.messages import Agent, Skeleton
+from actum.recording import Recording
+from actum.skeletons import INDEX
+from actum_model_trainer.evaluation import Evaluation, Prediction
+from actum_model_trainer.samples import classifier_input, closed_segments, sensors
+from som_classifier.segments import ClosedSegment
+
+Array = NDArray[np.float64]
+
+POINTS = 32
+_JOINTS = [INDEX["left_hand"], INDEX["right_hand"], INDEX["torso"]]
+
+
+@dataclass(frozen=True, eq=False)
+class HandPath:
+    """A labelled segment's path, shape (32, 3); None where fewer than two frames show it."""
+
+    file: str
+    segment_id: str
+    label: str
+    points_m: Array | None
+
+
+def nearest_neighbour(training: Sequence[Recording], test: Sequence[Recording]) -> Evaluation:
+    """Answer each labelled segment of the test with the label of the nearest training path.
+
+    Raises:
+        ValueError: no training path.
+    """
+    known = [(path.label, path.points_m) for path in hand_paths(training) if path.points_m is not None]
+    if not known:
+        raise ValueError("the training recordings hold no labelled segment with a hand path")
+    labels = [label for label, _ in known]
+    points_m = np.stack([points for _, points in known])
+    return Evaluation(
+        tuple(
+            Prediction(path.file, path.segment_id, path.label, _nearest(labels, points_m, path.points_m))
+            for path in hand_paths(test)
+        )
+    )
+
+
+def hand_paths(recordings: Sequence[Recording]) -> Iterator[HandPath]:
+    """Yield the path of every labelled segment."""
+    for recording in recordings:
+        for sensor in sensors(recording):
+            skeletons = [m for m in recording.messages((keys.SKELETON,)) if isinstance(m, Skeleton)]
+            seen = [skeleton for skeleton in skeletons if skeleton.sensor == sensor]
+            for closed in closed_segments(classifier_input(recording, sensor)):
+                if closed.label is not None:
+                    yield HandPath(str(recording.path), closed.segment_id, closed.label, _path(seen, closed))
+
+
+def hand_path(hands_and_torso_m: Array, stamps_ns: NDArray[np.int64]) -> Array:
+    """Return the longer hand path about the torso at 32 instants, shape (32, 3).
+
+    Args:
+        hands_and_torso_m: (n, 3, 3), per frame the left hand, the right hand and the torso, any one frame.
+        stamps_ns: (n,), rising.
+    """
+    hands_m = hands_and_torso_m[:, :2] - hands_and_torso_m[:, 2:]
+    lengths_m = np.linalg.norm(np.diff(hands_m, axis=0), axis=2).sum(axis=0)
+    path_m = hands_m[:, int(np.argmax(lengths_m))]
+    elapsed_ns = (stamps_ns - stamps_ns[0]).astype(np.float64)
+    wanted_ns = np.linspace(0.0, elapsed_ns[-1], POINTS)
+    return np.stack([np.interp(wanted_ns, elapsed_ns, axis) for axis in path_m.T], axis=1)
+
+
+def _path(skeletons: Sequence[Skeleton], closed: ClosedSegment) -> Array | None:
+    frames = [
+        (skeleton.stamp_ns, points)
+        for skeleton in skeletons
+        if closed.start_ns <= skeleton.stamp_ns <= closed.end_ns
+        for agent in skeleton.agents
+        if agent.agent == closed.agent and (points := _hands_and_torso(agent)) is not None
+    ]
+    if len(frames) < 2:
+        return None
+    return hand_path(np.stack([points for _, points in frames]), np.array([stamp_ns for stamp_ns, _ in frames]))
+
+
+def _hands_and_torso(agent: Agent) -> Array | None:
+    points = [agent.joints[joint] for joint in _JOINTS]
+    if None in points or not np.isfinite(array := np.array(points, dtype=np.float64)).all():
+        return None
+    return array
+
+
+def _nearest(labels: list[str], points_m: Array, path_m: Array | None) -> str | None:
+    if path_m is None:
+        return None
+    return labels[int(np.argmin(np.square(points_m - path_m).sum(axis=(1, 2))))]

@@ -1,0 +1,60 @@
+"""An evaluation as tables for the terminal."""
+
+from collections import Counter
+
+from rich.box import SIMPLE
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from actum_model_trainer.evaluation import Evaluation, wilson_interval
+
+
+def report(evaluation: Evaluation, seconds: float) -> Group:
+    """Lay out accuracy with its interval, the score of each action, and who was taken for whom."""
+    return Group(summary(evaluation, seconds), per_class(evaluation), confusion(evaluation))
+
+
+def summary(evaluation: Evaluation, seconds: float) -> Text:
+    """Say how often the answer was right, how far its confidence was off and how often it was told unknown."""
+    low, high = wilson_interval(evaluation.correct, evaluation.n)
+    said = [
+        f"accuracy {evaluation.accuracy:.1%} ({evaluation.correct} of {evaluation.n}, "
+        f"95 % interval {low:.1%} to {high:.1%})"
+    ]
+    if evaluation.calibration_error is not None:
+        said.append(f"confidence off by {evaluation.calibration_error:.3f} on average (ECE)")
+    if evaluation.told_unknown:
+        said.append(f"{sum(evaluation.told_unknown)} of {len(evaluation.told_unknown)} answers told unknown")
+    return Text(", ".join([*said, f"{seconds:.1f} s"]))
+
+
+def per_class(evaluation: Evaluation) -> Table:
+    """Tabulate each action's tests, right answers and rejections, mean confidence and share told unknown."""
+    table = Table(title="per action")
+    table.add_column("action", overflow="fold")
+    for heading in ("tests", "recognised", "rejected", "accuracy", "confidence", "unknown"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for label, score in evaluation.per_class.items():
+        counts = str(score.n), str(score.correct), str(score.rejected)
+        accuracy = score.accuracy if score.n else None
+        table.add_row(Text(label), *counts, *map(_share, (accuracy, score.confidence, score.unknown)))
+    return table
+
+
+def _share(share: float | None) -> str:
+    return "-" if share is None else f"{share:.1%}"
+
+
+def confusion(evaluation: Evaluation) -> Table | Text:
+    """Tabulate what was taken for what, the most frequent first."""
+    mistakes = Counter((wrong.label, wrong.predicted) for wrong in evaluation.predictions if not wrong.correct)
+    if not mistakes:
+        return Text("confusion: none")
+    table = Table(title="confusion", box=SIMPLE)
+    table.add_column("done", overflow="fold")
+    table.add_column("answered", overflow="fold")
+    table.add_column("times", justify="right", no_wrap=True)
+    for (done, answered), times in sorted(mistakes.items(), key=lambda item: (-item[1], item[0][0], item[0][1] or "")):
+        table.add_row(Text(done), Text("(rejected)" if answered is None else answered), str(times))
+    return table

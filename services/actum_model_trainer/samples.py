@@ -1,0 +1,197 @@
+"""Labelled segments of recordings become training samples, through the very nodes that run live."""
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum import keys
+from actum.messages import Hand, Message, Posture, Segment, Skeleton
+from actum.node import Counters, Numbering, Tick, replay
+from actum.recording import Recording
+from actum_model_trainer.progress import Progress, silent
+from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
+from som_classifier.handedness import LimbSpreads, limb_moments
+from som_classifier.model import Model
+from som_classifier.segments import ClosedSegment, Segmenter
+
+Array = NDArray[np.float64]
+STREAMS = (keys.SKELETON, keys.SEGMENT)
+
+
+@dataclass(frozen=True, eq=False)
+class SegmentSample:
+    """One labelled action: its usable frames as the classifier gets them.
+
+    Attributes:
+        stamps_ns: (n,), rising.
+        joints: (n, 15, 3), scaled, egocentric, NaN where missing.
+        motion: (n, 5), metres since the frame before.
+        postures: (n, 15, 3), scaled, upright, low-passed.
+        velocities: (n, 15, 3), of the same.
+        depth_inferred: whether distances follow from a picture and a body's usual size.
+        sensor: which viewpoint it is of.
+    """
+
+    label: str
+    stamps_ns: NDArray[np.int64]
+    joints: Array
+    motion: Array
+    postures: Array
+    velocities: Array
+    person: str
+    file: str
+    segment_id: str
+    depth_inferred: bool = False
+    sensor: str = ""
+
+    @cached_property
+    def acting_hands(self) -> list[Hand | None]:
+        """Which arm it is done with, so far after each frame; None for both or another limb."""
+        summed = np.cumsum([limb_moments(posture) for posture in self.postures], axis=0)
+        return [LimbSpreads.of(so_far).acting_hand for so_far in summed]
+
+
+@dataclass(frozen=True)
+class Unusable:
+    """A labelled segment that no sample could be made of, and why."""
+
+    file: str
+    segment_id: str
+    reason: str
+    sensor: str
+
+
+@dataclass(frozen=True)
+class Samples:
+    """What recordings hold to learn from: their labelled segments, in the order in which they close."""
+
+    segments: list[SegmentSample | Unusable]
+
+    @cached_property
+    def usable(self) -> list[SegmentSample]:
+        """Those that are samples."""
+        return [segment for segment in self.segments if isinstance(segment, SegmentSample)]
+
+    @cached_property
+    def unusable(self) -> list[Unusable]:
+        """The others."""
+        return [segment for segment in self.segments if isinstance(segment, Unusable)]
+
+
+def select(
+    paths: Iterable[Path], people: Collection[str] | None = None, with_excluded: bool = False
+) -> list[Recording]:
+    """Open the recordings of some people, or of all, each once; folders are searched for `*.mcap`.
+
+    Recordings whose metadata say `excluded: true` are left out unless asked for.
+
+    Raises:
+        RecordingError: a file is no recording.
+    """
+    files = {file.resolve(): file for path in paths for file in _files(path)}
+    recordings = [Recording(file) for file in files.values()]
+    return [
+        recording
+        for recording in recordings
+        if (people is None or recording.person in people)
+        and (with_excluded or recording.metadata.get("excluded") != "true")
+    ]
+
+
+def sensors(recording: Recording) -> list[str]:
+    """Name the viewpoints that have marks in a recording."""
+    return sorted({mark.sensor for mark in recording.messages((keys.SEGMENT,))})
+
+
+def classifier_input(recording: Recording, sensor: str) -> Iterator[tuple[int, Message]]:
+    """Yield, with its stamp (ns), each message that the classifier of this sensor would have got."""
+    preprocessor, numbering = PosePreprocessor(PoseSettings.defaults()), Numbering()
+    for message in recording.messages(STREAMS):
+        if message.sensor == sensor:
+            arriving = preprocessor.handle(message) if isinstance(message, Skeleton) else [message]
+            for posture_or_mark in arriving:
+                yield message.stamp_ns, numbering.numbered(posture_or_mark)
+
+
+def samples_from(recordings: Sequence[Recording], progress: Progress = silent) -> Samples:
+    """Cut every labelled segment out of the recordings.
+
+    Raises:
+        RecordingError: a file is damaged.
+    """
+    segments: list[SegmentSample | Unusable] = []
+    for done, recording in enumerate(recordings):
+        progress("reading recordings", done, len(recordings))
+        for sensor in sensors(recording):
+            closed = closed_segments(classifier_input(recording, sensor))
+            segments += [_cut(recording, sensor, each, each.label) for each in closed if each.label is not None]
+    progress("reading recordings", len(recordings), len(recordings))
+    return Samples(segments)
+
+
+def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[ClosedSegment]:
+    """Return the segments that the classifier's own bookkeeping closes, in that order."""
+    collector = _Collector()
+    for _ in replay(collector, messages):
+        raise AssertionError("the collector puts nothing")
+    return collector.closed
+
+
+def why_unusable(closed: ClosedSegment) -> str | None:
+    """Say why no sample can be made of a segment's frames; None where one can."""
+    usable = sum(frame.valid for frame in closed.frames)
+    if closed.reason is None and usable < Model.min_frames:
+        return f"{usable} usable frames, at least {Model.min_frames} are needed"
+    return closed.reason
+
+
+class _Collector:
+    """A node that keeps what the segmenter closes."""
+
+    name = "collector"
+    inputs: tuple[keys.Topic, ...] = (keys.POSTURE, keys.SEGMENT)
+
+    def __init__(self) -> None:
+        self.counters = Counters()
+        self.closed: list[ClosedSegment] = []
+        self._segmenter = Segmenter(self.counters)
+
+    def handle(self, message: Message | Tick) -> list[Message]:
+        match message:
+            case Posture():
+                self.closed += self._segmenter.posture(message)[1]
+            case Segment():
+                self.closed += self._segmenter.mark(message)
+            case Tick():
+                self.closed += self._segmenter.tick(message)
+        return []
+
+
+def _files(path: Path) -> list[Path]:
+    return sorted(path.rglob("*.mcap")) if path.is_dir() else [path]
+
+
+def _cut(recording: Recording, sensor: str, closed: ClosedSegment, label: str) -> SegmentSample | Unusable:
+    reason = why_unusable(closed)
+    if reason is not None:
+        return Unusable(str(recording.path), closed.segment_id, reason, sensor)
+    frames = [frame for frame in closed.frames if frame.valid]
+    movements = [frame.kinematics for frame in frames if frame.kinematics is not None]
+    return SegmentSample(
+        label,
+        np.array([frame.stamp_ns for frame in frames]),
+        np.array([frame.joints for frame in frames]),
+        np.array([frame.motion for frame in frames]),
+        np.array([movement.posture for movement in movements]),
+        np.array([movement.velocity for movement in movements]),
+        recording.person,
+        str(recording.path),
+        closed.segment_id,
+        any(frame.depth_inferred for frame in frames),
+        sensor,
+    )

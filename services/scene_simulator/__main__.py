@@ -1,0 +1,18 @@
+"""`python -m scene_simulator`."""
+
+import time
+
+from actum.runtime import needs_extra, run_source
+
+with needs_extra("scene-simulator"):
+    from scene_simulator.endless_simulator import simulator_of
+    from scene_simulator.settings import Settings
+
+
+def main() -> None:
+    """Serve until SIGTERM."""
+    run_source(Settings, lambda settings: simulator_of(settings, start_ns=time.time_ns()))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,231 @@
+"""The person: proportions and habits drawn from a seed, and the inverse kinematics of reaching."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from actum.arrays import Array
+from actum.messages import Hand
+from actum.skeletons import INDEX, JOINTS
+from scene_simulator.parameters import ActorParameters
+from scene_simulator.random_streams import draw_normal, draw_normals, random_stream
+
+# Lengths as shares of stature, after Drillis and Contini (1966).
+HIP_HEIGHT = 0.53  # floor to hip joints
+TRUNK = 0.29  # hips to neck
+HEAD = 0.115  # neck to the head's middle
+SPINE = 0.14  # hips to the torso joint
+SHOULDER_SIDE = 0.108  # from the spine to a shoulder
+SHOULDER_DROP = 0.02  # from the neck down to the shoulders
+HIP_SIDE = 0.052  # from the spine to a hip joint
+UPPER_ARM = 0.186  # shoulder to elbow
+FOREARM = 0.200  # elbow to palm
+FINGER = 0.055  # palm to the tip of the index finger
+EYE = 0.05  # from the head's middle forward to the eyes
+FOOT_HEIGHT = 0.04  # floor to the foot joint
+KNEE_SHARE = 0.5  # of the way from hip to foot
+
+FULL_STRETCH = 0.995
+"""Of the arm's length: at 1 the elbow's direction is undefined."""
+COMFORTABLE_STRETCH = 0.93
+"""Of the arm's length: people lean rather than stretch their arm further."""
+STRETCH_SOFTNESS = 0.05
+"""Of the arm's length: the width of the transition to that limit, so that the trunk starts to lean smoothly."""
+LEAN_LIMIT_RAD = np.deg2rad(60.0)
+"""Nobody leans further; the hand then stays short of its goal."""
+LEAST_AHEAD_M = 0.1
+"""A hand beside or behind the hips is treated as this far ahead: the trunk never turns round."""
+BISECTIONS = 30
+"""Halvings of 60°: the lean is then exact to less than a millionth of a degree."""
+
+
+@dataclass(frozen=True)
+class Actor:
+    """One person.
+
+    Attributes:
+        bias_rad: (2,), the constant error of pointing, azimuth and elevation.
+        appearance_seed: of clothes, skin and hair.
+    """
+
+    height_m: float
+    hand: Hand
+    heading_rad: float
+    stand_off_m: float
+    stand_x_m: float
+    tempo: float
+    lean_rad: float
+    twist_gain: float
+    elbow_out: float
+    arc_scale: float
+    noise_scale: float
+    bias_rad: Array
+    appearance_seed: int
+
+    @property
+    def side(self) -> int:
+        """+1 where the acting hand is the left one, -1 where it is the right one."""
+        return 1 if self.hand == "left" else -1
+
+    @property
+    def arm_m(self) -> float:
+        """Shoulder to palm, stretched."""
+        return (UPPER_ARM + FOREARM) * self.height_m
+
+    @property
+    def finger_m(self) -> float:
+        """Palm to the tip of the stretched index finger."""
+        return FINGER * self.height_m
+
+
+@dataclass(frozen=True)
+class Stance:
+    """How the person stands over T frames: pelvis_m (T, 3), heading_rad (T,), lean_rad (T,) of the trunk."""
+
+    pelvis_m: Array
+    heading_rad: Array
+    lean_rad: Array
+
+    def axes(self) -> tuple[Array, Array, Array]:
+        """Return the person's left, up and forward directions, each (T, 3). Heading 0 faces the camera."""
+        sin, cos, zero = np.sin(self.heading_rad), np.cos(self.heading_rad), np.zeros_like(self.heading_rad)
+        left = np.stack([cos, zero, -sin], axis=-1)
+        forward = np.stack([-sin, zero, -cos], axis=-1)
+        return left, np.broadcast_to([0.0, -1.0, 0.0], left.shape), forward
+
+
+def draw_actor(parameters: ActorParameters, actor_seed: int) -> Actor:
+    """Draw a person; the same seed is always the same person."""
+    rng = random_stream("actor", actor_seed)
+    return Actor(
+        height_m=draw_normal(rng, parameters.height_mean_sd_m),
+        hand="left" if rng.random() < parameters.left_handed_probability else "right",
+        heading_rad=np.deg2rad(draw_normal(rng, (0.0, parameters.heading_sd_deg))),
+        stand_off_m=draw_normal(rng, parameters.stand_off_mean_sd_m),
+        stand_x_m=draw_normal(rng, (0.0, parameters.stand_x_sd_m)),
+        tempo=draw_normal(rng, parameters.tempo_mean_sd),
+        lean_rad=np.deg2rad(draw_normal(rng, parameters.lean_mean_sd_deg)),
+        twist_gain=draw_normal(rng, parameters.twist_gain_mean_sd),
+        elbow_out=draw_normal(rng, parameters.elbow_out_mean_sd),
+        arc_scale=draw_normal(rng, parameters.arc_mean_sd),
+        noise_scale=draw_normal(rng, parameters.noise_mean_sd),
+        bias_rad=np.deg2rad(draw_normals(rng, parameters.pointing_bias_sd_deg, 2)),
+        appearance_seed=int(rng.integers(2**31)),
+    )
+
+
+def pose(actor: Actor, stance: Stance, hands_m: Array) -> Array:
+    """Return the joints (T, 15, 3) of a person whose left and right palm are at `hands_m` (T, 2, 3).
+
+    The trunk turns and leans after the acting hand; the elbows hang. A hand beyond the arm's reach is
+    drawn back into it.
+    """
+    trunk = _Trunk(actor, stance, hands_m[:, 0 if actor.hand == "left" else 1])
+    joints = np.empty((len(hands_m), len(JOINTS), 3))
+    joints[:, INDEX["neck"]] = trunk.along(TRUNK)
+    joints[:, INDEX["torso"]] = trunk.along(SPINE)
+    joints[:, INDEX["head"]] = trunk.along(TRUNK) + HEAD * actor.height_m * _unit(trunk.up + trunk.vertical)
+    for column, (name, side) in enumerate((("left", 1), ("right", -1))):
+        shoulder = trunk.shoulder(side)
+        elbow, hand = _bend_arm(actor, trunk, side, shoulder, hands_m[:, column])
+        for part, position in (("shoulder", shoulder), ("elbow", elbow), ("hand", hand)):
+            joints[:, INDEX[f"{name}_{part}"]] = position
+        _place_leg(joints, actor, stance, name, side)
+    return joints
+
+
+def fingertip(actor: Actor, joints_m: Array) -> Array:
+    """Return where the acting hand's stretched index finger ends (T, 3): it continues the forearm."""
+    hand, elbow = joints_m[:, INDEX[f"{actor.hand}_hand"]], joints_m[:, INDEX[f"{actor.hand}_elbow"]]
+    return hand + actor.finger_m * _unit(hand - elbow)
+
+
+def eye(actor: Actor, stance: Stance, joints_m: Array) -> Array:
+    """Return the point between the eyes (T, 3)."""
+    return joints_m[:, INDEX["head"]] + EYE * actor.height_m * stance.axes()[2]
+
+
+class _Trunk:
+    """The upper body over T frames: turned after the acting hand, and leant towards it until the arm reaches."""
+
+    def __init__(self, actor: Actor, stance: Stance, hand_m: Array) -> None:
+        self._height_m = actor.height_m
+        self._pelvis = stance.pelvis_m
+        self._side = actor.side
+        self.left, self.vertical, self.forward = stance.axes()
+        aside, ahead = self._level(hand_m - self._pelvis)
+        self._towards = _unit(aside * self.left + np.maximum(ahead, LEAST_AHEAD_M) * self.forward)
+        self._across = self.left
+        self._lean_to(stance.lean_rad)
+        aside, ahead = self._level(hand_m - self.shoulder(self._side))
+        twist = actor.twist_gain * np.arctan2(aside, np.maximum(ahead, LEAST_AHEAD_M))
+        self._across = np.cos(twist) * self.left - np.sin(twist) * self.forward
+        self._lean_to(stance.lean_rad)
+        self._lean_to(stance.lean_rad + self._needed_lean(actor, stance.lean_rad, hand_m))
+
+    def along(self, share: float) -> Array:
+        """Return the point (T, 3) that far up the spine from the hips, as a share of stature."""
+        return np.asarray(self._pelvis + share * self._height_m * self.up)
+
+    def shoulder(self, side: int) -> Array:
+        """Return a shoulder joint (T, 3); side +1 is the left."""
+        across = side * SHOULDER_SIDE * self._height_m * self._leant_across
+        return np.asarray(self.along(TRUNK - SHOULDER_DROP) + across)
+
+    def _lean_to(self, lean_rad: Array) -> None:
+        """Rotate the spine and the shoulder line from upright towards the hand."""
+        sin, cos = np.sin(lean_rad)[:, None], np.cos(lean_rad)[:, None]
+        self.up = cos * self.vertical + sin * self._towards
+        share = (self._across * self._towards).sum(-1, keepdims=True)
+        self._leant_across = self._across + share * ((cos - 1) * self._towards - sin * self.vertical)
+
+    def _level(self, offset_m: Array) -> tuple[Array, Array]:
+        """Split offsets (T, 3) into the level components left and forward, each (T, 1)."""
+        return (offset_m * self.left).sum(-1, keepdims=True), (offset_m * self.forward).sum(-1, keepdims=True)
+
+    def _distance(self, hand_m: Array) -> Array:
+        return np.asarray(np.linalg.norm(hand_m - self.shoulder(self._side), axis=-1))
+
+    def _needed_lean(self, actor: Actor, lean_rad: Array, hand_m: Array) -> Array:
+        """Find by bisection how much further to lean (T,) so that the arm is stretched comfortably at most."""
+        wanted = _soft_minimum(self._distance(hand_m) / actor.arm_m) * actor.arm_m
+        low, high = np.zeros_like(lean_rad), np.full_like(lean_rad, LEAN_LIMIT_RAD)
+        for _ in range(BISECTIONS):
+            middle = (low + high) / 2
+            self._lean_to(lean_rad + middle)
+            too_far = self._distance(hand_m) > wanted
+            low, high = np.where(too_far, middle, low), np.where(too_far, high, middle)
+        return high
+
+
+def _soft_minimum(stretch: Array) -> Array:
+    """Limit a stretch (T,) smoothly to the comfortable one: min(x, c) with softplus in place of the kink."""
+    excess = (stretch - COMFORTABLE_STRETCH) / STRETCH_SOFTNESS
+    return np.asarray(stretch - STRETCH_SOFTNESS * np.logaddexp(0.0, excess))
+
+
+def _bend_arm(actor: Actor, trunk: _Trunk, side: int, shoulder: Array, hand: Array) -> tuple[Array, Array]:
+    """Solve the two-link arm: elbow and hand (T, 3); the elbow points down, out and a little back."""
+    upper, fore = UPPER_ARM * actor.height_m, FOREARM * actor.height_m
+    along = _unit(hand - shoulder)
+    distance = np.minimum(np.linalg.norm(hand - shoulder, axis=-1), FULL_STRETCH * actor.arm_m)[:, None]
+    pole = side * actor.elbow_out * trunk.left - trunk.vertical - 0.3 * trunk.forward
+    pole = _unit(pole - (pole * along).sum(-1, keepdims=True) * along)
+    foot = (upper**2 - fore**2 + distance**2) / (2 * distance)
+    height = np.sqrt(np.maximum(upper**2 - foot**2, 0.0))
+    return shoulder + foot * along + height * pole, shoulder + distance * along
+
+
+def _place_leg(joints: Array, actor: Actor, stance: Stance, name: str, side: int) -> None:
+    """Write one leg's hip, knee and foot into the joints (T, 15, 3)."""
+    left, up, forward = stance.axes()
+    hip = stance.pelvis_m + side * HIP_SIDE * actor.height_m * left
+    foot = hip - (HIP_HEIGHT - FOOT_HEIGHT) * actor.height_m * up + 0.02 * forward + 0.02 * side * left
+    joints[:, INDEX[f"{name}_hip"]] = hip
+    joints[:, INDEX[f"{name}_knee"]] = hip + KNEE_SHARE * (foot - hip) + 0.02 * forward
+    joints[:, INDEX[f"{name}_foot"]] = foot
+
+
+def _unit(vectors: Array) -> Array:
+    """Scale vectors (…, 3) to length 1."""
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))

@@ -1,0 +1,93 @@
+"""Conditions that make a scene harder: where the objects stand, and what the camera sees of them."""
+
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+from typing import Annotated
+
+from pydantic import Field
+
+from scene_simulator.parameters import ObjectParameters, Parameters, Section, TableParameters
+
+SIZE_TO_SPACING = 0.875
+"""Width of the widest object as a share of the spacing, at most: objects in a closer row are scaled down."""
+
+ROW_BEHIND_EDGE_M = 0.05
+"""From the table's near edge to a row of objects."""
+ROW_DEPTH_M = 0.02
+"""How much the objects of a row may stand before one another."""
+PANTOMIME_RANGE_M = 0.05
+"""How much further than `pantomime_m` a pantomime may stay from the nearest object."""
+
+Length = Annotated[float, Field(gt=0, le=5)]
+
+
+class Conditions(Section):
+    """What is made harder in one scene; by default nothing, and the scene is as its parameters have it.
+
+    Attributes:
+        spacing_m: middle to middle of neighbouring objects, which then stand in a row.
+        distance_m: how far behind the row, which then is at the table's near edge, the person stands.
+        pantomime_m: how near a pantomime comes to the nearest object's middle, or up to 5 cm further from it.
+        clutter: how many shapes, edges and false squares are on the wall, and again on the table.
+        defocus_sd_px: the width of the camera's blur.
+        exposure_s: how long the shutter is open, at most a frame: what moves is smeared.
+        unread_share: the share of images in which a marker cannot be read, drawn for each marker by itself.
+        covers_marker: whether the hand hides the marker of what it holds.
+    """
+
+    spacing_m: Length | None = None
+    distance_m: Length | None = None
+    pantomime_m: Length | None = None
+    clutter: int = Field(0, ge=0)
+    defocus_sd_px: float = Field(0.0, ge=0)
+    exposure_s: float = Field(0.0, ge=0)
+    unread_share: float = Field(0.0, ge=0, le=1)
+    covers_marker: bool = False
+
+    def arranged(self, parameters: Parameters) -> Parameters:
+        """Return the parameters with objects, person and pantomime placed as the conditions say."""
+        objects = parameters.objects if self.spacing_m is None else _in_a_row(parameters.objects, self.spacing_m)
+        pantomime = parameters.pantomime
+        if self.pantomime_m is not None:
+            near = {"clear_range_m": (self.pantomime_m, self.pantomime_m + PANTOMIME_RANGE_M)}
+            pantomime = pantomime.model_copy(update=near)
+        parameters = parameters.model_copy(update={"objects": objects, "pantomime": pantomime})
+        if self.distance_m is None:
+            return parameters
+        row_z_m = parameters.table.near_z_m + ROW_BEHIND_EDGE_M
+        far_z_m = row_z_m + self.distance_m - parameters.actor.stand_off_mean_sd_m[0]
+        return parameters.model_copy(
+            update={
+                "objects": objects.model_copy(update={"place_z_range_m": (row_z_m, row_z_m + ROW_DEPTH_M)}),
+                "table": TableParameters.model_validate(parameters.table.model_dump() | {"far_z_m": far_z_m}),
+            }
+        )
+
+
+PLAIN = Conditions()
+
+
+@cache
+def load_conditions() -> Mapping[str, Conditions]:
+    """Read the package's named conditions from `conditions.toml`."""
+    text = files(__package__).joinpath("conditions.toml").read_text(encoding="utf-8")
+    return {name: Conditions.model_validate(section) for name, section in tomllib.loads(text).items()}
+
+
+def _in_a_row(objects: ObjectParameters, spacing_m: float) -> ObjectParameters:
+    """Return the objects side by side, scaled down where they would touch."""
+    widest_m = max(item.size_m[0] for item in objects.items)
+    scale = min(1.0, SIZE_TO_SPACING * spacing_m / widest_m)
+    middle_m = sum(objects.place_z_range_m) / 2
+    items = [item.model_copy(update={"size_m": tuple(scale * side for side in item.size_m)}) for item in objects.items]
+    return objects.model_copy(
+        update={
+            "items": tuple(items),
+            "marker_size_m": scale * objects.marker_size_m,
+            "place_x_m": (-spacing_m, 0.0, spacing_m),
+            "place_jitter_x_sd_m": 0.0,
+            "place_z_range_m": (middle_m - ROW_DEPTH_M / 2, middle_m + ROW_DEPTH_M / 2),
+        }
+    )

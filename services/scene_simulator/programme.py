@@ -1,0 +1,59 @@
+"""The programme: a list of tasks, each an action on one object."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scene_simulator.parameters import load_parameters
+from scene_simulator.random_streams import random_stream
+
+ACTIONS: tuple[str, ...] = ("push", "pull", "put", "lift", "point")
+
+NO_OBJECT = -1
+"""In place of an object's id: a pantomime, done in empty space as if an object were there."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What one repetition does: an action of `ACTIONS` on the object with that id, or a pantomime (`NO_OBJECT`).
+
+    Raises:
+        ValueError: there is no such action or object, or pointing is to be pantomimed.
+    """
+
+    action: str
+    object_id: int
+
+    def __post_init__(self) -> None:
+        if self.action not in ACTIONS:
+            raise ValueError(f"no action {self.action!r}: use one of {', '.join(ACTIONS)}")
+        if self.is_pantomime and self.action == "point":
+            raise ValueError("pointing has no pantomime: it touches no object")
+        if self.object_id not in (*object_ids(), NO_OBJECT):
+            raise ValueError(f"no object {self.object_id}: use one of {object_ids()}")
+
+    @property
+    def is_pantomime(self) -> bool:
+        """Whether there is no object where the action is done."""
+        return self.object_id == NO_OBJECT
+
+
+def object_ids() -> tuple[int, ...]:
+    """List the ids of the scene's objects."""
+    return tuple(item.id for item in load_parameters().objects.items)
+
+
+def balanced_programme(repetitions: int, seed: int, actor_seed: int = 0) -> list[Task]:
+    """Return `repetitions` of each action in random order; the objects take turns in each action and among actors.
+
+    Any three actors with successive numbers do each action to each object equally often, so that no action tells its
+    object.
+    """
+    rng = random_stream("programme", seed)
+    ids = rng.permutation(object_ids())
+    tasks = [
+        Task(action, int(ids[(row + repetition + actor_seed) % len(ids)]))
+        for row, action in enumerate(ACTIONS)
+        for repetition in range(repetitions)
+    ]
+    return [tasks[i] for i in np.asarray(rng.permutation(len(tasks)))]

@@ -1,0 +1,117 @@
+"""Draws a frame of the scene as the colour camera sees it, far things first."""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.arrays import Array
+from scene_simulator.background import WALL_Z_M, draw_room, draw_table
+from scene_simulator.clutter import draw_clutter
+from scene_simulator.drawing_primitives import Canvas, Pinhole
+from scene_simulator.exposure import mean_image
+from scene_simulator.figure import Figure, Stroke
+from scene_simulator.props import Prop
+from scene_simulator.random_streams import random_stream
+from scene_simulator.simulated_scene import CLOSED, Scene, SceneState
+
+SLACK_PX = 64
+"""How much larger than the image the grain is drawn: shifted by chance, it differs from image to image."""
+VISIBLE_RISER_M = 0.004
+"""A lower riser, as while one grows between two repetitions, is not drawn."""
+
+
+class Renderer:
+    """Draws the states of one scene; `rng` draws the sensor's noise."""
+
+    def __init__(self, scene: Scene, rng: np.random.Generator) -> None:
+        parameters = scene.parameters
+        self.camera = Pinhole.of(parameters.camera)
+        self._table_y_m = parameters.table_y_m
+        self._items, self._seeds, self._conditions = scene.items, scene.seeds, scene.conditions
+        self._props = [Prop(item, parameters.objects.marker_size_m) for item in scene.items]
+        self._figure = Figure(scene.actor)
+        self._room = draw_room(self.camera, parameters.camera.height_m)
+        names = [item.name for item in scene.items]
+        self._table, self._table_mask = draw_table(self.camera, parameters, names, scene.places_x_m)
+        if self._conditions.clutter:
+            self._draw_clutter(scene)
+        self._blur_sd_px = parameters.image.blur_sd_px
+        self._rng = rng
+        size = (self.camera.height + SLACK_PX, self.camera.width + SLACK_PX, 3)
+        self._grain = np.round(rng.normal(0, parameters.image.grey_noise_sd, size)).astype(np.int16)
+
+    def image(self, *states: SceneState) -> Canvas:
+        """Draw one frame (height, width, 3; BGR) with blur and grain, from its instants while the shutter is open."""
+        taken = mean_image([self.clean_image(state) for state in states])
+        if self._conditions.defocus_sd_px:
+            taken = np.asarray(cv2.GaussianBlur(taken, (0, 0), self._conditions.defocus_sd_px), dtype=np.uint8)
+        blurred = cv2.GaussianBlur(taken, (3, 3), self._blur_sd_px)
+        x, y = self._rng.integers(SLACK_PX, size=2)
+        grain = self._grain[y : y + self.camera.height, x : x + self.camera.width]
+        return np.asarray(cv2.add(blurred, grain, dtype=cv2.CV_8U), dtype=np.uint8)
+
+    def clean_image(self, state: SceneState) -> Canvas:
+        """Draw one frame (height, width, 3; BGR) without blur and grain."""
+        canvas = self._room.copy()
+        self._figure.draw_below(canvas, self.camera, state.joints_m)
+        cv2.copyTo(self._table, self._table_mask, canvas)
+        for row, prop in enumerate(self._props):
+            prop.draw_shadow(canvas, self.camera, state.positions_m[row], self._table_y_m)
+        strokes = [*self._figure.strokes(self.camera, state), *self._prop_strokes(state)]
+        for _, draw in sorted(strokes, key=lambda stroke: -stroke[0]):
+            draw(canvas)
+        return canvas
+
+    def _prop_strokes(self, state: SceneState) -> list[Stroke]:
+        glare = self._has_glare(state.frame)
+        strokes = [self._object_stroke(state, row, bool(glare[row])) for row in range(len(self._props))]
+        strokes += [
+            self._riser_stroke(row, state.riser_tops_m[row])
+            for row in range(len(self._props))
+            if self._table_y_m - state.riser_tops_m[row, 1] > VISIBLE_RISER_M
+        ]
+        if state.grip > 0 and state.target is not None:
+            strokes.append(self._finger_stroke(state, state.target))
+        if state.grip > CLOSED and state.target is not None and self._conditions.covers_marker:
+            strokes.append(self._palm_stroke(state, state.target))
+        return strokes
+
+    def _has_glare(self, frame: int) -> NDArray[np.bool_]:
+        """Return on which objects' cards there is glare in a frame (n,), for `unread_share` of all frames."""
+        share, count = self._conditions.unread_share, len(self._props)
+        return (
+            random_stream("unread", *self._seeds, frame).random(count) < share if share else np.zeros(count, dtype=bool)
+        )
+
+    def _object_stroke(self, state: SceneState, row: int, glare: bool) -> Stroke:
+        pose, prop = state.camera_from_object(row), self._props[row]
+        draw = prop.draw_with_glare if glare else prop.draw
+        return float(state.positions_m[row, 2]), lambda canvas: draw(canvas, self.camera, pose)
+
+    def _riser_stroke(self, row: int, top_m: Array) -> Stroke:
+        prop = self._props[row]
+        return float(top_m[2]) + 0.005, lambda canvas: prop.draw_riser(canvas, self.camera, top_m, self._table_y_m)
+
+    def _finger_stroke(self, state: SceneState, target: int) -> Stroke:
+        """Draw the closed hand's fingers before the face they hold."""
+        position = state.positions_m[target]
+        edge = position - (0.0, self._items[target].size_m[1] / 2, 0.0)
+        down = np.array([0.0, max(state.finger_overlap_m, 0.0), 0.0])
+        depth = float(position[2]) - 0.01
+        return depth, lambda canvas: self._figure.draw_fingers(canvas, self.camera, state, (edge, down))
+
+    def _palm_stroke(self, state: SceneState, target: int) -> Stroke:
+        """Draw the hand over the card of what it holds."""
+        middle, radius_m = state.positions_m[target] - (0.0, 0.0, 0.02), self._props[target].card_reach_m
+        return float(middle[2]), lambda canvas: self._figure.draw_palm_over(canvas, self.camera, middle, radius_m)
+
+    def _draw_clutter(self, scene: Scene) -> None:
+        """Scatter clutter over the wall and the table."""
+        wall_seed, table_seed = random_stream("clutter", *self._seeds).integers(2**31, size=2).tolist()
+        half, top = np.array([2.2, 1.6]), scene.parameters.table
+        wall = np.array([[2 * half[0], 0.0, 0.0], [0.0, 2 * half[1], 0.0]])
+        corner = np.array([-half[0], -half[1], WALL_Z_M])
+        draw_clutter(self._room, self.camera, corner, wall, self._conditions.clutter, wall_seed)
+        corner = np.array([-top.width_m / 2, self._table_y_m, top.near_z_m])
+        sides = np.array([[top.width_m, 0.0, 0.0], [0.0, 0.0, top.far_z_m - top.near_z_m]])
+        draw_clutter(self._table, self.camera, corner, sides, self._conditions.clutter, table_seed)

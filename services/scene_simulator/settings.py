@@ -1,0 +1,22 @@
+"""Settings of the simulated scene."""
+
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field
+
+from actum.settings import ServiceSettings
+
+
+def _number(text: object) -> object:
+    return int(text) if isinstance(text, str) and text.isdecimal() else text
+
+
+class Settings(ServiceSettings):
+    """What the simulated scene can be told beside what every service can."""
+
+    actor: int = Field(0, ge=0, description="who acts")
+    seed: int = Field(1, ge=0, description="which repetitions")
+    repetitions: int = Field(0, ge=0, description="how often each action is done; 0 goes on for ever")
+    image_hz: Annotated[Literal[0, 5, 10, 15, 30], BeforeValidator(_number)] = Field(
+        15, description="colour images a second; 0 for none"
+    )

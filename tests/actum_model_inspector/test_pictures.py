@@ -1,0 +1,207 @@
+"""What every picture has to be, whatever the model and the recordings."""
+
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+from matplotlib.text import Text
+
+from actum.messages import Segment
+from actum.recording import Recording
+from actum.som import Som
+from actum_model_inspector.action_map import action_map
+from actum_model_inspector.anatomy import Anatomy, PaperAnatomy, PyramidAnatomy
+from actum_model_inspector.answered import Answered, answered_segments
+from actum_model_inspector.confusion import confusion_picture
+from actum_model_inspector.course import course_picture
+from actum_model_inspector.inspection import Picture, pictures, write
+from actum_model_inspector.posture_map import MOST_FIGURES, drawn_units
+from actum_model_inspector.style import action_colours
+from actum_model_trainer.evaluation import Evaluation, Prediction, evaluate
+from handmade import paper_model, pyramid_model
+from people import FRAME_NS, STANDING, lacking, skeleton
+from performers import mark, performance
+from som_classifier.paper_model import PaperMetadata, PaperModel
+from som_classifier.supervised import SupervisedLayer
+
+Record = Callable[..., Recording]
+SMALLEST_PX = 400
+
+
+@pytest.fixture(autouse=True)
+def coarse(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few dots where only the lines matter."""
+    if "sound" not in request.node.name:
+        monkeypatch.setattr("actum_model_inspector.style.DOTS_PER_INCH", 30)
+
+
+def texts(figure: object) -> dict[str, tuple[float, float]]:
+    assert hasattr(figure, "axes")
+    return {
+        text.get_text(): text.get_position() for text in figure.axes[0].findobj(Text) if text.get_text() and text.axes
+    }
+
+
+def drawn(planned: list[Picture], folder: Path, ending: str = "png") -> list[Path]:
+    return [folder / file for file in write(planned, folder, ending).values()]
+
+
+def test_every_picture_of_a_model_and_a_recording_is_a_sound_png(
+    anatomy: Anatomy, recording: Recording, segments: list[Answered], tmp_path: Path
+) -> None:
+    planned = list(pictures(anatomy, segments, evaluate(anatomy.model, [recording])))
+    names = {picture.name for picture in planned}
+    assert {"posture-map", "action-map", "confusion", "trace-push", "time-lift"} <= names
+    assert ("why-push" in names) == ({"movement-map", "arm-map"} <= names) == isinstance(anatomy, PyramidAnatomy)
+    of_lifting = [picture for picture in planned if not picture.name.endswith(("push", "swing", "1", "2", "3"))]
+    for file in drawn(of_lifting, tmp_path):
+        assert min(imread(file).shape[:2]) > SMALLEST_PX
+
+
+def test_pictures_of_a_model_alone_are_its_maps(anatomy: Anatomy) -> None:
+    names = [picture.name for picture in pictures(anatomy, [], None)]
+    assert names == ["posture-map", *["movement-map", "arm-map"] * isinstance(anatomy, PyramidAnatomy), "action-map"]
+
+
+def test_svg_files_parse_and_the_same_picture_makes_the_same_file(anatomy: Anatomy, tmp_path: Path) -> None:
+    planned = [picture for picture in pictures(anatomy, [], None) if picture.name == "action-map"]
+    (file,) = drawn(planned, tmp_path, "svg")
+    first = file.read_bytes()
+    assert ElementTree.fromstring(first).tag.endswith("svg")
+    drawn(planned, tmp_path, "svg")
+    assert file.read_bytes() == first
+
+
+def test_pictures_leave_other_people_s_parameters_alone(anatomy: Anatomy, tmp_path: Path) -> None:
+    before = dict(mpl.rcParams)
+    drawn(list(pictures(anatomy, [], None))[-1:], tmp_path)
+    assert dict(mpl.rcParams) == before
+
+
+def test_names_stand_where_their_actions_are() -> None:
+    written = texts(action_map(PaperAnatomy(paper_model())))
+    assert written["pull"][0] < 0.5 < written["push"][0]
+
+
+def test_an_action_without_a_place_is_named_beneath_the_map() -> None:
+    model = paper_model()
+    deaf = PaperModel(model.layer1, model.layer2, SupervisedLayer(np.array([[1, 0], [1, 0]])), model.metadata)
+    axes = action_map(PaperAnatomy(deaf)).axes[0]
+    assert axes.get_xlabel() == "without a place of their own: push"
+
+
+def many_actions(labels: list[str]) -> PaperAnatomy:
+    about = paper_model().metadata.model_dump() | {"labels": labels}
+    rng = np.random.default_rng(1)
+    layer2 = Som.random(6, 7, 6, rng)
+    layer3 = SupervisedLayer.random(len(labels), 42, rng)
+    return PaperAnatomy(PaperModel(paper_model().layer1, layer2, layer3, PaperMetadata.model_validate(about)))
+
+
+@pytest.mark.parametrize(
+    "labels",
+    [
+        [f"action {number}" for number in range(25)],
+        ["a name that goes on and on " * 6, "put_down_the_thing_that_was_picked_up_before_it_was_put_down"],
+        ["costs $5 and {x}", "_hidden $", "<b>&amp;"],
+        ["\ue000\ue001", "two\nlines\tand \x07 bell"],
+    ],
+    ids=["many", "long", "odd", "undrawable"],
+)
+def test_many_long_and_odd_names_are_drawn(labels: list[str], record: Record, tmp_path: Path) -> None:
+    anatomy = many_actions(labels)
+    skeletons, marks = performance(["push"])
+    recording = record(skeletons, [marks[0].model_copy(update={"label": labels[0]}), marks[1]])
+    segments = answered_segments(anatomy, [recording])
+    planned = list(pictures(anatomy, segments, evaluate(anatomy.model, [recording])))
+    chosen = [picture for picture in planned if not picture.name.startswith(("posture", "trace"))]
+    assert all(imread(file).size for file in drawn(chosen, tmp_path))
+
+
+@pytest.mark.parametrize(
+    "label", ["pick_up_the_cup_and_then_put_it_back", "put down what was taken up", "PICK UP CUP NOW"]
+)
+def test_no_name_leaves_the_page(label: str, record: Record) -> None:
+    anatomy = many_actions([label, f"{label} again"])
+    skeletons, marks = performance(["push"])
+    recording = record(skeletons, [marks[0].model_copy(update={"label": label}), marks[1]])
+    (answered,) = answered_segments(anatomy, [recording])
+    confusion = confusion_picture(evaluate(anatomy.model, [recording]))
+    for figure in (course_picture(anatomy.model, answered), action_map(anatomy), confusion):
+        assert beyond_the_page(figure) == []
+
+
+def beyond_the_page(figure: Figure) -> list[str]:
+    """Name the texts that are not wholly on the page, give or take two dots."""
+    figure.draw_without_rendering()
+    page = figure.bbox.padded(2)
+    drawn_texts = [text for text in figure.findobj(Text) if text.get_text() and text.get_visible()]
+    boxes = [(text.get_text(), text.get_window_extent()) for text in drawn_texts]
+    return [name for name, box in boxes if not (page.contains(*box.min) and page.contains(*box.max))]
+
+
+def test_the_one_instant_of_the_shortest_segment_is_a_dot(anatomy: Anatomy, record: Record) -> None:
+    skeletons, _ = performance(["push"])
+    recording = record(skeletons, still(anatomy.model.min_frames))
+    (answered,) = answered_segments(anatomy, [recording])
+    axes = course_picture(anatomy.model, answered).axes[0]
+    assert {line.get_marker() for line in axes.lines} == {"o"}
+
+
+def test_segments_without_labels_get_pictures_but_no_confusion(
+    anatomy: Anatomy, record: Record, tmp_path: Path
+) -> None:
+    skeletons, _ = performance(["push"])
+    recording = record(skeletons, [mark("start", 0, "a"), mark("end", 19 * FRAME_NS, "a")])
+    planned = list(pictures(anatomy, answered_segments(anatomy, [recording]), None))
+    assert not any(picture.name == "confusion" for picture in planned)
+    assert len(drawn([picture for picture in planned if picture.name.startswith(("time", "action"))], tmp_path)) == 2
+
+
+def still(stamps: int) -> list[Segment]:
+    return [mark("start", 0, "a", "push"), mark("end", (stamps - 1) * FRAME_NS, "a")]
+
+
+@pytest.mark.parametrize("missing", [(), ("head", "left_hand", "right_foot")], ids=["none", "three"])
+def test_a_still_actor_with_joints_missing_is_drawn(
+    anatomy: Anatomy, record: Record, tmp_path: Path, missing: tuple[str, ...]
+) -> None:
+    trembling_m = np.random.default_rng(0).normal(0, 1e-5, (30, 15, 3))
+    skeletons = [
+        skeleton(number * FRAME_NS, lacking(STANDING + moved, *missing)) for number, moved in enumerate(trembling_m)
+    ]
+    segments = answered_segments(anatomy, [record(skeletons, still(20))])
+    assert segments[0].recognition is not None
+    planned = [picture for picture in pictures(anatomy, segments, None) if picture.section.startswith("push")]
+    assert len(drawn(planned, tmp_path)) == (3 if isinstance(anatomy, PyramidAnatomy) else 2)
+
+
+def test_a_handmade_model_of_two_levels_is_explained(record: Record, tmp_path: Path) -> None:
+    anatomy = PyramidAnatomy(pyramid_model())
+    segments = answered_segments(anatomy, [record(*performance(["push"]))])
+    planned = [picture for picture in pictures(anatomy, segments, None) if picture.name == "why-push"]
+    assert drawn(planned, tmp_path)[0].exists()
+
+
+def test_a_confusion_with_rejections_has_a_column_for_them() -> None:
+    predictions = [("push", "push"), ("push", None), ("pull", "push")]
+    evaluation = Evaluation(tuple(Prediction("a", str(n), *each) for n, each in enumerate(predictions)))
+    axes = confusion_picture(evaluation).axes[0]
+    assert [label.get_text() for label in axes.get_xticklabels()] == ["pull", "push", "(rejected)"]
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["pull", "push"]
+
+
+@pytest.mark.parametrize(("side", "every"), [(3, 1), (20, 1), (21, 2), (30, 2), (41, 3)])
+def test_no_more_figures_are_drawn_than_can_be_seen(side: int, every: int) -> None:
+    units, distance = drawn_units(Som(side, 2, np.zeros((side * 2, 9))))
+    assert distance == every
+    assert len({int(unit) // 2 for unit in units}) <= MOST_FIGURES
+
+
+def test_each_of_two_dozen_actions_has_a_colour_of_its_own() -> None:
+    assert len({tuple(colour) for colour in action_colours(24).round(3)}) == 24

@@ -1,0 +1,118 @@
+"""Axes are ridge regression as in the textbook, and a person's held-out scores know nothing of that person."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from actum_model_trainer.discriminants import FOLDS_WITHOUT_PEOPLE, MOST_FOLDS, discriminant_axes, folds_of
+from recognisers import tiny_samples
+
+SHRINKAGE = 0.2
+PEOPLE, ACTIONS = 4, 3
+FOLDS = np.repeat(np.arange(PEOPLE), 6)
+
+
+def training(inputs: int = 40, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Six vectors of each person, two of each action; what is wanted of them."""
+    rng = np.random.default_rng(seed)
+    actions = np.tile(np.repeat(np.arange(ACTIONS), 2), PEOPLE)
+    vectors = rng.normal(size=(ACTIONS, inputs))[actions] + rng.normal(size=(len(actions), inputs)) + 3.0
+    return vectors.astype(np.float32), np.eye(ACTIONS)[actions]
+
+
+def ridge(centred: np.ndarray, wanted: np.ndarray, penalty: float) -> tuple[np.ndarray, np.ndarray]:
+    """(XᵀX + penalty)⁻¹ Xᵀ (wanted − level), and the level."""
+    level = wanted.mean(axis=0)
+    system = centred.T @ centred + penalty * np.eye(centred.shape[1])
+    return np.linalg.solve(system, centred.T @ (wanted - level)), level
+
+
+@pytest.mark.parametrize("inputs", [5, 40])
+def test_axes_are_the_ridge_solution(inputs: int) -> None:
+    vectors, wanted = training(inputs)
+    centred = vectors.astype(np.float64) - vectors.mean(axis=0, dtype=np.float64)
+    expected, level = ridge(centred, wanted, SHRINKAGE * np.square(centred).sum(axis=1).mean())
+    found = discriminant_axes(vectors, wanted, FOLDS, SHRINKAGE)
+    np.testing.assert_allclose(found.axes, expected, atol=1e-5)
+    np.testing.assert_allclose(found.own, centred @ expected + level, atol=1e-4)
+    np.testing.assert_allclose(vectors @ found.axes + found.offsets, found.own, atol=1e-4)
+    assert found.axes.dtype == found.offsets.dtype == np.float32
+
+
+@pytest.mark.parametrize("fold", range(PEOPLE))
+def test_held_out_scores_are_those_of_axes_fitted_without_the_fold(fold: int) -> None:
+    """About the mean of all vectors; the labels of the fold are not looked at."""
+    vectors, wanted = training()
+    centred = vectors.astype(np.float64) - vectors.mean(axis=0, dtype=np.float64)
+    penalty = SHRINKAGE * np.square(centred).sum(axis=1).mean()
+    axes, level = ridge(centred[fold != FOLDS], wanted[fold != FOLDS], penalty)
+    found = discriminant_axes(vectors, wanted, FOLDS, SHRINKAGE)
+    np.testing.assert_allclose(found.held_out[fold == FOLDS], centred[fold == FOLDS] @ axes + level, atol=1e-4)
+
+
+@given(st.integers(0, PEOPLE - 1), st.permutations(range(ACTIONS)))
+def test_labels_of_the_held_out_do_not_matter_to_the_bit(fold: int, order: list[int]) -> None:
+    vectors, wanted = training()
+    relabelled = np.where((fold == FOLDS)[:, None], wanted[:, order], wanted)
+    one, other = (discriminant_axes(vectors, each, FOLDS, SHRINKAGE) for each in (wanted, relabelled))
+    np.testing.assert_array_equal(one.held_out[fold == FOLDS], other.held_out[fold == FOLDS])
+    if order != sorted(order):
+        assert (one.held_out[fold != FOLDS] != other.held_out[fold != FOLDS]).any()
+
+
+def test_where_nobody_else_is_there_scores_are_their_own() -> None:
+    vectors, wanted = training()
+    found = discriminant_axes(vectors, wanted, np.zeros(len(vectors), np.intp), SHRINKAGE)
+    np.testing.assert_array_equal(found.held_out, found.own)
+
+
+def test_an_action_that_nobody_else_does_is_scored_by_axes_that_know_it() -> None:
+    """Axes without it would take it for another with certainty."""
+    vectors, wanted = training()
+    alone = wanted[:, 2].astype(bool) & (FOLDS != 1)
+    found = discriminant_axes(vectors[~alone], wanted[~alone], FOLDS[~alone], SHRINKAGE)
+    own_action = wanted[~alone][:, 2].astype(bool)
+    np.testing.assert_array_equal(found.held_out[own_action], found.own[own_action])
+    assert (found.held_out[~own_action] != found.own[~own_action]).all()
+
+
+def test_the_less_shrinkage_the_nearer_to_what_is_wanted() -> None:
+    vectors, wanted = training()
+    errors = [np.abs(discriminant_axes(vectors, wanted, FOLDS, s).own - wanted).max() for s in (1e-6, 1e-2, 1.0, 1e4)]
+    assert errors == sorted(errors)
+    assert errors[0] < 1e-3
+    assert errors[-1] == pytest.approx(1 - 1 / ACTIONS, abs=1e-3)
+
+
+def test_scores_on_held_out_people_are_worse_than_on_ones_own() -> None:
+    vectors, wanted = training()
+    found = discriminant_axes(vectors, wanted, FOLDS, SHRINKAGE)
+    own, held_out = (np.square(scores - wanted).mean() for scores in (found.own, found.held_out))
+    assert own < held_out
+
+
+def test_people_are_folds() -> None:
+    samples = [replace(tiny_samples()[0], person=person) for person in "bacabc"]
+    assert folds_of(samples).tolist() == [1, 0, 2, 0, 1, 2]
+
+
+def test_many_people_share_folds() -> None:
+    samples = [replace(tiny_samples()[0], person=f"{number:02}") for number in range(MOST_FOLDS + 3)]
+    assert folds_of(samples).tolist() == [*range(MOST_FOLDS), 0, 1, 2]
+
+
+def test_samples_of_one_person_are_divided_within_each_action() -> None:
+    samples = [replace(tiny_samples()[0], label=label) for label in "aabaabaab"]
+    assert folds_of(samples).tolist() == [0, 1, 0, 2, 3, 1, 4, 0, 2]
+    assert FOLDS_WITHOUT_PEOPLE == 5
+
+
+def test_an_action_that_only_one_person_did_is_divided_within() -> None:
+    """Without its only person nothing would be known of it."""
+    samples = [
+        replace(tiny_samples()[0], person=person, label=label) for person, label in ("mx", "my", "mx", "fx", "my")
+    ]
+    assert folds_of(samples).tolist() == [1, 0, 1, 0, 1]

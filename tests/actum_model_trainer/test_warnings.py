@@ -1,0 +1,109 @@
+"""What training examples cannot teach is told in words, with what to record next."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+
+from actum_model_trainer.samples import SegmentSample
+from actum_model_trainer.warnings import warnings_of
+
+NOTHING = np.zeros(0)
+ENOUGH = {"push": 6, "pull": 6, "idle": 6}
+
+
+def examples(counts: Mapping[str, int], people: tuple[str, ...] = ("anna", "ben")) -> list[SegmentSample]:
+    """Make so many examples of each label, done by the people in turn."""
+    labels = [label for label, n in counts.items() for _ in range(n)]
+    return [
+        SegmentSample(label, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, people[i % len(people)], "a.mcap", str(i))
+        for i, label in enumerate(labels)
+    ]
+
+
+def test_enough_examples_by_two_people_with_background_need_no_warning() -> None:
+    assert warnings_of(examples(ENOUGH), [("push", "push"), ("pull", "pull")] * 6) == []
+
+
+def test_no_example_is_nothing_to_warn_of() -> None:
+    assert warnings_of([], []) == []
+
+
+def test_one_person_says_nothing_of_others() -> None:
+    assert warnings_of(examples(ENOUGH, people=("anna",)), []) == [
+        "All examples are of one person, anna: how others differ cannot be known. Record a second person."
+    ]
+
+
+def test_people_that_are_not_named_may_be_one() -> None:
+    (said,) = warnings_of(examples(ENOUGH, people=("",)), [])
+    assert said.startswith("No recording says who it shows") and "--person" in said
+
+
+def test_few_examples_are_named_with_how_many_more() -> None:
+    assert warnings_of(examples({"push": 2, "lift": 4, "pull": 5, "idle": 5}), []) == [
+        "Few examples: lift has 4 (1 more) and push has 2 (3 more). Record at least 5 of each action."
+    ]
+
+
+def test_actions_may_have_three_times_as_many_examples_as_others() -> None:
+    assert warnings_of(examples({"push": 18, "pull": 6, "idle": 6}), []) == []
+
+
+def test_more_than_three_times_as_many_are_unbalanced() -> None:
+    assert warnings_of(examples({"push": 20, "pull": 6, "lift": 5, "turn": 7, "idle": 5}), []) == [
+        "Unbalanced examples: push has 20, more than 3 times as many as lift (5) and pull (6). "
+        "Record 2 more of lift and 1 more of pull."
+    ]
+
+
+def test_background_may_be_as_much_as_there_is() -> None:
+    assert warnings_of(examples({"push": 6, "pull": 6, "idle": 100}), []) == []
+
+
+def test_without_background_what_is_none_of_the_actions_is_a_guess() -> None:
+    (said,) = warnings_of(examples({"push": 6, "pull": 6}), [])
+    assert said.startswith("No segment is labelled idle or background: what is none of the actions is a guess.")
+    assert warnings_of(examples({"push": 6, "pull": 6, "background": 6}), []) == []
+
+
+@pytest.mark.parametrize(
+    ("held_out", "said"),
+    [
+        (
+            [("push", "push")] * 4 + [("push", "pull")] * 2 + [("pull", "pull")] * 2,
+            "pull and push are not told apart: of examples left out, push was taken for pull in 2 of 6. "
+            "Record 5 more of push, also by people who are not in yet; ",
+        ),
+        (
+            [("push", "push")] * 3 + [("push", "pull")] + [("pull", "pull")] * 3 + [("pull", "push")],
+            "pull and push are not told apart: of examples left out, pull was taken for push in 1 of 4 "
+            "and push was taken for pull in 1 of 4. Record 5 more of pull and push, ",
+        ),
+    ],
+)
+def test_two_actions_that_are_mixed_up_are_named_with_what_to_record(
+    held_out: list[tuple[str, str]], said: str
+) -> None:
+    (warning,) = warnings_of(examples(ENOUGH), held_out)
+    assert warning.startswith(said)
+    assert warning.endswith("do them more differently or give them one name.")
+
+
+@pytest.mark.parametrize(
+    "held_out",
+    [
+        [("push", "pull")],
+        [("push", "pull")] * 2 + [("push", "push")] * 4 + [("pull", "pull")] * 3,
+        [("push", "pull"), ("push", "lift"), *[("push", "push")] * 2],
+    ],
+    ids=["a single mistake", "less than a quarter", "two mistakes of different kinds"],
+)
+def test_now_and_then_a_mistake_is_no_warning(held_out: list[tuple[str, str]]) -> None:
+    assert warnings_of(examples(ENOUGH), held_out) == []
+
+
+def test_the_pair_that_is_mixed_up_most_comes_first() -> None:
+    held_out = [("push", "pull")] * 2 + [("lift", "turn")] * 3
+    first, second = warnings_of(examples(ENOUGH), held_out)
+    assert first.startswith("lift and turn") and second.startswith("pull and push")
