@@ -14,6 +14,7 @@ from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import ObjectSpec
 from marker_tracker.settings import Settings as TrackerSettings
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from scene_simulator.actor import EYE
 from scene_simulator.conditions import Conditions
 from scene_simulator.programme import Task
@@ -66,7 +67,8 @@ def _trial(
 
 def _observed(simulator: Simulator) -> Iterator[Message]:
     """Yield postures, objects and truth, and at each end the action as if it were recognised."""
-    preprocessor, tracker, started = PosePreprocessor(), MarkerTracker(_tracker_settings(simulator)), {}
+    tracker, started = MarkerTracker(_tracker_settings(simulator)), {}
+    preprocessor = PosePreprocessor(PoseSettings.defaults())
     for messages in simulator.frames():
         for message in messages:
             if isinstance(message, Skeleton):
