@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.som.blas import row_product
+from actum.som.blas import row_matmul
 
 Floats = NDArray[Any]
 
@@ -54,7 +54,7 @@ class StageDiscriminants:
         total = np.zeros(self.offsets.shape[1], np.float32)
         for axes, offsets, weight in zip(self.axes, self.offsets, weights, strict=True):
             if weight:
-                total += np.float32(weight) * (row_product(vector, axes) + offsets)
+                total += np.float32(weight) * (row_matmul(vector, axes) + offsets)
         return total
 
 
