@@ -38,7 +38,7 @@ from actum_model_trainer.training import train
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from scene_simulator.programme import balanced_programme
-from scene_simulator.source import Simulator, labelled_stream
+from scene_simulator.simulator import Simulator, labelled_stream
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.presets import DEFAULT

@@ -17,8 +17,8 @@ from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from scene_simulator.actor import EYE
 from scene_simulator.conditions import Conditions
-from scene_simulator.programme import Sample
-from scene_simulator.source import Simulator
+from scene_simulator.programme import Task
+from scene_simulator.simulator import Simulator
 
 from .trials import Trial
 
@@ -32,7 +32,7 @@ LEFT_M = 0.005
 class Scene:
     """One person who does a programme under conditions; the same numbers, the same scene."""
 
-    programme: Sequence[Sample]
+    programme: Sequence[Task]
     person: int
     conditions: Conditions
     image_hz: int

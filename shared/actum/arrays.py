@@ -16,6 +16,7 @@ Indices = NDArray[np.intp]
 """Places in another array."""
 
 UNKNOWN = (math.nan, math.nan, math.nan)
+"""Where a missing joint is."""
 
 
 def joints_to_array(joints: Sequence[Joint]) -> Array:

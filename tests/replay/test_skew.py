@@ -15,7 +15,7 @@ from marker_tracker.settings import Settings
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from scene_simulator.programme import balanced_programme
-from scene_simulator.source import Simulator
+from scene_simulator.simulator import Simulator
 from wire import without_seq
 
 SKEW_NS = 2 * SECOND_NS

@@ -12,9 +12,10 @@ from chain import answers, by_key, delayed
 from people import reaching
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
-from sensor_gateway.camera.landmarks import Landmarks
-from sensor_gateway.camera.perceiving import Optics, Perceiver
-from sensor_gateway.camera.video import Picture
+from sensor_gateway.captured_picture import Picture
+from sensor_gateway.optics import Optics
+from sensor_gateway.people.landmarks import Landmarks
+from sensor_gateway.perceiver import Perceiver
 
 FRAME_NS = SECOND_NS // 20
 FRAMES = 80
