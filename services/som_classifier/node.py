@@ -13,7 +13,8 @@ from actum.skeletons import JOINTS
 from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.recognition import Recognition
-from som_classifier.segments import ClosedSegment, OpenSegment, Segmenter
+from som_classifier.segmenter import Segmenter
+from som_classifier.segments import ClosedSegment, OpenSegment
 from som_classifier.settings import Settings
 from som_classifier.watched_model import WatchedModel
 
