@@ -167,7 +167,7 @@ class Segmenter:
         agent = segment.whose if segment.whose is not None or first is None else first[1]
         stream = None if agent is None else self._streams.of(agent)
         if stream is None or agent is None:
-            cause = self._streams.why_not(start_ns, segment.end_ns) if agent is None else None
+            cause = self._streams.first_reason(start_ns, segment.end_ns) if agent is None else None
             reason = "no person" if cause is None else "no person with a usable frame"
             return self._reject(segment, with_cause(reason, cause))
         if segment.end_ns - start_ns > MAX_SEGMENT_NS:

@@ -56,6 +56,7 @@ class _Learner:
         self._places = substeps * np.arange(cols) + (shifts[:, None] if shifts.any() else shifts[:1, None])
 
     def adapt(self, x: Array, row_gauss: Array, col_gauss: Array) -> None:
+        """Take one step: find the winner of x (dim,), and move the weights towards x."""
         known = ~np.isnan(x)
         if not known.all():
             self._adapt_known(x, known, row_gauss, col_gauss)

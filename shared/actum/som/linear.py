@@ -11,9 +11,9 @@ from actum.som.grid import Grid
 Doubles = NDArray[np.float64]
 
 _ROUNDS = 100
-"""Orthogonal iterations: more than enough for two components that differ at all."""
+"""Orthogonal iterations; in each the error falls by the ratio of the seventh variance to the second."""
 _DIRECTIONS = 6
-"""Kept while iterating: the more there are beside the two that are wanted, the faster these converge."""
+"""Kept while iterating: with more than the two that are wanted these converge faster."""
 
 
 def linear_weights(vectors: NDArray[Any], grid: Grid) -> Doubles:
