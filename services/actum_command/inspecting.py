@@ -54,22 +54,22 @@ def inspect_command(
 
 def _inspect(model: Model, recordings: list[Recording], folder: Path, ending: str) -> int:
     """Write pictures and page, and return how many pictures there are."""
-    from actum_model_inspector.anatomy import anatomy_of  # Matplotlib takes its time and need not be installed
     from actum_model_inspector.answered import answered_segments
     from actum_model_inspector.folder import note
+    from actum_model_inspector.html_page import page
     from actum_model_inspector.inspection import pictures, write
-    from actum_model_inspector.page import page
+    from actum_model_inspector.model_maps import maps_of  # Matplotlib takes its time and need not be installed
     from actum_model_trainer.evaluation import evaluate
 
-    anatomy = anatomy_of(model)
+    maps = maps_of(model)
     with bars() as progress:
-        segments = answered_segments(anatomy, recordings, progress)
+        segments = answered_segments(maps, recordings, progress)
         if recordings and not segments:
             tell_unread(recordings)
             fail("no segment in these recordings: start and end marks make one, see actum segment --help")
         labelled = any(segment.label is not None for segment in segments)
         evaluation = evaluate(model, recordings, progress) if labelled else None
-        planned = list(pictures(anatomy, segments, evaluation))
+        planned = list(pictures(maps, segments, evaluation))
         written = write(planned, folder, ending, progress)
     index = folder / "index.html"
     index.write_text(page(model, segments, evaluation, planned, written), encoding="utf-8")

@@ -12,8 +12,8 @@ import typer
 from actum.recording import Recording, RecordingError
 from actum_command.context import console, fail, refuse_ending, refuse_unwritable, say
 from actum_command.progress import bars
+from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import Evaluation, evaluate
-from actum_model_trainer.leaving_out import leave_one_person_out
 from actum_model_trainer.report import report
 from actum_model_trainer.samples import samples_from, select
 from actum_model_trainer.training import TrainingError, train

@@ -10,12 +10,12 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from actum.som import Som
-from actum_model_inspector.anatomy import Anatomy, Floats
-from actum_model_inspector.answered import Answered
-from actum_model_inspector.labels import Room, text_size
-from actum_model_inspector.lettering import lines_of
-from actum_model_inspector.regions import Regions, centre, largest_patch, regions
+from actum_model_inspector.answered import AnsweredSegment
+from actum_model_inspector.label_placement import LabelSpace, text_size
+from actum_model_inspector.model_maps import Floats, ModelMaps
+from actum_model_inspector.regions import Regions, centre, largest_component, regions
 from actum_model_inspector.style import HALO, INK, PAPER, action_colours, bare, canvas, in_house_style, paler, tiles
+from actum_model_inspector.text_layout import lines_of
 
 SIDE_IN = 10.0
 PALEST = 0.15
@@ -24,17 +24,17 @@ BOLD = 1.15
 
 
 @in_house_style
-def action_map(anatomy: Anatomy, segments: Sequence[Answered] = ()) -> Figure:
+def action_map(maps: ModelMaps, segments: Sequence[AnsweredSegment] = ()) -> Figure:
     """Colour each unit by the action whose neuron answers most there, and put a dot where each segment fell."""
-    som, labels = anatomy.actions, anatomy.model.labels
-    found = regions(anatomy.answers(), som.grid)
+    som, labels = maps.actions, maps.model.labels
+    found = regions(maps.answers(), som.grid)
     longest = max(som.rows, som.cols)
     size = max(SIDE_IN * som.cols / longest, 6.0), max(SIDE_IN * som.rows / longest, 3.0) + 0.85
     figure = canvas(*size, f"The map of actions: {som.rows} × {som.cols} units, {len(labels)} actions")
     axes = figure.add_subplot()
     _draw_regions(axes, found, len(labels))
     dots = [segment for segment in segments if segment.place is not None]
-    room = Room((-0.5, -0.5, som.cols - 0.5, som.rows - 0.5))
+    room = LabelSpace((-0.5, -0.5, som.cols - 0.5, som.rows - 0.5))
     _name_regions(axes, found, labels, room)
     _draw_dots(axes, som, dots, room)
     axes.set_title(_legend(dots))
@@ -71,10 +71,10 @@ def _draw_regions(axes: Axes, found: Regions, actions: int) -> None:
     bare(axes)
 
 
-def _name_regions(axes: Axes, found: Regions, labels: Sequence[str], room: Room) -> None:
+def _name_regions(axes: Axes, found: Regions, labels: Sequence[str], room: LabelSpace) -> None:
     """Write each action's name into its largest patch."""
     for index, label in enumerate(labels):
-        patch = largest_patch(found.actions == index)
+        patch = largest_component(found.actions == index)
         if not len(patch):
             continue
         row, col = centre(patch)
@@ -88,7 +88,7 @@ def _name_regions(axes: Axes, found: Regions, labels: Sequence[str], room: Room)
         )  # fmt: skip
 
 
-def _draw_dots(axes: Axes, som: Som, dots: Sequence[Answered], room: Room) -> None:
+def _draw_dots(axes: Axes, som: Som, dots: Sequence[AnsweredSegment], room: LabelSpace) -> None:
     """Draw a dot per segment, those on one unit side by side, the wrong ones ringed and named."""
     units = np.array([dot.place for dot in dots], dtype=np.intp)
     places = som.coordinates[units][:, ::-1] + beside_each_other(units)
@@ -101,7 +101,7 @@ def _draw_dots(axes: Axes, som: Som, dots: Sequence[Answered], room: Room) -> No
         _name_mistakes(axes, som, int(unit), done, room)
 
 
-def _name_mistakes(axes: Axes, som: Som, unit: int, done: Counter[str], room: Room) -> None:
+def _name_mistakes(axes: Axes, som: Som, unit: int, done: Counter[str], room: LabelSpace) -> None:
     """Write beside a unit what was really done there, if there is room."""
     text = "\n".join(lines_of(label, 18, 1) + (f" × {n}" if n > 1 else "") for label, n in done.most_common())
     row, col = som.coordinates[unit]
@@ -120,7 +120,7 @@ def _in_units(points: float, shape: tuple[int, ...]) -> float:
     return points * max(shape) / (72 * SIDE_IN)
 
 
-def _legend(dots: Sequence[Answered]) -> str:
+def _legend(dots: Sequence[AnsweredSegment]) -> str:
     ground = "each unit in the colour of the action that answers most there; pale: hardly more than the next one"
     if not dots:
         return ground

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.recording import Recording
-from actum_model_inspector.anatomy import Anatomy
+from actum_model_inspector.model_maps import ModelMaps
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.samples import classifier_input, closed_segments, sensors
 from som_classifier.model import Model
@@ -17,7 +17,7 @@ from som_classifier.streams import Frame
 
 
 @dataclass(frozen=True, eq=False)
-class Answered:
+class AnsweredSegment:
     """A segment and the model's answer.
 
     Attributes:
@@ -48,7 +48,9 @@ class Answered:
         return shares
 
 
-def answered_segments(anatomy: Anatomy, recordings: Sequence[Recording], progress: Progress = silent) -> list[Answered]:
+def answered_segments(
+    maps: ModelMaps, recordings: Sequence[Recording], progress: Progress = silent
+) -> list[AnsweredSegment]:
     """Cut every segment out of the recordings, labelled or not, and let the model answer it.
 
     Raises:
@@ -59,7 +61,7 @@ def answered_segments(anatomy: Anatomy, recordings: Sequence[Recording], progres
         progress("recognising segments", done, len(recordings))
         for sensor in sensors(recording):
             closed = closed_segments(classifier_input(recording, sensor))
-            answered += [_answered(anatomy, recording, segment) for segment in closed]
+            answered += [_answered(maps, recording, segment) for segment in closed]
     progress("recognising segments", len(recordings), len(recordings))
     return answered
 
@@ -70,11 +72,11 @@ def encoded(model: Model, frames: Sequence[Frame]) -> list[Frame]:
     return [replace(frame, code=encoder.encode(frame)) for frame in frames]
 
 
-def _answered(anatomy: Anatomy, recording: Recording, closed: Closed) -> Answered:
+def _answered(maps: ModelMaps, recording: Recording, closed: Closed) -> AnsweredSegment:
     valid = [frame for frame in closed.frames if frame.valid]
-    unanswered = Answered(str(recording.path), recording.person, closed.segment_id, closed.label, valid)
-    if closed.reason or len(valid) < anatomy.model.min_frames:
+    unanswered = AnsweredSegment(str(recording.path), recording.person, closed.segment_id, closed.label, valid)
+    if closed.reason or len(valid) < maps.model.min_frames:
         return unanswered
-    frames = encoded(anatomy.model, valid)
-    recognition = anatomy.model.recognise(frames, complete=True)
-    return replace(unanswered, recognition=recognition, place=anatomy.place(frames))
+    frames = encoded(maps.model, valid)
+    recognition = maps.model.recognise(frames, complete=True)
+    return replace(unanswered, recognition=recognition, place=maps.place(frames))

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 
 from actum.skeletons import INDEX
 from actum.som import Som
-from actum_model_inspector.bodies import MIDDLE_M, STANDING, Floats, Pen, draw_arrows, draw_bodies, rest
 from actum_model_inspector.posture_map import draw_ground, drawn_units, map_size, name_sides, which_are_drawn
+from actum_model_inspector.stick_figures import MIDDLE_M, STANDING, Floats, Pen, draw_arrows, draw_figures, rest
 from actum_model_inspector.style import FAINT, canvas, in_house_style
 from som_classifier.handedness import mirrored
 from som_classifier.layers import ARM_SPEED
@@ -56,9 +56,9 @@ class ArmsOnBodies:
         return ArmsOnBodies(mirrored(self.others), mirrored(self.arms), mirrored(self.steps_m))
 
     def draw(self, axes: Axes, places: Floats, size: float, lengthened: float) -> None:
-        """Draw the arms with arrows, the steps lengthened, and the bodies faintly; places and size as `draw_bodies`."""
-        draw_bodies(axes, self.others, places, size, pen=Pen(1.0, FAINT, 0.6))
-        draw_bodies(axes, self.arms, places, size, pen=Pen(1.8))
+        """Draw arms with arrows (lengthened steps) and, faintly, bodies; places and size as `draw_figures`."""
+        draw_figures(axes, self.others, places, size, pen=Pen(1.0, FAINT, 0.6))
+        draw_figures(axes, self.arms, places, size, pen=Pen(1.8))
         joints = np.where(np.isnan(self.arms), 0.0, self.arms)
         draw_arrows(axes, joints, self.steps_m * lengthened, places, size, ARROW_IN)
 

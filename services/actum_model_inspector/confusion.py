@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from actum_model_inspector.lettering import columns, lines_of
 from actum_model_inspector.style import FAINT, INK, PAPER, bare, canvas, explain, in_house_style, tiles
+from actum_model_inspector.text_layout import columns, lines_of
 from actum_model_trainer.evaluation import Evaluation, wilson_interval
 
 CELL_IN = 0.42

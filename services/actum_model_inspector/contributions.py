@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from actum.messages import Hand
-from actum_model_inspector.anatomy import Floats, complete_weights
+from actum_model_inspector.model_maps import Floats, complete_weights
 from som_classifier.layers import HEARD
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.streams import Frame

@@ -4,8 +4,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from actum.som import Som
-from actum_model_inspector.bodies import LONGEST_ARROW_M, Floats, Pen, draw_arrows, draw_bodies, rest
 from actum_model_inspector.posture_map import FILLED, draw_ground, drawn_units, map_size, name_sides, which_are_drawn
+from actum_model_inspector.stick_figures import LONGEST_ARROW_M, Floats, Pen, draw_arrows, draw_figures, rest
 from actum_model_inspector.style import FAINT, canvas, in_house_style
 from som_classifier.movement import LAG_TIME_CONSTANT_S
 
@@ -20,7 +20,7 @@ def movement_map(velocities: Som) -> Figure:
     units, every = drawn_units(velocities)
     places = velocities.coordinates[units][:, ::-1]
     bodies = rest(len(units))
-    draw_bodies(axes, bodies, places, FILLED * every, pen=Pen(0.7, FAINT, 0.6))
+    draw_figures(axes, bodies, places, FILLED * every, pen=Pen(0.7, FAINT, 0.6))
     speeds_mps, steps_m = arrows_of(velocities)
     draw_arrows(axes, bodies, steps_m[units], places, FILLED * every, width_in=0.016)
     axes.set_title(

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from actum.som import Som
-from actum_model_inspector.anatomy import Anatomy
-from actum_model_inspector.bodies import WHOLE, Pen, draw_bodies, rest
+from actum_model_inspector.model_maps import ModelMaps
+from actum_model_inspector.stick_figures import WHOLE, Pen, draw_figures, rest
 from actum_model_inspector.style import FAINT, LEFT, RIGHT, bare, canvas, in_house_style, tiles
 
 Floats = NDArray[Any]
@@ -22,29 +22,29 @@ _DARKEST = 0.35
 
 
 @in_house_style
-def posture_map(anatomy: Anatomy) -> Figure:
+def posture_map(maps: ModelMaps) -> Figure:
     """Draw each unit's weights as a figure, on the U-matrix."""
-    som = anatomy.postures
+    som = maps.postures
     figure = canvas(*map_size(som), f"The posture map: {som.rows} × {som.cols} units, each standing for a posture")
     axes = figure.add_subplot()
-    every = draw_postures(axes, anatomy)
+    every = draw_postures(axes, maps)
     axes.set_title(f"{which_are_drawn(every)}neighbours are alike; dark ground: a border between unlike postures")
     name_sides(axes)
     return figure
 
 
-def draw_postures(axes: Axes, anatomy: Anatomy, strength: float = 1.0) -> int:
+def draw_postures(axes: Axes, maps: ModelMaps, strength: float = 1.0) -> int:
     """Draw the map and return how many units there are from one figure to the next."""
-    som = anatomy.postures
+    som = maps.postures
     draw_ground(axes, som, strength)
     units, every = drawn_units(som)
-    draw_units(axes, anatomy, anatomy.unit_points(), units, every, strength)
+    draw_units(axes, maps, maps.unit_points(), units, every, strength)
     return every
 
 
 def draw_units(
     axes: Axes,
-    anatomy: Anatomy,
+    maps: ModelMaps,
     points: Floats,
     units: NDArray[np.intp],
     size: float,
@@ -52,13 +52,13 @@ def draw_units(
     zorder: float = 2.0,
 ) -> None:
     """Draw some units' figures, given all units' points; where those are three joints, with the body they belong to."""
-    places = anatomy.postures.coordinates[units][:, ::-1]
-    whole = anatomy.figure is WHOLE
+    places = maps.postures.coordinates[units][:, ::-1]
+    whole = maps.figure is WHOLE
     if not whole:
         pen = Pen(0.6, FAINT, 0.5 * strength, zorder)
-        draw_bodies(axes, rest(len(units)), places, FILLED * size, pen=pen)
+        draw_figures(axes, rest(len(units)), places, FILLED * size, pen=pen)
     pen = Pen(1.2 if whole else 1.8, strength=strength, zorder=zorder)
-    draw_bodies(axes, points[units], places, FILLED * size, anatomy.figure, pen)
+    draw_figures(axes, points[units], places, FILLED * size, maps.figure, pen)
 
 
 def drawn_units(som: Som) -> tuple[NDArray[np.intp], int]:

@@ -33,7 +33,7 @@ def regions(answers: Floats, grid: Grid) -> Regions:
     return Regions(answers.argmax(axis=1).reshape(shape), (lead / max(lead.max(), 1e-12)).reshape(shape))
 
 
-def largest_patch(own: NDArray[np.bool_]) -> Indices:
+def largest_component(own: NDArray[np.bool_]) -> Indices:
     """Return row and column of the units of the largest connected patch of a mask, (n, 2), n = 0 where it is empty."""
     left = {(int(row), int(col)) for row, col in np.argwhere(own)}
     largest: set[tuple[int, int]] = set()

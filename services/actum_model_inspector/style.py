@@ -16,7 +16,7 @@ from matplotlib.font_manager import findfont, get_font, get_font_names
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
-from actum_model_inspector.lettering import lines_of, on_one_line
+from actum_model_inspector.text_layout import lines_of, on_one_line
 
 Floats = NDArray[Any]
 

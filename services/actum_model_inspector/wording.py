@@ -1,16 +1,16 @@
 """What pictures say in words."""
 
-from actum_model_inspector.answered import Answered
-from actum_model_inspector.lettering import shortened
+from actum_model_inspector.answered import AnsweredSegment
+from actum_model_inspector.text_layout import shortened
 
 
-def headline(answered: Answered) -> str:
+def headline(answered: AnsweredSegment) -> str:
     """Say what was done and what it was taken for: `push: 41 frames, recognised push 0.93`."""
     done = shortened(answered.label) if answered.label is not None else "an action without a label"
     return f"{done}: {len(answered.frames)} frames, {verdict(answered)}"
 
 
-def verdict(answered: Answered) -> str:
+def verdict(answered: AnsweredSegment) -> str:
     """Say what a segment was taken for."""
     if answered.recognition is None:
         return "rejected"

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.som import Som
-from actum_model_trainer.description import labels_of, provenance
+from actum_model_trainer.median_distances import median_neighbour_distance2, median_quantization_error2
 from actum_model_trainer.progress import Progress
+from actum_model_trainer.provenance import actions_of, provenance
 from actum_model_trainer.samples import SegmentSample
-from actum_model_trainer.typical import typical_distance2, typical_error2
 from som_classifier.attention import PostureInput
 from som_classifier.paper_model import PaperDescription, PaperModel
 from som_classifier.presets import MapPlan, PaperPreset
@@ -57,17 +57,17 @@ def train(samples: Sequence[SegmentSample], preset: PaperPreset, seed: int, prog
     Raises:
         TrainingError: fewer than two actions among the samples.
     """
-    labels = labels_of(samples)
+    labels = actions_of(samples)
     rng = np.random.default_rng(seed)
     shown = [_Shown.of(sample, preset.posture) for sample in samples]
     postures = np.concatenate([own.vectors for own in shown])
     layer1 = _trained_map(preset.layer1, postures, rng, progress, "layer 1")
-    centre_contrast = preset.centre_contrast * typical_error2(layer1, postures)
+    centre_contrast = preset.centre_contrast * median_quantization_error2(layer1, postures)
     paths = [own.way(layer1, centre_contrast) for own in shown]
     points = max(2, *map(len, paths))
     vectors = np.stack([ordered_vector(path, points) for path in paths])
     layer2 = _trained_map(preset.layer2, vectors, rng, progress, "layer 2")
-    contrast = preset.relative_contrast * typical_distance2(vectors)
+    contrast = preset.relative_contrast * median_neighbour_distance2(vectors)
     heard = np.stack([activity(layer2.excess2(vector), contrast) for vector in vectors])
     targets = np.array([labels.index(sample.label) for sample in samples])
     untrained = SupervisedLayer.random(len(labels), heard.shape[1], rng)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from actum_model_trainer.augmentation import View
+from actum_model_trainer.augmentation import Variant
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.layers import FirstMaps
 from som_classifier.pyramid import Instant, Pyramid, Trail, quantised
@@ -35,7 +35,7 @@ class Pooling:
         self._pyramid = pyramid
 
     def vectors(
-        self, samples: Sequence[SegmentSample], shown: Sequence[Sequence[View]], stages: Sequence[Sequence[float]]
+        self, samples: Sequence[SegmentSample], shown: Sequence[Sequence[Variant]], stages: Sequence[Sequence[float]]
     ) -> list[Pooled]:
         """Return the pooled vectors of each stage, whose shares of the action are given, evenly thinned."""
         rows: list[list[Floats]] = [[] for _ in stages]
@@ -54,7 +54,7 @@ class Pooling:
 class _Trails:
     """One sample's views, each summed up once, as seen and in a mirror."""
 
-    def __init__(self, pooling: Pooling, sample: SegmentSample, views: Sequence[View]) -> None:
+    def __init__(self, pooling: Pooling, sample: SegmentSample, views: Sequence[Variant]) -> None:
         self._first, self._views = pooling.first, views
         self._left_handed = [pooling.mirrors and hand == "left" for hand in sample.acting_hands]
         steps_um = np.rint(sample.motion.sum(axis=1) * _UM_PER_M).astype(np.int64)
@@ -70,7 +70,7 @@ class _Trails:
             self._instants[view, as_whole] = self._summed(self._views[view] if as_whole else self._views[view].mirrored)
         return Trail(self._instants[view, as_whole][: frames + 1])
 
-    def _summed(self, view: View) -> list[Instant]:
+    def _summed(self, view: Variant) -> list[Instant]:
         activities = self._first.activities(view.postures, view.velocities)
         sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
         np.cumsum(quantised(activities), axis=0, out=sums[1:])

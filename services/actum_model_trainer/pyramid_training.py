@@ -10,16 +10,16 @@ from numpy.typing import NDArray
 
 from actum.node import SECOND_NS
 from actum.som import Som
-from actum_model_trainer.augmentation import View, views
-from actum_model_trainer.confidence import calibrated_gains, familiar, usual_log_errors
-from actum_model_trainer.description import labels_of, provenance
-from actum_model_trainer.discriminants import discriminant_axes, folds_of
-from actum_model_trainer.hands import keep_to_one_hand
+from actum_model_trainer.augmentation import Variant, variants
+from actum_model_trainer.confidence import expected_log_errors, familiarity_threshold, inverse_temperatures
+from actum_model_trainer.discriminants import FittedStage, fit_discriminants, folds_of
+from actum_model_trainer.hand_preference import people_prefer_one_hand
+from actum_model_trainer.median_distances import median_quantization_error2
 from actum_model_trainer.pooling import Pooling
 from actum_model_trainer.progress import Progress
+from actum_model_trainer.provenance import actions_of, provenance
 from actum_model_trainer.samples import SegmentSample
-from actum_model_trainer.typical import typical_error2
-from actum_model_trainer.upper_layers import Scored, UpperLayers, train_upper
+from actum_model_trainer.upper_layers import UpperLayers, train_upper
 from som_classifier.layers import FirstMaps, arm_inputs, frame_inputs
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid import Pyramid
@@ -40,10 +40,10 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
     Raises:
         TrainingError: fewer than two actions among the samples, or all samples move alike.
     """
-    labels = labels_of(samples)
+    labels = actions_of(samples)
     rng = np.random.default_rng(seed)
-    mirrors = keep_to_one_hand(samples)
-    shown = [list(views(sample, _varied(preset, samples), mirrors, rng)) for sample in samples]
+    mirrors = people_prefer_one_hand(samples)
+    shown = [list(variants(sample, _varied(preset, samples), mirrors, rng)) for sample in samples]
     first = _first_maps([view for own in shown for view in own], preset, rng, progress)
     targets = np.array([labels.index(sample.label) for sample in samples])
     pooling = Pooling(first, Pyramid(preset.levels, preset.overlap), mirrors)
@@ -53,7 +53,7 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
         fitted.append(_fitted(vectors, owners, targets, folds_of(samples), preset.shrinkage))
     progress("discriminant axes", len(preset.stages), len(preset.stages))
     upper = train_upper(fitted[-1], len(labels), preset, rng, progress)
-    usual = usual_log_errors(first, [own[0].postures for own in shown], targets, preset.prior)
+    usual = expected_log_errors(first, [own[0].postures for own in shown], targets, preset.prior)
     origin = provenance(samples, preset, seed) | {"mirrors": mirrors, "usual_log_errors": usual}
     return _assembled(samples, first, fitted, upper, origin, preset)
 
@@ -65,7 +65,7 @@ def _varied(preset: PyramidPreset, samples: Sequence[SegmentSample]) -> PyramidP
 
 
 def _first_maps(
-    shown: Sequence[View], preset: PyramidPreset, rng: np.random.Generator, progress: Progress
+    shown: Sequence[Variant], preset: PyramidPreset, rng: np.random.Generator, progress: Progress
 ) -> FirstMaps:
     postures = np.concatenate([view.postures for view in shown])
     velocities = np.concatenate([view.velocities for view in shown])
@@ -84,7 +84,7 @@ def _first_maps(
 def _first_map(inputs: Floats, preset: PyramidPreset, report: Callable[[int, int], None]) -> tuple[Som, float]:
     """Return a map of the inputs and the contrast of its activity."""
     som = Som.linear(*preset.units, inputs).train_batch(inputs, preset.unit_epochs, preset.unit_radius, report)
-    return som, preset.relative_contrast * typical_error2(som, inputs)
+    return som, preset.relative_contrast * median_quantization_error2(som, inputs)
 
 
 def _some(vectors: Floats, rng: np.random.Generator) -> NDArray[np.float32]:
@@ -102,24 +102,24 @@ def _some(vectors: Floats, rng: np.random.Generator) -> NDArray[np.float32]:
 
 def _fitted(
     vectors: NDArray[np.float32], owners: Indices, targets: Indices, folds: Indices, shrinkage: float
-) -> Scored:
+) -> FittedStage:
     wanted = np.eye(targets.max() + 1)[targets[owners]]
-    axes = discriminant_axes(vectors, wanted, folds[owners], shrinkage)
-    return Scored(axes, owners, targets[owners], folds[owners])
+    axes = fit_discriminants(vectors, wanted, folds[owners], shrinkage)
+    return FittedStage(axes, owners, targets[owners])
 
 
 def _assembled(
     samples: Sequence[SegmentSample],
     first: FirstMaps,
-    fitted: Sequence[Scored],
+    fitted: Sequence[FittedStage],
     upper: UpperLayers,
     origin: dict[str, Any],
     preset: PyramidPreset,
 ) -> PyramidModel:
     durations = np.log([max(np.ptp(sample.stamps_ns) / SECOND_NS, SHORTEST_S) for sample in samples])
     stages = Stages(
-        np.stack([stage.axes.axes for stage in fitted]),
-        np.stack([stage.axes.offsets for stage in fitted]),
+        np.stack([stage.discriminants.axes for stage in fitted]),
+        np.stack([stage.discriminants.offsets for stage in fitted]),
         tuple(float(np.mean(fractions)) for fractions in preset.stages),
         float(durations.mean()),
         float(max(durations.std(), SMALLEST_LOG_SD)),
@@ -136,18 +136,20 @@ def _assembled(
         "log_duration_mean": stages.log_duration_mean,
         "log_duration_sd": stages.log_duration_sd,
         "concept_contrast": upper.concepts.contrast,
-        "gains": calibrated_gains(fitted, upper, prior, people, any(sample.depth_inferred for sample in samples)),
-        "familiar": familiar(fitted[-1].axes.held_out, samples, preset),
+        "gains": inverse_temperatures(fitted, upper, prior, people, any(sample.depth_inferred for sample in samples)),
+        "familiar": familiarity_threshold(fitted[-1].discriminants.cross_validated_scores, samples, preset),
         "held_out": _held_out(fitted[-1], origin["labels"]),
     }
     return PyramidModel(first, stages, upper.concepts, upper.layer3, PyramidDescription.model_validate(about))
 
 
-def _held_out(stage: Scored, labels: Sequence[str]) -> dict[str, dict[str, int]]:
+def _held_out(stage: FittedStage, labels: Sequence[str]) -> dict[str, dict[str, int]]:
     """Count, of each sample's first view, the action done (outer) and the one of the largest held-out score (inner)."""
-    first = np.unique(stage.owners, return_index=True)[1]
+    first = np.unique(stage.sample_indices, return_index=True)[1]
     counts: dict[str, dict[str, int]] = {}
-    for done, answered in zip(stage.targets[first], stage.axes.held_out[first].argmax(axis=1), strict=True):
+    for done, answered in zip(
+        stage.targets[first], stage.discriminants.cross_validated_scores[first].argmax(axis=1), strict=True
+    ):
         of_done = counts.setdefault(labels[done], {})
         of_done[labels[answered]] = of_done.get(labels[answered], 0) + 1
     return counts

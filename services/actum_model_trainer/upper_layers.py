@@ -8,31 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.som import Som
-from actum_model_trainer.description import TrainingError
-from actum_model_trainer.discriminants import Axes
+from actum_model_trainer.discriminants import FittedStage
 from actum_model_trainer.progress import Progress
+from actum_model_trainer.provenance import TrainingError
 from som_classifier.layers import Concepts
 from som_classifier.presets import PyramidPreset
 from som_classifier.supervised import SupervisedLayer, activity
 
 Floats = NDArray[Any]
 Indices = NDArray[np.intp]
-
-
-@dataclass(frozen=True, eq=False)
-class Scored:
-    """One stage's axes and what they were trained on.
-
-    Attributes:
-        owners: (n,), whose sample each training vector is.
-        targets: (n,), which action it is.
-        folds: (n,), which fold it is in.
-    """
-
-    axes: Axes
-    owners: Indices
-    targets: Indices
-    folds: Indices
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +36,7 @@ class UpperLayers:
 
 
 def train_upper(
-    stage: Scored, actions: int, preset: PyramidPreset, rng: np.random.Generator, progress: Progress
+    stage: FittedStage, actions: int, preset: PyramidPreset, rng: np.random.Generator, progress: Progress
 ) -> UpperLayers:
     """Train both on the complete actions, on scores partly of the final axes, partly of axes without the person.
 
@@ -63,12 +47,12 @@ def train_upper(
         TrainingError: the scores of all samples are the same.
     """
     share = preset.held_out_share
-    scores = share * stage.axes.held_out + (1 - share) * stage.axes.own
-    scores, targets = mixed(scores, stage.targets, preset.fewest_scores, preset.least_share, rng)
+    scores = share * stage.discriminants.cross_validated_scores + (1 - share) * stage.discriminants.training_scores
+    scores, targets = mixup(scores, stage.targets, preset.fewest_scores, preset.least_share, rng)
     return _trained(scores.astype(np.float32), targets, actions, preset, rng, progress)
 
 
-def mixed(
+def mixup(
     scores: Floats, targets: Indices, fewest: int, least_share: float, rng: np.random.Generator
 ) -> tuple[Floats, Indices]:
     """Return the scores (n, actions) and mixtures of two of them, filled up to `fewest` rows, and the targets of all.
@@ -93,7 +77,7 @@ def _trained(
     layout = Som.linear(*preset.concepts, scores).train_batch(
         scores, preset.concept_epochs, preset.concept_radius, partial(progress, "map of actions")
     )
-    contrast = preset.relative_concept_contrast * variance_within(scores, targets)
+    contrast = preset.relative_concept_contrast * within_class_variance(scores, targets)
     activities = activity(layout.excess2s(scores), contrast)
     unit = activities / np.sqrt(np.square(activities).sum(axis=1, keepdims=True))
     concepts = Concepts(layout, contrast, unit.mean(axis=0, dtype=np.float64).astype(np.float32))
@@ -106,7 +90,7 @@ def _trained(
     return UpperLayers(concepts, SupervisedLayer(layer3.weights.astype(np.float32)))
 
 
-def variance_within(scores: Floats, targets: Indices) -> float:
+def within_class_variance(scores: Floats, targets: Indices) -> float:
     """Return the mean over actions and components of the scores' variance within an action."""
     variances = [scores[targets == target].var(axis=0).mean() for target in np.unique(targets)]
     return float(np.mean(variances)) or 1e-6

@@ -6,7 +6,7 @@ import pytest
 from actum.skeletons import INDEX
 from actum.som import Som
 from actum_model_inspector.arm_map import ArmsOnBodies, arm_map, fastest_m
-from actum_model_inspector.bodies import STANDING
+from actum_model_inspector.stick_figures import STANDING
 from recognisers import tiny_samples
 from som_classifier.handedness import mirrored
 from som_classifier.layers import ARM_SPEED, arm_inputs, frame_inputs

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from actum.recording import Recording
-from actum_model_inspector.anatomy import PyramidAnatomy, anatomy_of
-from actum_model_inspector.answered import Answered, answered_segments, encoded
+from actum_model_inspector.answered import AnsweredSegment, answered_segments, encoded
 from actum_model_inspector.contributions import contributions
-from actum_model_inspector.reasons import leading
+from actum_model_inspector.explanation import leading
+from actum_model_inspector.model_maps import PyramidMaps, maps_of
 from handmade import pyramid_model
 from som_classifier.layers import HEARD
 from som_classifier.pyramid_model import PyramidModel
@@ -19,11 +19,13 @@ def model(request: pytest.FixtureRequest, pyramid: PyramidModel) -> PyramidModel
 
 
 @pytest.fixture
-def segments(model: PyramidModel, recording: Recording) -> list[Answered]:
-    return answered_segments(PyramidAnatomy(model), [recording])
+def segments(model: PyramidModel, recording: Recording) -> list[AnsweredSegment]:
+    return answered_segments(PyramidMaps(model), [recording])
 
 
-def test_contributions_add_up_to_the_difference_of_the_scores(model: PyramidModel, segments: list[Answered]) -> None:
+def test_contributions_add_up_to_the_difference_of_the_scores(
+    model: PyramidModel, segments: list[AnsweredSegment]
+) -> None:
     complete = [0.0] * (len(model.description.fractions) - 1) + [1.0]
     for segment in segments:
         frames = encoded(model, segment.frames)
@@ -34,7 +36,9 @@ def test_contributions_add_up_to_the_difference_of_the_scores(model: PyramidMode
         assert found.units.sum() == pytest.approx(found.cells.sum(), abs=1e-6)
 
 
-def test_the_answer_is_held_against_the_one_that_answers_next(model: PyramidModel, segments: list[Answered]) -> None:
+def test_the_answer_is_held_against_the_one_that_answers_next(
+    model: PyramidModel, segments: list[AnsweredSegment]
+) -> None:
     for segment in segments:
         found = contributions(model, encoded(model, segment.frames))
         assert segment.recognition is not None
@@ -43,7 +47,7 @@ def test_the_answer_is_held_against_the_one_that_answers_next(model: PyramidMode
 
 
 def test_or_against_another_that_is_named(pyramid: PyramidModel, recording: Recording) -> None:
-    (segment, *_) = answered_segments(PyramidAnatomy(pyramid), [recording])
+    (segment, *_) = answered_segments(PyramidMaps(pyramid), [recording])
     frames = encoded(pyramid, segment.frames)
     answer = pyramid.labels[contributions(pyramid, frames).winner]
     for other in set(pyramid.labels) - {answer}:
@@ -53,20 +57,20 @@ def test_or_against_another_that_is_named(pyramid: PyramidModel, recording: Reco
 def test_a_segment_of_the_left_arm_is_known_to_be_read_in_a_mirror(pyramid: PyramidModel, recording: Recording) -> None:
     read = {
         segment.label: contributions(pyramid, encoded(pyramid, segment.frames)).in_mirror
-        for segment in answered_segments(anatomy_of(pyramid), [recording])
+        for segment in answered_segments(maps_of(pyramid), [recording])
     }
     assert read == {"lift": False, "push": False, "swing": True}
 
 
 def test_each_cell_s_activities_are_shares_of_each_map(pyramid: PyramidModel, recording: Recording) -> None:
-    (segment, *_) = answered_segments(PyramidAnatomy(pyramid), [recording])
+    (segment, *_) = answered_segments(PyramidMaps(pyramid), [recording])
     found = contributions(pyramid, encoded(pyramid, segment.frames))
     shares = [1.0, 1.0, *pyramid.description.arm_shares]
     np.testing.assert_allclose(found.activities.sum(axis=2), [shares] * 7, atol=1e-3)
 
 
 def test_the_activities_of_the_whole_are_the_mean_of_its_frames(pyramid: PyramidModel, recording: Recording) -> None:
-    (segment, *_) = answered_segments(PyramidAnatomy(pyramid), [recording])
+    (segment, *_) = answered_segments(PyramidMaps(pyramid), [recording])
     frames = encoded(pyramid, segment.frames)
     movements = [frame.movement for frame in frames if frame.movement is not None]
     sides = [pyramid.first.sides(movement.posture, movement.velocity)[0] for movement in movements]
@@ -75,7 +79,9 @@ def test_the_activities_of_the_whole_are_the_mean_of_its_frames(pyramid: Pyramid
 
 
 @pytest.mark.parametrize("which", range(len(HEARD)))
-def test_each_map_adds_what_its_own_axes_make_of_it(model: PyramidModel, segments: list[Answered], which: int) -> None:
+def test_each_map_adds_what_its_own_axes_make_of_it(
+    model: PyramidModel, segments: list[AnsweredSegment], which: int
+) -> None:
     """Where only the axes of one map are not zero, the others add nothing."""
     parts = model.pyramid.cells, len(HEARD), len(model.first.arms.weights), len(model.labels)
     axes = np.zeros((len(model.stages.axes), *parts), np.float32)

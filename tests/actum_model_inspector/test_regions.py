@@ -6,7 +6,7 @@ from hypothesis.extra.numpy import arrays
 
 from actum.som.grid import Grid
 from actum_model_inspector.action_map import beside_each_other, borders
-from actum_model_inspector.regions import centre, largest_patch, regions
+from actum_model_inspector.regions import centre, largest_component, regions
 
 masks = arrays(bool, st.tuples(st.integers(1, 7), st.integers(1, 7)))
 
@@ -24,12 +24,12 @@ def test_where_all_answer_alike_nothing_is_decided() -> None:
 
 def test_the_largest_of_several_patches_is_found() -> None:
     mask = np.array([[1, 0, 1, 1], [0, 0, 0, 1], [1, 1, 0, 0]], dtype=bool)
-    assert largest_patch(mask).tolist() == [[0, 2], [0, 3], [1, 3]]
+    assert largest_component(mask).tolist() == [[0, 2], [0, 3], [1, 3]]
 
 
 @given(masks)
 def test_a_patch_lies_within_its_mask_and_its_centre_within_the_patch(mask: np.ndarray) -> None:
-    patch = largest_patch(mask)
+    patch = largest_component(mask)
     assert (len(patch) == 0) == (not mask.any())
     assert all(mask[row, col] for row, col in patch)
     if len(patch):
@@ -37,10 +37,10 @@ def test_a_patch_lies_within_its_mask_and_its_centre_within_the_patch(mask: np.n
 
 
 def test_the_centre_of_a_square_is_its_middle_and_that_of_a_hook_is_on_the_hook() -> None:
-    assert centre(largest_patch(np.ones((5, 5), dtype=bool))) == (2, 2)
+    assert centre(largest_component(np.ones((5, 5), dtype=bool))) == (2, 2)
     hook = np.zeros((7, 7), dtype=bool)
     hook[:3, :3] = hook[1, :] = hook[:, 1] = True
-    assert centre(largest_patch(hook)) == (1, 1)
+    assert centre(largest_component(hook)) == (1, 1)
 
 
 def test_borders_run_between_units_of_different_actions_only() -> None:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS
-from actum_model_trainer.augmentation import View, leant, rebuilt, turned, views
+from actum_model_trainer.augmentation import Variant, bone_scaling, pitch_rotation, variants, yaw_rotation
 from actum_model_trainer.samples import SegmentSample
 from performers import TINY
 from recognisers import tiny_samples
@@ -22,8 +22,8 @@ RIGHT_HANDED, LEFT_HANDED = tiny_samples()[0], tiny_samples()[2]
 TORSO = INDEX["torso"]
 
 
-def shown(sample: SegmentSample, seed: int = 0, mirrors: bool = True, **changes: object) -> list[View]:
-    return list(views(sample, replace(TINY, **changes), mirrors, np.random.default_rng(seed)))
+def shown(sample: SegmentSample, seed: int = 0, mirrors: bool = True, **changes: object) -> list[Variant]:
+    return list(variants(sample, replace(TINY, **changes), mirrors, np.random.default_rng(seed)))
 
 
 def others(count: int, tempo: float = 1.0) -> Others:
@@ -76,9 +76,9 @@ def test_a_turn_keeps_every_length_and_the_vertical(degrees: float) -> None:
 @settings(deadline=None)
 @given(st.floats(-3, 3), st.floats(-3, 3))
 def test_turns_add_up(one: float, other: float) -> None:
-    np.testing.assert_allclose(turned(one) @ turned(other), turned(one + other), atol=1e-12)
-    np.testing.assert_allclose(turned(one) @ turned(-one), np.eye(3), atol=1e-12)
-    assert np.linalg.det(turned(one)) == pytest.approx(1.0)
+    np.testing.assert_allclose(yaw_rotation(one) @ yaw_rotation(other), yaw_rotation(one + other), atol=1e-12)
+    np.testing.assert_allclose(yaw_rotation(one) @ yaw_rotation(-one), np.eye(3), atol=1e-12)
+    assert np.linalg.det(yaw_rotation(one)) == pytest.approx(1.0)
 
 
 @settings(deadline=None)
@@ -89,18 +89,20 @@ def test_where_depth_is_inferred_a_turned_sample_leans_too(degrees: float) -> No
     _, view = shown(inferred, turns_deg=(0.0,), leans_deg=(degrees,), others=others(0))
     np.testing.assert_allclose(view.postures[..., 0], RIGHT_HANDED.postures[..., 0], atol=1e-12)
     np.testing.assert_allclose(lengths(view.postures), lengths(RIGHT_HANDED.postures), atol=1e-12)
-    up = np.array([0.0, 1.0, 0.0]) @ leant(np.radians(degrees))
+    up = np.array([0.0, 1.0, 0.0]) @ pitch_rotation(np.radians(degrees))
     np.testing.assert_allclose(up, [0.0, np.cos(np.radians(degrees)), -np.sin(np.radians(degrees))], atol=1e-12)
     both = shown(inferred, turns_deg=(15.0,), leans_deg=(degrees,), others=others(0))[1]
     np.testing.assert_allclose(
-        both.velocities, RIGHT_HANDED.velocities @ turned(np.radians(15.0)) @ leant(np.radians(degrees)), atol=1e-12
+        both.velocities,
+        RIGHT_HANDED.velocities @ yaw_rotation(np.radians(15.0)) @ pitch_rotation(np.radians(degrees)),
+        atol=1e-12,
     )
 
 
 def test_a_quarter_turn_brings_left_to_a_side_of_forward() -> None:
     left, forward = np.eye(3)[[0, 2]]
-    np.testing.assert_allclose(left @ turned(np.pi / 2), -forward, atol=1e-12)
-    np.testing.assert_allclose(forward @ turned(np.pi / 2), left, atol=1e-12)
+    np.testing.assert_allclose(left @ yaw_rotation(np.pi / 2), -forward, atol=1e-12)
+    np.testing.assert_allclose(forward @ yaw_rotation(np.pi / 2), left, atol=1e-12)
 
 
 @settings(deadline=None)
@@ -109,14 +111,14 @@ def test_a_build_keeps_every_bones_direction_and_makes_it_longer_by_its_factor(f
     by_name = dict(zip(BONE_NAMES, factors, strict=True))
     per_bone = np.array([by_name[JOINTS[c].removeprefix("left_").removeprefix("right_")] for c in CHILDREN])
     posture = RIGHT_HANDED.postures[7]
-    other = rebuilt(by_name) @ posture
+    other = bone_scaling(by_name) @ posture
     np.testing.assert_allclose(other[TORSO], 0, atol=1e-12)
     np.testing.assert_allclose(bones(other), per_bone[:, None] * bones(posture), atol=1e-12)
 
 
 def test_a_build_of_ones_is_the_same_person() -> None:
     np.testing.assert_allclose(
-        rebuilt(dict.fromkeys(BONE_NAMES, 1.0)) @ RIGHT_HANDED.postures, RIGHT_HANDED.postures, atol=1e-12
+        bone_scaling(dict.fromkeys(BONE_NAMES, 1.0)) @ RIGHT_HANDED.postures, RIGHT_HANDED.postures, atol=1e-12
     )
 
 

@@ -8,11 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from actum.som import Som
-from actum_model_trainer.confidence import calibrated_gains, familiar, held_out_gain, usual_log_errors
-from actum_model_trainer.discriminants import Axes
+from actum_model_trainer.confidence import (
+    cross_validated_inverse_temperature,
+    expected_log_errors,
+    familiarity_threshold,
+    inverse_temperatures,
+)
+from actum_model_trainer.discriminants import Discriminants, FittedStage
 from actum_model_trainer.progress import silent
 from actum_model_trainer.samples import SegmentSample
-from actum_model_trainer.upper_layers import Scored, UpperLayers, train_upper
+from actum_model_trainer.upper_layers import UpperLayers, train_upper
 from performers import TINY
 from recognisers import tiny_samples
 from som_classifier.layers import FirstMaps
@@ -24,22 +29,22 @@ PRIOR = replace(TINY.prior, gain=1.0, gain_where_inferred=0.8)
 """Less sure than the held-out examples below."""
 
 
-def scored(noise: float) -> Scored:
+def scored(noise: float) -> FittedStage:
     """Scores of about 1 for the action done and 0 for the others."""
     rows = np.eye(ACTIONS)[TARGETS] + np.random.default_rng(1).normal(0, noise, (len(TARGETS), ACTIONS))
-    return Scored(Axes(NOBODY, NOBODY, rows, rows), np.arange(len(TARGETS)), TARGETS, TARGETS)
+    return FittedStage(Discriminants(NOBODY, NOBODY, rows, rows), np.arange(len(TARGETS)), TARGETS)
 
 
 UPPER: UpperLayers = train_upper(scored(0.1), ACTIONS, TINY, np.random.default_rng(0), silent)
 
 
 def gain(noise: float, people: int, depth_inferred: bool = False) -> float:
-    (found,) = calibrated_gains([scored(noise)], UPPER, PRIOR, people, depth_inferred)
+    (found,) = inverse_temperatures([scored(noise)], UPPER, PRIOR, people, depth_inferred)
     return found
 
 
 def matched(noise: float) -> float:
-    return held_out_gain(scored(noise), UPPER)
+    return cross_validated_inverse_temperature(scored(noise), UPPER)
 
 
 def test_from_one_person_it_is_the_usual_gain_however_well_its_own_examples_are_told() -> None:
@@ -65,7 +70,7 @@ def test_what_held_out_examples_disprove_is_not_believed(people: int) -> None:
 
 
 def test_each_stage_has_its_own_gain() -> None:
-    early, late = calibrated_gains([scored(3.0), scored(0.1)], UPPER, PRIOR, 5, False)
+    early, late = inverse_temperatures([scored(3.0), scored(0.1)], UPPER, PRIOR, 5, False)
     assert early < 0.5 * late
 
 
@@ -82,23 +87,23 @@ def taught(people: int, times: int) -> list[SegmentSample]:
 
 @given(st.integers(1, 40))
 def test_familiar_lies_between_what_is_usual_and_what_most_held_out_people_exceed(people: int) -> None:
-    held_out = scored(0.1).axes.held_out
+    held_out = scored(0.1).discriminants.cross_validated_scores
     exceeded = float(np.quantile(held_out.max(axis=1), 0.05))
-    found = familiar(held_out, taught(people, 2), TINY)
+    found = familiarity_threshold(held_out, taught(people, 2), TINY)
     assert PRIOR.familiar <= found <= exceeded
     assert people > 1 or found == PRIOR.familiar
 
 
 def test_who_was_shown_each_action_once_expects_lower_scores() -> None:
-    held_out = scored(0.1).axes.held_out
-    assert familiar(held_out, taught(1, 1), TINY) == PRIOR.familiar_from_one < PRIOR.familiar
-    assert familiar(held_out, taught(3, 1), TINY) < familiar(held_out, taught(3, 2), TINY)
+    held_out = scored(0.1).discriminants.cross_validated_scores
+    assert familiarity_threshold(held_out, taught(1, 1), TINY) == PRIOR.familiar_from_one < PRIOR.familiar
+    assert familiarity_threshold(held_out, taught(3, 1), TINY) < familiarity_threshold(held_out, taught(3, 2), TINY)
 
 
 def test_without_a_prior_it_is_what_the_known_share_exceeds() -> None:
-    held_out = scored(0.1).axes.held_out
+    held_out = scored(0.1).discriminants.cross_validated_scores
     preset = replace(TINY, prior=replace(PRIOR, people=0.0), known_share=0.9)
-    found = familiar(held_out, taught(2, 2), preset)
+    found = familiarity_threshold(held_out, taught(2, 2), preset)
     assert (held_out.max(axis=1) > found).mean() == pytest.approx(0.9, abs=0.02)
 
 
@@ -108,7 +113,7 @@ def test_what_is_usual_for_an_action_by_hand() -> None:
     off_m[0, 7, 1] = 1.0
     still = [Som(1, 1, np.zeros((1, size), np.float32)) for size in (45, 45, 12)]
     first = FirstMaps(still[0], still[1], still[2], (1.0, 1.0, 1.0), (0.4, 0.1))
-    usual = usual_log_errors(first, [off_m, off_m, np.e * off_m, off_m], np.array([0, 0, 1, 0]), PRIOR)
+    usual = expected_log_errors(first, [off_m, off_m, np.e * off_m, off_m], np.array([0, 0, 1, 0]), PRIOR)
     mean = (0 + 0 + 2 + 0) / 4
     once_more = [(3 * 0 + mean) / 4, (2 + mean) / 2]
     assert usual == pytest.approx([PRIOR.log_error + own - mean for own in once_more])
@@ -119,4 +124,4 @@ def test_a_frame_of_nothing_is_no_reason_to_fail() -> None:
     still = [Som(1, 1, np.zeros((1, size), np.float32)) for size in (45, 45, 12)]
     first = FirstMaps(still[0], still[1], still[2], (1.0, 1.0, 1.0), (0.4, 0.1))
     nothing, still_m = np.full((2, 15, 3), np.nan), np.zeros((2, 15, 3))
-    assert usual_log_errors(first, [nothing, still_m], np.array([0, 1]), PRIOR) == [PRIOR.log_error] * 2
+    assert expected_log_errors(first, [nothing, still_m], np.array([0, 1]), PRIOR) == [PRIOR.log_error] * 2

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from actum_model_trainer.answering import answer, encoded
-from actum_model_trainer.description import digest_of
+from actum_model_trainer.provenance import digest_of
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.training import TrainingError, train
 from performers import HAND_PATHS, TINY, TINY_OF_EACH_KIND, TINY_PAPER

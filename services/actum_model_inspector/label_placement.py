@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from actum_model_inspector.lettering import columns
+from actum_model_inspector.text_layout import columns
 
 Box = tuple[float, float, float, float]
 """Left, top, right, bottom; y down."""
@@ -13,7 +13,7 @@ CHARACTER, LINE = 0.56, 1.25
 
 
 @dataclass
-class Room:
+class LabelSpace:
     """What is taken of a map, in its own units.
 
     Attributes:

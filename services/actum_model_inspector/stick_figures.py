@@ -96,7 +96,7 @@ def placed(points: Floats, places: Floats, size: float) -> Floats:
     return laid
 
 
-def draw_bodies(
+def draw_figures(
     axes: Axes, points: Floats, places: Floats, size: float, figure: Figure = WHOLE, pen: Pen = Pen()
 ) -> None:
     """Draw figures.
@@ -127,7 +127,7 @@ def draw_arrows(
 
     Args:
         axes: whose y goes down.
-        points: (n, 15, 3), as `draw_bodies` takes them.
+        points: (n, 15, 3), as `draw_figures` takes them.
         steps_m: (n, 15, 3), how far the arrows reach on the figure.
         places: (n, 2), x and y of each figure's middle.
         size: how high a figure may be.

@@ -2,8 +2,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum_model_inspector.lettering import columns, lines_of, shortened
 from actum_model_inspector.style import unwritable
+from actum_model_inspector.text_layout import columns, lines_of, shortened
 
 
 @pytest.mark.parametrize(

@@ -29,7 +29,7 @@ class Term:
     meaning: str
 
 
-def draw_balance(axes: Axes, terms: Sequence[Term], total: Term) -> None:
+def draw_waterfall(axes: Axes, terms: Sequence[Term], total: Term) -> None:
     """Draw the terms as bars, line beneath line, and their sum beneath; one unit is an inch."""
     ends = np.cumsum([term.value for term in terms])
     starts = np.concatenate([[0.0], ends[:-1], [0.0]])

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS, PARTS
-from actum_model_inspector.bodies import LIMB, STANDING, Pen, draw_bodies, placed, projected
+from actum_model_inspector.stick_figures import LIMB, STANDING, Pen, draw_figures, placed, projected
 from actum_model_inspector.style import LEFT, RIGHT
 from people import lacking
 
@@ -16,7 +16,7 @@ metres = st.floats(-2, 2)
 
 def lines_of(points: np.ndarray, **how: object) -> LineCollection:
     axes = Figure().add_subplot()
-    draw_bodies(axes, points, np.zeros((len(points), 2)), 1.0, **how)
+    draw_figures(axes, points, np.zeros((len(points), 2)), 1.0, **how)
     (lines,) = (drawn for drawn in axes.collections if isinstance(drawn, LineCollection))
     return lines
 

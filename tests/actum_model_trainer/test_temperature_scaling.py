@@ -5,7 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum_model_trainer.calibration import LARGEST_GAIN, SMALLEST_GAIN, confidences, matched_gain
+from actum_model_trainer.temperature_scaling import (
+    LARGEST_INVERSE_TEMPERATURE,
+    SMALLEST_INVERSE_TEMPERATURE,
+    confidences,
+    matched_inverse_temperature,
+)
 
 ACTIONS = 6
 
@@ -23,13 +28,15 @@ def heard(gain: float, answers: int, seed: int = 0) -> tuple[np.ndarray, np.ndar
 def test_a_known_gain_is_found(gain: float) -> None:
     cosines, targets = heard(gain, 20_000)
     accuracy = float((cosines.argmax(axis=1) == targets).mean())
-    assert matched_gain(cosines, accuracy) == pytest.approx(gain, rel=0.06)
+    assert matched_inverse_temperature(cosines, accuracy) == pytest.approx(gain, rel=0.06)
 
 
 @given(st.integers(0, 1000), st.floats(0.3, 0.95))
 def test_the_mean_confidence_is_the_accuracy(seed: int, accuracy: float) -> None:
     cosines, _ = heard(1.0, 200, seed)
-    assert confidences(cosines, matched_gain(cosines, accuracy)).mean() == pytest.approx(accuracy, abs=1e-6)
+    assert confidences(cosines, matched_inverse_temperature(cosines, accuracy)).mean() == pytest.approx(
+        accuracy, abs=1e-6
+    )
 
 
 def test_confidences_by_hand() -> None:
@@ -40,10 +47,10 @@ def test_confidences_by_hand() -> None:
 def test_what_is_added_to_all_cosines_does_not_matter() -> None:
     cosines, _ = heard(8.0, 500)
     shifted = cosines + np.random.default_rng(1).normal(0, 5, (500, 1))
-    assert matched_gain(shifted, 0.7) == pytest.approx(matched_gain(cosines, 0.7))
+    assert matched_inverse_temperature(shifted, 0.7) == pytest.approx(matched_inverse_temperature(cosines, 0.7))
 
 
 def test_the_gain_stays_within_its_bounds() -> None:
     cosines, _ = heard(1.0, 300)
-    assert matched_gain(cosines, 0.0) == pytest.approx(SMALLEST_GAIN)
-    assert matched_gain(cosines, 1.0) == pytest.approx(LARGEST_GAIN)
+    assert matched_inverse_temperature(cosines, 0.0) == pytest.approx(SMALLEST_INVERSE_TEMPERATURE)
+    assert matched_inverse_temperature(cosines, 1.0) == pytest.approx(LARGEST_INVERSE_TEMPERATURE)

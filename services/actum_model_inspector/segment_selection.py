@@ -4,27 +4,27 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import count
 
-from actum_model_inspector.answered import Answered
+from actum_model_inspector.answered import AnsweredSegment
 
 MOST_MISTAKES = 5
 _LONGEST_NAME = 50
 
 
-def examples(segments: Sequence[Answered]) -> dict[str, Answered]:
+def examples(segments: Sequence[AnsweredSegment]) -> dict[str, AnsweredSegment]:
     """Choose for each action, by label or else by answer, the right answer of median confidence, else the surest wrong.
 
     Rejected segments show nothing; an action that has no others is left out.
     """
-    groups: dict[str, list[Answered]] = {}
+    groups: dict[str, list[AnsweredSegment]] = {}
     for segment in segments:
         if segment.recognition is not None:
             groups.setdefault(segment.label or segment.recognition.label, []).append(segment)
     return {action: _typical(groups[action]) for action in sorted(groups)}
 
 
-def mistakes(segments: Sequence[Answered]) -> list[Answered]:
+def mistakes(segments: Sequence[AnsweredSegment]) -> list[AnsweredSegment]:
     """Return the wrong answers that were surest, one for each pair of actions, the surest first."""
-    surest: dict[tuple[str | None, str], Answered] = {}
+    surest: dict[tuple[str | None, str], AnsweredSegment] = {}
     for segment in sorted(segments, key=_confidence, reverse=True):
         if segment.recognition is not None and segment.label is not None and not segment.correct:
             surest.setdefault((segment.label, segment.recognition.label), segment)
@@ -48,11 +48,11 @@ def mistake_name(number: int) -> str:
     return f"mistake-{number}"
 
 
-def _typical(segments: Sequence[Answered]) -> Answered:
+def _typical(segments: Sequence[AnsweredSegment]) -> AnsweredSegment:
     ranked = sorted(segments, key=_confidence)
     right = [segment for segment in ranked if segment.correct or segment.label is None]
     return right[len(right) // 2] if right else ranked[-1]
 
 
-def _confidence(segment: Answered) -> float:
+def _confidence(segment: AnsweredSegment) -> float:
     return segment.recognition.confidence if segment.recognition is not None else 0.0

@@ -5,10 +5,10 @@ from html import escape
 from itertools import groupby
 from urllib.parse import quote
 
-from actum_model_inspector.answered import Answered
+from actum_model_inspector.answered import AnsweredSegment
 from actum_model_inspector.inspection import Picture
-from actum_model_inspector.lettering import shortened
 from actum_model_inspector.style import unwritable
+from actum_model_inspector.text_layout import shortened
 from actum_model_trainer.evaluation import Evaluation
 from som_classifier.model import Model
 
@@ -29,7 +29,7 @@ img { width: 100%; height: auto; border: 1px solid #ddd; border-radius: 4px; }
 
 def page(
     model: Model,
-    segments: Sequence[Answered],
+    segments: Sequence[AnsweredSegment],
     evaluation: Evaluation | None,
     planned: Sequence[Picture],
     files: Mapping[str, str],
@@ -72,7 +72,7 @@ def model_facts(model: Model) -> str:
     )
 
 
-def missing_letters(model: Model, segments: Sequence[Answered]) -> Iterable[str]:
+def missing_letters(model: Model, segments: Sequence[AnsweredSegment]) -> Iterable[str]:
     """Say which letters of the actions' names the pictures cannot show."""
     names = [*model.about.labels, *(segment.label or "" for segment in segments)]
     if letters := unwritable(" ".join(names)):
@@ -82,7 +82,7 @@ def missing_letters(model: Model, segments: Sequence[Answered]) -> Iterable[str]
         )  # fmt: skip
 
 
-def test_facts(model: Model, segments: Sequence[Answered], evaluation: Evaluation | None) -> Iterable[str]:
+def test_facts(model: Model, segments: Sequence[AnsweredSegment], evaluation: Evaluation | None) -> Iterable[str]:
     """Say what it was tried on and how that went."""
     if segments:
         rejected = sum(segment.recognition is None for segment in segments)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from actum.som import Som
-from actum_model_inspector.bodies import LIMB, STANDING, WHOLE, Figure
+from actum_model_inspector.stick_figures import LIMB, STANDING, WHOLE, Figure
 from som_classifier.attention import ALL
 from som_classifier.model import Model
 from som_classifier.paper_model import PaperModel
@@ -24,7 +24,7 @@ Indices = NDArray[np.intp]
 ABOVE_HIPS_M = STANDING[INDEX["torso"]] - STANDING[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0)
 
 
-class Anatomy(ABC):
+class ModelMaps(ABC):
     """The maps of one model.
 
     Attributes:
@@ -59,7 +59,7 @@ class Anatomy(ABC):
         """Return the neurons' cosines where the input lies right on each unit of the second map, (units, actions)."""
 
 
-class PyramidAnatomy(Anatomy):
+class PyramidMaps(ModelMaps):
     """The maps of the default recogniser."""
 
     figure = WHOLE
@@ -91,7 +91,7 @@ class PyramidAnatomy(Anatomy):
         return np.stack([self.model.layer3.cosines(activities) for activities in heard])
 
 
-class PaperAnatomy(Anatomy):
+class PaperMaps(ModelMaps):
     """The maps of the paper's recogniser."""
 
     def __init__(self, model: PaperModel) -> None:
@@ -121,7 +121,7 @@ class PaperAnatomy(Anatomy):
         return np.stack([self.model.layer3.cosines(activities) for activities in heard])
 
 
-def anatomy_of(model: Model) -> Anatomy:
+def maps_of(model: Model) -> ModelMaps:
     """Find a model's maps.
 
     Raises:
@@ -129,9 +129,9 @@ def anatomy_of(model: Model) -> Anatomy:
     """
     match model:
         case PyramidModel():
-            return PyramidAnatomy(model)
+            return PyramidMaps(model)
         case PaperModel():
-            return PaperAnatomy(model)
+            return PaperMaps(model)
         case _:
             raise TypeError(f"no pictures of a model of kind {model.about.kind!r}")
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum_model_inspector.labels import Room, spread, text_size
+from actum_model_inspector.label_placement import LabelSpace, spread, text_size
 
 heights = st.lists(st.floats(-1, 1), max_size=8)
 
@@ -27,14 +27,14 @@ def test_what_is_far_enough_apart_stays() -> None:
 
 
 def test_a_name_takes_the_first_place_with_room() -> None:
-    room = Room((0, 0, 10, 10))
+    room = LabelSpace((0, 0, 10, 10))
     assert room.place([(5, 5)], 4, 2) == (5, 5)
     assert room.place([(6, 5), (5, 8)], 4, 2) == (5, 8)
     assert room.place([(5, 5.5), (9.5, 1)], 4, 2) is None
 
 
 def test_a_box_is_moved_onto_the_page() -> None:
-    room = Room((0, 0, 10, 10))
+    room = LabelSpace((0, 0, 10, 10))
     assert room.within(0, 11, 4, 2) == (2, 9)
     assert room.within(5, 5, 4, 2) == (5, 5)
 

@@ -8,12 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from actum.node import SECOND_NS
-from actum_model_inspector.anatomy import Floats, Indices
-from actum_model_inspector.answered import Answered, encoded
-from actum_model_inspector.bodies import Pen, draw_bodies
-from actum_model_inspector.labels import spread
-from actum_model_inspector.lettering import columns, lines_of, shortened
+from actum_model_inspector.answered import AnsweredSegment, encoded
+from actum_model_inspector.label_placement import spread
+from actum_model_inspector.model_maps import Floats, Indices
+from actum_model_inspector.stick_figures import Pen, draw_figures
 from actum_model_inspector.style import HALO, action_colours, axes_at, bare, board, in_house_style
+from actum_model_inspector.text_layout import columns, lines_of, shortened
 from actum_model_inspector.wording import headline
 from som_classifier.model import Model
 from som_classifier.recognition import Recognition
@@ -35,7 +35,7 @@ _GAP = 0.07
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class AnswerTimeline:
     """What the model says while a segment goes on.
 
     Attributes:
@@ -51,13 +51,13 @@ class Course:
     confidences: Floats
 
 
-def course(model: Model, answered: Answered) -> Course:
+def answer_timeline(model: Model, answered: AnsweredSegment) -> AnswerTimeline:
     """Let the model answer after each frame, or after some of very many, the last of them as to a complete action."""
     frames = encoded(model, answered.frames)
     counts = np.unique(np.linspace(model.min_frames, len(frames), MOST_INSTANTS).astype(int))
     said: list[Recognition] = [model.recognise(frames[:count], complete=count == len(frames)) for count in counts]
     ends = np.array([frames[count - 1].stamp_ns for count in counts])
-    return Course(
+    return AnswerTimeline(
         (ends - frames[0].stamp_ns) / SECOND_NS,
         np.array([[recognition.activations[label] for label in model.labels] for recognition in said]),
         np.array([model.labels.index(recognition.label) for recognition in said]),
@@ -66,9 +66,9 @@ def course(model: Model, answered: Answered) -> Course:
 
 
 @in_house_style
-def course_picture(model: Model, answered: Answered) -> Figure:
+def timeline_picture(model: Model, answered: AnsweredSegment) -> Figure:
     """Draw the neurons' activations over time, the decision beneath, and the actor at some instants."""
-    told = course(model, answered)
+    told = answer_timeline(model, answered)
     figure = board(*SIZE_IN, headline(answered))
     lines, decision = (axes_at(figure, *box) for box in (LINES_IN, DECISION_IN))
     _draw_lines(lines, told, model.labels, answered.label)
@@ -81,7 +81,7 @@ def course_picture(model: Model, answered: Answered) -> Figure:
     return figure
 
 
-def _draw_lines(axes: Axes, told: Course, labels: Sequence[str], done: str | None) -> None:
+def _draw_lines(axes: Axes, told: AnswerTimeline, labels: Sequence[str], done: str | None) -> None:
     seconds, activations = told.seconds, told.activations
     named = _named(told, labels, done)
     colours = action_colours(len(labels))
@@ -100,7 +100,7 @@ def _draw_lines(axes: Axes, told: Course, labels: Sequence[str], done: str | Non
     axes.set_title("each line an action's neuron: how much the frames so far are like what it learnt; grey: the others")
 
 
-def _named(told: Course, labels: Sequence[str], done: str | None) -> Indices:
+def _named(told: AnswerTimeline, labels: Sequence[str], done: str | None) -> Indices:
     """Choose the answer, what was done, and those decided for longest, or that answered most; the answer first."""
     rank = np.bincount(told.winners, minlength=len(labels)) + told.activations.max(axis=0)
     if done in labels:
@@ -118,7 +118,7 @@ def _name_line(axes: Axes, name: str, end: tuple[float, float], place: float, co
     )  # fmt: skip
 
 
-def _draw_decision(axes: Axes, told: Course, labels: Sequence[str]) -> None:
+def _draw_decision(axes: Axes, told: AnswerTimeline, labels: Sequence[str]) -> None:
     """Draw each answer's confidence as a bar, since the answer before, in its action's colour, named where it fits."""
     colours = action_colours(len(labels))
     seconds, winners = np.concatenate([[0.0], told.seconds]), told.winners
@@ -140,7 +140,7 @@ def _draw_decision(axes: Axes, told: Course, labels: Sequence[str]) -> None:
     )
 
 
-def _draw_actor(figure: Figure, answered: Answered) -> None:
+def _draw_actor(figure: Figure, answered: AnsweredSegment) -> None:
     """Draw the actor at instants that lie evenly in time, each beneath its time; one unit is an inch."""
     left, _, width, _ = DECISION_IN
     axes = axes_at(figure, left - ACTOR_IN / 2, 0.1, width + ACTOR_IN, ACTOR_IN)
@@ -152,7 +152,7 @@ def _draw_actor(figure: Figure, answered: Answered) -> None:
     movements = [answered.frames[index].movement for index in chosen]
     postures = np.array([movement.posture for movement in movements if movement is not None])
     places = np.stack([across[chosen], np.zeros(len(chosen))], axis=1)
-    draw_bodies(axes, postures, places, 0.95 * ACTOR_IN, pen=Pen(2.0))
+    draw_figures(axes, postures, places, 0.95 * ACTOR_IN, pen=Pen(2.0))
 
 
 def spaced(places: Floats, most: int) -> list[int]:

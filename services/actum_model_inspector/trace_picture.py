@@ -11,8 +11,8 @@ from matplotlib.patches import FancyBboxPatch
 
 from actum.node import SECOND_NS
 from actum.som import Som
-from actum_model_inspector.anatomy import Anatomy, Floats, Indices
-from actum_model_inspector.answered import Answered, encoded
+from actum_model_inspector.answered import AnsweredSegment, encoded
+from actum_model_inspector.model_maps import Floats, Indices, ModelMaps
 from actum_model_inspector.posture_map import draw_postures, draw_units, map_size, name_sides
 from actum_model_inspector.style import HALO, PAPER, canvas, in_house_style
 from actum_model_inspector.wording import headline
@@ -27,21 +27,21 @@ _LATEST = 0.88
 
 
 @in_house_style
-def trace_picture(anatomy: Anatomy, answered: Answered) -> Figure:
+def trace_picture(maps: ModelMaps, answered: AnsweredSegment) -> Figure:
     """Draw the winners of a segment, one after the other, over the pale posture map."""
-    frames = encoded(anatomy.model, answered.frames)
-    winners = anatomy.winners(frames)
+    frames = encoded(maps.model, answered.frames)
+    winners = maps.winners(frames)
     seen = np.flatnonzero(winners != UNSEEN)
     units, first = stays(winners[seen])
-    width, height = map_size(anatomy.postures)
+    width, height = map_size(maps.postures)
     figure = canvas(width + 0.9, height, headline(answered))
     axes = figure.add_subplot()
-    draw_postures(axes, anatomy, PALE)
+    draw_postures(axes, maps, PALE)
     when = answered.shares[seen[first]]
-    _draw_way(axes, anatomy.postures.coordinates[units][:, ::-1], when)
-    in_mirror = anatomy.in_mirror(frames)
-    points = mirrored(anatomy.unit_points()) if in_mirror else anatomy.unit_points()
-    _draw_cards(axes, anatomy, points, units, when)
+    _draw_way(axes, maps.postures.coordinates[units][:, ::-1], when)
+    in_mirror = maps.in_mirror(frames)
+    points = mirrored(maps.unit_points()) if in_mirror else maps.unit_points()
+    _draw_cards(axes, maps, points, units, when)
     mirror = "; the left arm acts: read in a mirror, drawn as it was" if in_mirror else ""
     axes.set_title(f"{len(units)} stays on {len(np.unique(units))} units, framed in the colour of the first{mirror}")
     name_sides(axes)
@@ -76,10 +76,10 @@ def _kept_right(steps: Floats) -> Floats:
     return moved
 
 
-def _draw_cards(axes: Axes, anatomy: Anatomy, points: Floats, units: Indices, when: Floats) -> None:
+def _draw_cards(axes: Axes, maps: ModelMaps, points: Floats, units: Indices, when: Floats) -> None:
     """Draw each unit of the trace on white, in a frame of the colour of its first stay, and name start and end."""
     visited, first = np.unique(units, return_index=True)
-    places = anatomy.postures.coordinates[:, ::-1]
+    places = maps.postures.coordinates[:, ::-1]
     for unit, colour in zip(visited, COURSE(_LATEST * when[first]), strict=True):
         corner = places[unit] - 0.5 * CARD
         card = FancyBboxPatch(
@@ -87,9 +87,9 @@ def _draw_cards(axes: Axes, anatomy: Anatomy, points: Floats, units: Indices, wh
             linewidth=2.0, zorder=4,
         )  # fmt: skip
         axes.add_patch(card)
-    draw_units(axes, anatomy, points, visited, CARD, zorder=5)
+    draw_units(axes, maps, points, visited, CARD, zorder=5)
     start, end = units[0], units[-1]
-    above, below = (free_side(anatomy.postures, unit, visited, side) for unit, side in ((start, -1), (end, 1)))
+    above, below = (free_side(maps.postures, unit, visited, side) for unit, side in ((start, -1), (end, 1)))
     if start == end:
         _name(axes, "start and end", places[start], above < 0)
     else:

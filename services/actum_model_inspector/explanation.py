@@ -10,14 +10,14 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
-from actum_model_inspector.answered import Answered, encoded
+from actum_model_inspector.answered import AnsweredSegment, encoded
 from actum_model_inspector.arm_map import ArmsOnBodies, fastest_m
-from actum_model_inspector.balance import AGAINST, FOR, TERM_IN, Term, draw_balance
-from actum_model_inspector.bodies import LONGEST_ARROW_M, Pen, draw_arrows, draw_bodies
 from actum_model_inspector.contributions import Contributions, contributions
-from actum_model_inspector.lettering import shortened
 from actum_model_inspector.movement_map import arrows_of
+from actum_model_inspector.stick_figures import LONGEST_ARROW_M, Pen, draw_arrows, draw_figures
 from actum_model_inspector.style import FAINT, PAPER, axes_at, bare, board, in_house_style
+from actum_model_inspector.text_layout import shortened
+from actum_model_inspector.waterfall import AGAINST, FOR, TERM_IN, Term, draw_waterfall
 from som_classifier.handedness import mirrored
 from som_classifier.pyramid_model import PyramidModel
 
@@ -36,7 +36,7 @@ NARROWEST_IN = 0.5
 
 
 @in_house_style
-def reasons_picture(model: PyramidModel, answered: Answered) -> Figure:
+def explanation_picture(model: PyramidModel, answered: AnsweredSegment) -> Figure:
     """Draw what each cell of the pyramid adds to the difference between two actions' scores, map by map.
 
     They are the answer and, where that is wrong, what was really done, else the action that answered next.
@@ -53,7 +53,7 @@ def reasons_picture(model: PyramidModel, answered: Answered) -> Figure:
     figure.text(0.005, above_in, "\n".join(lines), linespacing=1.35, va="bottom")
     balance = axes_at(figure, 0.1, height_in + 0.44, width_in - 0.2, balance_in)
     balance.set_xlim(0.0, width_in - 0.2)
-    draw_balance(balance, terms, total)
+    draw_waterfall(balance, terms, total)
     for which, (heading, draw) in enumerate(_columns(found)):
         axes = axes_at(figure, 0.1 + which * (WIDTH_IN + GAP_IN), 0.1, WIDTH_IN, height_in)
         _draw_cells(axes, model, found, which)
@@ -149,7 +149,7 @@ def _draw_postures(axes: Axes, model: PyramidModel, found: Contributions) -> Non
     """Draw into each cell the mean posture of the units that add most to it."""
     broad, middles = _middles(model)
     means = _leading(found, broad, 0, _postures(model))
-    draw_bodies(axes, _as_it_was(means, found), middles, FIGURE_IN, pen=Pen(1.8))
+    draw_figures(axes, _as_it_was(means, found), middles, FIGURE_IN, pen=Pen(1.8))
 
 
 def _draw_movements(axes: Axes, model: PyramidModel, found: Contributions) -> None:
@@ -158,7 +158,7 @@ def _draw_movements(axes: Axes, model: PyramidModel, found: Contributions) -> No
     _, arrows_m = arrows_of(model.first.velocities)
     means = _as_it_was(_leading(found, broad, 1, arrows_m), found)
     bodies = _as_it_was(_seen(model, found, broad), found)
-    draw_bodies(axes, bodies, middles, FIGURE_IN, pen=Pen(1.2, FAINT))
+    draw_figures(axes, bodies, middles, FIGURE_IN, pen=Pen(1.2, FAINT))
     draw_arrows(axes, bodies, means, middles, FIGURE_IN)
 
 
