@@ -10,10 +10,10 @@ from actum.recording import Recording
 from actum_model_inspector.model_maps import ModelMaps
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.samples import classifier_input, closed_segments, sensors
+from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.recognition import Recognition
-from som_classifier.segments import Closed
-from som_classifier.streams import Frame
+from som_classifier.segments import ClosedSegment
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,10 +69,10 @@ def answered_segments(
 def encoded(model: Model, frames: Sequence[Frame]) -> list[Frame]:
     """Return valid frames as the model remembers them."""
     encoder = model.encoder()
-    return [replace(frame, code=encoder.encode(frame)) for frame in frames]
+    return [replace(frame, activity=encoder.encode(frame)) for frame in frames]
 
 
-def _answered(maps: ModelMaps, recording: Recording, closed: Closed) -> AnsweredSegment:
+def _answered(maps: ModelMaps, recording: Recording, closed: ClosedSegment) -> AnsweredSegment:
     valid = [frame for frame in closed.frames if frame.valid]
     unanswered = AnsweredSegment(str(recording.path), recording.person, closed.segment_id, closed.label, valid)
     if closed.reason or len(valid) < maps.model.min_frames:

@@ -81,7 +81,7 @@ def _of_maps(maps: ModelMaps, segments: Sequence[AnsweredSegment]) -> Iterator[P
         partial(posture_map, maps),
     )  # fmt: skip
     if isinstance(maps, PyramidMaps):
-        mirrors = maps.model.description.mirrors
+        mirrors = maps.model.metadata.mirrors
         yield Picture(
             section, "movement-map",
             "The first layer's second map. Every unit stands for a way of moving, drawn as arrows at the joints.",

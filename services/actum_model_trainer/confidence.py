@@ -15,7 +15,7 @@ from actum_model_trainer.discriminants import FittedStage
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.temperature_scaling import matched_inverse_temperature
 from actum_model_trainer.upper_layers import UpperLayers
-from som_classifier.layers import FirstMaps
+from som_classifier.first_layer import FirstMaps
 from som_classifier.presets import Prior, PyramidPreset
 
 Floats = NDArray[Any]
@@ -86,7 +86,7 @@ def expected_log_errors(first: FirstMaps, postures: Sequence[Floats], targets: I
         targets: (n,), the samples' actions.
         prior: of models of other people's actions.
     """
-    log_errors = np.array([first.log_errors(own, first.nearest(own)).mean() for own in postures])
+    log_errors = np.array([first.log_errors(own, first.winners(own)).mean() for own in postures])
     above_mean = np.bincount(targets, weights=log_errors - log_errors.mean()) / (np.bincount(targets) + 1)
     return [float(prior.log_error + own) for own in above_mean]
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from actum.geometry import SMALLEST_M
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
-from pose_preprocessor.motion import GAP_NS
+from pose_preprocessor.part_motion import GAP_NS
 
 TIME_CONSTANT_S = 1.0
 FIRST_S = 1 / 30

@@ -9,7 +9,7 @@ from actum import geometry
 from actum.messages import Joint
 from pose_preprocessor.bridging import Bridge
 from pose_preprocessor.heading import HeadingFilter
-from pose_preprocessor.motion import MotionFilter
+from pose_preprocessor.part_motion import PartMotionFilter
 
 Array = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ class Person:
 
     joints: list[Joint] | None = None
     bridge: Bridge = field(default_factory=Bridge)
-    motion: MotionFilter = field(default_factory=MotionFilter)
+    motion: PartMotionFilter = field(default_factory=PartMotionFilter)
     heading: HeadingFilter = field(default_factory=HeadingFilter)
 
     def upright(self, stamp_ns: int, joints: Array, scaled: Array) -> Array:

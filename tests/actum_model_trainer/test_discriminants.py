@@ -85,7 +85,10 @@ def test_an_action_that_nobody_else_does_is_scored_by_axes_that_know_it() -> Non
 
 def test_the_less_shrinkage_the_nearer_to_what_is_wanted() -> None:
     vectors, wanted = training()
-    errors = [np.abs(fit_discriminants(vectors, wanted, FOLDS, s).own - wanted).max() for s in (1e-6, 1e-2, 1.0, 1e4)]
+    errors = [
+        np.abs(fit_discriminants(vectors, wanted, FOLDS, s).training_scores - wanted).max()
+        for s in (1e-6, 1e-2, 1.0, 1e4)
+    ]
     assert errors == sorted(errors)
     assert errors[0] < 1e-3
     assert errors[-1] == pytest.approx(1 - 1 / ACTIONS, abs=1e-3)

@@ -50,7 +50,7 @@ def test_samples_are_left_as_they_were(samples: list[SegmentSample], preset: Pre
 
 @each_preset
 def test_the_description_says_what_it_was_made_of(samples: list[SegmentSample], preset: Preset) -> None:
-    about = train(samples, preset, seed=5).metadata
+    about = train(samples, preset, seed=5).metadata.model_dump()
     assert about["labels"] == sorted(HAND_PATHS)
     assert about["persons"] == ["1", "2", "3"]
     assert (about["preset"], about["seed"], about["samples"]) == (preset.name, 5, len(samples))

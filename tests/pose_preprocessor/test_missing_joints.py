@@ -12,8 +12,8 @@ from actum import geometry
 from actum.messages import Joint, Posture
 from actum.skeletons import INDEX, JOINTS, PARTS
 from people import FRAME_NS, STANDING, lacking, reaching, skeleton
-from pose_preprocessor.motion import TIME_CONSTANT_S
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.part_motion import TIME_CONSTANT_S
 
 Array = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from actum import geometry
 from actum.messages import Agent, Posture, Skeleton
 from actum.skeletons import INDEX, PARTS
 from people import FRAME_NS, STANDING, reaches, reaching, skeleton
-from pose_preprocessor.motion import TIME_CONSTANT_S
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.part_motion import TIME_CONSTANT_S
 
 
 def postures(*frames: Skeleton, node: PosePreprocessor | None = None) -> list[Posture]:

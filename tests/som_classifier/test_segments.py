@@ -7,7 +7,7 @@ from actum.messages import Posture, Segment
 from actum.node import SECOND_NS, TICK_NS, Counters, Tick
 from people import FRAME_NS, STANDING, reaches, reaching, skeleton
 from pose_preprocessor.node import PosePreprocessor
-from som_classifier.segments import Closed, Segmenter
+from som_classifier.segments import ClosedSegment, Segmenter
 
 
 def postures(frames: int = 30, first_ns: int = 0) -> list[Posture]:
@@ -26,7 +26,7 @@ class Run:
     def __init__(self) -> None:
         self.counters = Counters()
         self.segmenter = Segmenter(self.counters)
-        self.closed: list[Closed] = []
+        self.closed: list[ClosedSegment] = []
         self._now_ns = 0
 
     def feed(self, *inputs: Posture | Segment) -> "Run":
@@ -48,7 +48,7 @@ class Run:
         return [closed.reason for closed in self.closed]
 
 
-def stamps(closed: Closed) -> list[int]:
+def stamps(closed: ClosedSegment) -> list[int]:
     return [frame.stamp_ns // FRAME_NS for frame in closed.frames]
 
 

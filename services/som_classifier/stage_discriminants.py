@@ -19,7 +19,7 @@ LOG_ERROR_COST = 0.2
 
 
 @dataclass(frozen=True, eq=False)
-class Stages:
+class StageDiscriminants:
     """Linear scores of the actions from a pyramid vector; the last stage is the complete action.
 
     Attributes:

@@ -9,15 +9,15 @@ from hypothesis import strategies as st
 
 from actum.node import SECOND_NS
 from people import STANDING
-from som_classifier.movement import GAP_NS, LAG_TIME_CONSTANT_S, STILL_TIME_CONSTANT_S, Movement, MovementFilter
+from som_classifier.kinematics import GAP_NS, LAG_TIME_CONSTANT_S, STILL_TIME_CONSTANT_S, Kinematics, KinematicsFilter
 
 RATE_HZ = 30
 HAND = 8
 POSTURE = STANDING - STANDING[2]
 
 
-def filtered(joints: Sequence[np.ndarray], rate_hz: float = RATE_HZ) -> list[Movement]:
-    movement = MovementFilter()
+def filtered(joints: Sequence[np.ndarray], rate_hz: float = RATE_HZ) -> list[Kinematics]:
+    movement = KinematicsFilter()
     return [movement.step(round(i * SECOND_NS / rate_hz), frame) for i, frame in enumerate(joints)]
 
 
@@ -42,7 +42,7 @@ def wandering(frames: int, seed: int = 0) -> np.ndarray:
     return POSTURE + np.random.default_rng(seed).normal(0, 0.03, (frames, 15, 3)).cumsum(axis=0)
 
 
-def assert_same(movements: Sequence[Movement], others: Sequence[Movement], joints: object = slice(None)) -> None:
+def assert_same(movements: Sequence[Kinematics], others: Sequence[Kinematics], joints: object = slice(None)) -> None:
     """To the bit."""
     for one, other in zip(movements, others, strict=True):
         np.testing.assert_array_equal(one.posture[joints], other.posture[joints])
@@ -51,7 +51,7 @@ def assert_same(movements: Sequence[Movement], others: Sequence[Movement], joint
 
 @given(st.lists(st.integers(1, 2 * GAP_NS), min_size=1, max_size=20))
 def test_joints_that_rest_are_where_they_are_and_go_nowhere(steps_ns: list[int]) -> None:
-    movement = MovementFilter()
+    movement = KinematicsFilter()
     for stamp_ns in np.cumsum(steps_ns).tolist():
         step = movement.step(stamp_ns, POSTURE)
         np.testing.assert_array_equal(step.posture, POSTURE)
@@ -109,7 +109,7 @@ def test_a_joint_that_moves_delays_no_other() -> None:
 @pytest.mark.parametrize("step_ns", [GAP_NS + 1, 0, -1, -SECOND_NS])
 def test_after_a_gap_and_where_stamps_go_back_all_begins_anew(step_ns: int) -> None:
     joints = wandering(30)
-    used, fresh = MovementFilter(), MovementFilter()
+    used, fresh = KinematicsFilter(), KinematicsFilter()
     for i, frame in enumerate(joints[:20]):
         used.step(SECOND_NS + i * GAP_NS // 10, frame)
     first_ns = SECOND_NS + 19 * GAP_NS // 10 + step_ns
@@ -122,7 +122,7 @@ def test_after_a_gap_and_where_stamps_go_back_all_begins_anew(step_ns: int) -> N
 
 
 def test_half_a_second_is_no_gap_yet() -> None:
-    movement = MovementFilter()
+    movement = KinematicsFilter()
     movement.step(0, POSTURE)
     assert movement.step(GAP_NS, POSTURE + 0.1).velocity.min() > 0
 
@@ -152,7 +152,7 @@ def test_a_joint_that_comes_back_begins_where_it_is(before: int, away: int) -> N
     movements = filtered(joints)
     np.testing.assert_array_equal(movements[back].posture[HAND], joints[back, HAND])
     np.testing.assert_array_equal(movements[back].velocity[HAND], np.zeros(3))
-    fresh = MovementFilter()
+    fresh = KinematicsFilter()
     again = [fresh.step(round(i * SECOND_NS / RATE_HZ), joints[i]) for i in range(back, len(joints))]
     assert_same(movements[back:], again, HAND)
 

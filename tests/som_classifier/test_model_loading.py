@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from actum.som import Som
 from handmade import KINDS, model_of, paper_model, pyramid_model
 from som_classifier.model import Model
-from som_classifier.storage import ModelError, load_model
+from som_classifier.model_loading import ModelError, load_model
 
 each_kind = pytest.mark.parametrize("kind", KINDS)
 
@@ -51,7 +51,7 @@ def test_a_file_brings_back_the_same_model(tmp_path: Path, kind: str) -> None:
     model, loaded = model_of(kind), load_model(saved(tmp_path, kind))
     assert type(loaded) is type(model) is KINDS[kind]
     assert loaded.id == model.id
-    assert json.loads(json.dumps(loaded.metadata)) == json.loads(json.dumps(model.metadata))
+    assert json.loads(loaded.metadata.model_dump_json()) == json.loads(model.metadata.model_dump_json())
     for name, array in model.arrays.items():
         assert loaded.arrays[name].dtype == array.dtype
         np.testing.assert_array_equal(loaded.arrays[name], array)
@@ -60,7 +60,7 @@ def test_a_file_brings_back_the_same_model(tmp_path: Path, kind: str) -> None:
 @each_kind
 def test_the_description_tells_what_it_is(kind: str) -> None:
     model = model_of(kind)
-    assert (model.labels, model.metadata["kind"], model.metadata["persons"]) == (["pull", "push"], kind, ["1", "3"])
+    assert (model.labels, model.metadata.kind, model.metadata.persons) == (["pull", "push"], kind, ["1", "3"])
 
 
 def test_the_id_changes_with_weights_with_metadata_and_with_the_kind() -> None:
@@ -78,7 +78,7 @@ def test_saving_leaves_nothing_but_the_file(tmp_path: Path, kind: str) -> None:
     saved(tmp_path, kind)
     path = saved(tmp_path, kind, seed=8)
     assert list(tmp_path.iterdir()) == [path]
-    assert load_model(path).metadata["seed"] == 8
+    assert load_model(path).metadata.seed == 8
 
 
 @each_kind
@@ -91,7 +91,7 @@ def test_a_save_that_fails_leaves_the_old_file(tmp_path: Path, kind: str, monkey
     with pytest.raises(OSError, match="No space"):
         model_of(kind, seed=8).save(path)
     assert list(tmp_path.iterdir()) == [path]
-    assert load_model(path).metadata["seed"] == 7
+    assert load_model(path).metadata.seed == 7
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from actum.skeletons import INDEX
 from actum.som import Som
 from people import STANDING
+from som_classifier.first_layer import SMALLEST_ERROR2, VELOCITY_WEIGHT, FirstMaps, arm_inputs, frame_inputs
 from som_classifier.handedness import mirrored
-from som_classifier.layers import ARM_SPEED, SMALLEST_ERROR2, Concepts, FirstMaps, arm_inputs, frame_inputs
 
 SHARES = 0.4, 0.1
 POSTURE = STANDING - STANDING[2]
@@ -36,7 +36,7 @@ def inputs(frames: int = 30, missing: float = 0.0) -> tuple[np.ndarray, np.ndarr
 @pytest.mark.parametrize("missing", [0.0, 0.3])
 def test_a_frame_alone_answers_as_among_others_on_either_side(missing: float) -> None:
     maps, (postures, velocities) = first_maps(), inputs(missing=missing)
-    alone = np.array([maps.sides(*frame) for frame in zip(postures, velocities, strict=True)])
+    alone = np.array([maps.frame_activities(*frame) for frame in zip(postures, velocities, strict=True)])
     np.testing.assert_allclose(alone[:, 0], maps.activities(postures, velocities), atol=1e-6)
     np.testing.assert_allclose(alone[:, 1], maps.activities(mirrored(postures), mirrored(velocities)), atol=1e-6)
 
@@ -84,7 +84,8 @@ def test_activity_by_hand() -> None:
     ):
         y = np.exp(-som.distances2(x.reshape(-1)) / contrast)
         expected.append(share * y / y.sum())
-    np.testing.assert_allclose(maps.sides(postures[0], velocities[0])[0], np.concatenate(expected), rtol=1e-4)
+    as_seen, _ = maps.frame_activities(postures[0], velocities[0])
+    np.testing.assert_allclose(as_seen, np.concatenate(expected), rtol=1e-4)
 
 
 def test_the_smaller_the_contrast_the_more_the_winner_takes() -> None:
@@ -116,7 +117,7 @@ def test_the_arm_is_seen_from_its_shoulder() -> None:
     shoulder, elbow, hand = (INDEX[f"right_{name}"] for name in ("shoulder", "elbow", "hand"))
     expected = [
         speed * (vectors[:, joint] - vectors[:, shoulder])
-        for vectors, speed in ((postures, 1.0), (velocities, ARM_SPEED))
+        for vectors, speed in ((postures, 1.0), (velocities, VELOCITY_WEIGHT))
         for joint in (elbow, hand)
     ]
     np.testing.assert_allclose(arms, np.concatenate(expected, axis=1))
@@ -127,31 +128,9 @@ def test_the_arm_is_seen_from_its_shoulder() -> None:
 def test_where_one_arm_is_hidden_its_map_says_nothing_of_it() -> None:
     postures, velocities = inputs(1)
     postures[:, INDEX["right_shoulder"]] = velocities[:, INDEX["right_shoulder"]] = np.nan
-    sides = first_maps().sides(postures[0], velocities[0])
+    sides = first_maps().frame_activities(postures[0], velocities[0])
     hidden, seen, of_the_mirror, hidden_in_it = sides[:, 40:].reshape(4, 20)
     np.testing.assert_allclose(hidden, SHARES[0] / 20, rtol=1e-6)
     np.testing.assert_allclose(hidden_in_it, SHARES[1] / 20, rtol=1e-6)
     np.testing.assert_allclose(seen / SHARES[1], of_the_mirror / SHARES[0], rtol=1e-5)
     assert np.ptp(seen) > 0
-
-
-def concepts(mean: np.ndarray | None = None) -> Concepts:
-    return Concepts(map_of(4, 3, 5), 2.0, np.zeros(12, np.float32) if mean is None else mean)
-
-
-def test_a_concepts_activity_is_of_unit_length_before_its_mean_is_taken_off() -> None:
-    scores = np.random.default_rng(0).random(5).astype(np.float32)
-    y = np.exp(-concepts().layout.distances2(scores) / 2.0)
-    unit = y / np.linalg.norm(y)
-    np.testing.assert_allclose(concepts().activity(scores), unit, rtol=1e-4)
-    mean = np.linspace(0, 1, 12).astype(np.float32)
-    np.testing.assert_allclose(concepts(mean).activity(scores), unit - mean, atol=1e-5)
-
-
-def test_with_the_mean_of_training_what_all_share_is_gone() -> None:
-    activities = np.random.default_rng(0).random((40, 12))
-    unit = activities / np.linalg.norm(activities, axis=1, keepdims=True)
-    centred = concepts(unit.mean(axis=0).astype(np.float32)).centred(activities)
-    np.testing.assert_allclose(centred.mean(axis=0), 0, atol=1e-6)
-    for row, among in zip(activities, centred, strict=True):
-        np.testing.assert_allclose(concepts(unit.mean(axis=0).astype(np.float32)).centred(row), among, atol=1e-12)

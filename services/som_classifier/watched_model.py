@@ -4,10 +4,10 @@ from pathlib import Path
 
 from actum.node import Counters
 from som_classifier.model import Model
-from som_classifier.storage import ModelError, load_model
+from som_classifier.model_loading import ModelError, load_model
 
 
-class ModelFile:
+class WatchedModel:
     """Loads the file whenever it has changed."""
 
     def __init__(self, path: Path) -> None:

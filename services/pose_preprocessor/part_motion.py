@@ -17,7 +17,7 @@ _PART_SIZES = _IN_PART.sum(axis=1)
 _TORSO = INDEX["torso"]
 
 
-class MotionFilter:
+class PartMotionFilter:
     """One agent's motion, from joints relative to the torso, low-passed so that noise does not pass for movement.
 
     Frame-to-frame steps add up a joint's noise, most at the feet; in the egocentric frame its own jitter comes on

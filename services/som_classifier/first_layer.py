@@ -12,14 +12,13 @@ from numpy.typing import NDArray
 from actum.skeletons import INDEX, JOINTS
 from actum.som import Som, Together
 from som_classifier.handedness import ACROSS, OPPOSITE
-from som_classifier.supervised import activity
 
 Floats = NDArray[Any]
 
-ARM_SPEED = 3.0
+VELOCITY_WEIGHT = 3.0
 """What a joint's velocity counts beside its position in the map of arms: both then spread about alike."""
 ARM_INPUTS = 12
-HEARD = ("postures", "velocities", "acting arm", "other arm")
+CHANNELS = ("postures", "velocities", "acting arm", "other arm")
 """Whose activity a frame gives, in this order; the map of arms is asked for both arms."""
 SMALLEST_ERROR2 = 6e-5
 """Squared quantization errors (m²) below this, 2 mm a joint on the mean, count as this: a logarithm knows no bottom."""
@@ -28,7 +27,7 @@ _SIZE = 3 * len(JOINTS)
 _ARM = np.arange(3 * INDEX["right_elbow"], 3 * INDEX["right_hand"] + 3)
 _SHOULDER = np.tile(np.arange(3), 2) + 3 * INDEX["right_shoulder"]
 _ENDS, _ROOTS = (np.concatenate([components, components + _SIZE]) for components in (_ARM, _SHOULDER))
-_COUNTS = np.repeat([1.0, ARM_SPEED], len(_ARM))
+_COUNTS = np.repeat([1.0, VELOCITY_WEIGHT], len(_ARM))
 _MIRROR = np.concatenate([(3 * OPPOSITE[:, None] + np.arange(3)).ravel() + start for start in (0, _SIZE)])
 _SIGNS = np.tile(ACROSS, 2 * len(JOINTS))
 
@@ -38,7 +37,7 @@ def frame_inputs(postures: Floats, velocities: Floats) -> Floats:
     return np.concatenate([postures.reshape(-1, _SIZE), velocities.reshape(-1, _SIZE)], axis=1)
 
 
-def in_a_mirror(rows: Floats) -> Floats:
+def mirrored_inputs(rows: Floats) -> Floats:
     """Return such rows (…, 90) as the actor's mirror image has them."""
     mirrored_rows: Floats = rows[..., _MIRROR] * _SIGNS
     return mirrored_rows
@@ -77,15 +76,15 @@ class FirstMaps:
     @property
     def units(self) -> int:
         """How many activities there are in all, as many of each map, those of the map of arms twice."""
-        return len(HEARD) * len(self.postures.weights)
+        return len(CHANNELS) * len(self.postures.weights)
 
     def activities(self, postures: Floats, velocities: Floats) -> Floats:
         """Return y = share × exp(−(d² − d²_min) / contrast) / Σ of each map for (n, 15, 3) inputs, shape (n, units)."""
         rows = frame_inputs(postures, velocities)
-        heard = [*zip(self.maps, _of_maps(rows), strict=True), (self.arms, arm_inputs(in_a_mirror(rows)))]
+        heard = [*zip(self.maps, _of_maps(rows), strict=True), (self.arms, arm_inputs(mirrored_inputs(rows)))]
         return self._shared(np.concatenate([_excess2s(som, inputs) for som, inputs in heard], axis=1))
 
-    def nearest(self, postures: Floats) -> NDArray[np.intp]:
+    def winners(self, postures: Floats) -> NDArray[np.intp]:
         """Return the map of postures' winner for each of (n, 15, 3), shape (n,); the first where nothing is known."""
         winners: NDArray[np.intp] = _excess2s(self.postures, postures.reshape(-1, _SIZE)).argmin(axis=1)
         return winners
@@ -105,13 +104,13 @@ class FirstMaps:
         errors: Floats = np.log(np.maximum(mean2 * _SIZE, SMALLEST_ERROR2))
         return errors
 
-    def sides(self, posture: Floats, velocity: Floats) -> Floats:
+    def frame_activities(self, posture: Floats, velocity: Floats) -> Floats:
         """Return the same for one frame (15, 3) as seen and in a mirror, shape (2, units).
 
         By a product of always the same shape, so that it never depends on other frames.
         """
         row = np.concatenate([posture, velocity]).ravel()
-        rows = np.array([row, in_a_mirror(row)])
+        rows = np.array([row, mirrored_inputs(row)])
         if math.isnan(row.sum()):
             excess2s = self._partly_known(rows)
         else:
@@ -126,7 +125,7 @@ class FirstMaps:
 
     def _shared(self, excess2s: Floats) -> Floats:
         """Make activities of d² − d²_min (n, units)."""
-        activities = excess2s.reshape(len(excess2s), len(HEARD), -1)
+        activities = excess2s.reshape(len(excess2s), len(CHANNELS), -1)
         activities *= self._slopes
         np.exp(activities, out=activities)
         activities *= self._shares / activities.sum(axis=2, keepdims=True)
@@ -159,31 +158,3 @@ def _excess2s(som: Som, rows: Floats) -> Floats:
     excess2s = np.zeros((len(rows), len(som.weights)), som.dtype)
     excess2s[known] = som.excess2s(rows[known])
     return excess2s
-
-
-@dataclass(frozen=True, eq=False)
-class Concepts:
-    """The second layer: a map on which each action has its places, and whose activity the third layer hears.
-
-    Attributes:
-        layout: the map of the actions' scores.
-        contrast: of its activity, in squared scores.
-        mean: (units,), the mean activity of unit length in training: what all actions share says nothing.
-    """
-
-    layout: Som
-    contrast: float
-    mean: NDArray[np.float32]
-
-    def activity(self, scores: Floats) -> Floats:
-        """Return y = exp(−(d² − d²_min) / contrast) of unit length, less its mean, for scores (actions,)."""
-        heard = activity(self.layout.excess2(scores), self.contrast)
-        heard /= np.sqrt(heard @ heard)
-        heard -= self.mean
-        return heard
-
-    def centred(self, activities: Floats) -> Floats:
-        """Make activities (…, units) unit length and take the mean off."""
-        lengths = np.sqrt(np.square(activities).sum(axis=-1, keepdims=True))
-        centred: Floats = activities / lengths - self.mean
-        return centred

@@ -5,18 +5,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from som_classifier.stages import NEGLIGIBLE, Stages, familiarity_of
+from som_classifier.stage_discriminants import NEGLIGIBLE, StageDiscriminants, familiarity_of
 
 FRACTIONS = (0.3, 0.55, 0.75, 1.0)
 MEAN_S, SD = 1.4, 0.3
 INPUTS, ACTIONS = 50, 6
 
 
-def stages(log_sd: float = SD) -> Stages:
+def stages(log_sd: float = SD) -> StageDiscriminants:
     rng = np.random.default_rng(0)
     axes = rng.normal(size=(len(FRACTIONS), INPUTS, ACTIONS)).astype(np.float32)
     offsets = rng.normal(size=(len(FRACTIONS), ACTIONS)).astype(np.float32)
-    return Stages(axes, offsets, FRACTIONS, float(np.log(MEAN_S)), log_sd)
+    return StageDiscriminants(axes, offsets, FRACTIONS, float(np.log(MEAN_S)), log_sd)
 
 
 def seen(weights: np.ndarray) -> float:
@@ -88,7 +88,7 @@ def test_a_stage_without_weight_leaves_no_trace() -> None:
     one = stages()
     axes, offsets = one.axes.copy(), one.offsets.copy()
     axes[:3], offsets[:3] = np.inf, np.nan
-    odd = Stages(axes, offsets, FRACTIONS, one.log_duration_mean, one.log_duration_sd)
+    odd = StageDiscriminants(axes, offsets, FRACTIONS, one.log_duration_mean, one.log_duration_sd)
     weights = one.weights(1.0, True)
     np.testing.assert_array_equal(odd.scores(vector(), weights), one.scores(vector(), weights))
 

@@ -17,7 +17,7 @@ LAG_TIME_CONSTANT_S = 0.125
 
 
 @dataclass(frozen=True, eq=False)
-class Movement:
+class Kinematics:
     """Where each joint is and where it is going; NaN where a joint is missing.
 
     Attributes:
@@ -29,7 +29,7 @@ class Movement:
     velocity: Array
 
 
-class MovementFilter:
+class KinematicsFilter:
     """A low-pass per joint whose time constant falls with its speed (after Casiez, 2012), then a second for velocity.
 
     Resting joints are steadied, fast ones hardly delayed. A joint that was away begins anew, and so does everything
@@ -41,16 +41,16 @@ class MovementFilter:
         self._known = np.ones(0, dtype=bool)
         self._before = self._speed = self._smooth = self._lagging = np.zeros((0, 3))
 
-    def step(self, stamp_ns: int, joints: Array) -> Movement:
+    def step(self, stamp_ns: int, joints: Array) -> Kinematics:
         """Take the next frame's joints (15, 3), upright, NaN where missing."""
         last_ns, self._stamp_ns = self._stamp_ns, stamp_ns
         known = ~np.isnan(joints[:, 0])
         if last_ns is None or not 0 < stamp_ns - last_ns <= GAP_NS:
             self._begin(joints, known)
-            return Movement(joints, joints - joints)
+            return Kinematics(joints, joints - joints)
         if known.all() and self._known.all():
             self._advance(joints, (stamp_ns - last_ns) / SECOND_NS)
-            return Movement(self._smooth, self._smooth - self._lagging)
+            return Kinematics(self._smooth, self._smooth - self._lagging)
         return self._advance_known(joints, known, (stamp_ns - last_ns) / SECOND_NS)
 
     def _begin(self, joints: Array, known: NDArray[np.bool_]) -> None:
@@ -68,7 +68,7 @@ class MovementFilter:
         self._lagging = _lagged(self._lagging, self._smooth, step, elapsed_s)
         self._smooth = self._smooth + step
 
-    def _advance_known(self, joints: Array, known: NDArray[np.bool_], elapsed_s: float) -> Movement:
+    def _advance_known(self, joints: Array, known: NDArray[np.bool_], elapsed_s: float) -> Kinematics:
         """Advance while joints are missing: their state waits, and those that come back begin where they are."""
         come = (known & ~self._known)[:, None]
         present = np.where(known[:, None], joints, self._before)
@@ -79,7 +79,7 @@ class MovementFilter:
         self._known = known
         self._advance(present, elapsed_s)
         missing = np.where(known, 0.0, np.nan)[:, None]
-        return Movement(self._smooth + missing, self._smooth - self._lagging + missing)
+        return Kinematics(self._smooth + missing, self._smooth - self._lagging + missing)
 
 
 def _lagged(lagging: Array, start: Array, step: Array, elapsed_s: float) -> Array:

@@ -1,4 +1,4 @@
-"""The ordered vector: what it keeps of a trace and what it is blind to."""
+"""The ordered vector: what it keeps of a trajectory and what it is blind to."""
 
 from itertools import pairwise
 
@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum.som import Som
-from som_classifier.trace import UNSEEN, Activities, activities, ordered_vector, resampled, way, without_repeats
+from som_classifier.map_activity import NO_WINNER, MapActivity
+from som_classifier.ordered_vector import ordered_vector, resampled, trajectory, without_repeats
 
 cells = st.lists(st.integers(0, 899), min_size=1, max_size=40)
 points = st.integers(2, 80)
@@ -40,28 +40,10 @@ def test_repeats_are_dropped_only_where_they_follow_each_other() -> None:
     assert without_repeats(np.array([7, 7, 3, 3, 3, 7, 1])).tolist() == [7, 3, 7, 1]
 
 
-def test_the_centre_of_activity_by_hand() -> None:
-    """Three units in a row at 0, 1 and 3: an input at 0 is 1 and 9 further off in d² from the others."""
-    row = Som(1, 3, np.array([[0.0], [1.0], [3.0]]))
-    seen = activities(row, np.array([[0.0], [np.nan]]), contrast=2.0)
-    weights = np.exp([0.0, -0.5, -4.5])
-    assert seen.winners.tolist() == [0, UNSEEN]
-    assert seen.centres[0] == pytest.approx([0.0, weights @ [0, 1, 2] / weights.sum()])
-    assert np.isnan(seen.centres[1]).all()
-
-
-@given(st.floats(0, 3))
-def test_with_little_contrast_left_the_centre_is_the_winner(at: float) -> None:
-    row = Som(1, 3, np.array([[0.0], [1.0], [3.0]]))
-    seen = activities(row, np.array([[at]]), contrast=1e-3)
-    if min(abs(at - border) for border in (0.5, 2.0)) > 0.05:
-        assert seen.centres[0] == pytest.approx(row.coordinates[seen.winners[0]])
-
-
-def test_a_way_has_the_centre_of_each_stays_first_frame() -> None:
+def test_a_trajectory_has_the_centre_at_each_change_of_the_winner() -> None:
     centres = np.arange(12.0).reshape(6, 2)
-    seen = Activities(np.array([7, 7, UNSEEN, 7, 3, 7]), centres)
-    assert way(seen).tolist() == centres[[0, 4, 5]].tolist()
+    seen = MapActivity(np.array([7, 7, NO_WINNER, 7, 3, 7]), centres)
+    assert trajectory(seen).tolist() == centres[[0, 4, 5]].tolist()
 
 
 def test_resampling_by_hand() -> None:
