@@ -1,4 +1,4 @@
-"""Which pictures are made of a model and some segments, and what is written beneath each."""
+"""The list of pictures of a model and of segments that it answered, each with its caption."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from actum_model_inspector.action_map import action_map
 from actum_model_inspector.answer_timeline import timeline_picture
-from actum_model_inspector.answered import AnsweredSegment
+from actum_model_inspector.answered import AnsweredSegment, headline
 from actum_model_inspector.arm_map import arm_map
 from actum_model_inspector.confusion import confusion_picture
 from actum_model_inspector.explanation import explanation_picture
@@ -21,7 +21,6 @@ from actum_model_inspector.reliability_diagram import judged, reliability_pictur
 from actum_model_inspector.segment_selection import examples, file_names, mistake_name, mistakes
 from actum_model_inspector.style import save
 from actum_model_inspector.trace_picture import trace_picture
-from actum_model_inspector.wording import headline
 from actum_model_trainer.calibration_error import MIN_ANSWERS
 from actum_model_trainer.evaluation import Evaluation
 from actum_model_trainer.progress import Progress, silent
@@ -32,9 +31,10 @@ class Picture:
     """A picture that is to be made.
 
     Attributes:
-        section: the heading it stands under.
+        section: the heading of the page under which it stands.
         name: of its file, without the ending.
         caption: how to read it.
+        make: the function that draws it.
     """
 
     section: str
@@ -44,7 +44,7 @@ class Picture:
 
 
 def pictures(maps: ModelMaps, segments: Sequence[AnsweredSegment], evaluation: Evaluation | None) -> Iterator[Picture]:
-    """Plan the pictures of a model, and of the segments where there are any."""
+    """Yield the pictures of a model and, where there are any, of segments, in the order of the page."""
     yield from _of_maps(maps, segments)
     if evaluation is not None and evaluation.n:
         yield from _of_answers(segments, evaluation)
@@ -57,7 +57,7 @@ def pictures(maps: ModelMaps, segments: Sequence[AnsweredSegment], evaluation: E
 
 
 def write(planned: Sequence[Picture], folder: Path, ending: str, progress: Progress = silent) -> Mapping[str, str]:
-    """Make the pictures, in the place of those of an earlier run, and return the name of each one's file.
+    """Draw the pictures into a folder, in place of an earlier run's, and return each one's file name by its name.
 
     Raises:
         OSError: one cannot be written, or one of an earlier run not be removed.
@@ -81,25 +81,29 @@ def _of_maps(maps: ModelMaps, segments: Sequence[AnsweredSegment]) -> Iterator[P
         partial(posture_map, maps),
     )  # fmt: skip
     if isinstance(maps, PyramidMaps):
-        mirrors = maps.model.metadata.mirrors
-        yield Picture(
-            section, "movement-map",
-            "The first layer's second map. Every unit stands for a way of moving, drawn as arrows at the joints.",
-            partial(movement_map, maps.model.first.velocities),
-        )  # fmt: skip
-        yield Picture(
-            section, "arm-map",
-            "The first layer's third map. Every unit stands for where the right arm is, seen from its shoulder, and "
-            "where it is going."
-            + (" Who acts with the left arm is read in a mirror." if mirrors else " Left arms are not seen by it."),
-            partial(arm_map, maps.model.first.arms, mirrors),
-        )  # fmt: skip
+        yield from _of_pyramid_maps(maps, section)
     yield Picture(
         section, "action-map",
         "The second layer. Every place belongs to the action whose neuron answers most to what falls there; like "
         "actions are neighbours, and the paler, the closer the decision."
         + (" Each dot is a segment; a ring marks a wrong answer." if segments else ""),
         partial(action_map, maps, segments),
+    )  # fmt: skip
+
+
+def _of_pyramid_maps(maps: PyramidMaps, section: str) -> Iterator[Picture]:
+    mirrors = maps.model.metadata.mirrors
+    yield Picture(
+        section, "movement-map",
+        "The first layer's second map. Every unit stands for a way of moving, drawn as arrows at the joints.",
+        partial(movement_map, maps.model.first.velocities),
+    )  # fmt: skip
+    yield Picture(
+        section, "arm-map",
+        "The first layer's third map. Every unit stands for where the right arm is, seen from its shoulder, and "
+        "where it is going."
+        + (" Who acts with the left arm is read in a mirror." if mirrors else " Left arms are not seen by it."),
+        partial(arm_map, maps.model.first.arms, mirrors),
     )  # fmt: skip
 
 

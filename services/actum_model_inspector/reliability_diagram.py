@@ -1,4 +1,4 @@
-"""Whether the confidence can be trusted: how often the answer was right when it was so sure."""
+"""The reliability diagram: accuracy over confidence."""
 
 from collections.abc import Sequence
 
@@ -6,11 +6,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from actum_model_inspector.answered import AnsweredSegment
-from actum_model_inspector.style import ACCENT, FAINT, INK, canvas, explain, in_house_style
+from actum_model_inspector.style import ACCENT, FAINT, INK, figure_with_layout, in_house_style, set_caption
 from actum_model_trainer.calibration_error import MIN_ANSWERS, ConfidenceBin, calibration_error, confidence_bins
 from actum_model_trainer.evaluation import wilson_interval
 
-WIDTH_IN = 6.8
+WIDTH_IN = 6.8  # of the picture: about square axes
 
 
 def judged(segments: Sequence[AnsweredSegment]) -> list[AnsweredSegment]:
@@ -19,14 +19,14 @@ def judged(segments: Sequence[AnsweredSegment]) -> list[AnsweredSegment]:
 
 
 def bins(segments: Sequence[AnsweredSegment]) -> list[ConfidenceBin]:
-    """Sort judged segments by confidence; bins without a segment are left out."""
+    """Sort segments with an answer into bins by confidence; empty bins are left out."""
     answers = [(segment.recognition.confidence, segment.correct) for segment in segments if segment.recognition]
     return confidence_bins([confidence for confidence, _ in answers], [correct for _, correct in answers])
 
 
 @in_house_style
 def reliability_picture(segments: Sequence[AnsweredSegment]) -> Figure:
-    """Draw accuracy over confidence, and how many answers each point stands for.
+    """Draw accuracy over confidence, and beneath it the number of answers of each point.
 
     Raises:
         ValueError: fewer than `MIN_ANSWERS` segments have a label and an answer.
@@ -35,7 +35,7 @@ def reliability_picture(segments: Sequence[AnsweredSegment]) -> Figure:
     if len(known) < MIN_ANSWERS:
         raise ValueError(f"{len(known)} labelled and answered segments are too few: at least {MIN_ANSWERS} are needed")
     found = bins(known)
-    figure = canvas(
+    figure = figure_with_layout(
         WIDTH_IN, 7.0, f"Confidence is {calibration_error(found):.2f} off on average ({len(known)} answers)"
     )
     upper, lower = figure.subplots(2, 1, height_ratios=[4, 1], sharex=True)
@@ -55,7 +55,7 @@ def _draw_accuracy(axes: Axes, found: Sequence[ConfidenceBin]) -> None:
     axes.scatter(confidences, accuracies, s=[30 + each.n for each in found], color=ACCENT, zorder=3, clip_on=False)
     axes.set(ylabel="share of right answers", xlim=(0, 1), ylim=(0, 1.02))
     reading = "on the dashed line, eight in ten of the answers given with 0.8 are right; bars: 95 % interval"
-    explain(axes, reading, WIDTH_IN - 1)
+    set_caption(axes, reading, WIDTH_IN - 1)
 
 
 def _draw_counts(axes: Axes, found: Sequence[ConfidenceBin]) -> None:

@@ -13,14 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum import keys
+from actum.arrays import Array
 from actum.messages import Agent, Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
 from actum_model_trainer.evaluation import Evaluation, Prediction
 from actum_model_trainer.samples import classifier_input, closed_segments, sensors
 from som_classifier.segments import ClosedSegment
-
-Array = NDArray[np.float64]
 
 POINTS = 32  # per path: about one a frame for an action of a second
 _JOINTS = [INDEX["left_hand"], INDEX["right_hand"], INDEX["torso"]]

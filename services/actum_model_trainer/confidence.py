@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Indices
 from actum_model_trainer.discriminants import FittedStage
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.temperature_scaling import matched_inverse_temperature
@@ -19,7 +20,6 @@ from som_classifier.first_layer import FirstMaps
 from som_classifier.presets import Prior, PyramidPreset
 
 Floats = NDArray[Any]
-Indices = NDArray[np.intp]
 
 
 def inverse_temperatures(

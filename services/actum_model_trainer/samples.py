@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum import keys
+from actum.arrays import Array
 from actum.messages import Hand, Message, Posture, Segment, Skeleton
 from actum.node import Counters, Numbering, Tick, replay
 from actum.recording import Recording
@@ -18,7 +19,6 @@ from som_classifier.handedness import LimbSpreads, limb_moments
 from som_classifier.model import Model
 from som_classifier.segments import ClosedSegment, Segmenter
 
-Array = NDArray[np.float64]
 STREAMS = (keys.SKELETON, keys.SEGMENT)
 """What is read of a recording; everything else follows from it."""
 

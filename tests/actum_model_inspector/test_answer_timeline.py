@@ -1,4 +1,4 @@
-"""The course of the answer: it ends with the answer that is given."""
+"""The answers over time end with the answer that is given."""
 
 from dataclasses import replace
 

@@ -6,7 +6,7 @@ import pytest
 from actum.recording import Recording
 from actum_model_inspector.answered import AnsweredSegment, answered_segments, encoded
 from actum_model_inspector.contributions import contributions
-from actum_model_inspector.explanation import leading
+from actum_model_inspector.explanation import largest_contributors
 from actum_model_inspector.model_maps import PyramidMaps, maps_of
 from handmade import pyramid_model
 from som_classifier.first_layer import CHANNELS
@@ -31,8 +31,8 @@ def test_contributions_add_up_to_the_difference_of_the_scores(
         frames = encoded(model, segment.frames)
         found = contributions(model, frames)
         scores = model.scores([frame.activity for frame in frames], complete)
-        assert found.difference == pytest.approx(float(scores[found.winner] - scores[found.second]), abs=1e-5)
-        assert found.cells.sum() + found.level == pytest.approx(found.difference, abs=1e-4)
+        assert found.difference == pytest.approx(float(scores[found.winner] - scores[found.other]), abs=1e-5)
+        assert found.cells.sum() + found.bias == pytest.approx(found.difference, abs=1e-4)
         assert found.units.sum() == pytest.approx(found.cells.sum(), abs=1e-6)
 
 
@@ -43,7 +43,7 @@ def test_the_answer_is_held_against_the_one_that_answers_next(
         found = contributions(model, encoded(model, segment.frames))
         assert segment.recognition is not None
         by_activation = sorted(segment.recognition.activations.items(), key=lambda item: -item[1])
-        assert [model.labels[found.winner], model.labels[found.second]] == [label for label, _ in by_activation[:2]]
+        assert [model.labels[found.winner], model.labels[found.other]] == [label for label, _ in by_activation[:2]]
 
 
 def test_or_against_another_that_is_named(pyramid: PyramidModel, recording: Recording) -> None:
@@ -51,7 +51,7 @@ def test_or_against_another_that_is_named(pyramid: PyramidModel, recording: Reco
     frames = encoded(pyramid, segment.frames)
     answer = pyramid.labels[contributions(pyramid, frames).winner]
     for other in set(pyramid.labels) - {answer}:
-        assert pyramid.labels[contributions(pyramid, frames, other).second] == other
+        assert pyramid.labels[contributions(pyramid, frames, other).other] == other
 
 
 def test_a_segment_of_the_left_arm_is_known_to_be_read_in_a_mirror(pyramid: PyramidModel, recording: Recording) -> None:
@@ -89,16 +89,16 @@ def test_each_map_adds_what_its_own_axes_make_of_it(
     of_one = replace(model, stages=replace(model.stages, axes=axes.reshape(model.stages.axes.shape)))
     found = contributions(of_one, encoded(of_one, segments[0].frames))
     assert found.cells.any(axis=0).tolist() == [index == which for index in range(len(CHANNELS))]
-    assert found.cells[:, which].sum() + found.level == pytest.approx(found.difference, abs=1e-4)
+    assert found.cells[:, which].sum() + found.bias == pytest.approx(found.difference, abs=1e-4)
 
 
-def test_the_leading_units_are_those_that_say_what_the_sum_says() -> None:
-    chosen, shares = leading(np.array([0.1, -0.5, 0.3, 0.0, 0.0, 0.0, 0.0, 0.6]))
+def test_the_largest_contributors_are_those_with_the_sign_of_the_sum() -> None:
+    chosen, shares = largest_contributors(np.array([0.1, -0.5, 0.3, 0.0, 0.0, 0.0, 0.0, 0.6]))
     assert chosen[:3].tolist() == [7, 2, 0]
     assert shares[:3] == pytest.approx([0.6, 0.3, 0.1])
-    chosen, _ = leading(np.array([0.1, -0.5, 0.3]))
+    chosen, _ = largest_contributors(np.array([0.1, -0.5, 0.3]))
     assert chosen[0] == 1
 
 
 def test_where_nothing_contributes_all_count_alike() -> None:
-    assert leading(np.zeros(3))[1] == pytest.approx(np.ones(3) / 3)
+    assert largest_contributors(np.zeros(3))[1] == pytest.approx(np.ones(3) / 3)

@@ -1,4 +1,4 @@
-"""What the picture of the reasons says of them in words and bars."""
+"""What the picture that explains an answer says in words and bars."""
 
 from dataclasses import replace
 
@@ -66,7 +66,7 @@ def test_bars_lead_from_nothing_to_the_difference_of_the_scores(pyramid: Pyramid
     assert [begin for begin, _ in terms] == pytest.approx([total[0], *(end for _, end in terms[:-1])])
     assert terms[-1][1] == pytest.approx(total[1], abs=1e-3)
     widths = [end - begin for begin, end in [*terms, total]]
-    values = [*found.cells.sum(axis=0), found.level, found.difference]
+    values = [*found.cells.sum(axis=0), found.bias, found.difference]
     assert widths == pytest.approx([value * widths[-1] / values[-1] for value in values], abs=1e-3)
 
 
@@ -76,14 +76,14 @@ def test_what_is_the_same_for_every_segment_is_explained(pyramid: PyramidModel, 
     said = words(explanation_picture(pyramid, segment))
     assert "before anything is seen" not in said
     assert (
-        f"less average\n{found.level:+.2f}\nthe same for every segment: what the boxes add up to in an average" in said
+        f"less average\n{found.bias:+.2f}\nthe same for every segment: what the boxes add up to in an average" in said
     )
 
 
 def test_it_takes_off_what_the_boxes_come_to_in_an_average_segment(pyramid: PyramidModel) -> None:
     """Each action was trained as often as the others, so that an average segment leads to none of them."""
-    codes = [[frame.activity for frame in encoded_sample(pyramid, sample)] for sample in tiny_samples()]
-    average = np.mean([pyramid.pyramid.vector(pyramid.prefix_sums(each)) for each in codes], axis=0)
+    activities = [[frame.activity for frame in encoded_sample(pyramid, sample)] for sample in tiny_samples()]
+    average = np.mean([pyramid.pyramid.vector(pyramid.prefix_sums(each)) for each in activities], axis=0)
     boxes = average @ pyramid.stages.axes[-1]
     leads, levels = (np.subtract.outer(each, each) for each in (boxes, pyramid.stages.offsets[-1]))
     np.testing.assert_allclose(leads, -levels, atol=0.1 * np.abs(levels).max())

@@ -52,7 +52,9 @@ def test_the_page_says_what_the_model_is_and_how_often_it_was_right(
 def test_it_warns_where_the_same_person_trained_the_model(
     maps: ModelMaps, segments: list[AnsweredSegment], recording: Recording, person: str, warned: bool
 ) -> None:
-    own = [AnsweredSegment(s.file, person, s.segment_id, s.label, s.frames, s.recognition, s.place) for s in segments]
+    own = [
+        AnsweredSegment(s.file, person, s.segment_id, s.label, s.frames, s.recognition, s.action_unit) for s in segments
+    ]
     assert ("also performed for the training" in shown(maps, own, recording)[0]) == warned
 
 

@@ -20,7 +20,7 @@ from actum_model_inspector.answered import AnsweredSegment, answered_segments
 from actum_model_inspector.confusion import confusion_picture
 from actum_model_inspector.inspection import Picture, pictures, write
 from actum_model_inspector.model_maps import ModelMaps, PaperMaps, PyramidMaps
-from actum_model_inspector.posture_map import MOST_FIGURES, drawn_units
+from actum_model_inspector.posture_map import MAX_FIGURES, drawn_units
 from actum_model_inspector.style import action_colours
 from actum_model_trainer.evaluation import Evaluation, Prediction, evaluate
 from handmade import paper_model, pyramid_model
@@ -198,7 +198,7 @@ def test_a_confusion_with_rejections_has_a_column_for_them() -> None:
 def test_no_more_figures_are_drawn_than_can_be_seen(side: int, every: int) -> None:
     units, distance = drawn_units(Som(side, 2, np.zeros((side * 2, 9))))
     assert distance == every
-    assert len({int(unit) // 2 for unit in units}) <= MOST_FIGURES
+    assert len({int(unit) // 2 for unit in units}) <= MAX_FIGURES
 
 
 def test_each_of_two_dozen_actions_has_a_colour_of_its_own() -> None:

@@ -14,7 +14,7 @@ def said(confidence: float, label: str | None = "push", answer: str = "push") ->
     return AnsweredSegment("a.mcap", "1", "s", label, [], replace(PUSH, label=answer, confidence=confidence), 0)
 
 
-REJECTED = replace(said(0.5), recognition=None, place=None)
+REJECTED = replace(said(0.5), recognition=None, action_unit=None)
 
 
 def test_answers_are_sorted_by_tenths_of_confidence() -> None:

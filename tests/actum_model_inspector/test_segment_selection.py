@@ -3,9 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from actum_model_inspector.answered import AnsweredSegment
+from actum_model_inspector.answered import AnsweredSegment, headline
 from actum_model_inspector.segment_selection import examples, file_names, mistake_name, mistakes
-from actum_model_inspector.wording import headline
 from som_classifier.recognition import Recognition
 
 PUSH = Recognition("push", 0.8, {"push": 0.9, "pull": 0.1}, "right_arm", np.zeros((1, 2)))
@@ -15,7 +14,7 @@ def said(confidence: float, label: str | None = "push", answer: str = "push") ->
     return AnsweredSegment("a.mcap", "1", "s", label, [], replace(PUSH, label=answer, confidence=confidence), 0)
 
 
-REJECTED = replace(said(0.5), recognition=None, place=None)
+REJECTED = replace(said(0.5), recognition=None, action_unit=None)
 
 
 def test_the_example_of_an_action_is_its_right_answer_of_median_confidence() -> None:

@@ -8,7 +8,7 @@ from actum.som import Som
 from actum_model_inspector.answered import AnsweredSegment
 from actum_model_inspector.model_maps import maps_of
 from actum_model_inspector.style import LEFT, RIGHT
-from actum_model_inspector.trace_picture import COURSE, free_side, trace_picture
+from actum_model_inspector.trace_picture import TIME_COLOURS, free_side, trace_picture
 from actum_model_trainer.answering import encoded
 from actum_model_trainer.samples import SegmentSample
 from recognisers import in_a_mirror, tiny_model, tiny_samples
@@ -78,4 +78,4 @@ def test_stays_are_framed_in_the_colour_of_their_time_whatever_frames_were_lost(
         frame.stamp_ns += 100 * SECOND_NS
     answered = AnsweredSegment("file", "1", "a", sample.label, frames)
     early = {tuple(card.get_edgecolor()) for card in trace_picture(maps_of(model), answered).axes[0].patches}
-    assert {COURSE(0.0)} <= early <= {COURSE(0.0), COURSE(1), COURSE(2), COURSE(0.88)}
+    assert {TIME_COLOURS(0.0)} <= early <= {TIME_COLOURS(0.0), TIME_COLOURS(1), TIME_COLOURS(2), TIME_COLOURS(0.88)}
