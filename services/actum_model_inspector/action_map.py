@@ -19,7 +19,7 @@ from actum_model_inspector.style import (
     INK,
     PAPER,
     action_colours,
-    draw_cells,
+    draw_squares,
     figure_with_layout,
     hide_axes,
     in_house_style,
@@ -84,7 +84,7 @@ def spread_on_unit(units: Indices) -> Floats:
 
 def _draw_regions(axes: Axes, found: Regions, actions: int) -> None:
     strength = PALEST + (1 - PALEST) * found.margins
-    draw_cells(axes, mixed_with_white(action_colours(actions)[found.actions], strength))
+    draw_squares(axes, mixed_with_white(action_colours(actions)[found.actions], strength))
     axes.add_collection(LineCollection(borders(found.actions), colors=PAPER, linewidths=2.0))
     hide_axes(axes)
 

@@ -12,7 +12,7 @@ from actum_model_inspector.style import (
     FAINT,
     INK,
     PAPER,
-    draw_cells,
+    draw_squares,
     figure_with_layout,
     hide_axes,
     in_house_style,
@@ -41,7 +41,7 @@ def confusion_picture(evaluation: Evaluation) -> Figure:
     figure = figure_with_layout(width_in, CELL_IN * rows + 2.6, title)
     axes = figure.add_subplot()
     shares = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
-    draw_cells(axes, SHADES(_DARKEST * shares)[..., :3])
+    draw_squares(axes, SHADES(_DARKEST * shares)[..., :3])
     _write_counts(axes, counts, shares)
     _name_rows_and_columns(axes, evaluation, names)
     set_caption(

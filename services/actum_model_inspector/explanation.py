@@ -14,10 +14,10 @@ from actum.arrays import Indices
 from actum_model_inspector.answered import AnsweredSegment, encoded
 from actum_model_inspector.arm_map import ArmsOnBodies, fastest_m
 from actum_model_inspector.contributions import Contributions, contributions
-from actum_model_inspector.movement_map import arrows_of
 from actum_model_inspector.stick_figures import LONGEST_ARROW_M, Pen, draw_arrows, draw_figures
 from actum_model_inspector.style import FAINT, PAPER, axes_at, figure_without_layout, hide_axes, in_house_style
 from actum_model_inspector.text_layout import shortened
+from actum_model_inspector.velocity_map import velocity_arrows
 from actum_model_inspector.waterfall import NEGATIVE, POSITIVE, TERM_IN, Term, draw_waterfall
 from som_classifier.handedness import mirrored
 from som_classifier.pyramid_model import PyramidModel
@@ -85,18 +85,18 @@ def _columns(found: Contributions) -> Sequence[tuple[str, Draw]]:
     """Return each column's heading and the function that draws its figures."""
     return (
         ("POSTURES, in the whole action and in its parts", _draw_postures),
-        ("MOVEMENTS: where the joints are going", _draw_movements),
+        ("MOVEMENTS: where the joints are going", _draw_velocities),
         (f"THE {found.arm.upper()} ARM as seen from its shoulder", _draw_arms),
     )
 
 
 def _terms(found: Contributions, winner: str, other: str) -> list[Term]:
     """Return the terms of the difference between the scores, and last the difference itself."""
-    postures, movements, arm, other_arm = found.cells.sum(axis=0).tolist()
+    postures, velocities, arm, other_arm = found.cells.sum(axis=0).tolist()
     idle = "right" if found.arm == "left" else "left"
     return [
         Term("postures", postures, "the boxes on the left, added up"),
-        Term("movements", movements, "the boxes in the middle"),
+        Term("movements", velocities, "the boxes in the middle"),
         Term(f"{found.arm} arm", arm, "the boxes on the right"),
         Term(f"{idle} arm", other_arm, "counts less and is not drawn"),
         Term(
@@ -164,10 +164,10 @@ def _draw_postures(axes: Axes, model: PyramidModel, found: Contributions) -> Non
     draw_figures(axes, _as_performed(means, found), middles, FIGURE_IN, pen=Pen(1.8))
 
 
-def _draw_movements(axes: Axes, model: PyramidModel, found: Contributions) -> None:
+def _draw_velocities(axes: Axes, model: PyramidModel, found: Contributions) -> None:
     """Draw into each cell its mean posture, with the mean velocities of the units that contribute most as arrows."""
     wide, middles = _figure_places(model)
-    _, arrows_m = arrows_of(model.first.velocities)
+    _, arrows_m = velocity_arrows(model.first.velocities)
     means = _as_performed(_mean_contributors(found, wide, 1, arrows_m), found)
     bodies = _as_performed(_mean_postures(model, found, wide), found)
     draw_figures(axes, bodies, middles, FIGURE_IN, pen=Pen(1.2, FAINT))

@@ -15,12 +15,12 @@ from actum_model_inspector.confusion import confusion_picture
 from actum_model_inspector.explanation import explanation_picture
 from actum_model_inspector.folder import clear, note
 from actum_model_inspector.model_maps import ModelMaps, PyramidMaps
-from actum_model_inspector.movement_map import movement_map
 from actum_model_inspector.posture_map import posture_map
 from actum_model_inspector.reliability_diagram import judged, reliability_picture
 from actum_model_inspector.segment_selection import examples, file_names, mistake_name, mistakes
 from actum_model_inspector.style import save
 from actum_model_inspector.trace_picture import trace_picture
+from actum_model_inspector.velocity_map import velocity_map
 from actum_model_trainer.calibration_error import MIN_ANSWERS
 from actum_model_trainer.evaluation import Evaluation
 from actum_model_trainer.progress import Progress, silent
@@ -96,7 +96,7 @@ def _of_pyramid_maps(maps: PyramidMaps, section: str) -> Iterator[Picture]:
     yield Picture(
         section, "movement-map",
         "The first layer's second map. Every unit stands for a way of moving, drawn as arrows at the joints.",
-        partial(movement_map, maps.model.first.velocities),
+        partial(velocity_map, maps.model.first.velocities),
     )  # fmt: skip
     yield Picture(
         section, "arm-map",

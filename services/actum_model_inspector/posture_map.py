@@ -11,7 +11,7 @@ from actum.arrays import Indices
 from actum.som import Som
 from actum_model_inspector.model_maps import ModelMaps
 from actum_model_inspector.stick_figures import WHOLE_BODY, Pen, draw_figures, standing
-from actum_model_inspector.style import FAINT, LEFT, RIGHT, draw_cells, figure_with_layout, hide_axes, in_house_style
+from actum_model_inspector.style import FAINT, LEFT, RIGHT, draw_squares, figure_with_layout, hide_axes, in_house_style
 
 Floats = NDArray[Any]
 
@@ -89,7 +89,7 @@ def draw_ground(axes: Axes, som: Som, strength: float = 1.0) -> None:
     """Shade each unit by its mean distance to its neighbours."""
     distances = som.u_matrix()
     grey = 1 - strength * _DARKEST * (distances - distances.min()) / max(float(np.ptp(distances)), 1e-9)
-    draw_cells(axes, np.repeat(grey[..., None], 3, axis=2))
+    draw_squares(axes, np.repeat(grey[..., None], 3, axis=2))
     hide_axes(axes)
 
 

@@ -130,7 +130,7 @@ def set_caption(axes: Axes, text: str, width_in: float) -> None:
     axes.set_title("\n".join(textwrap.wrap(text, int(width_in * _CHARACTERS_PER_IN))))
 
 
-def draw_cells(axes: Axes, colours: Floats) -> None:
+def draw_squares(axes: Axes, colours: Floats) -> None:
     """Draw a map's cells as squares, the first row on top.
 
     Args:

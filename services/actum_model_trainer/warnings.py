@@ -13,17 +13,17 @@ CONFUSED_TIMES = 2  # wrong answers within a pair: a single one may be chance
 BACKGROUND = ("idle", "background")  # labels of segments in which none of the actions is done
 
 
-def warnings_of(samples: Sequence[SegmentSample], held_out: Sequence[tuple[str, str]]) -> list[str]:
+def warnings_of(samples: Sequence[SegmentSample], answers: Sequence[tuple[str, str]]) -> list[str]:
     """Return a warning, one sentence or two, for each weakness of the training samples.
 
     Args:
         samples: of the training.
-        held_out: action done and action answered, for each example in a cross-validation.
+        answers: action done and action answered, for each example in a cross-validation.
     """
     counts = Counter(sample.label for sample in samples)
     actions = {label: n for label, n in sorted(counts.items()) if label not in BACKGROUND}
     people = {sample.person for sample in samples}
-    return [*_one_person(people), *_few(counts), *_unbalanced(actions), *_confused(held_out), *_no_background(counts)]
+    return [*_one_person(people), *_few(counts), *_unbalanced(actions), *_confused(answers), *_no_background(counts)]
 
 
 def _one_person(people: set[str]) -> Iterator[str]:
@@ -57,9 +57,9 @@ def _unbalanced(actions: Mapping[str, int]) -> Iterator[str]:
         )
 
 
-def _confused(held_out: Sequence[tuple[str, str]]) -> Iterator[str]:
+def _confused(answers: Sequence[tuple[str, str]]) -> Iterator[str]:
     """Warn of each pair of actions that are taken for one another, the worst first."""
-    times = Counter(held_out)
+    times = Counter(answers)
     pairs = {tuple(sorted(answer)) for answer in times if answer[0] != answer[1]}
     mistaken = {(a, b): times[a, b] + times[b, a] for a, b in pairs}
     for (a, b), wrong in sorted(mistaken.items(), key=lambda item: (-item[1], item[0])):

@@ -81,7 +81,7 @@ def test_a_model_remembers_what_left_out_samples_were_taken_for(samples: list[Se
     assert not {answered for done, answered in told if done in "ab"} - {"a", "b"}
 
 
-def test_few_peoples_samples_are_shown_as_more_other_people(samples: list[SegmentSample]) -> None:
+def test_samples_of_few_people_are_augmented_more(samples: list[SegmentSample]) -> None:
     several = BodyVariation(3, build_sd=0.2, tempo=0.5)
     of_few = replace(PLAIN, others_of_few=several, few_people=2)
     for names in ("11", "12"):
@@ -247,17 +247,17 @@ def mean_confidence(samples: list[SegmentSample]) -> float:
     return float(np.mean([answer(model, encoded(model, sample)).confidence for sample in samples]))
 
 
-def test_typical_distance_by_hand() -> None:
+def test_median_quantization_error_by_hand() -> None:
     """One unit at 0: squared distances 1, 4 and 9."""
     assert median_quantization_error2(Som(1, 1, np.zeros((1, 1))), np.array([[1.0], [2.0], [3.0]])) == 4.0
 
 
-def test_typical_distance_scales_up_what_is_missing() -> None:
+def test_median_quantization_error_scales_up_what_is_missing() -> None:
     """Two of three components known: 1 + 1 stands for 3."""
     assert median_quantization_error2(Som(1, 1, np.zeros((1, 3))), np.array([[1.0, np.nan, 1.0]])) == 3.0
 
 
-def test_a_typical_distance_is_never_zero() -> None:
+def test_a_median_quantization_error_is_never_zero() -> None:
     assert median_quantization_error2(Som(1, 1, np.ones((1, 3))), np.ones((4, 3))) > 0
 
 

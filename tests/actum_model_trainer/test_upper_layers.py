@@ -1,4 +1,4 @@
-"""The map of actions and its neurons learn scores, and are as sure as scores of people left out let them be."""
+"""The action map and the neurons learn scores, training and cross-validated ones."""
 
 import numpy as np
 import pytest
@@ -22,8 +22,8 @@ def scores(noise: float, seed: int = 0) -> np.ndarray:
     return np.asarray(np.eye(ACTIONS)[TARGETS] + rng(seed).normal(0, noise, (len(TARGETS), ACTIONS)))
 
 
-def scored(own_noise: float, held_out_noise: float) -> FittedStage:
-    axes = Discriminants(NOBODY, NOBODY, scores(own_noise), scores(held_out_noise, 1))
+def scored(own_noise: float, cross_validated_noise: float) -> FittedStage:
+    axes = Discriminants(NOBODY, NOBODY, scores(own_noise), scores(cross_validated_noise, 1))
     return FittedStage(axes, np.arange(len(TARGETS)), TARGETS)
 
 
@@ -42,7 +42,7 @@ def test_cosines_are_those_of_each_row_alone() -> None:
     np.testing.assert_allclose(layers.cosines(rows), np.stack(alone), atol=1e-5)
 
 
-def test_what_the_map_learns_is_partly_the_one_partly_the_other() -> None:
+def test_the_map_learns_training_and_cross_validated_scores_alike() -> None:
     """Half and half: the mean of the map's inputs is what its linear beginning stands about."""
     one, other = scored(0.1, 0.3), scored(0.3, 0.1)
     swapped = Discriminants(NOBODY, NOBODY, one.discriminants.cross_validated_scores, one.discriminants.training_scores)
@@ -65,7 +65,7 @@ def test_one_example_of_each_action_is_enough() -> None:
     assert (told == strangers.argmax(axis=1)).mean() > 0.95
 
 
-def test_mixtures_fill_up_what_is_few() -> None:
+def test_mixup_fills_up_few_scores() -> None:
     rows, targets = mixup(np.eye(3), np.arange(3), 500, 0.55, rng())
     np.testing.assert_array_equal(rows[:3], np.eye(3))
     np.testing.assert_array_equal(targets[:3], np.arange(3))
@@ -75,13 +75,13 @@ def test_mixtures_fill_up_what_is_few() -> None:
     assert 0.55 <= rows.max(axis=1).min() < 0.6
 
 
-def test_what_is_enough_stays_as_it_is() -> None:
+def test_enough_scores_stay_as_they_are() -> None:
     rows, targets = mixup(scores(0.1), TARGETS, len(TARGETS), 0.55, rng())
     np.testing.assert_array_equal(rows, scores(0.1))
     np.testing.assert_array_equal(targets, TARGETS)
 
 
-def test_variance_within_by_hand() -> None:
+def test_within_class_variance_by_hand() -> None:
     """Of the first action 1 and 4, of the second 0 and 0: what lies between actions does not count."""
     rows = np.array([[0.0, 10.0], [2.0, 14.0], [50.0, 50.0], [50.0, 50.0]])
     assert within_class_variance(rows, np.array([0, 0, 1, 1])) == pytest.approx((2.5 + 0) / 2)

@@ -11,7 +11,7 @@ from som_classifier.kinematics import LAG_TIME_CONSTANT_S
 
 
 @in_house_style
-def movement_map(velocities: Som) -> Figure:
+def velocity_map(velocities: Som) -> Figure:
     """Draw each unit's weights as arrows at the joints of somebody who stands, on the U-matrix."""
     title = f"The movement map: {velocities.rows} × {velocities.cols} units, each standing for a way of moving"
     figure = figure_with_layout(*map_size(velocities), title)
@@ -21,7 +21,7 @@ def movement_map(velocities: Som) -> Figure:
     places = velocities.coordinates[units][:, ::-1]
     bodies = standing(len(units))
     draw_figures(axes, bodies, places, FILLED * spacing, pen=Pen(0.7, FAINT, 0.6))
-    speeds_mps, steps_m = arrows_of(velocities)
+    speeds_mps, steps_m = velocity_arrows(velocities)
     draw_arrows(axes, bodies, steps_m[units], places, FILLED * spacing, width_in=0.016)
     axes.set_title(
         f"{which_are_drawn(spacing)}arrows: where each joint is going, whatever the posture, the longest at "
@@ -31,7 +31,7 @@ def movement_map(velocities: Som) -> Figure:
     return figure
 
 
-def arrows_of(velocities: Som) -> tuple[Floats, Floats]:
+def velocity_arrows(velocities: Som) -> tuple[Floats, Floats]:
     """Return the speed of each unit's joints, m/s, (units, 15), and arrows that show it, metres, (units, 15, 3).
 
     The weights are velocities as displacements (m) within `LAG_TIME_CONSTANT_S`.
