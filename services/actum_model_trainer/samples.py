@@ -18,7 +18,8 @@ from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from som_classifier.handedness import LimbSpreads, limb_moments
 from som_classifier.model import Model
-from som_classifier.segments import ClosedSegment, Segmenter
+from som_classifier.segmenter import Segmenter
+from som_classifier.segments import ClosedSegment
 
 STREAMS = (keys.SKELETON, keys.SEGMENT)
 """What is read of a recording; everything else follows from it."""

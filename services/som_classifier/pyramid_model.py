@@ -86,7 +86,6 @@ class PyramidModel(Model):
         stages: the discriminants on their pooled activities.
         action_map: the second layer, a map of the discriminants' scores.
         layer3: one neuron per action on the second layer's activity.
-        metadata: what is stored beside the weights.
     """
 
     first: FirstMaps

@@ -8,7 +8,8 @@ from actum.node import SECOND_NS, TICK_NS, Counters, Tick
 from people import FRAME_NS, STANDING, reaches, reaching, skeleton
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
-from som_classifier.segments import ClosedSegment, Segmenter
+from som_classifier.segmenter import Segmenter
+from som_classifier.segments import ClosedSegment
 
 
 def postures(frames: int = 30, first_ns: int = 0) -> list[Posture]:
@@ -255,7 +256,7 @@ def test_frames_without_a_posture_belong_to_the_segment_but_not_to_the_recogniti
 
 def test_of_very_many_answered_segments_the_newest_are_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
     """A mark that comes again is answered anew only where it is one of the oldest."""
-    monkeypatch.setattr("som_classifier.segments.REMEMBERED", 2)
+    monkeypatch.setattr("som_classifier.answered_segments.REMEMBERED", 2)
     run = Run().feed(*postures(10))
     marks = {name: [mark("start", 0, name), mark("end", 5 * FRAME_NS, name)] for name in "abc"}
     run.feed(*marks["a"], *marks["b"], *marks["c"]).wait(2.3)
