@@ -5,10 +5,10 @@ from matplotlib.colors import to_rgba
 
 from actum.node import SECOND_NS
 from actum.som import Som
-from actum_model_inspector.anatomy import anatomy_of
-from actum_model_inspector.answered import Answered
+from actum_model_inspector.answered import AnsweredSegment
+from actum_model_inspector.model_maps import maps_of
 from actum_model_inspector.style import LEFT, RIGHT
-from actum_model_inspector.trace import COURSE, free_side, trace_picture
+from actum_model_inspector.trace_picture import TIME_COLOURS, free_side, trace_picture
 from actum_model_trainer.answering import encoded
 from actum_model_trainer.samples import SegmentSample
 from recognisers import in_a_mirror, tiny_model, tiny_samples
@@ -49,8 +49,8 @@ def test_the_way_of_a_left_hander_is_that_of_the_mirror_image_and_says_so(
     sample: SegmentSample, left_handed: bool
 ) -> None:
     model = tiny_model()
-    answered = Answered("file", "1", "a", sample.label, encoded(model, sample))
-    title = trace_picture(anatomy_of(model), answered).axes[0].get_title(loc="left")
+    answered = AnsweredSegment("file", "1", "a", sample.label, encoded(model, sample))
+    title = trace_picture(maps_of(model), answered).axes[0].get_title(loc="left")
     assert title.startswith(f"{len(model.trace(encoded(model, sample)))} stays")
     assert ("read in a mirror" in title) == left_handed
 
@@ -58,8 +58,8 @@ def test_the_way_of_a_left_hander_is_that_of_the_mirror_image_and_says_so(
 @pytest.mark.parametrize(("sample", "moving"), [(tiny_samples()[0], RIGHT), (in_a_mirror(tiny_samples()[0]), LEFT)])
 def test_the_framed_figures_move_the_arm_that_the_actor_moved(sample: SegmentSample, moving: str) -> None:
     model = tiny_model()
-    answered = Answered("file", "1", "a", sample.label, encoded(model, sample))
-    axes = trace_picture(anatomy_of(model), answered).axes[0]
+    answered = AnsweredSegment("file", "1", "a", sample.label, encoded(model, sample))
+    axes = trace_picture(maps_of(model), answered).axes[0]
     (figures,) = (drawn for drawn in axes.collections if isinstance(drawn, LineCollection) and drawn.get_zorder() == 5)
     spread = {}
     for side in (RIGHT, LEFT):
@@ -76,6 +76,6 @@ def test_stays_are_framed_in_the_colour_of_their_time_whatever_frames_were_lost(
     frames = encoded(model, sample)
     for frame in frames[-2:]:
         frame.stamp_ns += 100 * SECOND_NS
-    answered = Answered("file", "1", "a", sample.label, frames)
-    early = {tuple(card.get_edgecolor()) for card in trace_picture(anatomy_of(model), answered).axes[0].patches}
-    assert {COURSE(0.0)} <= early <= {COURSE(0.0), COURSE(1), COURSE(2), COURSE(0.88)}
+    answered = AnsweredSegment("file", "1", "a", sample.label, frames)
+    early = {tuple(card.get_edgecolor()) for card in trace_picture(maps_of(model), answered).axes[0].patches}
+    assert {TIME_COLOURS(0.0)} <= early <= {TIME_COLOURS(0.0), TIME_COLOURS(1), TIME_COLOURS(2), TIME_COLOURS(0.88)}

@@ -7,8 +7,8 @@ import pytest
 from actum.messages import Segment, Skeleton
 from actum.recording import Recording
 from actum_model_trainer.answering import encoded
+from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import evaluate
-from actum_model_trainer.leaving_out import leave_one_person_out
 from actum_model_trainer.samples import SegmentSample, samples_from
 from actum_model_trainer.training import TrainingError, train
 from people import FRAME_NS, skeleton
@@ -112,7 +112,7 @@ def test_the_model_a_person_is_tested_on_is_made_of_the_others_samples_alone(
         tested.append((sample.person, model.id))
         return encoded(model, sample)
 
-    monkeypatch.setattr("actum_model_trainer.leaving_out.encoded", noted)
+    monkeypatch.setattr("actum_model_trainer.cross_validation.encoded", noted)
     leave_one_person_out(three_people, preset, seed=3)
     of_others = {person: [r for r in three_people if r.person != person] for person in "123"}
     assert list(dict.fromkeys(tested)) == [

@@ -1,31 +1,33 @@
-"""Names of any length and script, broken or cut to the room they have."""
+"""Breaking and shortening of names of any length and script to the width there is for them."""
 
 from itertools import accumulate
 from unicodedata import category, east_asian_width
 
-LONGEST = 24
-_WIDE, _CAPITAL = 2.0, 1.25
+MAX_COLUMNS = 24  # of a name on one line, unless said otherwise
+_WIDE = 2.0  # columns of an ideograph: East Asian fonts are twice as wide
+_CAPITAL = 1.25  # columns of a capital, about
 _BREAK_AFTER = "_-/"
+"""Where a name without spaces is broken rather than within a word."""
 
 
 def columns(text: str) -> float:
-    """Return about how wide a line is, in small letters of the Latin script."""
+    """Return about how wide a line is, in columns: the width of a small Latin letter."""
     return sum(map(_columns_of, text))
 
 
 def on_one_line(text: str) -> str:
-    """Return the text with single spaces for whatever breaks lines or cannot be drawn."""
+    """Return the text with control characters and runs of white space replaced by single spaces."""
     return " ".join("".join(" " if category(letter) == "Cc" else letter for letter in text).split())
 
 
-def shortened(text: str, width: float = LONGEST) -> str:
-    """Cut off the end of a name that is wider than so many columns."""
+def shortened(text: str, width: float = MAX_COLUMNS) -> str:
+    """Return a name on one line, its end replaced by an ellipsis where it is wider than `width` columns."""
     line = on_one_line(text)
     return line if columns(line) <= width else _start(line, width - 1).rstrip() + "…"
 
 
-def lines_of(text: str, width: float, lines: int = 2) -> str:
-    """Break a name into few lines of so many columns, its end cut off where it does not fit."""
+def wrapped(text: str, width: float, lines: int = 2) -> str:
+    """Break a name into at most `lines` lines of `width` columns, its end cut off where it does not fit."""
     found: list[str] = []
     rest = on_one_line(text)
     while columns(rest) > width and len(found) < lines - 1:
@@ -44,6 +46,7 @@ def _end_of_line(text: str, width: float) -> int:
 
 
 def _start(text: str, width: float) -> str:
+    """Return as many letters as fit into a width."""
     reached = accumulate(map(_columns_of, text))
     return "".join(letter for letter, so_far in zip(text, reached, strict=True) if so_far <= width)
 

@@ -1,4 +1,4 @@
-"""What the picture of the reasons says of them in words and bars."""
+"""What the picture that explains an answer says in words and bars."""
 
 from dataclasses import replace
 
@@ -11,18 +11,18 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
 from actum.recording import Recording
-from actum_model_inspector.anatomy import PyramidAnatomy
-from actum_model_inspector.answered import Answered, answered_segments, encoded
+from actum_model_inspector.answered import AnsweredSegment, answered_segments, encoded
 from actum_model_inspector.contributions import contributions
-from actum_model_inspector.reasons import reasons_picture
+from actum_model_inspector.explanation import explanation_picture
+from actum_model_inspector.model_maps import PyramidMaps
 from actum_model_inspector.style import LEFT, RIGHT
 from actum_model_trainer.answering import encoded as encoded_sample
 from recognisers import tiny_samples
 from som_classifier.pyramid_model import PyramidModel
 
 
-def of(label: str, model: PyramidModel, recording: Recording) -> Answered:
-    segments = answered_segments(PyramidAnatomy(model), [recording])
+def of(label: str, model: PyramidModel, recording: Recording) -> AnsweredSegment:
+    segments = answered_segments(PyramidMaps(model), [recording])
     return next(segment for segment in segments if segment.label == label)
 
 
@@ -50,7 +50,7 @@ def test_the_column_of_arms_names_the_arm_that_it_shows(
 ) -> None:
     """The one who swings does so with the left arm; a model that reads nobody in a mirror sees the other one."""
     model = pyramid if mirrors else without_mirror(pyramid)
-    figure = reasons_picture(model, of(label, model, recording))
+    figure = explanation_picture(model, of(label, model, recording))
     assert arm_colours(figure) == {side}
     assert f"THE {arm.upper()} ARM" in words(figure)
     assert "ACTING ARM" not in words(figure)
@@ -61,29 +61,29 @@ def test_the_column_of_arms_names_the_arm_that_it_shows(
 def test_bars_lead_from_nothing_to_the_difference_of_the_scores(pyramid: PyramidModel, recording: Recording) -> None:
     segment = of("lift", pyramid, recording)
     found = contributions(pyramid, encoded(pyramid, segment.frames))
-    bars = [patch for patch in reasons_picture(pyramid, segment).axes[0].patches if isinstance(patch, Rectangle)]
+    bars = [patch for patch in explanation_picture(pyramid, segment).axes[0].patches if isinstance(patch, Rectangle)]
     *terms, total = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in bars]
     assert [begin for begin, _ in terms] == pytest.approx([total[0], *(end for _, end in terms[:-1])])
     assert terms[-1][1] == pytest.approx(total[1], abs=1e-3)
     widths = [end - begin for begin, end in [*terms, total]]
-    values = [*found.cells.sum(axis=0), found.level, found.difference]
+    values = [*found.cells.sum(axis=0), found.bias, found.difference]
     assert widths == pytest.approx([value * widths[-1] / values[-1] for value in values], abs=1e-3)
 
 
 def test_what_is_the_same_for_every_segment_is_explained(pyramid: PyramidModel, recording: Recording) -> None:
     segment = of("lift", pyramid, recording)
     found = contributions(pyramid, encoded(pyramid, segment.frames))
-    said = words(reasons_picture(pyramid, segment))
+    said = words(explanation_picture(pyramid, segment))
     assert "before anything is seen" not in said
     assert (
-        f"less average\n{found.level:+.2f}\nthe same for every segment: what the boxes add up to in an average" in said
+        f"less average\n{found.bias:+.2f}\nthe same for every segment: what the boxes add up to in an average" in said
     )
 
 
 def test_it_takes_off_what_the_boxes_come_to_in_an_average_segment(pyramid: PyramidModel) -> None:
     """Each action was trained as often as the others, so that an average segment leads to none of them."""
-    codes = [[frame.activity for frame in encoded_sample(pyramid, sample)] for sample in tiny_samples()]
-    average = np.mean([pyramid.pyramid.vector(pyramid.prefix_sums(each)) for each in codes], axis=0)
+    activities = [[frame.activity for frame in encoded_sample(pyramid, sample)] for sample in tiny_samples()]
+    average = np.mean([pyramid.pyramid.vector(pyramid.prefix_sums(each)) for each in activities], axis=0)
     boxes = average @ pyramid.stages.axes[-1]
     leads, levels = (np.subtract.outer(each, each) for each in (boxes, pyramid.stages.offsets[-1]))
     np.testing.assert_allclose(leads, -levels, atol=0.1 * np.abs(levels).max())

@@ -1,14 +1,14 @@
-"""The page that shows all pictures: one file without scripts, which works from the disk."""
+"""The HTML page that shows all pictures: one file without scripts, which a browser opens from the disk."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from itertools import groupby
 from urllib.parse import quote
 
-from actum_model_inspector.answered import Answered
+from actum_model_inspector.answered import AnsweredSegment
 from actum_model_inspector.inspection import Picture
-from actum_model_inspector.lettering import shortened
-from actum_model_inspector.style import unwritable
+from actum_model_inspector.style import missing_glyphs
+from actum_model_inspector.text_layout import shortened
 from actum_model_trainer.evaluation import Evaluation
 from som_classifier.model import Model
 
@@ -29,19 +29,19 @@ img { width: 100%; height: auto; border: 1px solid #ddd; border-radius: 4px; }
 
 def page(
     model: Model,
-    segments: Sequence[Answered],
+    segments: Sequence[AnsweredSegment],
     evaluation: Evaluation | None,
     planned: Sequence[Picture],
     files: Mapping[str, str],
 ) -> str:
-    """Write the page.
+    """Return the page as HTML.
 
     Args:
         model: that the pictures are of.
-        segments: what it was tried on.
-        evaluation: of its answers to them, where they have labels.
+        segments: that it answered.
+        evaluation: of its answers, None where no segment has a label.
         planned: the pictures in their order.
-        files: each one's file.
+        files: the file of each picture, by the picture's name.
     """
     sections = [(title, list(group)) for title, group in groupby(planned, key=lambda picture: picture.section)]
     links = [f'<a href="#{number}">{escape(title)}</a>' for number, (title, _) in enumerate(sections)]
@@ -63,27 +63,27 @@ def page(
 
 
 def model_facts(model: Model) -> str:
-    """Say what the model is."""
-    about = model.metadata
-    people = f" by {len(about.persons)} people" if len(about.persons) > 1 else ""
+    """State the model's kind, preset and training."""
+    metadata = model.metadata
+    people = f" by {len(metadata.persons)} people" if len(metadata.persons) > 1 else ""
     return (
-        f"Kind {about.kind}, preset {about.preset}, seed {about.seed}; trained on {about.samples} samples{people} of "
-        f"{len(about.labels)} actions: {', '.join(about.labels)}."
+        f"Kind {metadata.kind}, preset {metadata.preset}, seed {metadata.seed}; trained on "
+        f"{metadata.samples} samples{people} of {len(metadata.labels)} actions: {', '.join(metadata.labels)}."
     )
 
 
-def missing_letters(model: Model, segments: Sequence[Answered]) -> Iterable[str]:
-    """Say which letters of the actions' names the pictures cannot show."""
+def missing_letters(model: Model, segments: Sequence[AnsweredSegment]) -> Iterable[str]:
+    """State which letters of the actions' names the pictures cannot show, if any."""
     names = [*model.metadata.labels, *(segment.label or "" for segment in segments)]
-    if letters := unwritable(" ".join(names)):
+    if letters := missing_glyphs(" ".join(names)):
         yield (
             f"Boxes stand for {shortened(letters, 40)} in the pictures: no font here has these letters. A font such as "
             "Noto Sans for their script, or --format svg, shows them."
         )  # fmt: skip
 
 
-def test_facts(model: Model, segments: Sequence[Answered], evaluation: Evaluation | None) -> Iterable[str]:
-    """Say what it was tried on and how that went."""
+def test_facts(model: Model, segments: Sequence[AnsweredSegment], evaluation: Evaluation | None) -> Iterable[str]:
+    """State how many segments it answered, how many of them rightly, and whose it knew from the training."""
     if segments:
         rejected = sum(segment.recognition is None for segment in segments)
         yield f"Tried on {len(segments)} segments" + (f", of which it rejected {rejected}." if rejected else ".")

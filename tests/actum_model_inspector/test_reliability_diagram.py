@@ -3,18 +3,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from actum_model_inspector.answered import Answered
-from actum_model_inspector.reliability import bins, calibration_error, judged, reliability_picture
+from actum_model_inspector.answered import AnsweredSegment
+from actum_model_inspector.reliability_diagram import bins, calibration_error, judged, reliability_picture
 from som_classifier.recognition import Recognition
 
 PUSH = Recognition("push", 0.8, {"push": 0.9, "pull": 0.1}, "right_arm", np.zeros((1, 2)))
 
 
-def said(confidence: float, label: str | None = "push", answer: str = "push") -> Answered:
-    return Answered("a.mcap", "1", "s", label, [], replace(PUSH, label=answer, confidence=confidence), 0)
+def said(confidence: float, label: str | None = "push", answer: str = "push") -> AnsweredSegment:
+    return AnsweredSegment("a.mcap", "1", "s", label, [], replace(PUSH, label=answer, confidence=confidence), 0)
 
 
-REJECTED = replace(said(0.5), recognition=None, place=None)
+REJECTED = replace(said(0.5), recognition=None, action_unit=None)
 
 
 def test_answers_are_sorted_by_tenths_of_confidence() -> None:

@@ -1,4 +1,4 @@
-"""The course of the answer: it ends with the answer that is given."""
+"""The answers over time end with the answer that is given."""
 
 from dataclasses import replace
 
@@ -8,9 +8,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.patches import Rectangle
 
 from actum.recording import Recording
-from actum_model_inspector.anatomy import Anatomy, PyramidAnatomy
-from actum_model_inspector.answered import Answered, answered_segments
-from actum_model_inspector.course import course_picture
+from actum_model_inspector.answer_timeline import timeline_picture
+from actum_model_inspector.answered import AnsweredSegment, answered_segments
+from actum_model_inspector.model_maps import ModelMaps, PyramidMaps
 from actum_model_inspector.style import action_colours
 from som_classifier.pyramid_model import PyramidModel
 
@@ -23,10 +23,10 @@ def surprised(pyramid: PyramidModel) -> PyramidModel:
 
 
 def test_the_last_bar_and_the_last_points_are_the_printed_answer(surprised: PyramidModel, recording: Recording) -> None:
-    for segment in answered_segments(PyramidAnatomy(surprised), [recording]):
+    for segment in answered_segments(PyramidMaps(surprised), [recording]):
         recognition = segment.recognition
         assert recognition is not None
-        lines, decision = course_picture(surprised, segment).axes[:2]
+        lines, decision = timeline_picture(surprised, segment).axes[:2]
         bars = [patch for patch in decision.patches if isinstance(patch, Rectangle)]
         colour = action_colours(len(surprised.labels))[surprised.labels.index(recognition.label)]
         assert bars[-1].get_height() == recognition.confidence
@@ -36,8 +36,8 @@ def test_the_last_bar_and_the_last_points_are_the_printed_answer(surprised: Pyra
         assert f"answer at the end:\n{recognition.label} {recognition.confidence:.2f}" in said
 
 
-def test_the_bars_cover_the_whole_time(anatomy: Anatomy, segments: list[Answered]) -> None:
-    decision = course_picture(anatomy.model, segments[0]).axes[1]
+def test_the_bars_cover_the_whole_time(maps: ModelMaps, segments: list[AnsweredSegment]) -> None:
+    decision = timeline_picture(maps.model, segments[0]).axes[1]
     bars = [patch for patch in decision.patches if isinstance(patch, Rectangle)]
     ends = [bar.get_x() + bar.get_width() for bar in bars]
     assert bars[0].get_x() == 0

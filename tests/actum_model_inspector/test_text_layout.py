@@ -2,8 +2,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum_model_inspector.lettering import columns, lines_of, shortened
-from actum_model_inspector.style import unwritable
+from actum_model_inspector.style import missing_glyphs
+from actum_model_inspector.text_layout import columns, shortened, wrapped
 
 
 @pytest.mark.parametrize(
@@ -22,12 +22,12 @@ from actum_model_inspector.style import unwritable
 def test_names_are_broken_between_words_and_cut_where_there_is_no_room(
     text: str, width: int, lines: int, broken: str
 ) -> None:
-    assert lines_of(text, width, lines) == broken
+    assert wrapped(text, width, lines) == broken
 
 
 @given(st.text(), st.integers(2, 30), st.integers(1, 3))
 def test_no_line_is_wider_than_its_room_and_what_fits_is_whole(text: str, width: int, lines: int) -> None:
-    broken = lines_of(text, width, lines).split("\n")
+    broken = wrapped(text, width, lines).split("\n")
     assert len(broken) <= lines
     assert all(columns(line) <= width for line in broken)
     if columns(text) <= width and text.isprintable():
@@ -41,5 +41,5 @@ def test_ideographs_and_capitals_take_more_room_and_accents_none() -> None:
 
 
 def test_letters_that_no_font_has_are_named_once() -> None:
-    assert unwritable("push Ünal тянуть") == ""
-    assert unwritable("a\ue000b\ue000\t") == "\ue000"
+    assert missing_glyphs("push Ünal тянуть") == ""
+    assert missing_glyphs("a\ue000b\ue000\t") == "\ue000"

@@ -7,16 +7,16 @@ from matplotlib.figure import Figure
 
 from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS, PARTS
-from actum_model_inspector.bodies import LIMB, STANDING, Pen, draw_bodies, placed, projected
+from actum_model_inspector.stick_figures import ONE_LIMB, STANDING, Pen, draw_figures, laid_out, projected
 from actum_model_inspector.style import LEFT, RIGHT
 from people import lacking
 
 metres = st.floats(-2, 2)
 
 
-def lines_of(points: np.ndarray, **how: object) -> LineCollection:
+def bone_lines(points: np.ndarray, **how: object) -> LineCollection:
     axes = Figure().add_subplot()
-    draw_bodies(axes, points, np.zeros((len(points), 2)), 1.0, **how)
+    draw_figures(axes, points, np.zeros((len(points), 2)), 1.0, **how)
     (lines,) = (drawn for drawn in axes.collections if isinstance(drawn, LineCollection))
     return lines
 
@@ -40,13 +40,13 @@ def test_the_projection_is_linear_and_makes_nothing_longer(one: tuple[float, ...
 
 
 def test_a_figure_lies_within_its_place_feet_down() -> None:
-    (laid,) = placed(STANDING[None], np.array([[3.0, 7.0]]), 1.0)
+    (laid,) = laid_out(STANDING[None], np.array([[3.0, 7.0]]), 1.0)
     assert np.abs(laid - [3.0, 7.0]).max() < 0.5
     assert laid[INDEX["left_foot"], 1] > laid[INDEX["head"], 1]
 
 
 def test_every_bone_is_drawn_in_the_colour_of_its_side() -> None:
-    lines = lines_of(STANDING[None])
+    lines = bone_lines(STANDING[None])
     assert len(lines.get_segments()) == len(BONES)
     colours = {tuple(colour) for colour in lines.get_colors()}
     assert len(colours) == 3
@@ -54,11 +54,11 @@ def test_every_bone_is_drawn_in_the_colour_of_its_side() -> None:
 
 def test_a_missing_joint_leaves_out_the_bones_that_end_in_it() -> None:
     without_hand = lacking(STANDING, "left_hand")
-    assert len(lines_of(without_hand[None]).get_segments()) == len(BONES) - 1
+    assert len(bone_lines(without_hand[None]).get_segments()) == len(BONES) - 1
 
 
 def test_one_colour_for_all_where_the_pen_has_one() -> None:
-    assert {tuple(colour) for colour in lines_of(STANDING[None], pen=Pen(colour="#ff0000")).get_colors()} == {
+    assert {tuple(colour) for colour in bone_lines(STANDING[None], pen=Pen(colour="#ff0000")).get_colors()} == {
         (1.0, 0.0, 0.0, 1.0)
     }
 
@@ -66,8 +66,8 @@ def test_one_colour_for_all_where_the_pen_has_one() -> None:
 @pytest.mark.parametrize(("part", "colour"), [("right_arm", RIGHT), ("left_leg", LEFT)])
 def test_three_joints_are_coloured_by_the_side_they_belong_to(part: str, colour: str) -> None:
     limb = STANDING[list(PARTS[part])]
-    lines = lines_of(limb[None], figure=LIMB)
-    expected = lines_of(limb[None], figure=LIMB, pen=Pen(colour=colour))
+    lines = bone_lines(limb[None], figure=ONE_LIMB)
+    expected = bone_lines(limb[None], figure=ONE_LIMB, pen=Pen(colour=colour))
     assert np.array(lines.get_colors()) == pytest.approx(np.array(expected.get_colors()))
 
 

@@ -3,19 +3,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from actum_model_inspector.answered import Answered
-from actum_model_inspector.examples import examples, file_names, mistake_name, mistakes
-from actum_model_inspector.wording import headline
+from actum_model_inspector.answered import AnsweredSegment, headline
+from actum_model_inspector.segment_selection import examples, file_names, mistake_name, mistakes
 from som_classifier.recognition import Recognition
 
 PUSH = Recognition("push", 0.8, {"push": 0.9, "pull": 0.1}, "right_arm", np.zeros((1, 2)))
 
 
-def said(confidence: float, label: str | None = "push", answer: str = "push") -> Answered:
-    return Answered("a.mcap", "1", "s", label, [], replace(PUSH, label=answer, confidence=confidence), 0)
+def said(confidence: float, label: str | None = "push", answer: str = "push") -> AnsweredSegment:
+    return AnsweredSegment("a.mcap", "1", "s", label, [], replace(PUSH, label=answer, confidence=confidence), 0)
 
 
-REJECTED = replace(said(0.5), recognition=None, place=None)
+REJECTED = replace(said(0.5), recognition=None, action_unit=None)
 
 
 def test_the_example_of_an_action_is_its_right_answer_of_median_confidence() -> None:
@@ -53,5 +52,5 @@ def test_file_names_are_plain_and_no_two_are_alike() -> None:
         (REJECTED, "push: 0 frames, rejected"),
     ],
 )
-def test_a_headline_says_what_was_done_and_what_it_was_taken_for(answered: Answered, words: str) -> None:
+def test_a_headline_says_what_was_done_and_what_it_was_taken_for(answered: AnsweredSegment, words: str) -> None:
     assert headline(answered) == words

@@ -1,4 +1,4 @@
-"""What all kinds of models have to look at: a map of postures, a map of actions, and what happens on them."""
+"""The same view of every kind of model: its map of postures, its map of actions, and what segments win on them."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Indices
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from actum.som import Som
-from actum_model_inspector.bodies import LIMB, STANDING, WHOLE, Figure
+from actum_model_inspector.stick_figures import ONE_LIMB, STANDING, WHOLE_BODY, StickFigure
 from som_classifier.attention import ALL
 from som_classifier.frames import Frame
 from som_classifier.map_activity import soft_activity
@@ -19,109 +20,110 @@ from som_classifier.paper_model import PaperModel
 from som_classifier.pyramid_model import PyramidModel
 
 Floats = NDArray[Any]
-Indices = NDArray[np.intp]
 
-ABOVE_HIPS_M = STANDING[INDEX["torso"]] - STANDING[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0)
+TORSO_FROM_HIPS_M = STANDING[INDEX["torso"]] - STANDING[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0)
+"""The torso relative to the hips' middle of somebody who stands, (3,)."""
 
 
-class Anatomy(ABC):
+class ModelMaps(ABC):
     """The maps of one model.
 
     Attributes:
+        model: whose maps they are.
         postures: the first map.
         actions: the second map.
-        figure: what its units' weights draw.
+        figure: how the joints that a unit of the first map stands for are joined.
     """
 
     model: Model
     postures: Som
     actions: Som
-    figure: Figure
+    figure: StickFigure
 
     @abstractmethod
-    def unit_points(self) -> Floats:
-        """Return the joints that each unit of the first map stands for, relative to the torso, (units, joints, 3)."""
+    def unit_joints(self) -> Floats:
+        """Return the joints that each unit of the first map stands for, metres from the torso, (units, joints, 3)."""
 
     @abstractmethod
     def winners(self, frames: Sequence[Frame]) -> Indices:
         """Return the first map's winner at each encoded frame, NO_WINNER where it has none, shape (n,)."""
 
-    def in_mirror(self, frames: Sequence[Frame]) -> bool:
+    def is_mirrored(self, frames: Sequence[Frame]) -> bool:
         """Tell whether a segment of encoded frames is read as its mirror image."""
         return False
 
     @abstractmethod
-    def place(self, frames: Sequence[Frame]) -> int:
+    def action_unit(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a complete segment of encoded frames."""
 
     @abstractmethod
-    def answers(self) -> Floats:
-        """Return the neurons' cosines where the input lies right on each unit of the second map, (units, actions)."""
+    def unit_cosines(self) -> Floats:
+        """Return the neurons' cosines for the weights of each unit of the second map as input, (units, actions)."""
 
 
-class PyramidAnatomy(Anatomy):
+class PyramidMaps(ModelMaps):
     """The maps of the default recogniser."""
 
-    figure = WHOLE
+    figure = WHOLE_BODY
 
     def __init__(self, model: PyramidModel) -> None:
         self.model: PyramidModel = model
         self.postures, self.actions = model.first.postures, model.action_map.som
 
-    def unit_points(self) -> Floats:
-        """Return the joints that each unit of the first map stands for, relative to the torso, (units, 15, 3)."""
+    def unit_joints(self) -> Floats:
+        """Return the joints that each unit of the first map stands for, metres from the torso, (units, 15, 3)."""
         return self.postures.weights.reshape(len(self.postures.weights), -1, 3)
 
     def winners(self, frames: Sequence[Frame]) -> Indices:
         """Return the first map's winner at each encoded frame."""
         return self.model.winners(frames)
 
-    def in_mirror(self, frames: Sequence[Frame]) -> bool:
+    def is_mirrored(self, frames: Sequence[Frame]) -> bool:
         """Tell whether a segment of encoded frames is read as its mirror image."""
         return self.model.reads_in_mirror([frame.activity for frame in frames])
 
-    def place(self, frames: Sequence[Frame]) -> int:
+    def action_unit(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a complete segment of encoded frames."""
         scores = self.model.scores([frame.activity for frame in frames], complete_weights(self.model, frames))
         return self.actions.bmu(scores)
 
-    def answers(self) -> Floats:
-        """Return the neurons' cosines where the input lies right on each unit of the second map, (units, actions)."""
-        heard = [self.model.action_map.activity(weights) for weights in self.actions.weights]
-        return np.stack([self.model.layer3.cosines(activities) for activities in heard])
+    def unit_cosines(self) -> Floats:
+        """Return the neurons' cosines for the weights of each unit of the second map as input, (units, actions)."""
+        activities = [self.model.action_map.activity(weights) for weights in self.actions.weights]
+        return np.stack([self.model.layer3.cosines(own) for own in activities])
 
 
-class PaperAnatomy(Anatomy):
+class PaperMaps(ModelMaps):
     """The maps of the paper's recogniser."""
 
     def __init__(self, model: PaperModel) -> None:
         self.model: PaperModel = model
         self.postures, self.actions = model.layer1, model.layer2
-        self.figure = WHOLE if model.metadata.posture.attention == ALL else LIMB
+        self.figure = WHOLE_BODY if model.metadata.posture.attention == ALL else ONE_LIMB
 
-    def unit_points(self) -> Floats:
-        """Return the joints that each unit of the first map stands for, relative to the torso, (units, 3 or 15, 3)."""
+    def unit_joints(self) -> Floats:
+        """Return the joints that each unit of the first map stands for, metres from the torso, (units, 3 or 15, 3)."""
         points: Floats = self.postures.weights.reshape(len(self.postures.weights), -1, 3)
         from_hips = self.model.metadata.posture.origin == "hips"
-        return points - ABOVE_HIPS_M if from_hips else points
+        return points - TORSO_FROM_HIPS_M if from_hips else points
 
     def winners(self, frames: Sequence[Frame]) -> Indices:
         """Return the winner for what is attended to at each encoded frame, NO_WINNER where none of it is there."""
         _, seen = self.model.attended(frames)
         return seen.winners
 
-    def place(self, frames: Sequence[Frame]) -> int:
+    def action_unit(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a segment of encoded frames."""
         return self.model.place(frames)
 
-    def answers(self) -> Floats:
-        """Return the neurons' cosines where the input lies right on each unit of the second map, (units, actions)."""
+    def unit_cosines(self) -> Floats:
+        """Return the neurons' cosines for the weights of each unit of the second map as input, (units, actions)."""
         contrast = self.model.metadata.contrast
-        heard = [soft_activity(self.actions.excess2(weights), contrast) for weights in self.actions.weights]
-        return np.stack([self.model.layer3.cosines(activities) for activities in heard])
+        activities = [soft_activity(self.actions.excess2(weights), contrast) for weights in self.actions.weights]
+        return np.stack([self.model.layer3.cosines(own) for own in activities])
 
 
-def anatomy_of(model: Model) -> Anatomy:
+def maps_of(model: Model) -> ModelMaps:
     """Find a model's maps.
 
     Raises:
@@ -129,9 +131,9 @@ def anatomy_of(model: Model) -> Anatomy:
     """
     match model:
         case PyramidModel():
-            return PyramidAnatomy(model)
+            return PyramidMaps(model)
         case PaperModel():
-            return PaperAnatomy(model)
+            return PaperMaps(model)
         case _:
             raise TypeError(f"no pictures of a model of kind {model.metadata.kind!r}")
 

@@ -1,4 +1,4 @@
-"""What a model says about the samples it was trained on."""
+"""What a model file says about the samples that the model was trained on."""
 
 import hashlib
 from collections.abc import Sequence
@@ -13,10 +13,10 @@ from som_classifier.presets import Preset
 
 
 class TrainingError(ValueError):
-    """The samples cannot make a model."""
+    """No model can be trained on these samples."""
 
 
-def labels_of(samples: Sequence[SegmentSample]) -> list[str]:
+def actions_of(samples: Sequence[SegmentSample]) -> list[str]:
     """List the actions among the samples, sorted.
 
     Raises:
@@ -29,9 +29,9 @@ def labels_of(samples: Sequence[SegmentSample]) -> list[str]:
 
 
 def provenance(samples: Sequence[SegmentSample], preset: Preset, seed: int) -> dict[str, Any]:
-    """Return the fields of a description that every kind of model has."""
+    """Return those fields of a model's metadata that every kind of model has."""
     return {
-        "labels": labels_of(samples),
+        "labels": actions_of(samples),
         "preset": preset.name,
         "parameters": asdict(preset),
         "seed": seed,
@@ -43,7 +43,7 @@ def provenance(samples: Sequence[SegmentSample], preset: Preset, seed: int) -> d
 
 
 def digest_of(samples: Sequence[SegmentSample]) -> str:
-    """Return the SHA-256 over what a training sees of its samples, in their order."""
+    """Return the SHA-256 (hexadecimal) over everything that a training reads of its samples, in their order."""
     digest = hashlib.sha256()
     for sample in samples:
         digest.update(f"{sample.label}\0{sample.person}\0{sample.joints.shape}\0{sample.depth_inferred}".encode())
