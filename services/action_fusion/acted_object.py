@@ -10,8 +10,9 @@ from action_fusion.hand_tracks import HandTrack
 from action_fusion.object_tracks import SETTLED_NS, ObjectTrack
 from action_fusion.occlusion import SLIP_M
 from action_fusion.settings import Settings
-from action_fusion.stream_samples import Array, ObjectsSample
+from action_fusion.stream_samples import ObjectsSample
 from actum import geometry
+from actum.arrays import Array
 from actum.messages import ActedObject, Hand, ObjectPose
 
 CAMERA = "camera"

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from action_fusion.stream_samples import Array, Mask, PostureSample
+from action_fusion.stream_samples import PostureSample
+from actum.arrays import Array, Mask
 from actum.messages import Action, Hand
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX

@@ -5,11 +5,9 @@ from itertools import pairwise
 from typing import Generic, TypeVar
 
 from action_fusion.stream_samples import Sample
+from actum.limits import MAX_SEGMENT_NS
 from actum.node import SECOND_NS
 from actum.stamps import Order, StampGuard
-
-LONGEST_SEGMENT_NS = 60 * SECOND_NS
-"""The classifier rejects a segment that has not ended after this."""
 
 LOOK_BACK_NS = 9 * SECOND_NS // 10
 """How long before a segment an object may have been seen last; recordings played in a row are a second apart."""
@@ -23,7 +21,7 @@ LATEST_ACTION_NS = 4 * SECOND_NS
 MOST_ANSWERED = 16
 """So many of the last answered segments are remembered, to tell which samples come too late for them."""
 
-KEPT_NS = LONGEST_SEGMENT_NS + MEMORY_NS + LATEST_ACTION_NS
+KEPT_NS = MAX_SEGMENT_NS + MEMORY_NS + LATEST_ACTION_NS
 """How long samples are kept: for the longest segment, the time before it, and the wait for its action."""
 
 

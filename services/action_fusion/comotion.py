@@ -8,7 +8,7 @@ import numpy as np
 from action_fusion.buffers import LOOK_BACK_NS
 from action_fusion.hand_tracks import HandTrack, instants_furthest_away
 from action_fusion.object_tracks import ObjectTrack
-from action_fusion.stream_samples import Array, Mask
+from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
 
 STEP_NS = 1 * SECOND_NS

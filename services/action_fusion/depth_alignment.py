@@ -13,7 +13,7 @@ import numpy as np
 from action_fusion.hand_tracks import HandTrack
 from action_fusion.object_tracks import ObjectTrack
 from action_fusion.settings import Settings
-from action_fusion.stream_samples import Array
+from actum.arrays import Array
 
 ACROSS_STD_M = 0.05
 """Standard deviation of a hand's distance from an object across the line of sight."""

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from action_fusion.stream_samples import Array
+from actum.arrays import Array
 from actum.messages import Motion
 
 DIRECTIONS = (("right", "left"), ("up", "down"), ("away", "towards"))

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from action_fusion.stream_samples import Array
 from actum import geometry
+from actum.arrays import Array
 
 FORM = "16 numbers of a rigid 4x4 transform (rows one after the other, metres), or a file that holds just these"
 MOST_CHARACTERS = 10_000

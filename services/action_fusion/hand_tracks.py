@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from action_fusion.actors import BOTH_HANDS, Actor
-from action_fusion.stream_samples import Array, Indices, Mask
+from actum.arrays import Array, Indices, Mask
 from actum.messages import Hand
 from actum.node import SECOND_NS
 

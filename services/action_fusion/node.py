@@ -8,14 +8,12 @@ from action_fusion.fusion import fuse, rejected
 from action_fusion.settings import Settings
 from action_fusion.stream_samples import ObjectsSample, PostureSample, objects_sample, posture_sample
 from actum import keys
+from actum.limits import MAX_SKEW_NS
 from actum.messages import Action, Event, Message, Objects, Posture
 from actum.node import SECOND_NS, Counters, Tick
 from actum.stamps import Order
 
-SKEW_NS = 2 * SECOND_NS
-"""How far one stream may lag behind another."""
-
-WAIT_NS = SKEW_NS + SECOND_NS // 5
+WAIT_NS = MAX_SKEW_NS + SECOND_NS // 5
 """The skew, and two ticks' grace for the tick that starts the count."""
 
 REMEMBERED = 10_000
@@ -35,7 +33,7 @@ class Pending:
 
     def is_before(self, restart_ns: int) -> bool:
         """Tell whether its segment is of the time before a restart of the stream at stamp `restart_ns`."""
-        return self.action.start_ns < restart_ns or self.end_ns > restart_ns + SKEW_NS
+        return self.action.start_ns < restart_ns or self.end_ns > restart_ns + MAX_SKEW_NS
 
 
 class ActionFusion:
@@ -79,7 +77,7 @@ class ActionFusion:
         if order is Order.RESTART:
             events = [self._answer(pending) for pending in list(self._pending) if pending.is_before(sample.stamp_ns)]
             buffer.clear()
-            self._forget_later(sample.stamp_ns + SKEW_NS)
+            self._forget_later(sample.stamp_ns + MAX_SKEW_NS)
             self._answered.clear()
         if buffer.is_too_late(sample.stamp_ns):
             self.counters.reject("late", f"{what} at {sample.stamp_ns}, after its segment was answered")

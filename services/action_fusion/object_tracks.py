@@ -5,7 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from action_fusion.stream_samples import Array, Mask, ObjectsSample
+from action_fusion.stream_samples import ObjectsSample
+from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
 
 SETTLED_SAMPLES = 3

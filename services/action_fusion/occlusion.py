@@ -10,7 +10,7 @@ from action_fusion.hand_tracks import HandTrack
 from action_fusion.object_tracks import SETTLED_NS, ObjectTrack
 from action_fusion.settings import Settings
 from action_fusion.stops import RESTING_M_PER_S
-from action_fusion.stream_samples import Array
+from actum.arrays import Array
 from actum.node import SECOND_NS
 
 SHORTEST_GAP_NS = SECOND_NS // 5

@@ -9,7 +9,7 @@ from action_fusion.actors import Actor
 from action_fusion.choice import NO_HAND, OFF_THE_LINE, Choice
 from action_fusion.object_tracks import ObjectTrack
 from action_fusion.settings import Settings
-from action_fusion.stream_samples import Array, Indices
+from actum.arrays import Array, Indices
 from actum.messages import Hand, Pointing
 
 HOLDING_SHARE = 1 / 3

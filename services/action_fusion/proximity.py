@@ -9,7 +9,7 @@ from action_fusion.actors import Actor
 from action_fusion.choice import Choice
 from action_fusion.object_tracks import ObjectTrack
 from action_fusion.settings import Settings
-from action_fusion.stream_samples import Array
+from actum.arrays import Array
 from actum.messages import Hand
 
 

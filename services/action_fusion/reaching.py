@@ -8,7 +8,7 @@ from action_fusion.comotion import Comotion
 from action_fusion.hand_tracks import HandTrack, last_instants_away
 from action_fusion.settings import Settings
 from action_fusion.stops import stops
-from action_fusion.stream_samples import Array, Indices, Mask
+from actum.arrays import Array, Indices, Mask
 
 REACH_STEP_M = 0.05
 """The last of a reach, by which its goal is told: several times a joint's noise, less than a hand's breadth."""

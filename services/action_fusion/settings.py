@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field
 
 from action_fusion.fixed_frame import as_text, from_text
-from action_fusion.stream_samples import Array
+from actum.arrays import Array
 from actum.settings import ServiceSettings
 
 

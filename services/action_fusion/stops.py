@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from action_fusion.hand_tracks import HandTrack
-from action_fusion.stream_samples import Array, Indices, Mask
+from actum.arrays import Array, Indices, Mask
 
 RESTING_M_PER_S = 0.15
 """A reach is several times as fast (0.3 m/s and more), and comes to rest at its goal."""

@@ -4,24 +4,15 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from actum import geometry
-from actum.messages import Joint, Objects, Posture
+from actum.arrays import Array, joints_to_array
+from actum.limits import MAX_COORDINATE_M
+from actum.messages import Objects, Posture
 from actum.node import Counters
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Indices = NDArray[np.int64]
-
-FURTHEST_M = 100.0
-"""Coordinates at or beyond this are errors: no camera tells people or markers at such distances."""
 
 UNIT_TOLERANCE = 0.1
 """How much a quaternion's length may differ from 1: rounding differs by less, what is no orientation by more."""
-
-MISSING = [math.nan] * 3
-"""The coordinates of a joint that is not known."""
 
 LEVEL = (0.0, -1.0, 0.0)
 """Up in the frame of a level camera, whose y axis points down."""
@@ -85,9 +76,9 @@ def posture_sample(posture: Posture, counters: Counters) -> PostureSample:
 def objects_sample(message: Objects, counters: Counters) -> ObjectsSample:
     """Read the seen and the image-tracked objects, no remembered ones; absurdly far ones count as `bad_object`."""
     known = [found for found in message.objects if found.seen or found.followed] if message.valid else []
-    near = [found for found in known if max(map(abs, found.position_m)) < FURTHEST_M]
+    near = [found for found in known if max(map(abs, found.position_m)) < MAX_COORDINATE_M]
     if len(near) < len(known):
-        counters.reject("bad_object", f"an object beyond {FURTHEST_M:g} m at {message.stamp_ns}")
+        counters.reject("bad_object", f"an object beyond {MAX_COORDINATE_M:g} m at {message.stamp_ns}")
     return ObjectsSample(
         message.stamp_ns,
         message.session_id,
@@ -108,19 +99,13 @@ def _body(posture: Posture, counters: Counters) -> Body | None:
     if posture.joints_m is None or posture.ego_from_camera is None:
         return None
     ego_from_camera = geometry.from_flat(posture.ego_from_camera)
-    if not geometry.is_rigid(ego_from_camera, FURTHEST_M):
+    if not geometry.is_rigid(ego_from_camera, MAX_COORDINATE_M):
         return None
-    joints_m = _joints(posture.joints_m)
+    joints_m = joints_to_array(posture.joints_m)
+    joints_m[~(np.abs(joints_m) < MAX_COORDINATE_M).all(axis=1)] = np.nan
     known = np.isfinite(joints_m).all(axis=1)
     if np.count_nonzero(~known) > posture.joints_m.count(None):
         counters.reject("bad_joint", f"agent {posture.agent} at {posture.stamp_ns}: a joint not finite or absurdly far")
-    depth_std_m = min(posture.depth_std_m or 0.0, FURTHEST_M)
+    depth_std_m = min(posture.depth_std_m or 0.0, MAX_COORDINATE_M)
     up_in_camera = LEVEL if posture.up_in_camera is None else tuple(posture.up_in_camera)
     return Body(ego_from_camera, joints_m, posture.frame != "world", depth_std_m, up_in_camera)
-
-
-def _joints(joints: list[Joint]) -> Array:
-    """Read joints as (n, 3); missing, non-finite and absurdly far ones become NaN."""
-    read = np.array([MISSING if joint is None else joint for joint in joints], dtype=np.float64)
-    read[~(np.abs(read) < FURTHEST_M).all(axis=1)] = np.nan
-    return read

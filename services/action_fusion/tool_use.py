@@ -6,7 +6,7 @@ import numpy as np
 
 from action_fusion.comotion import Comotion
 from action_fusion.settings import Settings
-from action_fusion.stream_samples import Mask
+from actum.arrays import Mask
 
 WORKING_M = 0.05
 """A tool in use stays within this of one place: stirring, pouring and cutting move by the width of a hand."""

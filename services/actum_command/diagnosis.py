@@ -8,7 +8,7 @@ from actum import __version__, keys
 from actum.codec import schema_name
 from actum.messages import MESSAGES, Info, Status
 from actum.runtime import Client
-from scene_simulator.endless import DESCRIPTION
+from scene_simulator.endless_simulator import DESCRIPTION
 
 EXPECTED = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
 """The services of a whole system; the simulated scene stands in the sensor gateway's place, by its name."""

@@ -1,4 +1,4 @@
-"""The fifteen joints drawn into the pictures that they were found in."""
+"""Draws the fifteen joints of everybody into the picture in which they were found."""
 
 from collections.abc import Sequence
 
@@ -15,17 +15,20 @@ from sensor_gateway.lens import Lens
 Pixels = NDArray[np.uint8]
 Colour = tuple[int, int, int]
 
-LEFT: Colour = (255, 144, 30)
-RIGHT: Colour = (60, 90, 255)
+LEFT: Colour = (255, 144, 30)  # BGR: blue
+RIGHT: Colour = (60, 90, 255)  # red
 MIDDLE: Colour = (240, 240, 240)
-WHITE, BLACK = (255, 255, 255), (0, 0, 0)
+WHITE: Colour = (255, 255, 255)
+BLACK: Colour = (0, 0, 0)
 NAMED = ("head", "left_hand", "right_hand", "left_foot", "right_foot")
 TEXT_SCALE = 0.45
+"""Of OpenCV's font: letters of some ten pixels."""
 SUBPIXEL_BITS = 4
+"""OpenCV draws at sixteenths of a pixel."""
 
 
 def drawn(image_bgr: Pixels, agents: Sequence[Agent], lens: Lens, caption: str) -> Pixels:
-    """Return a picture with everybody's joints: the actor's left blue, their right red, each hand and foot named."""
+    """Return a picture (height, width, 3) with everybody's joints: left blue, right red, hands and feet named."""
     canvas = np.ascontiguousarray(image_bgr).copy()
     for agent in agents:
         _draw_agent(canvas, agent, lens)
@@ -34,7 +37,7 @@ def drawn(image_bgr: Pixels, agents: Sequence[Agent], lens: Lens, caption: str) 
 
 
 def sheet(pictures: Sequence[Pixels], columns: int) -> Pixels:
-    """Put pictures of one size side by side, row by row; what is left over stays black."""
+    """Return pictures (height, width, 3) of one size in rows of so many; the rest of the last row is black."""
     height, width = pictures[0].shape[:2]
     rows = -(-len(pictures) // columns)
     canvas = np.zeros((rows * height, min(columns, len(pictures)) * width, 3), np.uint8)
@@ -59,9 +62,9 @@ def _draw_agent(canvas: Pixels, agent: Agent, lens: Lens) -> None:
 
 
 def _pixel(joint_m: Array, lens: Lens) -> tuple[int, int]:
-    """Project a joint, in sixteenths of a pixel."""
-    nowhere = np.zeros(3)
-    [[[x, y]]] = cv2.projectPoints(joint_m.reshape(1, 1, 3), nowhere, nowhere, lens.matrix, lens.distortion)[0]
+    """Project a joint (3,) into the picture, in sixteenths of a pixel."""
+    no_motion = np.zeros(3)
+    [[[x, y]]] = cv2.projectPoints(joint_m.reshape(1, 1, 3), no_motion, no_motion, lens.matrix, lens.distortion)[0]
     return round(x * (1 << SUBPIXEL_BITS)), round(y * (1 << SUBPIXEL_BITS))
 
 

@@ -14,6 +14,7 @@ from actum.node import Counters, Numbering, Tick, replay
 from actum.recording import Recording
 from actum_model_trainer.progress import Progress, silent
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from som_classifier.handedness import LimbSpreads, limb_moments
 from som_classifier.model import Model
 from som_classifier.segments import ClosedSegment, Segmenter
@@ -109,7 +110,7 @@ def sensors(recording: Recording) -> list[str]:
 
 def classifier_input(recording: Recording, sensor: str) -> Iterator[tuple[int, Message]]:
     """Yield, with its stamp (ns), each message that the classifier of this sensor would have got."""
-    preprocessor, numbering = PosePreprocessor(), Numbering()
+    preprocessor, numbering = PosePreprocessor(PoseSettings.defaults()), Numbering()
     for message in recording.messages(STREAMS):
         if message.sensor == sensor:
             arriving = preprocessor.handle(message) if isinstance(message, Skeleton) else [message]

@@ -1,27 +1,27 @@
-"""How much each body part moves: what attention goes by (paper, section 2.1)."""
+"""How much each body part moves from frame to frame, which attention is decided by (paper, section 2.1)."""
 
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX, PARTS
 
-Array = NDArray[np.float64]
-
 GAP_NS = SECOND_NS // 2
+"""After a longer pause (ns) between two frames nothing is known of the motion in between: filters begin anew."""
 TIME_CONSTANT_S = 0.3
+"""Of the low-pass: noise of single frames averages out, an action of a second or more remains."""
 _IN_PART = np.array([[joint in part for joint in range(len(INDEX))] for part in PARTS.values()], dtype=np.float64)
 _PART_SIZES = _IN_PART.sum(axis=1)
 _TORSO = INDEX["torso"]
 
 
 class PartMotionFilter:
-    """One agent's motion, from joints relative to the torso, low-passed so that noise does not pass for movement.
+    """The mean displacement of each body part of one agent, from low-passed joints relative to the torso.
 
-    Frame-to-frame steps add up a joint's noise, most at the feet; in the egocentric frame its own jitter comes on
-    top, the more the further a part is from the hips. Camera axes and a first-order filter leave the movement.
+    Sums of unfiltered displacements would add up a joint's noise, which is largest at the feet. Egocentric axes jitter
+    themselves, and move a joint the more the further it is from the hips; so the axes are the camera's.
     """
 
     def __init__(self) -> None:
@@ -29,11 +29,11 @@ class PartMotionFilter:
         self._smooth: Array = np.zeros((len(INDEX), 3))
 
     def is_over(self, stamp_ns: int) -> bool:
-        """Tell whether a step at this stamp would begin anew."""
+        """Tell whether a step at this stamp would begin anew, after a gap or for the first time."""
         return self._stamp_ns is None or stamp_ns - self._stamp_ns > GAP_NS
 
     def step(self, stamp_ns: int, joints: Array) -> list[float]:
-        """Return each part's mean displacement (m) since the frame before; 0 at first and after a gap.
+        """Return each part's mean displacement since the frame before, (5,), metres; 0 at first and after a gap.
 
         The mean is over the joints known in this frame and the one before; 0 where there is none.
 
@@ -59,6 +59,7 @@ class PartMotionFilter:
 
 
 def _means_where_known(lengths: Array) -> list[float]:
+    """Return the mean of the known lengths (15,) of each part, (5,)."""
     known = ~np.isnan(lengths)
     means: list[float] = (_IN_PART @ np.where(known, lengths, 0.0) / np.maximum(_IN_PART @ known, 1.0)).tolist()
     return means

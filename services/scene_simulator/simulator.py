@@ -7,25 +7,26 @@ import numpy as np
 
 from actum.messages import SIMULATOR, Agent, Image, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS, Counters
-from scene_simulator.chance import stream
 from scene_simulator.conditions import PLAIN, Conditions
-from scene_simulator.exposure import while_open
+from scene_simulator.drawing_primitives import Canvas, Pinhole
+from scene_simulator.exposure import states_while_open
 from scene_simulator.noise import SkeletonNoise
-from scene_simulator.paint import Canvas, Pinhole
-from scene_simulator.programme import Sample
+from scene_simulator.programme import Task
+from scene_simulator.random_streams import random_stream
 from scene_simulator.render import Renderer
 from scene_simulator.simulated_scene import Scene, SceneState
 
 AGENT = 1
+"""The one person of a scene."""
 GATEWAY = "sensor_gateway"
-"""The service in whose place the scene stands: of both a sensor has one, and who listens need not know which."""
+"""The service whose messages the simulator puts: consumers need not know which of the two a sensor has."""
 
 
 class Simulator:
     """A source of skeletons, images and truth; the same arguments give the same messages, bit for bit.
 
-    `image_hz` must divide the frame rate; 0 means no images. A `Truth` stands in the first and the last frame of
-    each action; the one at the end tells how far the object moved, in the camera frame. That of a pantomime has the
+    `image_hz` must divide the frame rate; 0 means no images. The first and the last frame of each action have a
+    `Truth`; the one at the end tells the object's displacement, in the camera frame. That of a pantomime has the
     object id `NO_OBJECT`, an empty name and no displacement.
 
     Raises:
@@ -36,9 +37,9 @@ class Simulator:
     name = GATEWAY
     paced = True
 
-    def __init__(  # noqa: PLR0913 - what a scene is, and how it is put
+    def __init__(  # noqa: PLR0913 - the scene, and how it is published
         self,
-        programme: Sequence[Sample],
+        programme: Sequence[Task],
         actor_seed: int = 0,
         seed: int = 0,
         *,
@@ -64,12 +65,12 @@ class Simulator:
     def frames(self) -> Iterator[list[Message]]:
         """Yield the messages of one frame after the other, from the beginning."""
         noise = SkeletonNoise(
-            stream("skeleton noise", *self._seeds),
+            random_stream("skeleton noise", *self._seeds),
             self.scene.parameters.noise,
             self.scene.actor.noise_scale,
             self._rate_hz,
         )
-        renderer = Renderer(self.scene, stream("image noise", *self._seeds)) if self._frames_per_image else None
+        renderer = Renderer(self.scene, random_stream("image noise", *self._seeds)) if self._frames_per_image else None
         start = before = None
         for state in self.scene.states(self._tail_s):
             messages: list[Message] = [self._skeleton(state, noise)]
@@ -78,7 +79,7 @@ class Simulator:
             if state.mark is not None and start is not None:
                 messages.insert(0, self._truth(state, start))
             if renderer is not None and state.frame % self._frames_per_image == 0:
-                image = renderer.image(*while_open(before or state, state, self._open_share))
+                image = renderer.image(*states_while_open(before or state, state, self._open_share))
                 messages.append(self._image(state, image, renderer.camera))
             yield messages
             before = state
@@ -101,7 +102,7 @@ class Simulator:
 
     def _truth(self, state: SceneState, start: SceneState) -> Truth:
         assert state.segment is not None and state.mark is not None
-        sample, target = self.programme[state.segment], state.target
+        task, target = self.programme[state.segment], state.target
         moved = None if target is None else (state.positions_m[target] - start.positions_m[target]).tolist()
         return Truth(
             stamp_ns=self.stamp_ns(state.frame),
@@ -110,8 +111,8 @@ class Simulator:
             segment_id=self.segment_id(state.segment),
             agent=AGENT,
             hand=self.scene.actor.hand,
-            action=sample.action,
-            object_id=sample.object_id,
+            action=task.action,
+            object_id=task.object_id,
             object_name="" if target is None else self.scene.items[target].name,
             displacement_m=moved if state.mark == "end" else None,
         )

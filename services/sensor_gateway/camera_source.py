@@ -103,7 +103,9 @@ class CameraSource:
         elif isinstance(seen, str):
             yield self._lost(seen, perceiver)
         else:
-            self._recovered()
+            if self._reported is not None:
+                self._reported = None
+                self.counters.state = "running"
             stamp_ns = self._rising(seen.stamp_ns)
             for message in perceiver.messages(replace(seen, stamp_ns=stamp_ns)):
                 yield [message]
@@ -118,11 +120,6 @@ class CameraSource:
             return []
         self._reported = reason, now_ns
         return perceiver.lost(self._rising(now_ns), f"camera lost: {reason}")
-
-    def _recovered(self) -> None:
-        if self._reported is not None:
-            self._reported = None
-            self.counters.state = "running"
 
     def _rising(self, stamp_ns: int) -> int:
         """Shift stamps by a constant from where the host's clock was set back, so that they rise and intervals stay."""

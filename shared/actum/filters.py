@@ -1,5 +1,7 @@
 """Filters of signals that are sampled at irregular times."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from actum.arrays import Array
@@ -13,6 +15,10 @@ SPEED_CUTOFF_HZ = 4.0
 """Of the speed's own low-pass, so that the noise of a derivative does not pass for speed."""
 GAP_NS = SECOND_NS // 2
 """After a longer pause the past says nothing of where a point is."""
+_NO_TIME = np.eye(6)
+"""The Kalman filter's transition matrix over no time."""
+_AXES = np.eye(3)
+"""One row for each axis, x, y, z."""
 
 
 class OneEuro:
@@ -48,6 +54,62 @@ class OneEuro:
         speed = np.linalg.norm(self._velocity, axis=-1, keepdims=True)
         cutoff_hz = self._min_cutoff_hz + self._beta_per_m * speed
         self._points = self._points + _gain(cutoff_hz, interval_s) * (points - self._points)
+
+
+@dataclass(frozen=True, eq=False)
+class MotionEstimate:
+    """A Kalman filter's estimate of a point that moves at a nearly constant velocity.
+
+    Attributes:
+        state: (6,), the position (m), then the velocity (m/s).
+        covariance: (6, 6), of the state.
+    """
+
+    state: Array
+    covariance: Array
+
+    @classmethod
+    def initial(cls, position_m: Array, noise_m2: Array, speed_std_mps: float) -> "MotionEstimate":
+        """Begin at a measured position (3,) with noise covariance (3, 3); the velocity is 0 but for its deviation."""
+        covariance = np.zeros((6, 6))
+        covariance[:3, :3] = noise_m2
+        covariance[3:, 3:] = speed_std_mps**2 * _AXES
+        return cls(np.concatenate([position_m, np.zeros(3)]), covariance)
+
+    @property
+    def position_m(self) -> Array:
+        """The position: (3,)."""
+        return self.state[:3]
+
+    @property
+    def velocity_mps(self) -> Array:
+        """The velocity: (3,)."""
+        return self.state[3:]
+
+    def predicted(self, interval_s: float, acceleration_std_mps2: float | Array) -> "MotionEstimate":
+        """Let time pass: x' = F x, P' = F P Fᵀ + G Gᵀ, with a random acceleration that is constant for all of it.
+
+        The acceleration's standard deviation is one for all axes, or one for each: (3,).
+        """
+        transition = _NO_TIME.copy()
+        transition[:3, 3:] = interval_s * _AXES
+        disturbance = acceleration_std_mps2 * np.concatenate([interval_s**2 / 2 * _AXES, interval_s * _AXES])
+        covariance = transition @ self.covariance @ transition.T + disturbance @ disturbance.T
+        return MotionEstimate(transition @ self.state, covariance)
+
+    def updated(self, position_m: Array, noise_m2: Array) -> "tuple[MotionEstimate, float]":
+        """Take in a measured position (3,) with noise covariance (3, 3).
+
+        Returns:
+            The new estimate, and the normalised innovation squared: the squared Mahalanobis distance of the measurement
+            from the predicted position, chi-squared with three degrees of freedom where all is as modelled.
+        """
+        precision = np.linalg.inv(self.covariance[:3, :3] + noise_m2)
+        innovation_m = position_m - self.position_m
+        gain = self.covariance[:, :3] @ precision
+        covariance = self.covariance - gain @ self.covariance[:3, :]
+        state = self.state + gain @ innovation_m
+        return MotionEstimate(state, (covariance + covariance.T) / 2), float(innovation_m @ precision @ innovation_m)
 
 
 def _gain(cutoff_hz: Array | float, interval_s: float) -> Array:

@@ -5,7 +5,7 @@ import pytest
 
 from actum.arrays import Array
 from actum.skeletons import INDEX
-from scene_simulator.programme import ACTIONS, Sample, balanced_programme
+from scene_simulator.programme import ACTIONS, Task, balanced_programme
 from scene_simulator.simulated_scene import Scene, SceneState
 from scene_simulator.trial import Trial
 
@@ -64,20 +64,20 @@ def test_each_action_has_its_own_effect_on_its_object_and_none_on_the_others(seg
             "put": -0.21 < up < -0.11,
             "point": np.allclose(own, 0),
         }
-        assert effect[trial.sample.action]
+        assert effect[trial.task.action]
 
 
 def test_the_hand_takes_the_object_along(scene: Scene, segments) -> None:
     for trial, frames in segments:
         offsets = [hand_of(scene, f) - f.positions_m[trial.target] for f in frames if f.held is not None]
         moving = offsets[len(offsets) // 4 :]
-        if trial.sample.action != "point":
+        if trial.task.action != "point":
             np.testing.assert_allclose(moving, np.broadcast_to(moving[-1], (len(moving), 3)), atol=2e-3)
 
 
 def test_the_hand_comes_closest_to_the_object_it_acts_on(scene: Scene, segments) -> None:
     for trial, frames in segments:
-        if trial.sample.action == "point":
+        if trial.task.action == "point":
             continue
         distances = [np.linalg.norm(f.positions_m - hand_of(scene, f), axis=1) for f in frames]
         assert np.argmin(np.min(distances, axis=0)) == trial.target
@@ -85,7 +85,7 @@ def test_the_hand_comes_closest_to_the_object_it_acts_on(scene: Scene, segments)
 
 
 def test_a_pointing_hand_stays_clear_of_its_object(scene: Scene) -> None:
-    pointing = Scene([Sample("point", i) for i in (1, 2, 3)] * 2, 3, 8)
+    pointing = Scene([Task("point", i) for i in (1, 2, 3)] * 2, 3, 8)
     for state in pointing.states():
         if state.segment is not None:
             assert np.linalg.norm(hand_of(pointing, state) - state.positions_m[state.target]) > 0.15
@@ -94,8 +94,8 @@ def test_a_pointing_hand_stays_clear_of_its_object(scene: Scene) -> None:
 def test_only_what_is_put_down_always_starts_raised(segments) -> None:
     for trial, frames in segments:
         raised = trial.layout.riser_heights_m[trial.target]
-        assert (raised > 0) or trial.sample.action != "put"
-        assert (raised == 0) or trial.sample.action in ("put", "lift", "point")
+        assert (raised > 0) or trial.task.action != "put"
+        assert (raised == 0) or trial.task.action in ("put", "lift", "point")
         bottom = frames[0].riser_tops_m[trial.target, 1]
         assert bottom == pytest.approx(0.42 - raised)
 
@@ -134,7 +134,7 @@ def test_an_objects_pose_looks_at_the_camera(states: list[SceneState]) -> None:
 
 
 def test_the_same_seeds_give_the_same_scene_and_others_another() -> None:
-    programme = [Sample(action, 1) for action in ACTIONS]
+    programme = [Task(action, 1) for action in ACTIONS]
 
     def path(actor_seed: int, seed: int) -> Array:
         return np.array([s.joints_m for s in Scene(programme, actor_seed, seed).states()][:100])

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from actum.messages import Image, Message, Segment, Skeleton, Truth
-from scene_simulator.programme import Sample
+from scene_simulator.programme import Task
 from scene_simulator.simulator import Simulator, labelled_stream
 
-PROGRAMME = [Sample("lift", 2), Sample("point", 1)]
+PROGRAMME = [Task("lift", 2), Task("point", 1)]
 
 
 def all_of(simulator: Simulator) -> list[Message]:
@@ -71,7 +71,7 @@ def test_the_truth_says_what_was_done_to_which_object_and_how_it_moved(frames: l
 
 def test_a_segments_name_does_not_tell_the_action() -> None:
     names = [
-        {t.segment_id for t in all_of(Simulator([Sample(a, 1)], image_hz=0)) if isinstance(t, Truth)}
+        {t.segment_id for t in all_of(Simulator([Task(a, 1)], image_hz=0)) if isinstance(t, Truth)}
         for a in ("put", "pull")
     ]
 

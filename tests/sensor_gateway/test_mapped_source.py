@@ -9,6 +9,7 @@ from actum.messages import Image, Message, Posture, Skeleton
 from actum.recording import Recorder
 from people import reaches
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from sensor_gateway.mapped_source import with_session_of
 from sensor_gateway.settings import Settings
 from sensor_gateway.sources import source_of
@@ -52,7 +53,7 @@ def recording(tmp_path: Path) -> Path:
 
 
 def test_a_recording_played_again_begins_anew_for_those_who_listen(recording: Path) -> None:
-    node, made = PosePreprocessor(), []
+    node, made = PosePreprocessor(PoseSettings.defaults()), []
     for start_ns in (1, 2):
         source = source_of(Settings(source="recording", path=recording), start_ns)
         messages: list[Message] = [message for instant in source.frames() for message in instant]

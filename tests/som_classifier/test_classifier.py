@@ -16,6 +16,7 @@ from people import FRAME_NS, lacking, skeleton
 from performers import FRAMES, HAND_PATHS, PAUSE_FRAMES, TINY, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
 from pose_preprocessor.bridging import BRIDGED_NS
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from recognisers import tiny_model, tiny_samples
 from som_classifier.frames import Frame
 from som_classifier.model import Model
@@ -31,7 +32,7 @@ BESIDE_M = np.array([1.0, 0.0, 1.0])
 
 
 def postures_of(skeletons: Iterable[Message]) -> list[Posture]:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     return [p for frame in skeletons for p in node.handle(frame) if isinstance(p, Posture)]
 
 

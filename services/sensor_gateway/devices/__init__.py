@@ -1,1 +1,1 @@
-"""A depth camera as a sensor: people's poses found in its colour images, lifted by the depth measured there."""
+"""Cameras, streams and files that give pictures: webcams, video files, RealSense, OpenNI 2 and NiTE 2."""

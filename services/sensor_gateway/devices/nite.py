@@ -22,7 +22,8 @@ FOLDERS = "NITE2_REDIST64", "NITE2_REDIST"
 
 MILLIMETRES = 1000.0
 """Of NiTE's unit in a metre."""
-LEFT_SHOULDER, RIGHT_SHOULDER = INDEX["left_shoulder"], INDEX["right_shoulder"]
+LEFT_SHOULDER = INDEX["left_shoulder"]
+RIGHT_SHOULDER = INDEX["right_shoulder"]
 
 
 def _opposite(name: str) -> str:

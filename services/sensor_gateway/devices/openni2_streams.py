@@ -34,7 +34,10 @@ Frame = tuple[int, NDArray[Any]]
 
 
 def together(depths: deque[Frame], colors: deque[Frame]) -> tuple[NDArray[Any], Frame] | None:
-    """Take out the newest colour frame with a depth frame of its time, and that depth; drop all older frames."""
+    """Take out the newest colour frame (height, width, 3) and the depth frame (height, width) of its time.
+
+    All older frames are dropped. None where no two frames belong together.
+    """
     for color in reversed(colors):
         if depths and abs((depth := min(depths, key=lambda d: abs(d[0] - color[0])))[0] - color[0]) <= TOGETHER_US:
             _drop(depths, depth[0])

@@ -1,1 +1,1 @@
-"""A colour camera as a sensor: people's poses found in its images, placed in the camera frame."""
+"""People in pictures: their landmarks, placed in the camera frame, lifted by depth, told apart from image to image."""

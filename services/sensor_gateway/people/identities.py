@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from actum.arrays import Array
+from actum.filters import MotionEstimate
 from actum.node import SECOND_NS
 
 FORGET_NS = 3 * SECOND_NS // 2
@@ -41,49 +42,29 @@ WALKING_STD_MPS = 0.8
 
 @dataclass(frozen=True)
 class _Track:
-    """One person's track: a Kalman filter of constant velocity with random acceleration, each axis by itself.
-
-    Attributes:
-        position_m: (3,), camera frame.
-        velocity_mps: (3,).
-        variances: (3, 3), a row each for the variance of the position, the covariance of position and velocity, the
-            variance of the velocity; columns x, y, z.
-    """
+    """One person's track: the motion in the camera frame, filtered up to a stamp."""
 
     agent: int
     stamp_ns: int
-    position_m: Array
-    velocity_mps: Array
-    variances: Array
+    motion: MotionEstimate
 
     def predicted_m(self, stamp_ns: int) -> Array:
-        return self.position_m + self.velocity_mps * min(stamp_ns - self.stamp_ns, COAST_NS) / SECOND_NS
+        coasting_s = min(stamp_ns - self.stamp_ns, COAST_NS) / SECOND_NS
+        return self.motion.position_m + self.motion.velocity_mps * coasting_s
 
     def reach_m(self, stamp_ns: int) -> float:
         return REACH_M + REACH_MPS * (stamp_ns - self.stamp_ns) / SECOND_NS
 
     def updated(self, stamp_ns: int, position_m: Array) -> "_Track":
         ahead = self.predicted(stamp_ns)
-        position, covariance, velocity = ahead.variances
-        gain = np.array([position, covariance]) / (position + MEASURED_STD_M**2)
-        innovation = position_m - ahead.position_m
-        return replace(
-            ahead,
-            position_m=ahead.position_m + gain[0] * innovation,
-            velocity_mps=self.velocity_mps + gain[1] * innovation,
-            variances=np.array([(1 - gain[0]) * position, (1 - gain[0]) * covariance, velocity - gain[1] * covariance]),
-        )
+        motion, _ = ahead.motion.updated(position_m, np.diag(MEASURED_STD_M**2))
+        return replace(ahead, motion=motion)
 
     def predicted(self, stamp_ns: int) -> "_Track":
-        interval_s = (stamp_ns - self.stamp_ns) / SECOND_NS
-        position, covariance, velocity = self.variances
-        noise = ACCELERATION_STD_MPS2**2 * interval_s**2
-        variances = (
-            position + 2 * interval_s * covariance + interval_s**2 * velocity + noise * interval_s**2 / 4,
-            covariance + interval_s * velocity + noise * interval_s / 2,
-            velocity + noise,
-        )
-        return replace(self, stamp_ns=stamp_ns, position_m=self.predicted_m(stamp_ns), variances=np.array(variances))
+        """Predict up to a stamp: the position coasts for `COAST_NS` at most, its uncertainty grows all the time."""
+        ahead = self.motion.predicted((stamp_ns - self.stamp_ns) / SECOND_NS, ACCELERATION_STD_MPS2)
+        state = np.concatenate([self.predicted_m(stamp_ns), self.motion.velocity_mps])
+        return replace(self, stamp_ns=stamp_ns, motion=replace(ahead, state=state))
 
 
 class Identities:
@@ -129,8 +110,8 @@ class Identities:
 
     def _new(self, stamp_ns: int, position_m: Array) -> _Track:
         agent, self._next = self._next, self._next + 1
-        variances = np.array([MEASURED_STD_M**2, np.zeros(3), np.full(3, WALKING_STD_MPS**2)])
-        return _Track(agent, stamp_ns, position_m, np.zeros(3), variances)
+        motion = MotionEstimate.initial(position_m, np.diag(MEASURED_STD_M**2), WALKING_STD_MPS)
+        return _Track(agent, stamp_ns, motion)
 
 
 def _cost(track: _Track, stamp_ns: int, position_m: Array) -> float:

@@ -6,8 +6,9 @@ import pytest
 
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
-from marker_tracker.covers import MOST_FOLLOWED, View
 from marker_tracker.node import MarkerTracker
+from marker_tracker.occlusion.crop import Crop
+from marker_tracker.occlusion.occluder_tracker import MAX_TRACKED
 from marker_tracker.settings import Settings
 
 SIZE_M, FOCAL_PX, MIDDLE_PX = 0.08, 525.0, np.array([319.5, 239.5])
@@ -157,29 +158,29 @@ def test_another_marker_that_is_laid_on_it_takes_it_nowhere(image_of, pose_at) -
 @pytest.mark.parametrize("middle_px", [-48 + 100j, 100 - 48j, 700 + 100j, 100 + 600j])
 @pytest.mark.parametrize("scale", [0.2, 0.5, 1.0])
 def test_beyond_the_images_edge_there_is_next_to_nothing_to_see(middle_px, scale) -> None:
-    view = View.around(np.zeros((480, 640), dtype=np.uint8), middle_px, 48.0, scale)
-    assert min(view.levels.shape) <= 1
+    crop = Crop.around(np.zeros((480, 640), dtype=np.uint8), middle_px, 48.0, scale)
+    assert min(crop.levels.shape) <= 1
 
 
 @pytest.mark.parametrize("scale", [0.2, 0.5, 1.0])
-def test_what_is_in_the_middle_of_the_image_s_pixels_is_in_the_middle_of_the_view_s(scale) -> None:
-    """A pixel of the view is 1 / scale of the image's, from edge to edge."""
-    view, beside = View(np.zeros((9, 9)), 100 + 40j, scale), (1 / scale - 1) / 2 * (1 + 1j)
-    assert view.inside(100 + 40j + beside) == pytest.approx(0)
-    assert view.inside(100 + 40j + beside + (3 + 2j) / scale) == pytest.approx(3 + 2j)
-    assert view.outside(3 + 2j) == pytest.approx(100 + 40j + beside + (3 + 2j) / scale)
+def test_what_is_in_the_middle_of_the_image_s_pixels_is_in_the_middle_of_the_crop_s(scale) -> None:
+    """A pixel of the crop is 1 / scale of the image's, from edge to edge."""
+    crop, beside = Crop(np.zeros((9, 9)), 100 + 40j, scale), (1 / scale - 1) / 2 * (1 + 1j)
+    assert crop.from_image(100 + 40j + beside) == pytest.approx(0)
+    assert crop.from_image(100 + 40j + beside + (3 + 2j) / scale) == pytest.approx(3 + 2j)
+    assert crop.to_image(3 + 2j) == pytest.approx(100 + 40j + beside + (3 + 2j) / scale)
 
 
 @pytest.mark.parametrize("scale", [0.2, 0.5, 1.0])
 @pytest.mark.parametrize("middle_px", [320 + 240j, 333.3 + 217.9j, 20 + 30j])
-def test_a_view_shows_a_spot_where_it_says(scale, middle_px) -> None:
+def test_a_crop_shows_a_spot_where_it_says(scale, middle_px) -> None:
     columns, rows = np.meshgrid(np.arange(640), np.arange(480))
     spot = np.exp(-((columns - middle_px.real) ** 2 + (rows - middle_px.imag) ** 2) / (2 * 8.0**2))
-    view = View.around((200 * spot).astype(np.uint8), middle_px, 48.0, scale)
-    columns, rows = np.meshgrid(*map(np.arange, view.levels.shape[::-1]))
-    weights = np.clip(view.levels - view.levels.max() / 2, 0, None)
+    crop = Crop.around((200 * spot).astype(np.uint8), middle_px, 48.0, scale)
+    columns, rows = np.meshgrid(*map(np.arange, crop.levels.shape[::-1]))
+    weights = np.clip(crop.levels - crop.levels.max() / 2, 0, None)
     shown = complex(np.average(columns, weights=weights), np.average(rows, weights=weights))
-    assert view.inside(middle_px) == pytest.approx(shown, abs=0.06)
+    assert crop.from_image(middle_px) == pytest.approx(shown, abs=0.06)
 
 
 def test_images_of_another_size_begin_anew(image_of, pose_at) -> None:
@@ -204,4 +205,4 @@ def test_of_many_at_once_a_few_are_followed(image_of, pose_at) -> None:
     for i in range(8):
         fields = {"stamp_ns": i * SECOND_NS // 15} | ({"data": curtain} if i > 3 else {})
         (answer,) = tracker.handle(shown.model_copy(update=fields))
-    assert 0 < sum(found.followed for found in answer.objects) <= MOST_FOLLOWED
+    assert 0 < sum(found.followed for found in answer.objects) <= MAX_TRACKED

@@ -1,4 +1,4 @@
-"""What never moves: the room, and the table with a name plate before each object's lane."""
+"""Draws what never moves: the room, and the table with a name plate before each object's lane."""
 
 from collections.abc import Sequence
 
@@ -6,21 +6,25 @@ import cv2
 import numpy as np
 
 from actum.arrays import Array
-from scene_simulator.paint import Canvas, Colour, Pinhole, line, polygon, shade
+from scene_simulator.drawing_primitives import Canvas, Colour, Pinhole, line, polygon, shade
 from scene_simulator.parameters import Parameters
 
+# Colours (BGR).
 WALL: tuple[Colour, Colour] = ((226, 222, 214), (196, 194, 190))
 FLOOR: Colour = (138, 150, 164)
 WOOD: Colour = (108, 150, 190)
 PLATE: Colour = (236, 240, 242)
 INK: Colour = (60, 60, 60)
 WALL_Z_M = 3.6
+"""Behind wherever the person may stand."""
 LEG_SIDE_M = 0.05
+"""Of the table."""
 PLANKS = 5
+"""Whose seams cross the table top."""
 
 
 def draw_room(camera: Pinhole, camera_height_m: float) -> Canvas:
-    """Draw wall, floor and a window."""
+    """Draw wall, floor, a window and a picture: (height, width, 3)."""
     rows = np.linspace(0, 1, camera.height)[:, None, None]
     wall = (1 - rows) * np.array(WALL[0]) + rows * np.array(WALL[1])
     room = np.broadcast_to(wall, (camera.height, camera.width, 3)).astype(np.uint8).copy()
@@ -35,7 +39,10 @@ def draw_room(camera: Pinhole, camera_height_m: float) -> Canvas:
 def draw_table(
     camera: Pinhole, parameters: Parameters, names: Sequence[str], lanes_x_m: Array
 ) -> tuple[Canvas, Canvas]:
-    """Draw the table on its own; return the picture and the mask of where it is."""
+    """Draw the table by itself; return the picture (height, width, 3) and its mask (height, width).
+
+    `lanes_x_m` (n,) are where the named objects stand.
+    """
     picture = np.full((camera.height, camera.width, 3), shade(WOOD, 0.9), dtype=np.uint8)
     mask = np.zeros((camera.height, camera.width), dtype=np.uint8)
     table, y = parameters.table, parameters.table_y_m

@@ -1,4 +1,4 @@
-"""The scene that the settings describe: so many repetitions, or one scene after another for ever."""
+"""The simulator that the settings describe: one scene of so many repetitions, or one scene after another for ever."""
 
 from collections.abc import Iterator
 
@@ -9,14 +9,14 @@ from scene_simulator.settings import Settings
 from scene_simulator.simulator import GATEWAY, Simulator
 
 REPETITIONS = 4
-"""How often each action is done before an endless scene is drawn anew."""
+"""How often each action is done before the next scene, with another seed, follows."""
 DESCRIPTION = "simulated scene, no camera"
 
 
-def scene_of(settings: Settings, start_ns: int) -> Source:
+def simulator_of(settings: Settings, start_ns: int) -> Source:
     """Build the source; its stamps begin at `start_ns`."""
     endless = settings.repetitions == 0
-    source = EndlessSimulator(settings, start_ns) if endless else _scene(settings, start_ns)
+    source = EndlessSimulator(settings, start_ns) if endless else _simulator(settings, start_ns)
     source.counters.details["source"] = DESCRIPTION
     return source
 
@@ -36,14 +36,14 @@ class EndlessSimulator:
         """Yield frames for ever."""
         start_ns, seed = self._start_ns, self._settings.seed
         while True:
-            scene = self._settings.model_copy(update={"repetitions": REPETITIONS, "seed": seed})
-            for messages in _scene(scene, start_ns, session_id=f"simulator-{self._start_ns}").frames():
+            settings = self._settings.model_copy(update={"repetitions": REPETITIONS, "seed": seed})
+            for messages in _simulator(settings, start_ns, session_id=f"simulator-{self._start_ns}").frames():
                 yield messages
                 newest_ns = messages[0].stamp_ns
             start_ns, seed = newest_ns + SECOND_NS, seed + 1
 
 
-def _scene(settings: Settings, start_ns: int, session_id: str | None = None) -> Simulator:
+def _simulator(settings: Settings, start_ns: int, session_id: str | None = None) -> Simulator:
     return Simulator(
         balanced_programme(settings.repetitions, settings.seed, settings.actor),
         actor_seed=settings.actor,

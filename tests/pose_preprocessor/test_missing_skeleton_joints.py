@@ -14,6 +14,7 @@ from actum.skeletons import INDEX, JOINTS, PARTS
 from people import FRAME_NS, STANDING, lacking, reaching, skeleton
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.part_motion import TIME_CONSTANT_S
+from pose_preprocessor.settings import Settings as PoseSettings
 
 Array = NDArray[np.float64]
 
@@ -26,7 +27,7 @@ SUBSETS = st.sets(st.sampled_from(JOINTS))
 
 
 def postures(frames: list[Array], node: PosePreprocessor | None = None, first_ns: int = 0) -> list[Posture]:
-    node = node or PosePreprocessor()
+    node = node or PosePreprocessor(PoseSettings.defaults())
     made = [p for i, joints in enumerate(frames) for p in node.handle(skeleton(first_ns + i * FRAME_NS, joints))]
     return [posture for posture in made if isinstance(posture, Posture)]
 
@@ -64,7 +65,7 @@ def same_where_known(partial: list[Joint] | None, whole: list[Joint] | None) -> 
 
 @given(SUBSETS)
 def test_whatever_is_missing_the_rest_is_published_or_the_frame_is_named_unusable(missing: set[str]) -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     made = postures([lacking(joints, *missing) for joints in reaching_frames(2)], node)
     for posture in made:
         json.dumps(posture.model_dump(), allow_nan=False)
@@ -137,7 +138,7 @@ def test_hips_that_flicker_do_not_throw_the_upright_posture_about() -> None:
 
 
 def test_what_is_there_is_still_checked() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     far_knee, far_hand = lacking(STANDING, "left_foot"), lacking(STANDING, *RIGHT_ARM)
     far_knee[INDEX["left_knee"], 1] += 2.0
     far_hand[INDEX["left_hand"], 2] += 20.0
@@ -149,14 +150,14 @@ def test_what_is_there_is_still_checked() -> None:
 
 
 def test_a_repeated_frame_is_repeated_with_joints_missing_too() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     first, again = postures([lacking(STANDING, *FEET)] * 2, node)
     assert (first.valid, again.valid) == (True, False)
     assert node.counters.rejects == {"repeated_joints": 1}
 
 
 def test_the_state_names_what_was_missing_lately_and_nothing_is_rejected() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     postures([lacking(reaching(0.1), *FEET), reaching(0.2)], node)
     assert node.counters.state == "running without left_foot, right_foot"
     postures([lacking(reaching(0.3), "head")], node, first_ns=10**9)
@@ -168,7 +169,7 @@ def test_the_state_names_what_was_missing_lately_and_nothing_is_rejected() -> No
 
 
 def test_the_state_does_not_outlive_a_restart_of_the_source() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     list(node.handle(skeleton(10**12, lacking(STANDING, "head"))))
     list(node.handle(skeleton(0, STANDING, session_id="other")))
     assert node.counters.state == "running"

@@ -1,20 +1,18 @@
-"""Which frames can be used: none with repeated, non-finite, coincident or absurd joints, or without a trunk."""
+"""Tells which frames cannot be used: those with non-finite or absurd joints, or without a trunk."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array
 from actum.geometry import BONES
-from actum.messages import Joint
 from actum.skeletons import JOINTS
 
 _PARENTS = np.array([parent for parent, _, _ in BONES])
 _CHILDREN = np.array([child for _, child, _ in BONES])
 _NEEDED = frozenset({"torso", "neck"})
+"""No egocentric frame is defined without them, nor without one of the pairs below."""
 _PAIRS = (frozenset({"left_hip", "right_hip"}), frozenset({"left_shoulder", "right_shoulder"}))
-_UNKNOWN = [math.nan] * 3
 
 
 class BadFrameError(ValueError):
@@ -25,21 +23,14 @@ class BadFrameError(ValueError):
         self.kind = kind
 
 
-def missing_joints(joints: list[Joint]) -> list[int]:
-    """Tell which joints the source lacks."""
-    return [index for index, joint in enumerate(joints) if joint is None]
-
-
-def as_array(joints: list[Joint]) -> NDArray[np.float64]:
-    """Return joints as an array of shape (15, 3), NaN where one is missing."""
-    return np.array([_UNKNOWN if joint is None else joint for joint in joints], dtype=np.float64)
-
-
-def check(array: NDArray[np.float64], missing: Sequence[int], reach_limit_m: float, bone_limit_m: float) -> None:
-    """Refuse joints (15, 3), camera frame, metres, that cannot be used.
+def check_frame(joints: Array, missing: Sequence[int], reach_limit_m: float, bone_limit_m: float) -> None:
+    """Refuse joints that cannot be used.
 
     Args:
+        joints: (15, 3), camera frame, metres.
         missing: which of them are not known; the others must be finite.
+        reach_limit_m: a joint further away than this along any camera axis is absurd.
+        bone_limit_m: a longer bone is absurd.
 
     Raises:
         BadFrameError: of kind `missing_joint` (no torso, no neck, or neither both hips nor both shoulders),
@@ -47,9 +38,9 @@ def check(array: NDArray[np.float64], missing: Sequence[int], reach_limit_m: flo
     """
     if missing:
         _require_trunk([JOINTS[index] for index in missing])
-    if not (np.abs(array) <= reach_limit_m).all():
-        _require_near(array, missing, reach_limit_m)
-    bones = array[_CHILDREN] - array[_PARENTS]
+    if not (np.abs(joints) <= reach_limit_m).all():
+        _require_near(joints, missing, reach_limit_m)
+    bones = joints[_CHILDREN] - joints[_PARENTS]
     lengths2 = np.einsum("ij,ij->i", bones, bones)
     if np.fmax.reduce(lengths2) > bone_limit_m**2:
         child = JOINTS[int(_CHILDREN[int(np.nanargmax(lengths2))])]
@@ -61,11 +52,11 @@ def _require_trunk(missing: Sequence[str]) -> None:
         raise BadFrameError("missing_joint", f"no {', '.join(missing)}")
 
 
-def _require_near(array: NDArray[np.float64], missing: Sequence[int], reach_limit_m: float) -> None:
+def _require_near(joints: Array, missing: Sequence[int], reach_limit_m: float) -> None:
     given = [i for i in range(len(JOINTS)) if i not in missing]
     for i in given:
-        if not np.isfinite(array[i]).all():
+        if not np.isfinite(joints[i]).all():
             raise BadFrameError("not_finite", f"{JOINTS[i]} is not a finite position")
     for i in given:
-        if np.abs(array[i]).max() > reach_limit_m:
+        if np.abs(joints[i]).max() > reach_limit_m:
             raise BadFrameError("absurd_joint", f"{JOINTS[i]} is more than {reach_limit_m:g} m away")

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from actum.geometry import angle_between_rad
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
-from marker_tracker.poses import Pose
-from marker_tracker.rotations import apart_rad, between
-from marker_tracker.tracks import PREDICTED_S, Sighting, Tracks
+from marker_tracker.pose.object_tracks import PREDICTED_S, Tracks, interpolated_rotation
+from marker_tracker.pose.poses import Measurement, Pose
 
 RATE_HZ = 30
 NOISE_M = np.array([0.001, 0.001, 0.006])
@@ -27,8 +27,8 @@ def pose(position_m: Any, turn: Any = (0.0, 0.0, 0.0), error_px: float = 0.1) ->
     return Pose(transform, error_px)
 
 
-def sighting(*poses: Pose) -> Sighting:
-    return Sighting(poses, np.diag(NOISE_M**2), 0.9)
+def measured(*poses: Pose) -> Measurement:
+    return Measurement(1, "cup", poses, np.diag(NOISE_M**2), 0.9)
 
 
 def followed(path: Callable[[float], Any], frames: int, noise: float = 0.0) -> list[TrackedObject]:
@@ -37,7 +37,7 @@ def followed(path: Callable[[float], Any], frames: int, noise: float = 0.0) -> l
     listed = []
     for i in range(frames):
         position_m = np.asarray(path(i / RATE_HZ)) + noise * NOISE_M * chance.normal(size=3)
-        tracks.see(stamp(i), 1, "cup", sighting(pose(position_m)))
+        tracks.update(stamp(i), [measured(pose(position_m))])
         listed += tracks.listed(stamp(i))
     return listed
 
@@ -78,7 +78,7 @@ def test_a_still_object_is_shown_steadier_than_it_is_measured() -> None:
 def test_a_moving_object_is_carried_on_for_a_moment_and_then_stays_listed_where_it_ended() -> None:
     tracks = Tracks(MEMORY_NS)
     for i in range(15):
-        tracks.see(stamp(i), 1, "cup", sighting(pose([0.5 * i / RATE_HZ, 0.0, 1.5])))
+        tracks.update(stamp(i), [measured(pose([0.5 * i / RATE_HZ, 0.0, 1.5]))])
     last_m = 0.5 * 14 / RATE_HZ
     frames = range(15, 15 + 40)
     hidden = [tracks.listed(stamp(i))[0] for i in frames]
@@ -97,36 +97,36 @@ def test_a_moving_object_is_carried_on_for_a_moment_and_then_stays_listed_where_
 def test_a_still_object_does_not_drift_while_covered() -> None:
     tracks, chance = Tracks(MEMORY_NS), np.random.default_rng(1)
     for i in range(30):
-        tracks.see(stamp(i), 1, "cup", sighting(pose([0.0, 0.0, 1.5] + NOISE_M * chance.normal(size=3))))
+        tracks.update(stamp(i), [measured(pose([0.0, 0.0, 1.5] + NOISE_M * chance.normal(size=3)))])
     (seen,), (covered,) = tracks.listed(stamp(29)), tracks.listed(stamp(34))
     assert covered.position_m == seen.position_m
 
 
-def test_one_sighting_far_off_is_not_believed_but_two_are() -> None:
+def test_one_measurement_far_off_is_not_believed_but_two_are() -> None:
     tracks = Tracks(MEMORY_NS)
     for i in range(10):
-        tracks.see(stamp(i), 1, "cup", sighting(pose([0.0, 0.0, 1.5])))
-    assert not tracks.see(stamp(10), 1, "cup", sighting(pose([0.6, 0.0, 1.5])))
+        tracks.update(stamp(i), [measured(pose([0.0, 0.0, 1.5]))])
+    assert tracks.update(stamp(10), [outlier := measured(pose([0.6, 0.0, 1.5]))]) == [outlier]
     (doubted,) = tracks.listed(stamp(10))
     assert (doubted.seen, doubted.position_m[0]) == (False, pytest.approx(0.0, abs=0.001))
-    assert tracks.see(stamp(11), 1, "cup", sighting(pose([0.6, 0.0, 1.5])))
+    assert tracks.update(stamp(11), [measured(pose([0.6, 0.0, 1.5]))]) == []
     assert tracks.listed(stamp(11))[0].position_m[0] == pytest.approx(0.6)
 
 
 def test_two_that_contradict_each_other_are_not_believed_either() -> None:
     tracks = Tracks(MEMORY_NS)
     for i in range(10):
-        tracks.see(stamp(i), 1, "cup", sighting(pose([0.0, 0.0, 1.5])))
-    assert not tracks.see(stamp(10), 1, "cup", sighting(pose([0.6, 0.0, 1.5])))
-    assert not tracks.see(stamp(11), 1, "cup", sighting(pose([-0.6, 0.3, 1.5])))
-    assert tracks.see(stamp(12), 1, "cup", sighting(pose([0.0, 0.0, 1.5])))
+        tracks.update(stamp(i), [measured(pose([0.0, 0.0, 1.5]))])
+    assert tracks.update(stamp(10), [outlier := measured(pose([0.6, 0.0, 1.5]))]) == [outlier]
+    assert tracks.update(stamp(11), [outlier := measured(pose([-0.6, 0.3, 1.5]))]) == [outlier]
+    assert tracks.update(stamp(12), [measured(pose([0.0, 0.0, 1.5]))]) == []
     assert tracks.listed(stamp(12))[0].position_m[0] == pytest.approx(0.0, abs=0.001)
 
 
 def test_an_object_rejoins_at_once_wherever_it_comes_back() -> None:
     tracks = Tracks(MEMORY_NS)
-    tracks.see(stamp(0), 1, "cup", sighting(pose([0.0, 0.0, 1.5])))
-    assert tracks.see(stamp(30), 1, "cup", sighting(pose([0.5, -0.3, 1.2])))
+    tracks.update(stamp(0), [measured(pose([0.0, 0.0, 1.5]))])
+    assert tracks.update(stamp(30), [measured(pose([0.5, -0.3, 1.2]))]) == []
     assert tracks.listed(stamp(30))[0].position_m == [0.5, -0.3, 1.2]
 
 
@@ -143,7 +143,9 @@ def test_tracks_are_the_same_wherever_the_frame_has_its_origin(start, shift) -> 
 
 
 @given(st.tuples(*[st.floats(-1, 1)] * 3), st.tuples(*[st.floats(-1, 1)] * 3), st.floats(0, 1))
-def test_turning_part_of_the_way_leaves_the_rest(one, other, part) -> None:
+def test_a_rotation_interpolated_part_of_the_way_leaves_the_rest(one, other, part) -> None:
     start, end = (cv2.Rodrigues(np.array(each))[0] for each in (one, other))
-    angle = apart_rad(start, end)
-    assert apart_rad(between(start, end, part), end) == pytest.approx((1 - part) * angle, abs=1e-5)
+    angle = angle_between_rad(start, end)
+    assert angle_between_rad(interpolated_rotation(start, end, part), end) == pytest.approx(
+        (1 - part) * angle, abs=1e-5
+    )
