@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 from rich.console import Console
-from scene_simulator.endless import DESCRIPTION
+from scene_simulator.endless_simulator import DESCRIPTION
 from typer.testing import CliRunner
 
 from actum import __version__

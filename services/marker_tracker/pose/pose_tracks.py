@@ -1,4 +1,4 @@
-"""Object tracks: filtered position, velocity and rotation, predicted for a moment while an object is out of sight."""
+"""Pose tracks: each object's filtered position, velocity and rotation, predicted while it is out of sight."""
 
 from collections.abc import Sequence
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from actum.geometry import angle_between_rad
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
-from marker_tracker.pose.object_tracks import PREDICTED_S, Tracks, interpolated_rotation
+from marker_tracker.pose.pose_tracks import PREDICTED_S, Tracks, interpolated_rotation
 from marker_tracker.pose.poses import Measurement, Pose
 
 RATE_HZ = 30
