@@ -44,7 +44,7 @@ def image_from_plane(board: Board, ids: list[int], corners_px: Array) -> Array:
 
 
 def image_blur_px(pixels: Pixels) -> float | None:
-    """Estimate the same from the sharpest edges of a whole image; None where there is nothing to be seen."""
+    """Estimate the blur (standard deviation, px) by the sharpest edges of a whole image; None where there are none."""
     smooth = cv2.GaussianBlur(pixels, (0, 0), SMOOTHING_PX).astype(np.float32)
     dark, bright = np.percentile(smooth, EXTREMES)
     slopes = [float(np.percentile(np.abs(np.diff(smooth, axis=axis)), STEEPEST)) for axis in (0, 1)]
