@@ -1,10 +1,10 @@
 PYTHON ?= python3
 VENV := .venv
-BIN := $(VENV)/bin
+BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-latency bench-maps bench-recognition bench-objects bench-paper bench-tracker picture schemas clean
+.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-latency bench-maps bench-recognition bench-objects bench-paper bench-tracker picture schemas wheel clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -89,6 +89,9 @@ picture: $(STAMP)  ## the README's pictures
 
 schemas: $(STAMP)  ## write the JSON Schemas anew
 	$(BIN)/python -m actum.schemas
+
+wheel: $(STAMP)  ## source distribution and wheel, in dist
+	$(BIN)/python -m build
 
 clean:
 	rm -rf $(VENV)

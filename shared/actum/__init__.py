@@ -1,3 +1,6 @@
 """actum: online recognition of what a person does, and to which object."""
 
-__version__ = "0.1.0"
+from importlib.metadata import version
+
+__version__ = version("actum")
+"""The version that is installed; `pyproject.toml` alone states it."""

@@ -18,14 +18,20 @@ from actum import geometry
 from actum.messages import Intrinsics, Transform
 
 FORMAT: Literal["actum.calibration/1"] = "actum.calibration/1"
+"""What the file says of its form, so that a later one can be told from it."""
 DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
+"""How many coefficients OpenCV's distortion models have."""
 FURTHEST_M = 1e6
 """Positions beyond this are no cameras'."""
 LARGEST_BYTES = 100_000
+"""Bytes read of a file: a calibration has some hundreds."""
 HEADER = "# A camera's calibration: the sensor gateway sends it with each image (ACTUM_CALIBRATION names this file).\n"
 MATRICES = {"K": 3, "skeleton_from_image": 4}
+"""The fields that are written row by row, and how many columns they have."""
 WIDTH = 120
+"""Characters in a line of the file."""
 REMEDY = "make one with 'actum calibrate intrinsics'"
+"""What to do about a file that cannot be used."""
 
 NO_YAML = (yaml.YAMLError, ValueError, LookupError, ArithmeticError, AttributeError, TypeError, RecursionError)
 """What PyYAML raises at a file: not all that its constructors stumble over becomes a YAMLError."""

@@ -13,12 +13,15 @@ from actum.messages import Message
 
 C = TypeVar("C", list[Any], dict[str, Any])
 ENCODING = re.compile(r"application/msgpack;(?P<schema>[a-z0-9_.]+)/(?P<version>\d{1,6})")
+"""What the encoding of one of our messages looks like."""
 DEPTH_LIMIT_ERRORS = (ValueError, TypeError, RecursionError, msgpack.exceptions.UnpackException)
+"""What msgpack raises at bytes that are no message, nested too deeply among them."""
 MOST_VALUES = 100_000
 """In the maps and lists of one message: a value takes one byte on the wire, and up to a hundred once unpacked."""
 
 
 KNOWN_ENCODINGS = 256
+"""Encodings remembered with their verdict: a few per schema are in use."""
 
 
 class DecodeError(ValueError):

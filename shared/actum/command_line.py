@@ -13,6 +13,7 @@ from actum.settings import ServiceSettings
 S = TypeVar("S", bound=ServiceSettings)
 
 PLACEHOLDERS: dict[Any, str] = {bool: "", int: "INTEGER", float: "NUMBER", str: "TEXT", Path: "PATH"}
+"""What stands behind a flag in the help, by its value's type."""
 STRUCTURED = "JSON"
 """Lists, maps and what is made of them."""
 

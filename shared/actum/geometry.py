@@ -36,14 +36,20 @@ BONES: tuple[tuple[int, int, float], ...] = tuple(
 """The skeleton as a tree walked out from the torso: parent, child, standard length in metres."""
 
 _PARENTS = np.array([parent for parent, _, _ in BONES])
+"""Where each bone begins: joints (14,)."""
 _CHILDREN = np.array([child for _, child, _ in BONES])
+"""Where each bone ends: joints (14,)."""
 _LENGTHS_M = np.array([length for _, _, length in BONES])
+"""Standard lengths (m): (14,)."""
 SMALLEST_M = 1e-3
 """What is shorter has no direction."""
 ROUNDING = float(np.finfo(np.float64).eps)
 """What is smaller beside 1 may be nothing but rounding, and has no direction either."""
 
-_NEXT, _LAST = [1, 2, 0], [2, 0, 1]
+_NEXT = [1, 2, 0]
+"""The axis after x, y, z in a cross product …"""
+_LAST = [2, 0, 1]
+"""… and the one before."""
 
 
 def _walk() -> Array:
@@ -56,6 +62,7 @@ def _walk() -> Array:
 
 
 _WALK = _walk()
+"""Which bones lead from the torso to each joint: (15, 14)."""
 
 
 RIGID_TOLERANCE = 1e-3

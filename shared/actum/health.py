@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 FRESH_S = 5.0
+"""How old (s) the last word may be: services write one a second."""
 
 
 def write_health(path: Path, healthy: bool) -> None:

@@ -8,10 +8,14 @@ from typing import Literal
 from actum import messages as m
 
 BASE = "actum"
+"""The first chunk of every key."""
 CHUNK = re.compile(r"[a-z0-9_-]+")
+"""What one chunk of a key may hold: what every Zenoh key expression, file name and label can."""
 
 MEGABYTE = 1_000_000
+"""Bytes."""
 CACHED_KEYS = 1024
+"""Keys remembered with what they mean."""
 
 
 class InvalidKeyError(ValueError):
@@ -37,16 +41,27 @@ class Topic:
 
 
 SKELETON = Topic("skeleton", m.Skeleton)
+"""Joints in the camera frame, of everybody in view."""
 COLOR = Topic("image/color", m.Image, priority="data_low", ring=1, max_bytes=64 * MEGABYTE)
+"""Colour images: only the newest counts, so they may be dropped."""
 DEPTH = Topic("image/depth", m.Image, priority="data_low", ring=1, max_bytes=64 * MEGABYTE)
+"""Depth images, likewise."""
 POSTURE = Topic("posture/{}", m.Posture)
+"""Joints in the frame of one person."""
 OBJECTS = Topic("objects", m.Objects)
+"""Every object's pose."""
 SEGMENT = Topic("segment", m.Segment, congestion="block", priority="interactive_high", cached=True)
+"""Start and end marks: none may be lost."""
 ACTION = Topic("action/{}", m.Action, max_bytes=4 * MEGABYTE)
+"""The classifier's estimates; with maps and traces they are large."""
 EVENT = Topic("event/{}", m.Event, cached=True)
+"""Verb, object and result, one for each segment."""
 STATUS = Topic("status/{}", m.Status, priority="background")
+"""A service's health, once a second."""
 INFO = Topic("info/{}", m.Info)
+"""What a service is; a queryable."""
 TRUTH = Topic("truth", m.Truth, cached=True)
+"""What the simulated scene really did."""
 
 TOPICS: tuple[Topic, ...] = (
     SKELETON,
@@ -62,6 +77,7 @@ TOPICS: tuple[Topic, ...] = (
     TRUTH,
 )
 _BY_HEAD = {topic.leaf.removesuffix("/{}"): topic for topic in TOPICS}
+"""Topics by the part of the key that names them."""
 
 
 @dataclass(frozen=True)

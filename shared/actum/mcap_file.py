@@ -17,6 +17,7 @@ DAMAGE = (McapError, zstandard.ZstdError, ValueError, OverflowError, RuntimeErro
 """What the library and its decompressors raise on bytes that are no MCAP."""
 
 REMEDY = "name a recording made by `actum record` or `actum import`"
+"""What to do about a file that cannot be used."""
 
 
 class RecordingError(ValueError):

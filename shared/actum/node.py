@@ -9,9 +9,13 @@ from actum import keys
 from actum.messages import Message
 
 SECOND_NS = 1_000_000_000
+"""Nanoseconds in a second."""
 TICK_NS = SECOND_NS // 10
+"""Between two ticks (ns): nothing waits more finely."""
 SETTLE_NS = 70 * SECOND_NS
+"""How long ticks go on after a replay (ns): longer than anything waits, segments of 60 s with 2 s of skew."""
 LONGEST_COMPLAINT = 500
+"""Characters kept of a complaint: part of what is complained of may be a megabyte."""
 
 
 @dataclass(frozen=True)

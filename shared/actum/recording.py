@@ -24,12 +24,16 @@ from actum.node import Numbering
 __all__ = ["Recorder", "Recording", "RecordingError"]
 
 METADATA = "actum.recording"
+"""The name of the metadata record."""
 MESSAGE_ENCODING = "msgpack"
+"""MCAP's name for the encoding of the messages."""
 SCHEMA_ENCODING = "jsonschema"
+"""MCAP's name for the encoding of the schemas."""
 CHUNK_BYTES = 256 * 1024
 """What a crash may cost: about three seconds of a skeleton stream."""
 
 SEQUENCE_MODULUS = 2**32
+"""MCAP's message numbers have 32 bits."""
 
 
 class Recorder:

@@ -13,9 +13,13 @@ from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, Settings
 from actum.keys import CHUNK
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+"""Where the router is unless told otherwise: this machine, Zenoh's usual port."""
 WITH_PORT = ("tcp", "udp", "tls", "quic", "ws")
+"""Zenoh's transports whose addresses are host:port."""
 OTHER_TRANSPORTS = ("unixsock-stream", "unixpipe", "serial", "vsock")
+"""Zenoh's transports with other addresses."""
 HIGHEST_PORT = 65535
+"""Ports have 16 bits."""
 
 
 class SettingsError(ValueError):

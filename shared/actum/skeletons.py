@@ -26,6 +26,7 @@ JOINTS: tuple[str, ...] = (
 """The order of every joint list in every message. Left and right are the actor's own."""
 
 INDEX: Mapping[str, int] = MappingProxyType({name: i for i, name in enumerate(JOINTS)})
+"""The place of each joint in that order."""
 
 PARTS: Mapping[str, tuple[int, int, int]] = MappingProxyType(
     {
@@ -39,6 +40,7 @@ PARTS: Mapping[str, tuple[int, int, int]] = MappingProxyType(
 """The paper's five parts, three joints each; ties in attention are settled by this order."""
 
 NITE_15: tuple[int, ...] = tuple(range(15))
+"""The order of OpenNI and NITE 1, which is ours."""
 
 NITE2_15: tuple[int, ...] = (0, 1, 8, 2, 4, 6, 3, 5, 7, 9, 11, 13, 10, 12, 14)
 """NiTE 2's own numbers: head neck, shoulders elbows hands (left, right), torso, hips knees feet (left, right)."""
@@ -53,6 +55,7 @@ MSR_ACTION3D_20: tuple[int, ...] = (19, 2, 3, 0, 7, 11, 1, 8, 12, 4, 13, 17, 5, 
 SKELETON_MAPS: Mapping[str, tuple[int, ...]] = MappingProxyType(
     {"nite-15": NITE_15, "nite2-15": NITE2_15, "kinect-v1-20": KINECT_V1_20, "msr-action3d-20": MSR_ACTION3D_20}
 )
+"""The maps by the name of the skeleton."""
 
 
 def to_actum(joints: Sequence[T], skeleton: str) -> list[T]:

@@ -1,11 +1,14 @@
-"""Keeps a stream's capture stamps rising, and notices when its source has started anew."""
+"""Keeps a stream's capture stamps rising, notices when its source has started anew, and counts what was lost."""
 
 from enum import Enum
+
+from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
 
 RESTART_AFTER = 3
 """A stream is taken to have restarted after this many rising stamps further back than any segment reaches."""
 
-RESTART_BEHIND_NS = 62_000_000_000
+RESTART_BEHIND_NS = MAX_SEGMENT_NS + MAX_SKEW_NS
+"""How far back that is (ns)."""
 
 
 class Order(Enum):
@@ -43,3 +46,17 @@ class StampGuard:
         rising = not self._behind or stamp_ns > self._behind[-1]
         self._behind = [*self._behind, stamp_ns] if rising else [stamp_ns]
         return len(self._behind) >= RESTART_AFTER
+
+
+class LostFrames:
+    """Counts the frames of one stream that never came, by the numbers of those that did."""
+
+    def __init__(self) -> None:
+        self._last_seq: int | None = None
+
+    def before(self, seq: int | None, order: Order) -> int:
+        """Return how many frames are missing right before this one; 0 where numbers are unknown or began anew."""
+        last, self._last_seq = self._last_seq, seq
+        if last is None or seq is None or order is Order.RESTART:
+            return 0
+        return max(seq - last - 1, 0)

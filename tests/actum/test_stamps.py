@@ -1,7 +1,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum.stamps import RESTART_BEHIND_NS, Order, StampGuard
+from actum.stamps import RESTART_BEHIND_NS, LostFrames, Order, StampGuard
 
 
 @given(st.lists(st.integers(0, 10**10)))
@@ -25,3 +25,17 @@ def test_one_absurd_stamp_does_not_end_the_stream() -> None:
     guard.judge(1_000 + 10 * RESTART_BEHIND_NS)
     orders = [guard.judge(stamp) for stamp in (2_000, 3_000, 4_000, 5_000)]
     assert orders == [Order.STALE, Order.STALE, Order.RESTART, Order.NEXT]
+
+
+def test_numbers_tell_what_was_lost_in_between() -> None:
+    lost = LostFrames()
+    assert [lost.before(seq, Order.NEXT) for seq in (7, 8, 11, 12)] == [0, 0, 2, 0]
+
+
+def test_nothing_is_lost_where_numbers_are_unknown_or_begin_anew() -> None:
+    lost = LostFrames()
+    assert lost.before(5, Order.NEXT) == 0
+    assert lost.before(100, Order.RESTART) == 0
+    assert lost.before(None, Order.NEXT) == 0
+    assert lost.before(200, Order.NEXT) == 0
+    assert lost.before(150, Order.NEXT) == 0

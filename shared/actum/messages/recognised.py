@@ -30,8 +30,12 @@ class Tensor(Model):
     """The numbers, last axis fastest (C order)."""
 
 
-MANUAL, SIMULATOR, REPLAY = "manual", "simulator", "replay"
-"""Who puts marks: a person, the simulated scene, a recording that is played."""
+MANUAL = "manual"
+"""The origin of marks that a person puts."""
+SIMULATOR = "simulator"
+"""The origin of those of the simulated scene."""
+REPLAY = "replay"
+"""The origin of those of a recording that is played."""
 
 
 class Segment(Message):

@@ -18,8 +18,11 @@ from actum.runtime.session import RouterUnreachableError, client_config, connect
 from actum.settings import ServiceSettings
 
 OPEN_S = 5.0
+"""How long a program waits for the router (s) unless told otherwise."""
 POLL_S = 0.05
+"""Between two looks (s) for a subscriber that is to come."""
 DEEP_RING = 8192
+"""Messages kept for a program that reads late: half a minute of all streams."""
 
 
 @dataclass(frozen=True)

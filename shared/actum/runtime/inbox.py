@@ -11,7 +11,9 @@ from actum import keys
 Subscriber = zenoh.Subscriber[zenoh.Handler[zenoh.Sample]] | ext.AdvancedSubscriber[zenoh.Handler[zenoh.Sample]]
 
 RECOVERED = (keys.SEGMENT, keys.ACTION, keys.EVENT)
+"""What publishers are asked for again: of these every message counts."""
 HISTORY_DEPTH = 16
+"""Messages asked for on each key."""
 HISTORY_S = 4.0
 """What is older was answered by whoever was there: two seconds of skew, two of waiting."""
 

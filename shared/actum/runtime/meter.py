@@ -14,6 +14,7 @@ from actum.settings import ServiceSettings
 from actum.skeletons import JOINTS
 
 LATENCIES = 1000
+"""Latencies kept for the percentiles: half a minute of one stream."""
 MOST_KEYS = 256
 """Keys of agents who left long ago make room for new ones."""
 MOST_ORIGINS = 16

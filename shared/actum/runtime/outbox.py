@@ -12,17 +12,21 @@ from actum.messages import Action, Message
 from actum.node import Numbering
 
 CACHE_DEPTH = 64
+"""Messages kept on each key for those who missed them: more than anybody asks for."""
 HEARTBEAT_S = 0.5
+"""How often (s) the newest number is told, so that a loss of the last message is noticed."""
 MOST_PUBLISHERS = 256
 """Agents come and go with new numbers; the publisher that has been silent for longest makes room."""
 
 _CONGESTION = {"drop": zenoh.CongestionControl.DROP, "block": zenoh.CongestionControl.BLOCK}
+"""Zenoh's name of what happens where a reader is slow."""
 _PRIORITY = {
     "interactive_high": zenoh.Priority.INTERACTIVE_HIGH,
     "data_high": zenoh.Priority.DATA_HIGH,
     "data_low": zenoh.Priority.DATA_LOW,
     "background": zenoh.Priority.BACKGROUND,
 }
+"""Zenoh's names of the priorities."""
 Publisher = zenoh.Publisher | ext.AdvancedPublisher
 
 

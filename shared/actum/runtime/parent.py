@@ -8,6 +8,7 @@ import time
 PARENT = "ACTUM_PARENT"
 """The variable that holds the process id of who started this process, where it is to end with them."""
 LOOK_S = 0.5
+"""Between two looks (s) at who the parent is."""
 LEAVE_S = 5.0
 """How long leaving cleanly may take, as for any end."""
 

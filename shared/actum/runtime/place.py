@@ -32,7 +32,9 @@ YIELDING_S = 10.0
 LOST_S = LEASE_S + 3.0
 """By then the token of one that was killed with its machine is gone."""
 POLL_S = 0.05
+"""Between two looks (s) at who else is there."""
 ANSWER_S = 0.5
+"""How long (s) an answer may take, of one machine to another."""
 
 
 class PlaceTakenError(RuntimeError):

@@ -17,18 +17,19 @@ from actum.settings import ServiceSettings
 log = logging.getLogger("actum")
 
 REPORT_S = 1.0
+"""Between two reports (s)."""
 WELL = "running"
 """How states begin that are as they should be."""
 
 
-class Told:
+class StateLog:
     """Says each change of a service's state once; what is in use without trouble changes silently."""
 
     def __init__(self, counters: Counters) -> None:
         self._counters = counters
         self._trouble: str | None = None
 
-    def tell(self) -> None:
+    def log_change(self) -> None:
         """Say what is wrong if that is new, or that nothing is any more."""
         trouble = None if self._counters.state.startswith(WELL) else self._counters.state
         source = self._counters.details.get("source")
@@ -42,8 +43,8 @@ class Told:
 class Reporter:
     """Reports while a service works, and stops it where another takes its place."""
 
-    def __init__(self, meter: Meter, told: Told, settings: ServiceSettings, lock: threading.Lock) -> None:
-        self._meter, self._told, self._settings, self._lock = meter, told, settings, lock
+    def __init__(self, meter: Meter, state_log: StateLog, settings: ServiceSettings, lock: threading.Lock) -> None:
+        self._meter, self._state_log, self._settings, self._lock = meter, state_log, settings, lock
         self._health_unwritable = False
         self._connected = True
 
@@ -53,7 +54,7 @@ class Reporter:
         while not stop.wait(REPORT_S):
             with self._lock:
                 status = self._meter.status()
-                self._told.tell()
+                self._state_log.log_change()
             outbox.put(status)
             self._tell_router(connected(session))
             self._tell_health(healthy() and self._connected)

@@ -23,7 +23,7 @@ from actum.runtime.meter import Meter
 from actum.runtime.outbox import Outbox
 from actum.runtime.parent import end_with_parent
 from actum.runtime.place import RETURNING_S, SETTLING_S, Place, PlaceTakenError
-from actum.runtime.reporting import Reporter, Told
+from actum.runtime.reporting import Reporter, StateLog
 from actum.runtime.session import RETRY_S, client_config, open_session
 from actum.runtime.waiting import Pace, stop_on_signals, wait_for
 from actum.settings import ServiceSettings, complaint
@@ -92,7 +92,7 @@ class Service(ABC):
         self.failed = False
         self._settings = settings
         self._counters = counters
-        self._told = Told(counters)
+        self._state_log = StateLog(counters)
         self._meter = Meter(name, counters, settings)
         self._lock = threading.Lock()
 
@@ -100,7 +100,7 @@ class Service(ABC):
         """Say what is read, and what is wrong already."""
         if "source" in self._counters.details:
             log.info("sensor %s: %s", self._settings.sensor, self._counters.details["source"])
-        self._told.tell()
+        self._state_log.log_change()
 
     def serve(self, session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
         """Work until stopped, once no other does the same.
@@ -113,7 +113,7 @@ class Service(ABC):
             return
         info = keys.key(keys.INFO, self._settings.sensor, self.name)
         queryable = session.declare_queryable(info, self._answer_info)
-        reporter = Reporter(self._meter, self._told, self._settings, self._lock)
+        reporter = Reporter(self._meter, self._state_log, self._settings, self._lock)
         reporting = threading.Thread(target=reporter.report, args=(session, place, stop, self._healthy), daemon=True)
         reporting.start()
         try:
@@ -210,5 +210,5 @@ class SourceService(Service):
                 return
         with self._lock:
             self._source.counters.state = "source ended"
-            self._told.tell()
+            self._state_log.log_change()
         wait_for(stop)

@@ -13,7 +13,9 @@ from actum.settings import ServiceSettings, SettingsError
 log = logging.getLogger("actum")
 
 OPEN_TIMEOUT_MS = 500
+"""How long one attempt to reach the router may take (ms)."""
 RETRY_S = 0.2
+"""Between two attempts (s)."""
 LEASE_S = 10.0
 """How long Zenoh keeps the tokens of a session that has fallen silent, unless told otherwise."""
 

@@ -6,6 +6,7 @@ import threading
 import time
 
 SLICE_S = 0.1
+"""How late (s) a signal may be noticed."""
 
 
 def stop_on_signals() -> threading.Event:

@@ -1,0 +1,34 @@
+"""NumPy arrays by their element type, and lists of joints as arrays."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.messages import Joint
+
+Array = NDArray[np.float64]
+"""Real numbers, in which NaN stands for what is unknown."""
+Mask = NDArray[np.bool_]
+"""Yes or no for each element of another array."""
+Indices = NDArray[np.intp]
+"""Places in another array."""
+
+UNKNOWN = (math.nan, math.nan, math.nan)
+"""Where a missing joint is."""
+
+
+def joints_to_array(joints: Sequence[Joint]) -> Array:
+    """Return a message's joints as an array (joints, 3), NaN where one is missing."""
+    if None not in joints:
+        return np.array(joints, dtype=np.float64)
+    return np.array([UNKNOWN if joint is None else joint for joint in joints], dtype=np.float64)
+
+
+def joints_to_list(joints: Array) -> list[Joint]:
+    """Return joints (joints, 3) as a message has them: None where one is NaN."""
+    listed: list[Joint] = joints.tolist()
+    if math.isnan(joints.sum()):
+        return [None if unknown else joint for joint, unknown in zip(listed, np.isnan(joints[:, 0]), strict=True)]
+    return listed
