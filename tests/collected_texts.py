@@ -5,6 +5,7 @@ A text with a hole in it (`f"too few frames: {n}"`) is collected with `…` in t
 """
 
 import ast
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
@@ -30,8 +31,22 @@ LOST = "CameraLostError"
 class Collected:
     """Texts with the places where they stand, and expressions that could not be followed."""
 
-    texts: dict[str, str] = field(default_factory=dict)
+    texts: defaultdict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     unknown: dict[str, str] = field(default_factory=dict)
+
+    def take(self, node: ast.expr, place: str) -> bool:
+        """Collect the texts that an expression can be; false where there are none."""
+        found = list(texts(node))
+        for text in found:
+            self.texts[text].add(place)
+        return bool(found)
+
+    def take_assigned(self, name: str) -> None:
+        """Collect what the variables of a name are set to."""
+        for path, tree in modules().items():
+            for node in ast.walk(tree):
+                if isinstance(node, ast.Assign) and name in [getattr(target, "id", "") for target in node.targets]:
+                    self.take(node.value, f"{path}:{node.lineno}")
 
 
 @cache
@@ -119,11 +134,12 @@ def arguments(call: ast.Call, name: str, wanted: str) -> list[ast.expr]:
 
 def reject_kinds() -> Collected:
     """Collect the kinds: what `reject` and errors with a `kind` are given, and what variables of that name hold."""
-    found = Collected(_assigned("kind"))
+    found = Collected()
+    found.take_assigned("kind")
     for place, name, call in calls():
         for given in arguments(call, name, "kind") if name == "reject" or name.endswith("Error") else []:
-            found.texts |= dict.fromkeys(texts(given), place)
-            if not list(texts(given)) and "kind" not in (getattr(given, "attr", ""), getattr(given, "id", "")):
+            followed = "kind" in (getattr(given, "attr", ""), getattr(given, "id", ""))
+            if not found.take(given, place) and not followed:
                 found.unknown[place] = ast.unparse(call)
     return found
 
@@ -131,26 +147,13 @@ def reject_kinds() -> Collected:
 def reasons() -> Collected:
     """Collect the reasons: of parameters, fields, variables and functions that are called so."""
     found = Collected()
+    for wanted in REASONS:
+        found.take_assigned(wanted)
     for place, name, call in calls():
         given = [each for wanted in REASONS for each in arguments(call, name, wanted)]
         for each in given + (call.args if name == LOST else []):
-            found.texts |= dict.fromkeys(texts(each), place)
-    for wanted in REASONS:
-        found.texts |= _assigned(wanted)
-    for path, tree in modules().items():
-        for node in ast.walk(tree):
-            if isinstance(node, ast.FunctionDef) and node.name.strip("_").startswith("why"):
-                for inner in ast.walk(node):
-                    if isinstance(inner, ast.Return) and inner.value is not None:
-                        found.texts |= dict.fromkeys(texts(inner.value), f"{path}:{inner.lineno}")
+            found.take(each, place)
+    for name, returned in returns().items():
+        for each in returned if name.strip("_").startswith("why") else []:
+            found.take(each, name)
     return found
-
-
-def _assigned(name: str) -> dict[str, str]:
-    return {
-        text: f"{path}:{node.lineno}"
-        for path, tree in modules().items()
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Assign) and name in [getattr(target, "id", "") for target in node.targets]
-        for text in texts(node.value)
-    }

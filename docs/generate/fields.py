@@ -28,7 +28,6 @@ UNITS = {
 }  # fmt: skip
 """Units of the other fields that hold numbers. In transforms the rotation has none."""
 
-HEADER = ("stamp_ns", "seq", "sensor", "valid", "reason")
 TYPES = {"": "map", "string": "text", "boolean": "true or false"}
 PLURAL = ("integer", "number", "text", "map")
 LONGEST_EXAMPLE = 44
@@ -41,11 +40,15 @@ class UnknownUnitError(KeyError):
 
 @dataclass(frozen=True)
 class Field:
-    """One field of a message: its path, such as `agents[].joints`, its JSON Schema, and values it had."""
+    """One field of a message: its path, such as `agents[].joints`, its JSON Schema, and values it had.
+
+    `like` is the path of the field with the same parts that came before it; they are not listed again.
+    """
 
     path: str
     schema: dict[str, Any]
     values: tuple[Any, ...]
+    like: str = ""
 
     @property
     def name(self) -> str:
@@ -55,15 +58,15 @@ class Field:
 
 def sections() -> str:
     """Write the part of the page: what all messages have, then a section for each."""
-    header = [field for field in fields_of(keys.SKELETON.message) if field.path in HEADER]
+    header = [field for field in fields_of(keys.COLOR.message) if _is_common(field)]
     sections = ["### Every message\n\n" + _table(header)]
-    return "\n".join(sections + [_section(message) for message in MESSAGES])
+    return "\n".join(sections + [section(message) for message in MESSAGES])
 
 
 def fields_of(message: type[Message]) -> list[Field]:
     """List a message's fields, parts of parts included, in the order of their declaration."""
     schema = message.model_json_schema(mode="validation")
-    return list(_walk("", schema, schema.get("$defs", {}), tuple(examples()[schema_name(message)])))
+    return list(_walk("", schema, schema.get("$defs", {}), tuple(examples()[schema_name(message)]), {}))
 
 
 @cache
@@ -79,7 +82,7 @@ def unit(field: Field) -> str:
     Raises:
         UnknownUnitError: neither the field's name nor the table tells.
     """
-    if not _has_numbers(field.schema):
+    if not has_numbers(field.schema):
         return ""
     for suffix, name in SUFFIXES.items():
         if field.name.endswith(suffix):
@@ -98,15 +101,22 @@ def example(field: Field) -> str:
     return text if len(text) <= LONGEST_EXAMPLE else text[: LONGEST_EXAMPLE - 1].rstrip(" ,") + "…"
 
 
-def _section(message: type[Message]) -> str:
+def section(message: type[Message]) -> str:
+    """Write the section of one message: its key, its own fields, an example."""
     on = " and ".join(
         f"`{keys.BASE}/<sensor>/{topic.leaf.format('<service>' if 'service' in message.model_fields else '<agent>')}`"
         for topic in keys.TOPICS
         if topic.message is message
     )
-    own = [field for field in fields_of(message) if field.path not in HEADER or message is keys.SEGMENT.message]
+    own = [field for field in fields_of(message) if not _is_common(field)]
     first = _laid_out(_elided(examples()[schema_name(message)][0]))
     return f"### `{schema_name(message)}`\n\n{_sentence(message)} On {on}.\n\n{_table(own)}\n```json\n{first}\n```\n"
+
+
+def _is_common(field: Field) -> bool:
+    """Tell whether all messages have the field, and mean the same by it."""
+    common = Message.model_fields.get(field.path)
+    return common is not None and _meaning(field) == " ".join((common.description or "").split())
 
 
 def _sentence(message: type[Message]) -> str:
@@ -119,7 +129,8 @@ def _table(fields: list[Field]) -> str:
 
 
 def _meaning(field: Field) -> str:
-    return " ".join(field.schema.get("description", "").split())
+    parts = f" Its parts are those of `{field.like}`." if field.like else ""
+    return " ".join(field.schema.get("description", "").split()) + parts
 
 
 def typed(schema: dict[str, Any]) -> str:
@@ -147,31 +158,36 @@ def _value(value: Any) -> str:
     return code(json.dumps(value))
 
 
-def _walk(prefix: str, schema: dict[str, Any], parts: dict[str, Any], messages: tuple[Any, ...]) -> Iterator[Field]:
+def _walk(
+    prefix: str, schema: dict[str, Any], parts: dict[str, Any], messages: tuple[Any, ...], seen: dict[str, str]
+) -> Iterator[Field]:
     for name, own in schema["properties"].items():
+        path = f"{prefix}{name}"
         held = tuple(message[name] for message in messages if isinstance(message, dict) and name in message)
-        yield Field(f"{prefix}{name}", own, held)
         part, mark = _part(own)
-        if part is not None:
+        yield Field(path, own, held, seen.get(part, ""))
+        if part in parts and part not in seen:
+            seen[part] = path + mark
             inner = [value for value in held if value is not None]
             if mark:
                 inner = [each for value in inner for each in (value.values() if isinstance(value, dict) else value)]
-            yield from _walk(f"{prefix}{name}{mark}.", parts[part], parts, tuple(inner))
+            yield from _walk(f"{path}{mark}.", parts[part], parts, tuple(inner), seen)
 
 
-def _part(schema: dict[str, Any]) -> tuple[str | None, str]:
+def _part(schema: dict[str, Any]) -> tuple[str, str]:
     """Find the part that a field is, or is a list or map of: its name, and the mark behind the field's."""
     options = [schema, *schema.get("anyOf", []), *schema.get("allOf", [])]
     for option in options:
         for inner, mark in ((option, ""), (option.get("items"), "[]"), (option.get("additionalProperties"), "[]")):
             if isinstance(inner, dict) and "$ref" in inner:
                 return inner["$ref"].rpartition("/")[2], mark
-    return None, ""
+    return "", ""
 
 
-def _has_numbers(schema: dict[str, Any]) -> bool:
+def has_numbers(schema: dict[str, Any]) -> bool:
+    """Tell whether a JSON Schema admits numbers, alone or in a list."""
     inner = [schema.get("items"), schema.get("additionalProperties"), *schema.get("anyOf", [])]
-    return schema.get("type") in ("integer", "number") or any(_has_numbers(it) for it in inner if isinstance(it, dict))
+    return schema.get("type") in ("integer", "number") or any(has_numbers(it) for it in inner if isinstance(it, dict))
 
 
 def _short(value: Any) -> str:

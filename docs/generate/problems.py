@@ -3,7 +3,7 @@
 A test collects both from the code, so that a new one without an explanation here fails. `…` stands for what differs.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from docs.generate.markdown import code, table
@@ -43,10 +43,16 @@ OF_ALL: Mapping[str, Problem] = {
         "The message names another sensor, agent or service than the key it came on.",
         "Let `sensor`, `agent` and `service` be those of the key, or leave `sensor` out.",
     ),
+}
+
+OF_NODES: Mapping[str, Problem] = {
     "stale_stamp": Problem(
         "A message is no newer than the one before it on its stream, so it is left out.",
         "Let `stamp_ns` rise, and a clock that starts anew bring a new `session_id`. Run one source for a sensor.",
     ),
+}
+
+OF_THE_LAST_TWO: Mapping[str, Problem] = {
     "late": Problem(
         "A sample or an end mark came after its segment was answered, more than 2 s behind the other streams.",
         "Find what delays that stream: `latency_ms` and `drops` in `status`, the network, a camera's buffering.",
@@ -57,14 +63,17 @@ OF_ALL: Mapping[str, Problem] = {
     ),
 }
 
+OF_IMAGES: Mapping[str, Problem] = {
+    "image_size_mismatch": Problem(
+        "Images are of another size than the calibration file's; in the tracker, than the message or the JPEG says.",
+        "Calibrate at the size in use, or ask the camera for the calibrated one with `ACTUM_CAMERA_SIZE`.",
+    ),
+}
+
 OF_GATEWAY: Mapping[str, Problem] = {
     "camera_lost": Problem(
         "The camera cannot be opened, was unplugged, is silent, black or frozen; `state` says which.",
         "Look at cable, lens and device name. It is opened again by itself after 0.5, 1, 2 … 8 s.",
-    ),
-    "image_size_mismatch": Problem(
-        "Images are of another size than the calibration file's; in the tracker, than the message or the JPEG says.",
-        "Calibrate at the size in use, or ask the camera for the calibrated one with `ACTUM_CAMERA_SIZE`.",
     ),
     "damaged_recording": Problem("A recording cannot be read further.", "It is played up to there; copy it again."),
     "truncated_recording": Problem(
@@ -151,15 +160,24 @@ OF_FUSION: Mapping[str, Problem] = {
     ),
 }
 
-SERVICES: Mapping[str, Mapping[str, Problem]] = {
-    "every service": OF_ALL,
-    "`sensor_gateway`": OF_GATEWAY,
-    "`pose_preprocessor`": OF_PREPROCESSOR,
-    "`som_classifier`": OF_CLASSIFIER,
-    "`marker_tracker`": OF_TRACKER,
-    "`action_fusion`": OF_FUSION,
-}
-REJECTS: Mapping[str, Problem] = {kind: problem for kinds in SERVICES.values() for kind, problem in kinds.items()}
+GATEWAY, PREPROCESSOR, CLASSIFIER = "sensor_gateway", "pose_preprocessor", "som_classifier"
+TRACKER, FUSION = "marker_tracker", "action_fusion"
+COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
+    ((), OF_ALL),
+    ((PREPROCESSOR, CLASSIFIER, TRACKER, FUSION), OF_NODES),
+    ((CLASSIFIER, FUSION), OF_THE_LAST_TWO),
+    ((GATEWAY, TRACKER), OF_IMAGES),
+    ((GATEWAY,), OF_GATEWAY),
+    ((PREPROCESSOR,), OF_PREPROCESSOR),
+    ((CLASSIFIER,), OF_CLASSIFIER),
+    ((TRACKER,), OF_TRACKER),
+    ((FUSION,), OF_FUSION),
+)
+"""Which services count which kinds; all of them count what the runtime does."""
+
+REJECTS: Mapping[str, tuple[str, ...]] = {kind: services for services, kinds in COUNTED_BY for kind in kinds}
+"""The services that count each kind."""
+
 
 OF_SEGMENTS: Mapping[str, Problem] = {
     "no model": Problem("The classifier has no model.", "Name one in `--model` or `ACTUM_MODEL`."),
@@ -263,10 +281,10 @@ REASONS: Mapping[str, Problem] = {**OF_SEGMENTS, **OF_FRAMES, **ABSENCES}
 
 
 def rejects_table() -> str:
-    """Write the kinds of rejects, each once, with the service that counts it."""
+    """Write the kinds of rejects, each once, with the services that count it."""
     rows = (
-        [code(kind), service, problem.meaning, problem.remedy]
-        for service, kinds in SERVICES.items()
+        [code(kind), ", ".join(map(code, services)) or "every service", problem.meaning, problem.remedy]
+        for services, kinds in COUNTED_BY
         for kind, problem in kinds.items()
     )
     return table(["kind", "counted by", "meaning", "what to do"], rows)

@@ -1,5 +1,6 @@
 """The services' settings, from the classes that declare them."""
 
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -8,8 +9,8 @@ from pydantic.fields import FieldInfo
 
 from actum.command_line import placeholder
 from actum.settings import ServiceSettings
-from actum_command.service_flags import DECLARED, flag_of
 
+SERVICES = sorted(file.parent.name for file in (Path(__file__).parents[2] / "services").glob("*/settings.py"))
 UNITS = {"_ns": "ns", "_m": "m", "_deg": "°", "_s": "s", "_px": "px", "_hz": "Hz"}
 VALUES = {"INTEGER": "integer", "NUMBER": "number", "TEXT": "text", "PATH": "path"}
 OF_THIS_PROCESS = {"instance": "host and process id", "pose_model": "`~/.local/share/actum/` and its name"}
@@ -19,8 +20,9 @@ OF_THIS_PROCESS = {"instance": "host and process id", "pose_model": "`~/.local/s
 def sections() -> str:
     """Write a table of what every service can be told, then one for each service."""
     parts = ["### Every service\n\n" + _table(ServiceSettings.model_fields)]
-    for service, settings in DECLARED.items():
-        own = {name: field for name, field in settings.model_fields.items() if name not in ServiceSettings.model_fields}
+    for service in SERVICES:
+        fields: dict[str, FieldInfo] = import_module(f"{service}.settings").Settings.model_fields
+        own = {name: field for name, field in fields.items() if name not in ServiceSettings.model_fields}
         parts.append(f"### `{service}`\n\n{_table(own)}")
     return "\n".join(parts)
 
@@ -32,10 +34,10 @@ def _table(fields: dict[str, FieldInfo]) -> str:
 
 def _named(name: str, field: FieldInfo) -> list[str]:
     switch = not placeholder(field)
-    flag = f"{flag_of(name)}, --no-{flag_of(name).removeprefix('--')}" if switch else flag_of(name)
+    kebab = name.replace("_", "-")
+    flags = ", ".join(map(code, [f"--{kebab}", f"--no-{kebab}"] if switch else [f"--{kebab}"]))
     value = "1 or 0" if switch else VALUES.get(placeholder(field)) or placeholder(field).strip("{}").replace(",", ", ")
     unit = next((unit for suffix, unit in UNITS.items() if name.endswith(suffix)), "")
-    flags = ", ".join(map(code, flag.split(", ")))
     return [flags, code(f"ACTUM_{name.upper()}"), value, unit, OF_THIS_PROCESS.get(name) or _default(field)]
 
 
