@@ -21,7 +21,7 @@ PACKAGES = (
     "services/marker_tracker",
     "services/action_fusion",
 )
-REASONS = ("reason", "why")
+REASONS = ("reason", "why", "complaint")
 """The parameters, fields and variables that hold a reason; functions whose names begin so return one."""
 LOST = "CameraLostError"
 """The error that tells why a camera is lost, which follows `camera lost: ` in a reason."""
@@ -71,49 +71,54 @@ def constants() -> dict[str, str]:
 
 @cache
 def parameters() -> dict[str, list[list[str]]]:
-    """List the parameters of the functions of each name; a class has those of its `__init__`."""
-    found: dict[str, list[list[str]]] = {}
-    for tree in modules().values():
-        for node in ast.walk(tree):
-            inner = node.body if isinstance(node, ast.ClassDef) else []
-            for function in [node, *inner]:
-                if isinstance(function, ast.FunctionDef) and (function is node or function.name == "__init__"):
-                    name = getattr(node, "name", "")
-                    named = [argument.arg for argument in function.args.args if argument.arg not in ("self", "cls")]
-                    found.setdefault(name, []).append(named)
-    return found
-
-
-@cache
-def returns() -> dict[str, list[ast.expr]]:
-    """List what every function returns, where that is not what another one returns."""
-    found: dict[str, list[ast.expr]] = {}
+    """List the parameters of the functions of each name; a class has those of its `__init__`, or else its fields."""
+    found: defaultdict[str, list[list[str]]] = defaultdict(list)
     for tree in modules().values():
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef):
-                given = [it.value for it in ast.walk(node) if isinstance(it, ast.Return) and it.value is not None]
-                found.setdefault(node.name, []).extend(it for it in given if not isinstance(it, ast.Call))
+                found[node.name].append(_named(node))
+            elif isinstance(node, ast.ClassDef):
+                inits = [it for it in node.body if isinstance(it, ast.FunctionDef) and it.name == "__init__"]
+                fields = [getattr(it.target, "id", "") for it in node.body if isinstance(it, ast.AnnAssign)]
+                found[node.name].append(_named(inits[0]) if inits else fields)
     return found
 
 
-def texts(node: ast.expr) -> Iterator[str]:
-    """Yield the texts that an expression can be, as far as they stand in it."""
+def _named(function: ast.FunctionDef) -> list[str]:
+    return [argument.arg for argument in function.args.args if argument.arg not in ("self", "cls")]
+
+
+@cache
+def returns() -> dict[tuple[str, bool], list[ast.expr]]:
+    """List what the functions of each name return, and what the methods (True) do."""
+    found: defaultdict[tuple[str, bool], list[ast.expr]] = defaultdict(list)
+    for tree in modules().values():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef):
+                is_method = "self" in [argument.arg for argument in node.args.args]
+                given = (it.value for it in ast.walk(node) if isinstance(it, ast.Return))
+                found[node.name, is_method] += [it for it in given if it is not None]
+    return found
+
+
+def texts(node: ast.expr, followed: frozenset[str] = frozenset()) -> Iterator[str]:
+    """Yield the texts that an expression can be, as far as they stand in it or in a function that it calls."""
     match node:
         case ast.Constant(value=str(text)):
             yield text
         case ast.JoinedStr(values=parts):
             yield "".join(part.value if isinstance(part, ast.Constant) else "…" for part in parts)
         case ast.IfExp(body=one, orelse=other):
-            yield from texts(one)
-            yield from texts(other)
+            yield from texts(one, followed)
+            yield from texts(other, followed)
         case ast.BoolOp(values=values):
             for value in values:
-                yield from texts(value)
+                yield from texts(value, followed)
         case ast.Name(id=name) if name in constants():
             yield constants()[name]
-        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
-            for returned in returns().get(name, []):
-                yield from texts(returned)
+        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)) if name not in followed:
+            for returned in returns().get((name, ast.unparse(node.func).startswith("self.")), []):
+                yield from texts(returned, followed | {name})
 
 
 def calls() -> Iterator[tuple[str, str, ast.Call]]:
@@ -153,7 +158,7 @@ def reasons() -> Collected:
         given = [each for wanted in REASONS for each in arguments(call, name, wanted)]
         for each in given + (call.args if name == LOST else []):
             found.take(each, place)
-    for name, returned in returns().items():
+    for (name, _), returned in returns().items():
         for each in returned if name.strip("_").startswith("why") else []:
             found.take(each, name)
     return found

@@ -40,7 +40,7 @@ OF_ALL: Mapping[str, Problem] = {
         "Compare the message with its table on this page or with its JSON Schema.",
     ),
     "wrong_key": Problem(
-        "The message names another sensor, agent or service than the key it came on.",
+        "The message names another sensor, agent or service than the key it came on, or is an image of the other kind.",
         "Let `sensor`, `agent` and `service` be those of the key, or leave `sensor` out.",
     ),
 }
@@ -120,7 +120,7 @@ OF_CLASSIFIER: Mapping[str, Problem] = {
 }
 
 OF_TRACKER: Mapping[str, Problem] = {
-    "image_too_large": Problem("An image has too many pixels to be decoded.", "Send smaller images."),
+    "image_too_large": Problem("An image has more than 4096 × 4096 pixels.", "Send smaller images."),
     "undecodable_image": Problem("The bytes are no JPEG, or a damaged one.", "Send whole JPEG files as `data`."),
     "black_image": Problem("Nothing can be seen in the image.", "Is the lens covered? Is it dark?"),
     "bad_calibration": Problem(
@@ -193,9 +193,7 @@ OF_SEGMENTS: Mapping[str, Problem] = {
     "no usable frame": Problem(
         "The agent that the mark names has only unusable postures; in brackets, why.", "See the rejects above."
     ),
-    "… (…)": Problem(
-        "One of these with its cause behind it: `no person (camera lost: it cannot be opened)`.", "As said."
-    ),
+    "… (…)": Problem("One of these with its cause behind it: `no usable frame (missing_joint: no torso)`.", "As said."),
     "end without start": Problem(
         "An end came whose start never did.",
         "Put the start first, with the same `segment_id`; let marks block, not drop.",
@@ -248,10 +246,16 @@ OF_FRAMES: Mapping[str, Problem] = {
         "OpenNI 2 finds none.", "Install the camera's driver; see [cameras](cameras.md)."
     ),
     "… was unplugged": Problem("The OpenNI device has gone.", "Plug it in."),
-    "another driver took it": Problem("Another driver claims the device.", "Remove that driver from OpenNI's folder."),
+    "another driver took it": Problem(
+        "A driver that is no player of files claims the recording.", "Remove that driver from OpenNI's folder."
+    ),
     "the device has no colour and depth": Problem("It lacks one of the two streams.", "Use another camera."),
     "colour comes as …, not as RGB888": Problem("The OpenNI driver gives another format.", "Use another driver."),
     "OpenNI says: …": Problem("OpenNI failed.", "As it says."),
+    "black: nothing can be seen; is the lens covered?": Problem(
+        "Half a second of black images.", "Uncover it; make light."
+    ),
+    "frozen: the picture has not changed for … s": Problem("The same picture, bit for bit.", "Restart the camera."),
     "NiTE says: …": Problem("NiTE failed.", "As it says."),
     "NiTE cannot track people with this camera (…)": Problem("NiTE refuses the device.", "Unset `NITE2_REDIST64`."),
 }
