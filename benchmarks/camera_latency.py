@@ -26,8 +26,8 @@ from actum.runtime import Client
 from actum.settings import ServiceSettings
 from actum_command import processes
 from actum_command.supervising import Supervisor
-from sensor_gateway.camera.pose import PoseEstimator
-from sensor_gateway.camera.video import pictures_of
+from sensor_gateway.devices.video import pictures_of
+from sensor_gateway.people.pose_estimator import PoseEstimator
 
 SETTINGS = ServiceSettings(connect="tcp/127.0.0.1:7458")
 CLIP = "florence3d_rgb/GestureRecording_Id1actor1idAction1category1.mp4"

@@ -8,6 +8,7 @@ from actum_command import processes
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings as TrackerSettings
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 
@@ -19,7 +20,7 @@ class Chain:
         specs = processes.simulated_objects()["ACTUM_OBJECTS"]
         tracker = TrackerSettings.model_validate_json(f'{{"objects": {specs}}}', strict=False)
         self._nodes = (
-            PosePreprocessor(),
+            PosePreprocessor(PoseSettings.defaults()),
             MarkerTracker(tracker),
             SomClassifier(recogniser),
             ActionFusion(fusion or FusionSettings()),

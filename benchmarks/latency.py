@@ -36,8 +36,9 @@ from actum_command.supervising import Supervisor
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from scene_simulator.programme import balanced_programme
-from scene_simulator.source import Simulator, labelled_stream
+from scene_simulator.simulator import Simulator, labelled_stream
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.presets import DEFAULT
@@ -126,7 +127,7 @@ def main() -> None:
     frames, segments = len(watch.took_ms["bench/frame/2"]), len(watch.took_ms["mark event"])
     console.print(f"{frames} frames at 30/s, {segments} actions; payloads in bytes: {sizes}")
     console.print(latency_table(watch.took_ms))
-    rate = frames_per_second(stream(), PosePreprocessor(), SomClassifier(model))
+    rate = frames_per_second(stream(), PosePreprocessor(PoseSettings.defaults()), SomClassifier(model))
     console.print(
         "preprocessor + classifier on one core, codec included, a partial estimate in every frame of a segment:"
     )
@@ -151,7 +152,7 @@ def stream() -> list[Message]:
 def payload_sizes(model: Model) -> dict[str, int]:
     """The median payload of each stream, bytes."""
     sizes: dict[str, list[int]] = defaultdict(list)
-    preprocessor, classifier = PosePreprocessor(), SomClassifier(model)
+    preprocessor, classifier = PosePreprocessor(PoseSettings.defaults()), SomClassifier(model)
     for message in stream()[:300]:
         postures = list(preprocessor.handle(message)) if isinstance(message, Skeleton) else [message]
         actions = [action for posture in postures for action in classifier.handle(posture)]

@@ -16,8 +16,8 @@ import cv2
 import numpy as np
 
 from actum.messages import Image
-from marker_tracker.families import family
-from marker_tracker.images import gray
+from marker_tracker.detection.families import family
+from marker_tracker.detection.images import gray
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings
 

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from actum.skeletons import INDEX
 from people import STANDING
-from sensor_gateway.camera.landmarks import LANDMARKS, Landmarks
+from sensor_gateway.people.landmarks import LANDMARKS, Landmarks
 
 Array = NDArray[np.float64]
 

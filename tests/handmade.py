@@ -3,11 +3,12 @@
 import numpy as np
 
 from actum.som import Som
-from som_classifier.layers import Concepts, FirstMaps
+from som_classifier.first_layer import FirstMaps
 from som_classifier.model import Model
-from som_classifier.paper_model import PaperDescription, PaperModel
-from som_classifier.pyramid_model import PyramidDescription, PyramidModel
-from som_classifier.stages import Stages
+from som_classifier.paper_model import PaperMetadata, PaperModel
+from som_classifier.pyramid_model import PyramidMetadata, PyramidModel
+from som_classifier.second_layer import ActionMap
+from som_classifier.stage_discriminants import StageDiscriminants
 from som_classifier.supervised import SupervisedLayer
 
 POINTS = 3
@@ -32,8 +33,8 @@ def paper_model(**changes: object) -> PaperModel:
     down, up = [0.0, 0.0, 1.0, 0.0, 2.0, 0.0], [2.0, 0.0, 1.0, 0.0, 0.0, 0.0]
     posture = {"axes": "posture", "origin": "hips", "attention": "moving"}
     about = PROVENANCE | posture | {"centre_contrast": 0.1, "points": POINTS, "contrast": 4.0} | changes
-    description = PaperDescription.model_validate(about)
-    return PaperModel(layer1, Som(1, 2, np.array([down, up])), SupervisedLayer(np.eye(2)), description)
+    metadata = PaperMetadata.model_validate(about)
+    return PaperModel(layer1, Som(1, 2, np.array([down, up])), SupervisedLayer(np.eye(2)), metadata)
 
 
 def pyramid_model(**changes: object) -> PyramidModel:
@@ -45,21 +46,21 @@ def pyramid_model(**changes: object) -> PyramidModel:
         "concept_contrast": 2.0, "gains": [4.0, 8.0], "familiar": 0.3,
         "usual_log_errors": [-2.5, -2.0],
     }  # fmt: skip
-    description = PyramidDescription.model_validate(PROVENANCE | about | changes)
+    metadata = PyramidMetadata.model_validate(PROVENANCE | about | changes)
     rng = np.random.default_rng(0)
     maps = [Som(3, 3, rng.normal(size=(9, dim)).astype(np.float32)) for dim in (45, 45, 12, 2)]
     axes = rng.normal(size=(2, sum(LEVELS) * UNITS, 2)).astype(np.float32)
-    contrasts = description.posture_contrast, description.velocity_contrast, description.arm_contrast
+    contrasts = metadata.posture_contrast, metadata.velocity_contrast, metadata.arm_contrast
     first = FirstMaps(maps[0], maps[1], maps[2], contrasts, (0.4, 0.1))
-    stages = Stages(
+    stages = StageDiscriminants(
         axes,
         rng.normal(size=(2, 2)).astype(np.float32),
-        tuple(description.fractions),
-        description.log_duration_mean,
-        description.log_duration_sd,
+        tuple(metadata.fractions),
+        metadata.log_duration_mean,
+        metadata.log_duration_sd,
     )
-    concepts = Concepts(maps[3], description.concept_contrast, (0.1 * rng.random(9)).astype(np.float32))
-    return PyramidModel(first, stages, concepts, SupervisedLayer.random(2, 9, rng), description)
+    action_map = ActionMap(maps[3], metadata.concept_contrast, (0.1 * rng.random(9)).astype(np.float32))
+    return PyramidModel(first, stages, action_map, SupervisedLayer.random(2, 9, rng), metadata)
 
 
 KINDS: dict[str, type[Model]] = {"paper": PaperModel, "pyramid": PyramidModel}

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from actum.som import Schedule
-from som_classifier.presets import PAPER, PYRAMID, MapPlan, Others
+from som_classifier.presets import PAPER, PYRAMID, BodyVariation, MapTraining
 
 QUICK = replace(
     PYRAMID,
@@ -11,7 +11,7 @@ QUICK = replace(
     units=(8, 8),
     unit_epochs=5,
     unit_radius=(3.0, 0.6),
-    others=Others(1, build_sd=0.1, tempo=1.0),
+    others=BodyVariation(1, build_sd=0.1, tempo=1.0),
     stages=((0.3, 0.5), (0.7,), (1.0,)),
     concepts=(10, 10),
     concept_epochs=8,
@@ -20,6 +20,6 @@ QUICK = replace(
 QUICK_PAPER = replace(
     PAPER,
     name="quick paper",
-    layer1=MapPlan(12, 12, 10_000, Schedule(PAPER.layer1.schedule.alpha, (6.0, 1.5))),
-    layer2=MapPlan(12, 12, 5_000, Schedule(PAPER.layer2.schedule.alpha, (6.0, 0.5))),
+    layer1=MapTraining(12, 12, 10_000, Schedule(PAPER.layer1.schedule.alpha, (6.0, 1.5))),
+    layer2=MapTraining(12, 12, 5_000, Schedule(PAPER.layer2.schedule.alpha, (6.0, 0.5))),
 )

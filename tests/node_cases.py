@@ -18,6 +18,7 @@ from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings as TrackerSettings
 from people import FRAME_NS, reaches
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from recognisers import tiny_model
 from scenes import START_NS, acting_on, action
 from som_classifier.node import SomClassifier
@@ -69,7 +70,7 @@ def later(messages: Iterable[Message], shift_ns: int) -> list[Message]:
 
 @cache
 def _postures() -> tuple[Posture, ...]:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     return tuple(p for frame in reaches(SHORT_FRAMES) for p in node.handle(frame) if isinstance(p, Posture))
 
 
@@ -144,7 +145,7 @@ def _of_segment(message: Message, segment_id: str) -> bool:
 CASES = (
     Case(
         "pose_preprocessor",
-        PosePreprocessor,
+        lambda: PosePreprocessor(PoseSettings.defaults()),
         partial(_skeletons, slice(WARM_UP)),
         partial(_skeletons, slice(WARM_UP, None)),
         _any,

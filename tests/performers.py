@@ -7,7 +7,7 @@ from actum.messages import Segment, Skeleton
 from actum.som import Schedule
 from people import FRAME_NS, STANDING, skeleton
 from som_classifier.attention import MOVING, PostureInput
-from som_classifier.presets import MapPlan, Others, PaperPreset, Prior, PyramidPreset
+from som_classifier.presets import BodyVariation, MapTraining, PaperPreset, Prior, PyramidPreset
 
 FRAMES = 20
 PAUSE_FRAMES = 5
@@ -23,8 +23,8 @@ TINY = PyramidPreset(
     overlap=0.25,
     turns_deg=(-15.0, 15.0),
     leans_deg=(-10.0, 10.0),
-    others=Others(1, build_sd=0.1, tempo=1.0),
-    others_of_few=Others(2, build_sd=0.1, tempo=0.5),
+    others=BodyVariation(1, build_sd=0.1, tempo=1.0),
+    others_of_few=BodyVariation(2, build_sd=0.1, tempo=0.5),
     few_people=1,
     stages=((0.3, 0.5), (0.7,), (1.0,)),
     shrinkage=0.15,
@@ -45,8 +45,8 @@ FALLING = Schedule(alpha=(0.5, 0.05), radius=(5.0, 0.6))
 TINY_PAPER = PaperPreset(
     name="tiny paper",
     posture=PostureInput(axes="upright", origin="hips", attention=MOVING),
-    layer1=MapPlan(10, 10, 4000, FALLING),
-    layer2=MapPlan(8, 8, 2000, FALLING),
+    layer1=MapTraining(10, 10, 4000, FALLING),
+    layer2=MapTraining(8, 8, 2000, FALLING),
     centre_contrast=0.3,
     relative_contrast=0.15,
     beta=0.35,

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rendered_bodies import Person, depth_of
-from sensor_gateway.camera.landmarks import Landmarks
-from sensor_gateway.camera.lens import Lens
+from sensor_gateway.lens import Lens
+from sensor_gateway.people.landmarks import Landmarks
 
 WIDTH, HEIGHT = 640, 480
 COLOR_LENS = Lens(np.array([[610.0, 0, 322.0], [0, 608.0, 238.0], [0, 0, 1]]), np.zeros(5), assumed=False)

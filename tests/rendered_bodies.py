@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sensor_gateway.camera.landmarks import LANDMARKS, Landmarks
-from sensor_gateway.camera.lens import Lens
-from sensor_gateway.camera.placing import turned_to
+from sensor_gateway.lens import Lens
+from sensor_gateway.people.landmarks import LANDMARKS, Landmarks
+from sensor_gateway.people.placing import rotation_to_ray
 
 Array = NDArray[np.float64]
 Points = dict[str, Array]
@@ -93,7 +93,7 @@ def landmarks_of(
     sights = camera_m[:, :2] / camera_m[:, 2:]
     visibility = np.where(np.isin(LANDMARKS, hidden), 0.2, 0.99)
     centre = (body.points["left_hip"] + body.points["right_hip"]) / 2
-    world_m = (camera_m - centre) @ turned_to(np.average(sights, axis=0, weights=visibility)) / model_size
+    world_m = (camera_m - centre) @ rotation_to_ray(np.average(sights, axis=0, weights=visibility)) / model_size
     world_m[:, 2] += wrong_m
     return Landmarks(sights @ lens.matrix[:2, :2].T + lens.matrix[:2, 2] + off_px, world_m, visibility)
 

@@ -14,10 +14,11 @@ from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import ObjectSpec
 from marker_tracker.settings import Settings as TrackerSettings
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from scene_simulator.actor import EYE
 from scene_simulator.conditions import Conditions
-from scene_simulator.programme import Sample
-from scene_simulator.source import Simulator
+from scene_simulator.programme import Task
+from scene_simulator.simulator import Simulator
 
 from .trials import Trial
 
@@ -31,7 +32,7 @@ LEFT_M = 0.005
 class Scene:
     """One person who does a programme under conditions; the same numbers, the same scene."""
 
-    programme: Sequence[Sample]
+    programme: Sequence[Task]
     person: int
     conditions: Conditions
     image_hz: int
@@ -66,7 +67,8 @@ def _trial(
 
 def _observed(simulator: Simulator) -> Iterator[Message]:
     """Yield postures, objects and truth, and at each end the action as if it were recognised."""
-    preprocessor, tracker, started = PosePreprocessor(), MarkerTracker(_tracker_settings(simulator)), {}
+    tracker, started = MarkerTracker(_tracker_settings(simulator)), {}
+    preprocessor = PosePreprocessor(PoseSettings.defaults())
     for messages in simulator.frames():
         for message in messages:
             if isinstance(message, Skeleton):

@@ -5,7 +5,7 @@ from functools import cache
 from itertools import chain, count
 
 from scene_simulator.conditions import Conditions, load_conditions
-from scene_simulator.programme import NO_OBJECT, Sample
+from scene_simulator.programme import NO_OBJECT, Task
 
 from .observing import MEASURES, Scene
 from .trials import OURS, Trial, share
@@ -97,21 +97,21 @@ def _contacts(name: str, spacing_m: float) -> list[Trial]:
     first = FIRST_IN_CONTACT + CONTACT_PEOPLE * (len(SPACINGS_M) * list(load_conditions()).index(name))
     people = range(first, first + CONTACT_PEOPLE * len(SPACINGS_M))[SPACINGS_M.index(spacing_m) :: len(SPACINGS_M)]
     return _trials(
-        Scene([Sample(action, IDS[(person + i) % 3]) for i, action in enumerate(CONTACT)], person, conditions, IMAGE_HZ)
+        Scene([Task(action, IDS[(person + i) % 3]) for i, action in enumerate(CONTACT)], person, conditions, IMAGE_HZ)
         for person in people
     )
 
 
 def _pointings(distance_m: float) -> list[Trial]:
     far = Conditions(spacing_m=POINTING_SPACING_M, distance_m=distance_m)
-    programme = [Sample("point", number) for number in IDS]
+    programme = [Task("point", number) for number in IDS]
     first = FIRST_PERSON + POINTING_PEOPLE * POINTING_DISTANCES_M.index(distance_m)
     people = range(first, first + POINTING_PEOPLE)
     return _trials(Scene(programme, person, far, STILL_IMAGE_HZ) for person in people)
 
 
 def _pantomimes(empty_m: float) -> list[Trial]:
-    programme = [Sample(action, NO_OBJECT) for action in CONTACT]
+    programme = [Task(action, NO_OBJECT) for action in CONTACT]
     people = count(FIRST_PERSON + round(1e5 * empty_m))
     return _trials(
         Scene(programme, next(people), _empty(name, spacing_m, empty_m), IMAGE_HZ)

@@ -12,7 +12,7 @@ from actum_command.paper import TABLE_2
 from actum_command.scene import mark_of
 from actum_model_trainer.training import train
 from scene_simulator.programme import balanced_programme
-from scene_simulator.source import Simulator
+from scene_simulator.simulator import Simulator
 from som_classifier.model import Model
 from som_classifier.presets import DEFAULT, Preset
 

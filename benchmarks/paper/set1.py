@@ -20,9 +20,9 @@ from actum_dataset_importer.takes import (
     Take,
     camera_joints,
     files_of,
-    lost_frame,
-    marks_between,
+    frame_without_person,
     read_rows,
+    segment_marks,
     stamp_of,
 )
 
@@ -58,7 +58,7 @@ def read_sequence(path: Path) -> Take:
     screen = read_rows(path, columns=4 * SOURCE_JOINTS).reshape(-1, SOURCE_JOINTS, 4)
     frames = [_skeleton(stamp_of(i, FRAMES_PER_SECOND), rows, match[1]) for i, rows in enumerate(screen)]
     label = CLASSES[int(match["action"]) - 1]
-    marks = marks_between(frames[0].stamp_ns, frames[-1].stamp_ns, SENSOR, match[1], label)
+    marks = segment_marks(frames[0].stamp_ns, frames[-1].stamp_ns, SENSOR, match[1], label)
     return Take(match[1], str(int(match["person"])), frames, marks)
 
 
@@ -71,7 +71,7 @@ def positions_m(screen: Array) -> Array:
 
 def _skeleton(stamp_ns: int, rows: Array, name: str) -> Skeleton:
     if not rows.any():
-        return lost_frame(stamp_ns, SENSOR, name)
+        return frame_without_person(stamp_ns, SENSOR, name)
     listed: list[list[float]] = to_actum(np.column_stack([positions_m(rows), rows[:, 3]]).tolist(), "msr-action3d-20")
     agent = Agent(agent=1, joints=camera_joints([j[:3] for j in listed]), confidence=[j[3] for j in listed])
     return Skeleton(stamp_ns=stamp_ns, sensor=SENSOR, agents=[agent], session_id=name)

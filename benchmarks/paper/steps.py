@@ -6,7 +6,7 @@ from dataclasses import replace
 from benchmarks.recognition.scores import table
 
 from actum.som import Schedule
-from som_classifier.presets import PAPER, MapPlan, PaperPreset
+from som_classifier.presets import PAPER, MapTraining, PaperPreset
 
 from .data import Data
 from .measuring import BODY, MSR, PART, SET1, UTKINECT, shown
@@ -42,7 +42,7 @@ STEPS: dict[str, PaperPreset] = {
     "the second map's activity as printed": replace(PAPER, relative_contrast=NO_CONTRAST),
     "three times its contrast": replace(PAPER, relative_contrast=PAPER.relative_contrast * 3),
     "a second map of 12 × 12": replace(
-        PAPER, layer2=MapPlan(12, 12, PAPER.layer2.steps, Schedule(PAPER.layer2.schedule.alpha, (6.0, 0.5)))
+        PAPER, layer2=MapTraining(12, 12, PAPER.layer2.steps, Schedule(PAPER.layer2.schedule.alpha, (6.0, 0.5)))
     ),
     "the delta rule's sign as printed": replace(PAPER, beta=-PAPER.beta),
 }

@@ -7,7 +7,7 @@ from statistics import median
 from typing import Any
 
 from actum_model_trainer.answering import encoded
-from som_classifier.movement import MovementFilter
+from som_classifier.kinematics import KinematicsFilter
 
 from .bench import Bench
 from .datasets import Example
@@ -58,7 +58,7 @@ def _trained(recogniser: Recogniser, training: Sequence[Example]) -> tuple[float
 
 
 def _frame_times_us(fitted: FittedMaps, example: Example) -> Iterator[float]:
-    movement, encoder = MovementFilter(), fitted.model.encoder()
+    movement, encoder = KinematicsFilter(), fitted.model.encoder()
     for frame, posture in zip(encoded(fitted.model, example.sample), example.sample.postures, strict=True):
         yield _timed_us(movement.step, frame.stamp_ns, posture)[0] + _timed_us(encoder.encode, frame)[0]
 

@@ -52,7 +52,7 @@ class Point:
         frames = [encoded(model, example.sample) for example in test]
         answers = [answer(model, own) for own in frames]
         whole = model.stages.weights(0.0, complete=True)
-        winners = [model.scores([frame.code for frame in own], whole).argmax() for own in frames]
+        winners = [model.scores([frame.activity for frame in own], whole).argmax() for own in frames]
         self.by_axes.append(Score.of([model.labels[winner] for winner in winners], test).share)
         self.confidences += [own.confidence for own in answers]
         labels = [own.label for own in answers]

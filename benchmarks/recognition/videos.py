@@ -13,7 +13,7 @@ from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum_dataset_importer.clips import Naming
 from actum_dataset_importer.importing import ImportReport, Progress, import_video
-from sensor_gateway.camera.source import estimator_of, optics_of
+from sensor_gateway.cameras import estimator_of, optics_of
 from sensor_gateway.settings import Settings
 
 FLORENCE_NAMING = Naming.of(

@@ -4,36 +4,37 @@ from collections import deque
 from itertools import pairwise
 from typing import Generic, TypeVar
 
-from action_fusion.samples import Sample
+from action_fusion.stream_samples import Sample
+from actum.limits import MAX_SEGMENT_NS
 from actum.node import SECOND_NS
 from actum.stamps import Order, StampGuard
 
-LONGEST_SEGMENT_NS = 60 * SECOND_NS
 LOOK_BACK_NS = 9 * SECOND_NS // 10
 """How long before a segment an object may have been seen last; recordings played in a row are a second apart."""
 
 MEMORY_NS = 10 * SECOND_NS
-"""How long before a segment a hand may have taken what it has held since, or come to where it has rested since."""
+"""How long before a segment a hand may have taken what it still holds, or come to where it still rests."""
 
 LATEST_ACTION_NS = 4 * SECOND_NS
-"""An action may come this long after its segment's end: two seconds of waiting, two of skew."""
+"""An action may come this long after its segment's end: two seconds of waiting, two of skew between streams."""
 
-ANSWERED = 16
-"""How many of the last answered segments are remembered, to tell what comes too late for them."""
+MOST_ANSWERED = 16
+"""So many of the last answered segments are remembered, to tell which samples come too late for them."""
 
-HELD_NS = LONGEST_SEGMENT_NS + MEMORY_NS + LATEST_ACTION_NS
+KEPT_NS = MAX_SEGMENT_NS + MEMORY_NS + LATEST_ACTION_NS
+"""How long samples are kept: for the longest segment, the time before it, and the wait for its action."""
 
 
 S = TypeVar("S", bound=Sample)
 
 
 class Buffer(Generic[S]):
-    """Samples of one stream with rising stamps, the last `HELD_NS` of them."""
+    """Samples of one stream with rising stamps, the last `KEPT_NS` of them."""
 
     def __init__(self) -> None:
         self._samples: deque[S] = deque()
         self._guard = StampGuard()
-        self._answered: deque[range] = deque(maxlen=ANSWERED)
+        self._answered: deque[range] = deque(maxlen=MOST_ANSWERED)
 
     @property
     def newest_ns(self) -> int:
@@ -41,33 +42,33 @@ class Buffer(Generic[S]):
         return self._samples[-1].stamp_ns if self._samples else -1
 
     def judge(self, sample: S) -> Order:
-        """Judge a sample's place: only time that went back is a restart, a new session with a later stamp is not."""
+        """Judge a sample's place in the stream: only a stamp that went back is a restart, no new session."""
         order = self._guard.judge(sample.stamp_ns, sample.session_id)
         return Order.NEXT if sample.stamp_ns > self.newest_ns else order
 
     def append(self, sample: S) -> None:
-        """Add the next sample, and let go of what is too old."""
+        """Add the next sample, and drop what is too old."""
         self._samples.append(sample)
-        while self._samples[0].stamp_ns < sample.stamp_ns - HELD_NS:
+        while self._samples[0].stamp_ns < sample.stamp_ns - KEPT_NS:
             self._samples.popleft()
 
     def clear(self) -> None:
-        """Forget everything: the source's time has gone back."""
+        """Forget everything, after a restart."""
         self._samples.clear()
         self._answered.clear()
 
-    def answered(self, start_ns: int, end_ns: int) -> None:
-        """Note that a segment has been answered: samples of it that still come are too late."""
+    def mark_answered(self, start_ns: int, end_ns: int) -> None:
+        """Remember that a segment has been answered: samples of it that still come are too late."""
         self._answered.append(range(start_ns, end_ns + 1))
 
-    def too_late(self, stamp_ns: int) -> bool:
+    def is_too_late(self, stamp_ns: int) -> bool:
         """Tell whether a sample belongs to a segment that has been answered without it."""
         return any(stamp_ns in segment for segment in self._answered)
 
     def of_segment(self, start_ns: int, end_ns: int) -> list[S]:
         """List the samples of a segment and of the time before it, of the same session as the last of them.
 
-        Nothing is listed of before a gap of `LOOK_BACK_NS` or more that ends before the segment.
+        What precedes a gap of `LOOK_BACK_NS` or more before the segment is left out.
         """
         window = [sample for sample in self._samples if start_ns - MEMORY_NS <= sample.stamp_ns <= end_ns]
         listed = [sample for sample in window if sample.session_id == window[-1].session_id]

@@ -1,17 +1,22 @@
-"""The fixed frame in which events also say where objects ended: a transform from the camera's, given as a setting."""
+"""The transform from the camera frame to a fixed one, as a setting gives it: events tell object poses in both."""
 
 import re
 from pathlib import Path
 
 import numpy as np
 
-from action_fusion.samples import Array
 from actum import geometry
+from actum.arrays import Array
 
 FORM = "16 numbers of a rigid 4x4 transform (rows one after the other, metres), or a file that holds just these"
 MOST_CHARACTERS = 10_000
+"""So much of a file is read: 16 numbers at their longest take 400."""
+
 FURTHEST_M = 1e6
+"""Largest translation: more is a mistake in the unit."""
+
 SEPARATORS = re.compile(r"[\s,;\[\]]+")
+"""What may stand between numbers: lists as NumPy, JSON and MATLAB write them."""
 
 
 def as_text(given: object) -> str | None:

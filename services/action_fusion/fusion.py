@@ -1,31 +1,26 @@
-"""From an action, its agent's postures and the objects' sightings to one event."""
+"""From an action, its actor's postures and the objects' positions to one event."""
 
-import math
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from action_fusion import displacement, proximity
+from action_fusion.acted_object import acted_object
+from action_fusion.actors import Actor, acting_sides, actor_of
 from action_fusion.buffers import LOOK_BACK_NS
-from action_fusion.carrying import carried_tracks
-from action_fusion.choosing import NO_HAND, Choice, choose, evidence
-from action_fusion.ending import acted_object
-from action_fusion.hands import HandPath, Hands, hand_path
-from action_fusion.samples import ObjectsSample, PostureSample
+from action_fusion.choice import Choice
+from action_fusion.choosing import choose
+from action_fusion.depth_alignment import aligned_in_depth
+from action_fusion.displacement import described
+from action_fusion.hand_tracks import HandTracks, hand_tracks
+from action_fusion.object_tracks import ObjectTrack, object_tracks
+from action_fusion.occlusion import fill_occlusions
+from action_fusion.proximity import proximities
+from action_fusion.sentence import sentence
 from action_fusion.settings import Settings
-from action_fusion.sightline import aligned, depth_std_m
-from action_fusion.tracks import Track, tracks
-from action_fusion.wording import sentence
-from actum.messages import Action, Event, Hand, HeldObject, Motion
-from actum.node import SECOND_NS
-
-PART_HANDS: dict[str | None, Hand] = {"right_arm": "right", "left_arm": "left"}
-FACING_NS = 2 * SECOND_NS
-"""Where an actor faces is the mean over this long from the start: the hips of one posture are several degrees out."""
-
-BOTH: tuple[Hand, Hand] = ("right", "left")
+from action_fusion.stream_samples import ObjectsSample, PostureSample
+from actum.messages import Action, Event, HeldObject
 
 
 def fuse(
@@ -44,29 +39,29 @@ def fuse(
         frames: the objects', over the same time.
         settings: thresholds and labels.
     """
-    hands = _hands(action)
-    inside = [sample for sample in postures if sample.stamp_ns >= action.start_ns]
-    strangers = [path for other in others for path in _paths(other, action.start_ns).values()]
-    paths = Hands(_paths(postures, action.start_ns), strangers)
-    seen = _tracks(action, frames, paths, depth_std_m(inside), settings)
-    actor = proximity.actor(inside, action.start_ns)
-    found = [] if actor is None else evidence(seen, actor, hands)
-    choice = Choice(why=NO_HAND) if actor is None and seen else choose(action, found, paths, hands, settings)
-    became = _became(action, choice, inside, settings)
-    likely = [acted_object(e, choice, paths.own, frames, action.start_ns, settings) for e in choice.likely]
+    start_ns, sides = action.start_ns, acting_sides(action)
+    actor = actor_of(postures, start_ns)
+    acting = actor.in_segment()
+    hands = hand_tracks(actor, [actor_of(other, start_ns) for other in others])
+    tracks = _tracks(action, frames, hands, acting.median_depth_std_m(), settings)
+    found = proximities(acting, tracks, sides)
+    choice = choose(action, found, acting, hands, sides, settings)
+    distances_m = {one.track.id: one.distance_m for one in found if np.isfinite(one.distance_m)}
+    likely = [acted_object(t, distances_m[t.id], choice, hands.own, frames, start_ns, settings) for t in choice.likely]
+    became = _became(action, choice, acting, settings)
     return Event(
         **_common(action),
         **became,
         object=likely[0] if likely else None,
         held=None if choice.held is None else HeldObject(id=choice.held.id, name=choice.held.name),
-        hand=hands[0] if len(hands) == 1 else choice.hand,
-        objects_present=[track.id for track in seen],
-        distances_m={str(e.track.id): e.distance_m for e in found if math.isfinite(e.distance_m)},
-        candidates=[candidate for candidate in likely if candidate is not None] if choice.rivals else [],
+        hand=sides[0] if len(sides) == 1 else choice.hand,
+        objects_present=[track.id for track in tracks],
+        distances_m={str(number): distance_m for number, distance_m in distances_m.items()},
+        candidates=likely if choice.rivals else [],
         pointing=choice.pointing,
         why=choice.why,
         sentence=sentence(action, choice, became["result"]),
-        missed=action.missed + _gaps(inside),
+        missed=action.missed + _lost([sample for sample in postures if sample.stamp_ns >= start_ns]),
     )
 
 
@@ -106,56 +101,28 @@ def _common(action: Action) -> dict[str, Any]:
     }
 
 
-def _hands(action: Action) -> tuple[Hand, ...]:
-    """List the hands that may have acted: the one that was marked, the moving arm's, or both."""
-    hand = action.hand or PART_HANDS.get(action.part)
-    return BOTH if hand is None else (hand,)
-
-
-def _paths(postures: Sequence[PostureSample], start_ns: int) -> dict[Hand, HandPath]:
-    """Follow the hands that are known, from before the segment on."""
-    actor = proximity.actor(postures, start_ns)
-    if actor is None:
-        return {}
-    paths = [hand_path(actor, hand) for hand in BOTH]
-    return {path.hand: path for path in paths if len(path.stamps_ns)}
-
-
 def _tracks(
-    action: Action, frames: Sequence[ObjectsSample], paths: Hands, std_m: float, settings: Settings
-) -> list[Track]:
-    """Follow the objects; the paper's measure takes what was seen alone."""
-    seen = [t for t in tracks(frames, action.start_ns) if t.stamps_ns[-1] >= -LOOK_BACK_NS]
-    known = aligned(seen, paths.own.values(), std_m, settings)
+    action: Action, frames: Sequence[ObjectsSample], hands: HandTracks, depth_std_m: float, settings: Settings
+) -> list[ObjectTrack]:
+    """Track the objects; the paper's measure takes sightings alone."""
+    present = [t for t in object_tracks(frames, action.start_ns) if t.stamps_ns[-1] >= -LOOK_BACK_NS]
+    tracks = aligned_in_depth(present, hands.own.values(), depth_std_m, settings)
     if settings.measure == "proximity" or action.end_ns is None:
-        return [track.only(track.seen) for track in known if track.seen.any()]
-    return carried_tracks(known, paths.everybodys, action.end_ns - action.start_ns, settings)
+        return [track.keeping(track.seen) for track in tracks if track.seen.any()]
+    return fill_occlusions(tracks, hands.everyones, action.end_ns - action.start_ns, settings)
 
 
-def _became(action: Action, choice: Choice, postures: Sequence[PostureSample], settings: Settings) -> dict[str, Any]:
+def _became(action: Action, choice: Choice, actor: Actor, settings: Settings) -> dict[str, Any]:
     """Tell what became of the object, in the level frame of the actor as the segment starts."""
-    nothing = {"motion": None, "result": None, "outcome": None, "agrees": None}
-    if choice.evidence is None:
-        return nothing
-    known = [(sample.stamp_ns, sample.body) for sample in postures if sample.body is not None]
-    first_ns, first = known[0]
-    ahead = [body.ego_from_camera[2, :3] for stamp_ns, body in known if stamp_ns <= first_ns + FACING_NS]
-    level_from_camera = displacement.level_from_camera(np.mean(ahead, axis=0), np.array(first.up_in_camera))
-    if level_from_camera is None:
-        return nothing
-    shift = level_from_camera @ choice.evidence.track.shift()
-    outcome = displacement.outcome(shift, settings.moved_m, first.faces)
+    level_from_camera = None if choice.track is None else actor.level_from_camera()
+    if choice.track is None or level_from_camera is None:
+        return {"motion": None, "result": None, "outcome": None, "agrees": None}
+    displacement_m = level_from_camera @ choice.track.displacement_m()
     expected = settings.expected_outcomes.get(str(action.action))
-    direction = displacement.direction(shift, settings.moved_m, first.faces)
-    return {
-        "motion": Motion(displacement_m=shift.tolist(), direction=direction),
-        "result": displacement.result(shift, settings.moved_m, first.faces),
-        "outcome": outcome,
-        "agrees": displacement.agrees(outcome, expected),
-    }
+    return described(displacement_m, settings.moved_m, bool(actor.has_front[0]), expected)
 
 
-def _gaps(postures: Sequence[PostureSample]) -> int:
+def _lost(postures: Sequence[PostureSample]) -> int:
     """Count the postures lost between those received, from their numbers; numbers that fall are a restart."""
     numbers = [sample.seq for sample in postures if sample.seq is not None]
     return sum(max(later - earlier - 1, 0) for earlier, later in pairwise(numbers))

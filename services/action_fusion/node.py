@@ -1,38 +1,39 @@
-"""The fusion's pure step: it waits until a segment's streams have reached its end, and answers once."""
+"""The fusion's pure step: it waits until the input streams have reached a segment's end, and answers it once."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from action_fusion.buffers import LATEST_ACTION_NS, Buffer, S
 from action_fusion.fusion import fuse, rejected
-from action_fusion.samples import ObjectsSample, PostureSample, objects_sample, posture_sample
 from action_fusion.settings import Settings
+from action_fusion.stream_samples import ObjectsSample, PostureSample, objects_sample, posture_sample
 from actum import keys
+from actum.limits import MAX_SKEW_NS
 from actum.messages import Action, Event, Message, Objects, Posture
 from actum.node import SECOND_NS, Counters, Tick
 from actum.stamps import Order
 
-SKEW_NS = 2 * SECOND_NS
-"""How far one stream may lag behind another."""
-
-WAIT_NS = SKEW_NS + SECOND_NS // 5
+WAIT_NS = MAX_SKEW_NS + SECOND_NS // 5
 """The skew, and two ticks' grace for the tick that starts the count."""
 
 REMEMBERED = 10_000
-AGENTS = 16
+"""So many answered segments are remembered, to tell duplicates: more than a day has, and little memory."""
+
+MOST_AGENTS = 16
+"""So many people's postures are kept: more than a camera tells apart, and a bound on the memory."""
 
 
 @dataclass
 class Pending:
-    """An action that waits for its streams; `since_ns` is the first tick after it came."""
+    """An action that waits for the input streams; `since_ns` is the time of the first tick after it came."""
 
     action: Action
     end_ns: int
     since_ns: int | None = None
 
     def is_before(self, restart_ns: int) -> bool:
-        """Tell whether it is of the time before a restart, which began anew with this stamp."""
-        return self.action.start_ns < restart_ns or self.end_ns > restart_ns + SKEW_NS
+        """Tell whether its segment is of the time before a restart of the stream at stamp `restart_ns`."""
+        return self.action.start_ns < restart_ns or self.end_ns > restart_ns + MAX_SKEW_NS
 
 
 class ActionFusion:
@@ -56,7 +57,8 @@ class ActionFusion:
         """Take one posture, objects message, action or tick; return the events it completes."""
         match message:
             case Posture():
-                return self._posture(message)
+                sample = posture_sample(message, self.counters)
+                return self._take(self._buffer(message.agent), sample, f"posture of agent {message.agent}")
             case Objects():
                 return self._take(self._objects, objects_sample(message, self.counters), "objects")
             case Action(final=True):
@@ -65,12 +67,8 @@ class ActionFusion:
                 return self._tick(message)
         return []
 
-    def _posture(self, posture: Posture) -> list[Event]:
-        sample = posture_sample(posture, self.counters)
-        return self._take(self._buffer(posture.agent), sample, f"posture of agent {posture.agent}")
-
     def _take(self, buffer: Buffer[S], sample: S, what: str) -> list[Event]:
-        """Add a sample to its stream and answer what waited for it; where time has gone back, all of the old time."""
+        """Add a sample to its stream and answer what waited for it; after a restart, also all of the time before."""
         order = buffer.judge(sample)
         if order is Order.STALE:
             self.counters.reject("stale_stamp", f"{what} at {sample.stamp_ns} after {buffer.newest_ns}")
@@ -79,15 +77,15 @@ class ActionFusion:
         if order is Order.RESTART:
             events = [self._answer(pending) for pending in list(self._pending) if pending.is_before(sample.stamp_ns)]
             buffer.clear()
-            self._forget_later(sample.stamp_ns + SKEW_NS)
+            self._forget_later(sample.stamp_ns + MAX_SKEW_NS)
             self._answered.clear()
-        if buffer.too_late(sample.stamp_ns):
+        if buffer.is_too_late(sample.stamp_ns):
             self.counters.reject("late", f"{what} at {sample.stamp_ns}, after its segment was answered")
         buffer.append(sample)
         return events + self._complete()
 
     def _forget_later(self, stamp_ns: int) -> None:
-        """Forget streams that are further than one whose time has gone back: theirs is the old time."""
+        """Clear the streams that are further than `stamp_ns` after a restart: they are still of the time before it."""
         if self._objects.newest_ns > stamp_ns:
             self._objects.clear()
         for postures in self._postures.values():
@@ -128,7 +126,7 @@ class ActionFusion:
         return [self._answer(pending) for pending in list(self._pending) if self._is_complete(pending)]
 
     def _is_complete(self, pending: Pending) -> bool:
-        """Tell whether all streams have reached its end; any that is much further is of the time before a restart."""
+        """Tell whether all streams have reached its end; one that is much further is of the time before a restart."""
         postures = self._postures.get(pending.action.agent)
         reached = (-1 if postures is None else postures.newest_ns, self._objects.newest_ns)
         if not all(pending.end_ns <= newest_ns <= pending.end_ns + LATEST_ACTION_NS for newest_ns in reached):
@@ -137,10 +135,11 @@ class ActionFusion:
         return all(buffer is not None and buffer.newest_ns >= last_ns for buffer, last_ns in others)
 
     def _own(self, pending: Pending) -> list[PostureSample]:
+        """List the postures of the one who acts, of the segment and of the time before it."""
         return self._buffer(pending.action.agent).of_segment(pending.action.start_ns, pending.end_ns)
 
     def _others(self, agent: int, postures: Sequence[PostureSample]) -> list[tuple[Buffer[PostureSample] | None, int]]:
-        """List the streams of the others who are there, and when each is there last."""
+        """List the streams of the other people in the image, and when each was there last (ns)."""
         last_ns = {other: sample.stamp_ns for sample in postures for other in sample.agents if other != agent}
         return [(self._postures.get(other), last) for other, last in last_ns.items()]
 
@@ -150,7 +149,7 @@ class ActionFusion:
         postures = self._own(pending)
         others = [buffer for buffer, _ in self._others(action.agent, postures) if buffer is not None]
         for buffer in (self._buffer(action.agent), self._objects):
-            buffer.answered(start_ns, end_ns)
+            buffer.mark_answered(start_ns, end_ns)
         return fuse(
             action,
             postures,
@@ -162,7 +161,7 @@ class ActionFusion:
     def _buffer(self, agent: int) -> Buffer[PostureSample]:
         """Find an agent's stream; a new one takes the place of the one not heard of for longest."""
         buffer = self._postures.pop(agent, None) or Buffer()
-        if len(self._postures) == AGENTS:
+        if len(self._postures) == MOST_AGENTS:
             del self._postures[next(iter(self._postures))]
         self._postures[agent] = buffer
         return buffer

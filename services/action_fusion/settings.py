@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field
 
 from action_fusion.fixed_frame import as_text, from_text
-from action_fusion.samples import Array
+from actum.arrays import Array
 from actum.settings import ServiceSettings
 
 
@@ -52,10 +52,10 @@ class Settings(ServiceSettings):
 
     @property
     def fixed_from_camera(self) -> Array | None:
-        """The fixed frame's transform (4, 4); None where there is no such frame."""
+        """`world_from_camera` as an array (4, 4); None where it is not set."""
         return None if self.world_from_camera is None else from_text(self.world_from_camera)
 
     @property
-    def reach_with_m(self) -> float:
-        """How far a hand reaches with a thing in it, which may have no marker."""
+    def reach_with_tool_m(self) -> float:
+        """How far from a hand a tool in it reaches (m); the tool may have no marker."""
         return self.reach_m + self.grasp_m

@@ -28,8 +28,8 @@ from actum_model_trainer.evaluation import Evaluation, evaluate
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train
 from scene_simulator.programme import ACTIONS
+from som_classifier.model_loading import load_model
 from som_classifier.presets import DEFAULT
-from som_classifier.storage import load_model
 
 ACTOR = 0
 TRAINING_SEED, TEST_SEED = 1, 2

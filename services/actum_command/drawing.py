@@ -10,10 +10,12 @@ import typer
 from actum.messages import Skeleton
 from actum.node import SECOND_NS, Counters
 from actum_command.context import fail, refuse_unwritable, say
-from sensor_gateway.camera.drawing import Pixels, drawn, sheet
-from sensor_gateway.camera.perceiving import Optics, Perceiver
-from sensor_gateway.camera.source import estimator_of, optics_of
-from sensor_gateway.camera.video import Picture, pictures_of
+from actum_command.skeleton_overlay import Pixels, drawn, sheet
+from sensor_gateway.cameras import estimator_of, optics_of
+from sensor_gateway.captured_picture import Picture
+from sensor_gateway.devices.video import pictures_of
+from sensor_gateway.optics import Optics
+from sensor_gateway.perceiver import Perceiver
 from sensor_gateway.settings import Settings
 
 COLUMNS = 3

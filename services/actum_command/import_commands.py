@@ -21,7 +21,7 @@ from actum_dataset_importer.importing import (
     import_video,
 )
 from actum_dataset_importer.takes import DatasetError
-from sensor_gateway.camera.source import estimator_of, optics_of
+from sensor_gateway.cameras import estimator_of, optics_of
 from sensor_gateway.settings import Settings
 
 app = PlainTyper(no_args_is_help=True, help="Turn public data sets and video clips into recordings.")

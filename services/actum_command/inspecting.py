@@ -12,7 +12,7 @@ from actum_command.context import fail, say
 from actum_command.learning import AllOption, PersonOption, chosen, tell_unread
 from actum_command.progress import bars
 from som_classifier.model import Model
-from som_classifier.storage import ModelError, load_model
+from som_classifier.model_loading import ModelError, load_model
 
 FORMATS = ("png", "svg")
 FILES = (".png", ".svg", ".html", ".pdf")

@@ -19,8 +19,8 @@ from actum_model_trainer.samples import samples_from, select
 from actum_model_trainer.training import TrainingError, train
 from actum_model_trainer.warnings import warnings_of
 from som_classifier.attention import CHOICES
+from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, PaperPreset, Preset
-from som_classifier.storage import ModelError, load_model
 
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of them")]
 PersonOption = Annotated[str | None, typer.Option(help="only these persons, e.g. 1,3,5")]
@@ -68,7 +68,7 @@ def train_command(
         f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
         f"{time.monotonic() - began_s:.1f} s, written to {output}"
     )
-    for warning in warnings_of(samples.usable, model.about.held_out_answers):
+    for warning in warnings_of(samples.usable, model.metadata.held_out_answers):
         say(warning, style="yellow")
 
 

@@ -10,7 +10,7 @@ from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum.rewriting import Change
 from actum_model_trainer.samples import classifier_input, closed_segments, sensors, why_unusable
-from som_classifier.segments import Closed
+from som_classifier.segments import ClosedSegment
 
 Edit = Callable[[Segment | Action | Event | Truth], Message | None]
 """What becomes of a message that names the segment; None for nothing."""
@@ -105,6 +105,6 @@ def _message(stored: StoredMessage) -> Message | None:
     return message if message.stamp_ns is not None else message.model_copy(update={"stamp_ns": stored.publish_ns})
 
 
-def _problem(closed: Closed) -> str | None:
+def _problem(closed: ClosedSegment) -> str | None:
     problem = why_unusable(closed)
     return "no label" if problem is None and closed.label is None else problem

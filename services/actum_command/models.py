@@ -10,7 +10,7 @@ from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, Trans
 from actum_command.context import errors, fail, refuse_ending, say
 from actum_command.model_download import FetchError, Published, fetch
 from actum_command.plain_help import PlainTyper
-from sensor_gateway.camera.model_file import default_model
+from sensor_gateway.settings import default_pose_model
 
 POSE = Published(
     url="https://storage.googleapis.com/mediapipe-models/pose_landmarker/pose_landmarker_full/float16/1/"
@@ -38,7 +38,7 @@ def fetch_command(
     """Download MediaPipe's pose model (9 MB, Apache-2.0) and check its digest."""
     if output is not None:
         refuse_ending(output, ".task")
-    path = output or default_model()
+    path = output or default_pose_model()
     published = replace(POSE, url=url)
     if published.is_at(path):
         say(f"the pose model is already at {path}")

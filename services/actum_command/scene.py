@@ -12,7 +12,7 @@ from actum.recording import Recorder
 from actum.runtime import Client, stop_on_signals
 from actum_command.context import connect_whenever, fail, refuse_ending, refuse_unwritable, say
 from scene_simulator.programme import balanced_programme
-from scene_simulator.source import Simulator, labelled_stream
+from scene_simulator.simulator import Simulator, labelled_stream
 
 POLL_S = 0.005
 

@@ -16,7 +16,7 @@ from actum_command import processes
 from actum_command.context import fail, say, settings
 from actum_command.service_flags import DECLARED, Given, arguments_of, flag_of, with_service_flags
 from actum_command.supervising import Program, Supervisor, UnusableError
-from som_classifier.storage import ModelError, load_model
+from som_classifier.model_loading import ModelError, load_model
 
 CHECK_S = 0.2
 ROUTER_S = 5.0

@@ -4,8 +4,8 @@
 each hand, frame numbers and between them `[action, object class, instance]` in the ids of the KIT Bimanual Actions
 Dataset (Dreher, Wächter, Asfour 2020).
 
-A take has no camera and no body. Its frame stands in for the camera's, with its axes turned: x right as the world's x,
-y down against the world's z, z forward as the world's y. Postures hold the hands alone and say `frame = "world"`.
+A take has no camera and no body. The world frame stands in for the camera's, its axes turned: x right is the world's x,
+y down the world's -z, z forward the world's y. Postures hold the hands alone and say `frame = "world"`.
 """
 
 import csv
@@ -26,6 +26,7 @@ from actum_dataset_importer.takes import DatasetError
 PATTERN = "subject*_take*.csv"
 NAME = re.compile(r"subject(?P<person>\d+)_take(?P<take>\d+)")
 AGENT = 1
+"""The one person of a take."""
 WORLD = "world"
 
 ACTIONS = (
@@ -52,9 +53,12 @@ Point = list[float]
 
 @dataclass(frozen=True)
 class HandsTake:
-    """One take: postures and objects frame by frame, marks without the object, and the object apart from them.
+    """One take: postures and objects frame by frame, and the labelled segments of each hand.
 
-    `truths` say which object the labels name; idle has none. `skipped` names the segments whose bounds are no span.
+    Attributes:
+        marks: start and end of each segment; they do not name the object.
+        truths: which object the label of a segment names; idle has none.
+        skipped: names of the segments that do not end after they start.
     """
 
     name: str
@@ -72,7 +76,7 @@ class HandsTake:
 
 @dataclass(frozen=True)
 class Label:
-    """What one hand does between two frames, both included; `target` is an object's id."""
+    """What one hand does from frame `first` to frame `last`, both included; `target` is an object's id."""
 
     hand: Hand
     first: int
@@ -119,9 +123,9 @@ def read_take(path: Path, sensor: str) -> HandsTake:
     return HandsTake(path.stem, match["person"], postures, objects, marks, truths, skipped)
 
 
-def camera(world: Sequence[float]) -> Point:
-    """Turn the world's axes (z up) into the camera's (x right, y down, z forward)."""
-    x, y, z = world
+def camera_from_world(point: Sequence[float]) -> Point:
+    """Turn a point (3,) in the world's axes (z up) into the camera's (x right, y down, z forward)."""
+    x, y, z = point
     return [x, -z, y]
 
 
@@ -129,19 +133,19 @@ def _id(path: Path, label: Label, number: int) -> str:
     return f"{path.stem}_{label.hand}_{number:02d}"
 
 
-def _place(row: Row, body: str) -> Point | None:
-    """Read where a rigid body is, None where the cameras lost it."""
+def _position(row: Row, body: str) -> Point | None:
+    """Read a rigid body's position (3,; m, camera frame), None where the cameras lost it."""
     if row[f"{body}{VALID}"] != "1":
         return None
     x, y, z = (float(row[f"{body}_{axis}"]) for axis in "xyz")
-    return camera((x, y, z)) if math.isfinite(x + y + z) else None
+    return camera_from_world((x, y, z)) if math.isfinite(x + y + z) else None
 
 
 def _posture(row: Row, stamp_ns: int, sensor: str, session_id: str) -> Posture:
     joints: list[Joint] = [None] * len(JOINTS)
     for hand, body in HANDS.items():
-        place = _place(row, body)
-        joints[INDEX[f"{hand}_hand"]] = None if place is None else [-place[0], -place[1], place[2]]
+        position = _position(row, body)
+        joints[INDEX[f"{hand}_hand"]] = None if position is None else [-position[0], -position[1], position[2]]
     return Posture(
         stamp_ns=stamp_ns,
         sensor=sensor,
@@ -157,7 +161,7 @@ def _posture(row: Row, stamp_ns: int, sensor: str, session_id: str) -> Posture:
 
 
 def _bodies(rows: Sequence[Row]) -> dict[int, str]:
-    """Name the columns of each object class that the table has."""
+    """Return the prefix of the columns of each object class that the table has."""
     known = {name.replace(" ", ""): number for number, name in enumerate(OBJECTS)}
     bodies = [column.removesuffix(VALID) for column in rows[0] if column.endswith(VALID)] if rows else []
     return {known[name]: body for body in bodies if (name := body.lower().replace("_", "")) in known}
@@ -170,15 +174,15 @@ def _check_targets(labels: Sequence[Label], bodies: Mapping[int, str]) -> None:
 
 
 def _objects(rows: Sequence[Row], stamps_ns: Sequence[int], sensor: str, session_id: str) -> list[Objects]:
-    """Read the objects of each frame; one that is lost stays where it was last, unseen."""
+    """Read the objects of each frame; one that the cameras lost keeps its last position, unseen."""
     last: dict[int, TrackedObject] = {}
     bodies = _bodies(rows)
     frames = []
     for row, stamp_ns in zip(rows, stamps_ns, strict=True):
         for number, body in bodies.items():
-            place = _place(row, body)
-            if place is not None:
-                last[number] = _tracked(number, place, _quaternion(row, body))
+            position = _position(row, body)
+            if position is not None:
+                last[number] = _tracked(number, position, _quaternion(row, body))
             elif number in last:
                 last[number] = last[number].model_copy(update={"seen": False, "confidence": 0.0})
         listed = list(last.values())
@@ -186,16 +190,16 @@ def _objects(rows: Sequence[Row], stamps_ns: Sequence[int], sensor: str, session
     return frames
 
 
-def _tracked(number: int, place: Point, quaternion: Point) -> TrackedObject:
+def _tracked(number: int, position: Point, quaternion: Point) -> TrackedObject:
     return TrackedObject(
-        id=number, name=OBJECTS[number], position_m=place, quaternion_xyzw=quaternion, confidence=1.0, seen=True
+        id=number, name=OBJECTS[number], position_m=position, quaternion_xyzw=quaternion, confidence=1.0, seen=True
     )
 
 
 def _quaternion(row: Row, body: str) -> Point:
-    """Read an orientation, with the body's own axes turned as the world's are."""
+    """Read an orientation (4,; x, y, z, w), the body's own axes turned as the world's are."""
     x, y, z, w = (float(row[f"{body}_q{axis}"]) for axis in "xyzw")
-    return [*camera((x, y, z)), w]
+    return [*camera_from_world((x, y, z)), w]
 
 
 def _labels(folder: Path, person: str, take: str) -> list[Label]:
@@ -204,12 +208,12 @@ def _labels(folder: Path, person: str, take: str) -> list[Label]:
         raise DatasetError(f"{folder}: no labels_subject_{person}/*/take_{take}.json; put the labels beside the takes")
     try:
         content = json.loads(found[0].read_text())
-        return [label for hand in HANDS for label in _of_hand(hand, content[f"{hand}_hand"])]
+        return [label for hand in HANDS for label in _hand_labels(hand, content[f"{hand}_hand"])]
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise DatasetError(f"{found[0]}: not frames and labels in turns for each hand ({error!r})") from None
 
 
-def _of_hand(hand: Hand, content: list[Any]) -> list[Label]:
+def _hand_labels(hand: Hand, content: list[Any]) -> list[Label]:
     """Read `[frame, label, frame, label, …, frame]`."""
     frames, labels = content[0::2], content[1::2]
     return [

@@ -1,4 +1,4 @@
-"""Video clips named with a class and a person, as labelled takes: the whole clip is one segment."""
+"""Video clips named with an action and a person, as labelled takes: the whole clip is one segment."""
 
 import re
 from collections import Counter
@@ -7,25 +7,27 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
-from actum.messages import Segment, Skeleton
 from actum.node import Counters
-from actum_dataset_importer.takes import DatasetError, Take
-from sensor_gateway.camera.bodies import Estimator
-from sensor_gateway.camera.perceiving import Optics, Perceiver
-from sensor_gateway.camera.video import SUFFIXES, VideoError, pictures_of
+from actum_dataset_importer.takes import DatasetError, Take, segment_marks
+from sensor_gateway.devices.video import SUFFIXES, VideoError, pictures_of
+from sensor_gateway.optics import Optics
+from sensor_gateway.people.pose_estimator import Estimator
+from sensor_gateway.perceiver import Perceiver
 
 DEFAULT_PATTERN = r"(?P<action>[^_]+)_(?P<person>[^_]+)(_.*)?"
 """`wave_anna.mp4`, `wave_anna_2.mp4`: the action, the person, anything."""
 
 NOT_IN_NAMES = re.compile(r"[^\w.-]+")
+"""What not every file system takes in a name."""
 
 
 @dataclass(frozen=True)
 class Naming:
     """How a clip's file name, without its ending, tells the action and the person.
 
-    `pattern` matches the whole name and has a group `action`, and may have one `person`; `actions` gives what the
-    group holds another name.
+    Attributes:
+        pattern: matches the whole name; has a group `action`, and may have one `person`.
+        actions: other names for what the group `action` matches.
     """
 
     pattern: re.Pattern[str]
@@ -33,7 +35,7 @@ class Naming:
 
     @classmethod
     def of(cls, pattern: str, names: str) -> "Naming":
-        """Read what the command line says: a regular expression, and `1=wave,2=drink`.
+        """Parse the command line's regular expression, and names such as `1=wave,2=drink`.
 
         Raises:
             DatasetError: either is not of that form.
@@ -79,15 +81,15 @@ def clip_files(folder: Path) -> list[Path]:
 
 
 def recording_name(path: Path) -> str:
-    """Name a clip's recording: as the clip, but for what not every file system takes."""
+    """Return the name of a clip's recording: the clip's, unusual characters replaced."""
     return NOT_IN_NAMES.sub("_", path.stem)
 
 
 def check_names(files: Sequence[Path]) -> None:
-    """Pass clips each of which gets a recording of its own.
+    """Check that no two clips get the same recording.
 
     Raises:
-        DatasetError: two would get the same one.
+        DatasetError: two would.
     """
     taken: dict[str, Path] = {}
     for file in files:
@@ -99,7 +101,7 @@ def check_names(files: Sequence[Path]) -> None:
 def read_clip(
     path: Path, naming: Naming, sensor: str, optics: Optics, opened: Callable[[], AbstractContextManager[Estimator]]
 ) -> Take:
-    """See a clip as the camera source does, with an estimator of its own that knows nothing of the clip before.
+    """Find the people of a clip as the camera source does, with a new estimator: none remembers the clip before.
 
     Raises:
         DatasetError: the name does not tell the action, or the file is no video.
@@ -112,13 +114,5 @@ def read_clip(
             frames = [perceiver.skeleton(picture) for picture in pictures_of(path)]
     except VideoError as error:
         raise DatasetError(str(error)) from None
-    marks = _whole(frames, name, action)
-    return Take(name, person, frames, marks, {"lens": str(optics)}, notes=Counter(counters.rejects))
-
-
-def _whole(frames: list[Skeleton], name: str, action: str) -> list[Segment]:
-    first, last = frames[0], frames[-1]
-    return [
-        Segment(stamp_ns=first.stamp_ns, sensor=first.sensor, kind="start", segment_id=name, label=action),
-        Segment(stamp_ns=last.stamp_ns, sensor=last.sensor, kind="end", segment_id=name),
-    ]
+    marks = segment_marks(frames[0].stamp_ns, frames[-1].stamp_ns, sensor, name, action)
+    return Take(name, person, frames, marks, {"lens": str(optics)}, oddities=Counter(counters.rejects))

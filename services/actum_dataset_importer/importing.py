@@ -1,4 +1,4 @@
-"""Public skeleton sets turned into recordings."""
+"""Turns public skeleton sets and video clips into recordings."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable
@@ -11,24 +11,28 @@ from actum_dataset_importer import bimacs, msr_action3d, msrc12, utkinect
 from actum_dataset_importer.bimacs import HandsTake
 from actum_dataset_importer.clips import Naming, check_names, clip_files, read_clip
 from actum_dataset_importer.takes import Take
-from sensor_gateway.camera.bodies import Estimator
-from sensor_gateway.camera.perceiving import OTHER_SIZE, Optics
+from sensor_gateway.optics import Optics
+from sensor_gateway.people.pose_estimator import Estimator
+from sensor_gateway.perceiver import OTHER_SIZE
 
 SENSOR = "kinect0"
+"""Recordings carry the usual sensor's name, so that they can be played without a flag."""
 MOST_NAMES = 12
+"""Of actions or persons that the report lists: they fit some lines of a terminal."""
 Progress = Callable[[int, int], None]
-"""Told after each file: how many are done, of how many."""
+"""Called after each file with how many are done and how many there are."""
 
-NOTES = {
+ODDITIES = {
     utkinect.DUPLICATE_ROW: "duplicate rows dropped",
     utkinect.OVERLAPPING_PAIR: "pairs of segments that overlap, kept",
     OTHER_SIZE: "frames of another size than was calibrated: nobody is looked for in them",
 }
+"""How the report names what reading a take dropped or found unusual."""
 
 
 @dataclass
 class ImportReport:
-    """What an import wrote and what it found; as text, one line each."""
+    """Counts of what an import wrote and found; as text, one line each."""
 
     files: int = 0
     frames: int = 0
@@ -38,7 +42,7 @@ class ImportReport:
     actions: set[str] = field(default_factory=set)
     persons: set[str] = field(default_factory=set)
     skipped: list[str] = field(default_factory=list)
-    notes: Counter[str] = field(default_factory=Counter)
+    oddities: Counter[str] = field(default_factory=Counter)
 
     def add(self, take: Take) -> None:
         """Count one written take."""
@@ -46,9 +50,9 @@ class ImportReport:
         self.frames += len(take.frames)
         self.invalid_frames += sum(not frame.valid or not frame.agents for frame in take.frames)
         self._add_labels(take)
-        self.excluded += "excluded" in take.fields
+        self.excluded += "excluded" in take.metadata
         self.skipped += take.skipped
-        self.notes += take.notes
+        self.oddities += take.oddities
 
     def add_hands(self, take: HandsTake) -> None:
         """Count one written take of hands and objects."""
@@ -64,23 +68,23 @@ class ImportReport:
         self.actions |= {mark.label for mark in starts if mark.label}
 
     def lines(self) -> list[str]:
-        """Say it for people."""
-        said = [
+        """Return the report's lines."""
+        lines = [
             f"{self.files} recordings, {self.frames} frames, {self.segments} labelled segments",
-            f"{_counted(self.actions, 'actions')}; {_counted(self.persons, 'persons')}",
+            f"{_listed(self.actions, 'actions')}; {_listed(self.persons, 'persons')}",
             f"{self.invalid_frames} frames without a skeleton, kept as such",
         ]
         if self.excluded:
-            said.append(f"{self.excluded} recordings marked excluded: training skips them unless told otherwise")
+            lines.append(f"{self.excluded} recordings marked excluded: training skips them unless told otherwise")
         if self.skipped:
-            said.append(f"{len(self.skipped)} segments without bounds skipped: {', '.join(self.skipped)}")
-        return said + [f"{self.notes[kind]} {words}" for kind, words in NOTES.items() if self.notes[kind]]
+            lines.append(f"{len(self.skipped)} segments without bounds skipped: {', '.join(self.skipped)}")
+        return lines + [f"{self.oddities[kind]} {words}" for kind, words in ODDITIES.items() if self.oddities[kind]]
 
     def __str__(self) -> str:
         return "\n".join(self.lines())
 
 
-def _counted(names: set[str], what: str) -> str:
+def _listed(names: set[str], what: str) -> str:
     first = ", ".join(sorted(names)[:MOST_NAMES])
     return f"{len(names)} {what}: {first}{', …' if len(names) > MOST_NAMES else ''}"
 
@@ -163,7 +167,7 @@ def import_takes(source: str, takes: Iterable[Take], total: int, out: Path, prog
     """Write one recording per take, `out/NAME.mcap`, with `source` in its metadata."""
     report = ImportReport()
     for take in takes:
-        with Recorder(out / f"{take.name}.mcap", person=take.person, source=source, **take.fields) as recorder:
+        with Recorder(out / f"{take.name}.mcap", person=take.person, source=source, **take.metadata) as recorder:
             for message in (*take.frames, *take.marks):
                 recorder.write(message)
         report.add(take)

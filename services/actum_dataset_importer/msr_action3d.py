@@ -17,14 +17,16 @@ from actum_dataset_importer.takes import (
     Take,
     camera_joints,
     files_of,
-    lost_frame,
-    marks_between,
+    frame_without_person,
     read_rows,
+    segment_marks,
     stamp_of,
 )
 
 FRAMES_PER_SECOND = 15
+"""As the set's paper says; its files hold no times."""
 SOURCE_JOINTS = 20
+"""Of Kinect's skeleton, before they are reduced to the fifteen."""
 PATTERN = "*_skeleton3D.txt"
 NAME = re.compile(r"(a(?P<action>\d\d)_s(?P<person>\d\d)_e(?P<execution>\d\d))_skeleton3D\.txt")
 
@@ -79,9 +81,9 @@ def sequence_files(path: Path) -> list[Path]:
 
 
 def read_sequence(path: Path, sensor: str) -> Take:
-    """Read one sequence: the whole of it is one labelled segment.
+    """Read one sequence, all of it one labelled segment.
 
-    A frame whose numbers are all zero had no skeleton and stays as an invalid frame.
+    A frame of zeros had no skeleton and becomes an invalid frame.
 
     Raises:
         DatasetError: the name or the content is not of the set's form.
@@ -91,16 +93,16 @@ def read_sequence(path: Path, sensor: str) -> Take:
         raise DatasetError(f"{path}: not named like a01_s01_e01_skeleton3D.txt; keep the set's own file names")
     name = match[1]
     frames = [_skeleton(i, rows, sensor, name) for i, rows in enumerate(_frames(path))]
-    fields = {"action": f"a{match['action']}", "execution": str(int(match["execution"]))}
+    metadata = {"action": f"a{match['action']}", "execution": str(int(match["execution"]))}
     if name in EXCLUDED:
-        fields["excluded"] = "true"
+        metadata["excluded"] = "true"
     label = CLASSES[int(match["action"]) - 1]
-    marks = marks_between(frames[0].stamp_ns, frames[-1].stamp_ns, sensor, name, label)
-    return Take(name, str(int(match["person"])), frames, marks, fields)
+    marks = segment_marks(frames[0].stamp_ns, frames[-1].stamp_ns, sensor, name, label)
+    return Take(name, str(int(match["person"])), frames, marks, metadata)
 
 
 def _frames(path: Path) -> NDArray[np.float64]:
-    """Read the frames, shape (frames, 20, 4)."""
+    """Read the frames (frames, 20, 4): x, y, z (m), confidence."""
     rows = read_rows(path, columns=4)
     if len(rows) % SOURCE_JOINTS:
         raise DatasetError(f"{path}: {len(rows)} rows are no whole frames of {SOURCE_JOINTS} joints; fetch it anew")
@@ -110,7 +112,7 @@ def _frames(path: Path) -> NDArray[np.float64]:
 def _skeleton(i: int, rows: NDArray[np.float64], sensor: str, session_id: str) -> Skeleton:
     stamp_ns = stamp_of(i, FRAMES_PER_SECOND)
     if not rows.any():
-        return lost_frame(stamp_ns, sensor, session_id)
+        return frame_without_person(stamp_ns, sensor, session_id)
     joints: list[list[float]] = to_actum(rows.tolist(), "msr-action3d-20")
     confidence = [joint[3] for joint in joints]
     agent = Agent(agent=1, joints=camera_joints([joint[:3] for joint in joints]), confidence=confidence)

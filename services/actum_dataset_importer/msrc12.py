@@ -18,14 +18,22 @@ from numpy.typing import NDArray
 
 from actum.messages import Agent, Segment, Skeleton
 from actum.skeletons import JOINTS, to_actum
-from actum_dataset_importer.takes import DatasetError, Take, camera_joints, files_of, lost_frame, marks_between
+from actum_dataset_importer.takes import (
+    DatasetError,
+    Take,
+    camera_joints,
+    files_of,
+    frame_without_person,
+    segment_marks,
+)
 
 Integers = NDArray[np.int64]
 
 REACH_US = 1_500_000
-"""The furthest that a segment goes from its action point: half the usual 3 s between two, where people move least."""
+"""How far a segment reaches from its action point at most: half the usual 3 s between two, where people move least."""
 
 SOURCE_JOINTS = 20
+"""Of Kinect's skeleton, before they are reduced to the fifteen."""
 PATTERN = "p*.npz"
 PARTS = ("xyz_mm", "t_us", "tags_us")
 DAMAGED = (OSError, ValueError, EOFError, BadZipFile, zlib.error)
@@ -75,7 +83,7 @@ def stream_names(path: Path) -> list[tuple[Path, str]]:
 
 
 def read_stream(path: Path, name: str, sensor: str) -> Take:
-    """Read one stream and mark a segment about each action point. Frames without a skeleton stay as invalid ones.
+    """Read one stream and mark a segment about each action point; frames without a skeleton become invalid frames.
 
     Raises:
         DatasetError: the name or the content is not of the set's form.
@@ -92,7 +100,7 @@ def read_stream(path: Path, name: str, sensor: str) -> Take:
         person=str(int(match["person"])),
         frames=[_skeleton(*frame, sensor, name) for frame in zip(stream.stamps_us, stream.xyz_mm, strict=True)],
         marks=[mark for segment_id, span_us in ids.items() for mark in _marks(span_us, sensor, segment_id, label)],
-        fields={kind: match[kind] for kind in ("instruction", "set", "gesture")},
+        metadata={kind: match[kind] for kind in ("instruction", "set", "gesture")},
         skipped=[segment_id for segment_id, span_us in ids.items() if span_us is None],
     )
 
@@ -136,7 +144,7 @@ def _stream(path: Path, name: str) -> Stream:
 def _skeleton(stamp_us: int, joints_mm: Integers, sensor: str, session_id: str) -> Skeleton:
     stamp_ns = int(stamp_us) * 1000
     if not joints_mm.any():
-        return lost_frame(stamp_ns, sensor, session_id)
+        return frame_without_person(stamp_ns, sensor, session_id)
     joints_m: list[list[float]] = to_actum((joints_mm / 1000).tolist(), "kinect-v1-20")
     agent = Agent(agent=1, joints=camera_joints(joints_m), confidence=[1.0] * len(JOINTS))
     return Skeleton(stamp_ns=stamp_ns, sensor=sensor, agents=[agent], session_id=session_id)
@@ -146,4 +154,4 @@ def _marks(span_us: tuple[int, int] | None, sensor: str, segment_id: str, label:
     if span_us is None:
         return []
     start_us, end_us = span_us
-    return marks_between(1000 * start_us, 1000 * end_us, sensor, segment_id, label)
+    return segment_marks(1000 * start_us, 1000 * end_us, sensor, segment_id, label)

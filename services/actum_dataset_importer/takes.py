@@ -1,4 +1,4 @@
-"""One take of a public skeleton set, and what reading any of them needs."""
+"""One take of a public skeleton set, and the functions that reading any of them needs."""
 
 import warnings
 from collections import Counter
@@ -13,23 +13,25 @@ from actum.node import SECOND_NS
 
 
 class DatasetError(ValueError):
-    """A file or folder is not what the set's documentation says: which, what is wrong, what to do."""
+    """A file or folder does not have the data set's form: which, what is wrong, what to do."""
 
 
 @dataclass(frozen=True)
 class Take:
     """One recorded file: its frames, and its labelled segments as start and end marks.
 
-    `fields` is free metadata of a recording; `notes` counts what reading it dropped or found odd, by kind; `skipped`
-    names the segments that could not be marked.
+    Attributes:
+        metadata: written into the recording beside person and source.
+        oddities: how often reading dropped or found something unusual, by kind.
+        skipped: names of the segments that could not be marked.
     """
 
     name: str
     person: str
     frames: list[Skeleton]
     marks: list[Segment] = field(default_factory=list)
-    fields: dict[str, str] = field(default_factory=dict)
-    notes: Counter[str] = field(default_factory=Counter)
+    metadata: dict[str, str] = field(default_factory=dict)
+    oddities: Counter[str] = field(default_factory=Counter)
     skipped: list[str] = field(default_factory=list)
 
 
@@ -46,7 +48,7 @@ def files_of(path: Path, pattern: str) -> list[Path]:
 
 
 def read_rows(path: Path, columns: int) -> NDArray[np.float64]:
-    """Read a text file of numbers, shape (rows, columns), all finite.
+    """Read a text file of finite numbers (rows, columns).
 
     Raises:
         DatasetError: it is anything else.
@@ -62,13 +64,13 @@ def read_rows(path: Path, columns: int) -> NDArray[np.float64]:
     return rows
 
 
-def lost_frame(stamp_ns: int, sensor: str, session_id: str) -> Skeleton:
-    """Return a frame in which the set has nobody."""
+def frame_without_person(stamp_ns: int, sensor: str, session_id: str) -> Skeleton:
+    """Return an invalid frame, for one in which the set has no skeleton."""
     reason = "no skeleton in the source"
     return Skeleton(stamp_ns=stamp_ns, sensor=sensor, valid=False, reason=reason, agents=[], session_id=session_id)
 
 
-def marks_between(start_ns: int, end_ns: int, sensor: str, segment_id: str, label: str) -> list[Segment]:
+def segment_marks(start_ns: int, end_ns: int, sensor: str, segment_id: str, label: str) -> list[Segment]:
     """Return the start and the end mark of a labelled segment."""
     return [
         Segment(stamp_ns=start_ns, sensor=sensor, kind="start", segment_id=segment_id, label=label),
@@ -77,10 +79,10 @@ def marks_between(start_ns: int, end_ns: int, sensor: str, segment_id: str, labe
 
 
 def camera_joints(positions_m: list[list[float]]) -> list[list[float] | None]:
-    """Turn positions (x left, y up, z forward; m) into joints in the camera frame (x right, y down, z forward)."""
+    """Turn positions (n, 3; m; x left, y up, z forward) into the camera frame (x right, y down, z forward)."""
     return [[-x, -y, z] for x, y, z in positions_m]
 
 
-def stamp_of(index: int, per_second: int) -> int:
+def stamp_of(index: int, rate_hz: int) -> int:
     """Return the stamp (ns, to the nearest) of a frame counted at a fixed rate."""
-    return (2 * index * SECOND_NS + per_second) // (2 * per_second)
+    return (2 * index * SECOND_NS + rate_hz) // (2 * rate_hz)

@@ -15,18 +15,12 @@ from numpy.typing import NDArray
 
 from actum.messages import Agent, Segment, Skeleton
 from actum.skeletons import JOINTS, to_actum
-from actum_dataset_importer.takes import (
-    DatasetError,
-    Take,
-    camera_joints,
-    files_of,
-    marks_between,
-    read_rows,
-    stamp_of,
-)
+from actum_dataset_importer.takes import DatasetError, Take, camera_joints, files_of, read_rows, segment_marks, stamp_of
 
 IMAGES_PER_SECOND = 30
+"""The camera's rate, by which images are numbered."""
 SOURCE_JOINTS = 20
+"""Of Kinect's skeleton, before they are reduced to the fifteen."""
 PATTERN = "joints_s*_e*.txt"
 NAME = re.compile(r"joints_(s(?P<person>\d\d)_e(?P<execution>\d\d))\.txt")
 LABELS = "actionLabel_modified.txt"
@@ -73,8 +67,8 @@ def read_recording(path: Path, sensor: str, segments: list[LabelledSegment] | No
         person=str(int(match["person"])),
         frames=[_skeleton(row, sensor, name) for row in rows[is_first]],
         marks=[mark for segment in segments for mark in _marks(segment, sensor, name)],
-        fields={"execution": str(int(match["execution"]))},
-        notes=+Counter({DUPLICATE_ROW: int((~is_first).sum()), OVERLAPPING_PAIR: overlapping_pairs(segments)}),
+        metadata={"execution": str(int(match["execution"]))},
+        oddities=+Counter({DUPLICATE_ROW: int((~is_first).sum()), OVERLAPPING_PAIR: overlapping_pairs(segments)}),
         skipped=[f"{name} {segment.label}" for segment in segments if segment.bounds is None],
     )
 
@@ -99,7 +93,8 @@ def read_labels(folder: Path) -> dict[str, list[LabelledSegment]]:
     """
     path = folder / LABELS
     if not path.is_file():
-        found = f"; {ORIGINAL_LABELS} is there, but some of its bounds are wrong" if _has_original(folder) else ""
+        is_original = (folder / ORIGINAL_LABELS).is_file()
+        found = f"; {ORIGINAL_LABELS} is there, but some of its bounds are wrong" if is_original else ""
         raise DatasetError(f"{path}: no such file{found}; put the corrected label file {LABELS} beside the recordings")
     recordings: dict[str, list[LabelledSegment]] = {}
     segments: list[LabelledSegment] | None = None
@@ -121,10 +116,6 @@ def overlapping_pairs(segments: list[LabelledSegment]) -> int:
     return sum(max(a[0], b[0]) <= min(a[1], b[1]) for a, b in combinations(bounds, 2))
 
 
-def _has_original(folder: Path) -> bool:
-    return (folder / ORIGINAL_LABELS).is_file()
-
-
 def _labelled_segment(text: str) -> LabelledSegment | None:
     match = LABEL.fullmatch(text)
     if match is None:
@@ -136,7 +127,7 @@ def _labelled_segment(text: str) -> LabelledSegment | None:
 
 
 def _rows(path: Path) -> NDArray[np.float64]:
-    """Read the rows, shape (rows, 61): an image number that never falls, and twenty joints."""
+    """Read the rows (rows, 61): an image number that never falls, and twenty joints (m)."""
     rows = read_rows(path, columns=1 + 3 * SOURCE_JOINTS)
     if rows[0, 0] < 0 or (np.diff(rows[:, 0]) < 0).any():
         raise DatasetError(f"{path}: the image numbers in the first column fall; fetch it anew")
@@ -153,7 +144,7 @@ def _marks(segment: LabelledSegment, sensor: str, name: str) -> list[Segment]:
     if segment.bounds is None:
         return []
     start_ns, end_ns = map(_stamp_ns, segment.bounds)
-    return marks_between(start_ns, end_ns, sensor, f"{name}-{segment.label}", segment.label)
+    return segment_marks(start_ns, end_ns, sensor, f"{name}-{segment.label}", segment.label)
 
 
 def _stamp_ns(image: int) -> int:

@@ -12,11 +12,11 @@ from actum.skeletons import INDEX
 from actum.som import Som
 from actum_model_inspector.bodies import LIMB, STANDING, WHOLE, Figure
 from som_classifier.attention import ALL
+from som_classifier.frames import Frame
+from som_classifier.map_activity import soft_activity
 from som_classifier.model import Model
 from som_classifier.paper_model import PaperModel
 from som_classifier.pyramid_model import PyramidModel
-from som_classifier.streams import Frame
-from som_classifier.supervised import activity
 
 Floats = NDArray[Any]
 Indices = NDArray[np.intp]
@@ -44,7 +44,7 @@ class Anatomy(ABC):
 
     @abstractmethod
     def winners(self, frames: Sequence[Frame]) -> Indices:
-        """Return the first map's winner at each encoded frame, UNSEEN where it has none, shape (n,)."""
+        """Return the first map's winner at each encoded frame, NO_WINNER where it has none, shape (n,)."""
 
     def in_mirror(self, frames: Sequence[Frame]) -> bool:
         """Tell whether a segment of encoded frames is read as its mirror image."""
@@ -66,7 +66,7 @@ class PyramidAnatomy(Anatomy):
 
     def __init__(self, model: PyramidModel) -> None:
         self.model: PyramidModel = model
-        self.postures, self.actions = model.first.postures, model.concepts.layout
+        self.postures, self.actions = model.first.postures, model.action_map.som
 
     def unit_points(self) -> Floats:
         """Return the joints that each unit of the first map stands for, relative to the torso, (units, 15, 3)."""
@@ -78,16 +78,16 @@ class PyramidAnatomy(Anatomy):
 
     def in_mirror(self, frames: Sequence[Frame]) -> bool:
         """Tell whether a segment of encoded frames is read as its mirror image."""
-        return self.model.reads_in_mirror([frame.code for frame in frames])
+        return self.model.reads_in_mirror([frame.activity for frame in frames])
 
     def place(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a complete segment of encoded frames."""
-        scores = self.model.scores([frame.code for frame in frames], complete_weights(self.model, frames))
+        scores = self.model.scores([frame.activity for frame in frames], complete_weights(self.model, frames))
         return self.actions.bmu(scores)
 
     def answers(self) -> Floats:
         """Return the neurons' cosines where the input lies right on each unit of the second map, (units, actions)."""
-        heard = [self.model.concepts.activity(weights) for weights in self.actions.weights]
+        heard = [self.model.action_map.activity(weights) for weights in self.actions.weights]
         return np.stack([self.model.layer3.cosines(activities) for activities in heard])
 
 
@@ -97,16 +97,16 @@ class PaperAnatomy(Anatomy):
     def __init__(self, model: PaperModel) -> None:
         self.model: PaperModel = model
         self.postures, self.actions = model.layer1, model.layer2
-        self.figure = WHOLE if model.description.posture.attention == ALL else LIMB
+        self.figure = WHOLE if model.metadata.posture.attention == ALL else LIMB
 
     def unit_points(self) -> Floats:
         """Return the joints that each unit of the first map stands for, relative to the torso, (units, 3 or 15, 3)."""
         points: Floats = self.postures.weights.reshape(len(self.postures.weights), -1, 3)
-        from_hips = self.model.description.posture.origin == "hips"
+        from_hips = self.model.metadata.posture.origin == "hips"
         return points - ABOVE_HIPS_M if from_hips else points
 
     def winners(self, frames: Sequence[Frame]) -> Indices:
-        """Return the winner for what is attended to at each encoded frame, UNSEEN where none of it is there."""
+        """Return the winner for what is attended to at each encoded frame, NO_WINNER where none of it is there."""
         _, seen = self.model.attended(frames)
         return seen.winners
 
@@ -116,8 +116,8 @@ class PaperAnatomy(Anatomy):
 
     def answers(self) -> Floats:
         """Return the neurons' cosines where the input lies right on each unit of the second map, (units, actions)."""
-        contrast = self.model.description.contrast
-        heard = [activity(self.actions.excess2(weights), contrast) for weights in self.actions.weights]
+        contrast = self.model.metadata.contrast
+        heard = [soft_activity(self.actions.excess2(weights), contrast) for weights in self.actions.weights]
         return np.stack([self.model.layer3.cosines(activities) for activities in heard])
 
 
@@ -133,7 +133,7 @@ def anatomy_of(model: Model) -> Anatomy:
         case PaperModel():
             return PaperAnatomy(model)
         case _:
-            raise TypeError(f"no pictures of a model of kind {model.about.kind!r}")
+            raise TypeError(f"no pictures of a model of kind {model.metadata.kind!r}")
 
 
 def complete_weights(model: PyramidModel, frames: Sequence[Frame]) -> Sequence[float]:

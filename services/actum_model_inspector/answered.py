@@ -10,10 +10,10 @@ from actum.recording import Recording
 from actum_model_inspector.anatomy import Anatomy
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.samples import classifier_input, closed_segments, sensors
+from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.recognition import Recognition
-from som_classifier.segments import Closed
-from som_classifier.streams import Frame
+from som_classifier.segments import ClosedSegment
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,10 +67,10 @@ def answered_segments(anatomy: Anatomy, recordings: Sequence[Recording], progres
 def encoded(model: Model, frames: Sequence[Frame]) -> list[Frame]:
     """Return valid frames as the model remembers them."""
     encoder = model.encoder()
-    return [replace(frame, code=encoder.encode(frame)) for frame in frames]
+    return [replace(frame, activity=encoder.encode(frame)) for frame in frames]
 
 
-def _answered(anatomy: Anatomy, recording: Recording, closed: Closed) -> Answered:
+def _answered(anatomy: Anatomy, recording: Recording, closed: ClosedSegment) -> Answered:
     valid = [frame for frame in closed.frames if frame.valid]
     unanswered = Answered(str(recording.path), recording.person, closed.segment_id, closed.label, valid)
     if closed.reason or len(valid) < anatomy.model.min_frames:

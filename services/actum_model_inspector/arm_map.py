@@ -11,9 +11,9 @@ from actum.som import Som
 from actum_model_inspector.bodies import MIDDLE_M, STANDING, Floats, Pen, draw_arrows, draw_bodies, rest
 from actum_model_inspector.posture_map import draw_ground, drawn_units, map_size, name_sides, which_are_drawn
 from actum_model_inspector.style import FAINT, canvas, in_house_style
+from som_classifier.first_layer import VELOCITY_WEIGHT
 from som_classifier.handedness import mirrored
-from som_classifier.layers import ARM_SPEED
-from som_classifier.movement import LAG_TIME_CONSTANT_S
+from som_classifier.kinematics import LAG_TIME_CONSTANT_S
 
 CLOSER, CLOSE_UP_ARROW_M = 1.45, 0.5
 """How much larger than its unit a figure would be if it had legs, and the longest arrow on it."""
@@ -48,7 +48,7 @@ class ArmsOnBodies:
         others[:, _ENDS] = np.nan
         arms[:, _SHOULDER] = bodies[:, _SHOULDER]
         arms[:, _ENDS] = bodies[:, [_SHOULDER]] + positions
-        steps_m[:, _ENDS] = velocities / ARM_SPEED
+        steps_m[:, _ENDS] = velocities / VELOCITY_WEIGHT
         return cls(others, arms, steps_m)
 
     def in_a_mirror(self) -> "ArmsOnBodies":

@@ -7,9 +7,9 @@ import numpy as np
 
 from actum.messages import Hand
 from actum_model_inspector.anatomy import Floats, complete_weights
-from som_classifier.layers import HEARD
+from som_classifier.first_layer import CHANNELS
+from som_classifier.frames import Frame
 from som_classifier.pyramid_model import PyramidModel
-from som_classifier.streams import Frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,14 +71,14 @@ def contributions(model: PyramidModel, frames: Sequence[Frame], instead: str | N
     winner = model.labels.index(recognition.label)
     others = [label for label in model.labels if label != recognition.label]
     second = model.labels.index(instead or max(others, key=lambda label: recognition.activations[label]))
-    codes = [frame.code for frame in frames]
+    codes = [frame.activity for frame in frames]
     weights = complete_weights(model, frames)
     scores = model.scores(codes, weights)
-    units = np.zeros((model.pyramid.cells, len(HEARD), len(model.first.postures.weights)))
+    units = np.zeros((model.pyramid.cells, len(CHANNELS), len(model.first.postures.weights)))
     for axes, weight in zip(model.stages.axes, weights, strict=True):
         if weight:
             units += weight * (axes[:, winner] - axes[:, second]).reshape(units.shape)
-    vector = model.pyramid.vector(model.trail(codes)).reshape(units.shape)
+    vector = model.pyramid.vector(model.prefix_sums(codes)).reshape(units.shape)
     offsets = np.array(weights) @ model.stages.offsets
     return Contributions(
         winner, second, (float(scores[winner]), float(scores[second])), units * vector,

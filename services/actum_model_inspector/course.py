@@ -149,7 +149,7 @@ def _draw_actor(figure: Figure, answered: Answered) -> None:
     bare(axes)
     across = answered.shares * width
     chosen = spaced(across, FIGURES)
-    movements = [answered.frames[index].movement for index in chosen]
+    movements = [answered.frames[index].kinematics for index in chosen]
     postures = np.array([movement.posture for movement in movements if movement is not None])
     places = np.stack([across[chosen], np.zeros(len(chosen))], axis=1)
     draw_bodies(axes, postures, places, 0.95 * ACTOR_IN, pen=Pen(2.0))

@@ -81,7 +81,7 @@ def _of_maps(anatomy: Anatomy, segments: Sequence[Answered]) -> Iterator[Picture
         partial(posture_map, anatomy),
     )  # fmt: skip
     if isinstance(anatomy, PyramidAnatomy):
-        mirrors = anatomy.model.description.mirrors
+        mirrors = anatomy.model.metadata.mirrors
         yield Picture(
             section, "movement-map",
             "The first layer's second map. Every unit stands for a way of moving, drawn as arrows at the joints.",

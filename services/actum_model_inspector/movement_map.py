@@ -7,7 +7,7 @@ from actum.som import Som
 from actum_model_inspector.bodies import LONGEST_ARROW_M, Floats, Pen, draw_arrows, draw_bodies, rest
 from actum_model_inspector.posture_map import FILLED, draw_ground, drawn_units, map_size, name_sides, which_are_drawn
 from actum_model_inspector.style import FAINT, canvas, in_house_style
-from som_classifier.movement import LAG_TIME_CONSTANT_S
+from som_classifier.kinematics import LAG_TIME_CONSTANT_S
 
 
 @in_house_style

@@ -64,7 +64,7 @@ def page(
 
 def model_facts(model: Model) -> str:
     """Say what the model is."""
-    about = model.about
+    about = model.metadata
     people = f" by {len(about.persons)} people" if len(about.persons) > 1 else ""
     return (
         f"Kind {about.kind}, preset {about.preset}, seed {about.seed}; trained on {about.samples} samples{people} of "
@@ -74,7 +74,7 @@ def model_facts(model: Model) -> str:
 
 def missing_letters(model: Model, segments: Sequence[Answered]) -> Iterable[str]:
     """Say which letters of the actions' names the pictures cannot show."""
-    names = [*model.about.labels, *(segment.label or "" for segment in segments)]
+    names = [*model.metadata.labels, *(segment.label or "" for segment in segments)]
     if letters := unwritable(" ".join(names)):
         yield (
             f"Boxes stand for {shortened(letters, 40)} in the pictures: no font here has these letters. A font such as "
@@ -89,7 +89,7 @@ def test_facts(model: Model, segments: Sequence[Answered], evaluation: Evaluatio
         yield f"Tried on {len(segments)} segments" + (f", of which it rejected {rejected}." if rejected else ".")
     if evaluation is not None and evaluation.n:
         yield f"{evaluation.correct} of {evaluation.n} with a label recognised: {evaluation.accuracy:.1%}."
-    known = sorted({segment.person for segment in segments if segment.person} & set(model.about.persons))
+    known = sorted({segment.person for segment in segments if segment.person} & set(model.metadata.persons))
     if known:
         yield (
             f"Person {', '.join(known)} also performed for the training: on people it has not seen it may be right "

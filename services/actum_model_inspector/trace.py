@@ -17,7 +17,7 @@ from actum_model_inspector.posture_map import draw_postures, draw_units, map_siz
 from actum_model_inspector.style import HALO, PAPER, canvas, in_house_style
 from actum_model_inspector.wording import headline
 from som_classifier.handedness import mirrored
-from som_classifier.trace import UNSEEN
+from som_classifier.map_activity import NO_WINNER
 
 PALE = 0.28
 CARD, ASIDE = 0.94, 0.07
@@ -31,7 +31,7 @@ def trace_picture(anatomy: Anatomy, answered: Answered) -> Figure:
     """Draw the winners of a segment, one after the other, over the pale posture map."""
     frames = encoded(anatomy.model, answered.frames)
     winners = anatomy.winners(frames)
-    seen = np.flatnonzero(winners != UNSEEN)
+    seen = np.flatnonzero(winners != NO_WINNER)
     units, first = stays(winners[seen])
     width, height = map_size(anatomy.postures)
     figure = canvas(width + 0.9, height, headline(answered))

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 from actum_model_trainer.samples import SegmentSample
+from som_classifier.frames import Frame
+from som_classifier.kinematics import Kinematics
 from som_classifier.model import Model
-from som_classifier.movement import Movement
 from som_classifier.recognition import Recognition
-from som_classifier.streams import Frame
 
 
 def encoded(model: Model, sample: SegmentSample) -> list[Frame]:
@@ -14,7 +14,7 @@ def encoded(model: Model, sample: SegmentSample) -> list[Frame]:
     encoder = model.encoder()
     frames = [_frame(sample, index) for index in range(len(sample.stamps_ns))]
     for frame in frames:
-        frame.code = encoder.encode(frame)
+        frame.activity = encoder.encode(frame)
     return frames
 
 
@@ -25,7 +25,7 @@ def answer(model: Model, frames: Sequence[Frame], fraction: float = 1.0) -> Reco
 
 
 def _frame(sample: SegmentSample, index: int) -> Frame:
-    movement = Movement(sample.postures[index], sample.velocities[index])
+    movement = Kinematics(sample.postures[index], sample.velocities[index])
     return Frame(
         int(sample.stamps_ns[index]), None, (), 0, 0.0, sample.joints[index], sample.motion[index], movement,
         tuple((movement.posture[:, 0] != movement.posture[:, 0]).nonzero()[0].tolist()),

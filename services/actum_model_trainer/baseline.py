@@ -18,7 +18,7 @@ from actum.recording import Recording
 from actum.skeletons import INDEX
 from actum_model_trainer.evaluation import Evaluation, Prediction
 from actum_model_trainer.samples import classifier_input, closed_segments, sensors
-from som_classifier.segments import Closed
+from som_classifier.segments import ClosedSegment
 
 Array = NDArray[np.float64]
 
@@ -81,7 +81,7 @@ def hand_path(hands_and_torso_m: Array, stamps_ns: NDArray[np.int64]) -> Array:
     return np.stack([np.interp(wanted_ns, elapsed_ns, axis) for axis in path_m.T], axis=1)
 
 
-def _path(skeletons: Sequence[Skeleton], closed: Closed) -> Array | None:
+def _path(skeletons: Sequence[Skeleton], closed: ClosedSegment) -> Array | None:
     frames = [
         (skeleton.stamp_ns, points)
         for skeleton in skeletons

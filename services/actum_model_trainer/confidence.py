@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from actum_model_trainer.calibration import matched_gain
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.upper_layers import Scored, UpperLayers
-from som_classifier.layers import FirstMaps
+from som_classifier.first_layer import FirstMaps
 from som_classifier.presets import Prior, PyramidPreset
 
 Floats = NDArray[Any]
@@ -70,7 +70,7 @@ def usual_log_errors(first: FirstMaps, postures: Sequence[Floats], targets: Indi
         postures: (frames, 15, 3) of each sample, as the classifier reads it.
         targets: (n,), their actions.
     """
-    log_errors = np.array([first.log_errors(own, first.nearest(own)).mean() for own in postures])
+    log_errors = np.array([first.log_errors(own, first.winners(own)).mean() for own in postures])
     above = np.bincount(targets, weights=log_errors - log_errors.mean()) / (np.bincount(targets) + 1)
     return [float(prior.log_error + own) for own in above]
 

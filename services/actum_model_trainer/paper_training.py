@@ -13,10 +13,11 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.typical import typical_distance2, typical_error2
 from som_classifier.attention import PostureInput
-from som_classifier.paper_model import PaperDescription, PaperModel
-from som_classifier.presets import MapPlan, PaperPreset
-from som_classifier.supervised import SupervisedLayer, activity
-from som_classifier.trace import Activities, activities, ordered_vector, way
+from som_classifier.map_activity import MapActivity, map_activity, soft_activity
+from som_classifier.ordered_vector import ordered_vector, trajectory
+from som_classifier.paper_model import PaperMetadata, PaperModel
+from som_classifier.presets import MapTraining, PaperPreset
+from som_classifier.supervised import SupervisedLayer
 
 Array = NDArray[np.float64]
 
@@ -45,10 +46,11 @@ class _Shown:
         looked_at: Array = self.rows[:, self.attended]
         return looked_at[~np.isnan(looked_at).all(axis=1)]
 
-    def way(self, layer1: Som, contrast: float) -> Array:
+    def trajectory(self, layer1: Som, contrast: float) -> Array:
         """Walk the first map frame by frame, through the same products as the recogniser."""
-        walked = [activities(layer1, rows, contrast)[self.attended] for rows in self.rows]
-        return way(Activities(np.array([step.winners for step in walked]), np.array([step.centres for step in walked])))
+        frames = [map_activity(layer1, rows, contrast)[self.attended] for rows in self.rows]
+        winners, centres = np.array([frame.winners for frame in frames]), np.array([frame.centres for frame in frames])
+        return trajectory(MapActivity(winners, centres))
 
 
 def train(samples: Sequence[SegmentSample], preset: PaperPreset, seed: int, progress: Progress) -> PaperModel:
@@ -63,20 +65,20 @@ def train(samples: Sequence[SegmentSample], preset: PaperPreset, seed: int, prog
     postures = np.concatenate([own.vectors for own in shown])
     layer1 = _trained_map(preset.layer1, postures, rng, progress, "layer 1")
     centre_contrast = preset.centre_contrast * typical_error2(layer1, postures)
-    paths = [own.way(layer1, centre_contrast) for own in shown]
+    paths = [own.trajectory(layer1, centre_contrast) for own in shown]
     points = max(2, *map(len, paths))
     vectors = np.stack([ordered_vector(path, points) for path in paths])
     layer2 = _trained_map(preset.layer2, vectors, rng, progress, "layer 2")
     contrast = preset.relative_contrast * typical_distance2(vectors)
-    heard = np.stack([activity(layer2.excess2(vector), contrast) for vector in vectors])
+    heard = np.stack([soft_activity(layer2.excess2(vector), contrast) for vector in vectors])
     targets = np.array([labels.index(sample.label) for sample in samples])
     untrained = SupervisedLayer.random(len(labels), heard.shape[1], rng)
     layer3 = untrained.train(heard, targets, preset.beta, preset.epochs, rng, partial(progress, "layer 3"))
     measured = {"centre_contrast": centre_contrast, "points": points, "contrast": contrast}
     about = provenance(samples, preset, seed) | asdict(preset.posture) | measured
-    return PaperModel(layer1, layer2, layer3, PaperDescription.model_validate(about))
+    return PaperModel(layer1, layer2, layer3, PaperMetadata.model_validate(about))
 
 
-def _trained_map(plan: MapPlan, vectors: Array, rng: np.random.Generator, progress: Progress, stage: str) -> Som:
+def _trained_map(plan: MapTraining, vectors: Array, rng: np.random.Generator, progress: Progress, stage: str) -> Som:
     untrained = Som.random(plan.rows, plan.cols, vectors.shape[1], rng)
     return untrained.train(vectors, plan.steps, plan.schedule, rng, partial(progress, stage))

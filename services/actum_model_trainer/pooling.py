@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from actum_model_trainer.augmentation import View
 from actum_model_trainer.samples import SegmentSample
-from som_classifier.layers import FirstMaps
-from som_classifier.pyramid import Instant, Pyramid, Trail, quantised
+from som_classifier.first_layer import FirstMaps
+from som_classifier.pyramid import Prefix, PrefixSums, Pyramid, quantised
 
 Floats = NDArray[Any]
 Indices = NDArray[np.intp]
@@ -59,19 +59,19 @@ class _Trails:
         self._left_handed = [pooling.mirrors and hand == "left" for hand in sample.acting_hands]
         steps_um = np.rint(sample.motion.sum(axis=1) * _UM_PER_M).astype(np.int64)
         self._travelled_um = [0, *np.cumsum(steps_um).tolist()]
-        self._instants: dict[tuple[int, bool], list[Instant]] = {}
+        self._instants: dict[tuple[int, bool], list[Prefix]] = {}
 
-    def until(self, view: int, fraction: float) -> Trail:
+    def until(self, view: int, fraction: float) -> PrefixSums:
         """Return a share of a view as it would be read live, when it is not known which arm will act."""
         total = len(self._left_handed)
         frames = min(total, max(SHORTEST_FRAMES, round(fraction * total)))
         as_whole = self._left_handed[frames - 1] == self._left_handed[-1]
         if (view, as_whole) not in self._instants:
             self._instants[view, as_whole] = self._summed(self._views[view] if as_whole else self._views[view].mirrored)
-        return Trail(self._instants[view, as_whole][: frames + 1])
+        return PrefixSums(self._instants[view, as_whole][: frames + 1])
 
-    def _summed(self, view: View) -> list[Instant]:
+    def _summed(self, view: View) -> list[Prefix]:
         activities = self._first.activities(view.postures, view.velocities)
         sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
         np.cumsum(quantised(activities), axis=0, out=sums[1:])
-        return [Instant([own], so_far_um) for own, so_far_um in zip(sums, self._travelled_um, strict=True)]
+        return [Prefix([own], so_far_um) for own, so_far_um in zip(sums, self._travelled_um, strict=True)]

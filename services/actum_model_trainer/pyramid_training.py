@@ -20,11 +20,11 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.typical import typical_error2
 from actum_model_trainer.upper_layers import Scored, UpperLayers, train_upper
-from som_classifier.layers import FirstMaps, arm_inputs, frame_inputs
+from som_classifier.first_layer import FirstMaps, arm_inputs, frame_inputs
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid import Pyramid
-from som_classifier.pyramid_model import PyramidDescription, PyramidModel
-from som_classifier.stages import Stages
+from som_classifier.pyramid_model import PyramidMetadata, PyramidModel
+from som_classifier.stage_discriminants import StageDiscriminants
 
 Floats = NDArray[Any]
 Indices = NDArray[np.intp]
@@ -117,7 +117,7 @@ def _assembled(
     preset: PyramidPreset,
 ) -> PyramidModel:
     durations = np.log([max(np.ptp(sample.stamps_ns) / SECOND_NS, SHORTEST_S) for sample in samples])
-    stages = Stages(
+    stages = StageDiscriminants(
         np.stack([stage.axes.axes for stage in fitted]),
         np.stack([stage.axes.offsets for stage in fitted]),
         tuple(float(np.mean(fractions)) for fractions in preset.stages),
@@ -135,12 +135,12 @@ def _assembled(
         "fractions": list(stages.fractions),
         "log_duration_mean": stages.log_duration_mean,
         "log_duration_sd": stages.log_duration_sd,
-        "concept_contrast": upper.concepts.contrast,
+        "concept_contrast": upper.action_map.contrast,
         "gains": calibrated_gains(fitted, upper, prior, people, any(sample.depth_inferred for sample in samples)),
         "familiar": familiar(fitted[-1].axes.held_out, samples, preset),
         "held_out": _held_out(fitted[-1], origin["labels"]),
     }
-    return PyramidModel(first, stages, upper.concepts, upper.layer3, PyramidDescription.model_validate(about))
+    return PyramidModel(first, stages, upper.action_map, upper.layer3, PyramidMetadata.model_validate(about))
 
 
 def _held_out(stage: Scored, labels: Sequence[str]) -> dict[str, dict[str, int]]:

@@ -14,9 +14,10 @@ from actum.node import Counters, Numbering, Tick, replay
 from actum.recording import Recording
 from actum_model_trainer.progress import Progress, silent
 from pose_preprocessor.node import PosePreprocessor
-from som_classifier.handedness import Spreads, moments
+from pose_preprocessor.settings import Settings as PoseSettings
+from som_classifier.handedness import LimbSpreads, limb_moments
 from som_classifier.model import Model
-from som_classifier.segments import Closed, Segmenter
+from som_classifier.segments import ClosedSegment, Segmenter
 
 Array = NDArray[np.float64]
 STREAMS = (keys.SKELETON, keys.SEGMENT)
@@ -51,8 +52,8 @@ class SegmentSample:
     @cached_property
     def acting_hands(self) -> list[Hand | None]:
         """Which arm it is done with, so far after each frame; None for both or another limb."""
-        summed = np.cumsum([moments(posture) for posture in self.postures], axis=0)
-        return [Spreads.of(so_far).acting_hand for so_far in summed]
+        summed = np.cumsum([limb_moments(posture) for posture in self.postures], axis=0)
+        return [LimbSpreads.of(so_far).acting_hand for so_far in summed]
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ def sensors(recording: Recording) -> list[str]:
 
 def classifier_input(recording: Recording, sensor: str) -> Iterator[tuple[int, Message]]:
     """Yield, with its stamp (ns), each message that the classifier of this sensor would have got."""
-    preprocessor, numbering = PosePreprocessor(), Numbering()
+    preprocessor, numbering = PosePreprocessor(PoseSettings.defaults()), Numbering()
     for message in recording.messages(STREAMS):
         if message.sensor == sensor:
             arriving = preprocessor.handle(message) if isinstance(message, Skeleton) else [message]
@@ -133,7 +134,7 @@ def samples_from(recordings: Sequence[Recording], progress: Progress = silent) -
     return Samples(segments)
 
 
-def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[Closed]:
+def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[ClosedSegment]:
     """Return the segments that the classifier's own bookkeeping closes, in that order."""
     collector = _Collector()
     for _ in replay(collector, messages):
@@ -141,7 +142,7 @@ def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[Closed]:
     return collector.closed
 
 
-def why_unusable(closed: Closed) -> str | None:
+def why_unusable(closed: ClosedSegment) -> str | None:
     """Say why no sample can be made of a segment's frames; None where one can."""
     usable = sum(frame.valid for frame in closed.frames)
     if closed.reason is None and usable < Model.min_frames:
@@ -157,7 +158,7 @@ class _Collector:
 
     def __init__(self) -> None:
         self.counters = Counters()
-        self.closed: list[Closed] = []
+        self.closed: list[ClosedSegment] = []
         self._segmenter = Segmenter(self.counters)
 
     def handle(self, message: Message | Tick) -> list[Message]:
@@ -175,12 +176,12 @@ def _files(path: Path) -> list[Path]:
     return sorted(path.rglob("*.mcap")) if path.is_dir() else [path]
 
 
-def _cut(recording: Recording, sensor: str, closed: Closed, label: str) -> SegmentSample | Unusable:
+def _cut(recording: Recording, sensor: str, closed: ClosedSegment, label: str) -> SegmentSample | Unusable:
     reason = why_unusable(closed)
     if reason is not None:
         return Unusable(str(recording.path), closed.segment_id, reason, sensor)
     frames = [frame for frame in closed.frames if frame.valid]
-    movements = [frame.movement for frame in frames if frame.movement is not None]
+    movements = [frame.kinematics for frame in frames if frame.kinematics is not None]
     return SegmentSample(
         label,
         np.array([frame.stamp_ns for frame in frames]),

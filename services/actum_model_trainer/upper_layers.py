@@ -11,9 +11,10 @@ from actum.som import Som
 from actum_model_trainer.description import TrainingError
 from actum_model_trainer.discriminants import Axes
 from actum_model_trainer.progress import Progress
-from som_classifier.layers import Concepts
+from som_classifier.map_activity import soft_activity
 from som_classifier.presets import PyramidPreset
-from som_classifier.supervised import SupervisedLayer, activity
+from som_classifier.second_layer import ActionMap
+from som_classifier.supervised import SupervisedLayer
 
 Floats = NDArray[Any]
 Indices = NDArray[np.intp]
@@ -39,13 +40,13 @@ class Scored:
 class UpperLayers:
     """What turns scores into an answer."""
 
-    concepts: Concepts
+    action_map: ActionMap
     layer3: SupervisedLayer
 
     def cosines(self, scores: Floats) -> Floats:
         """Return each neuron's cosine for each row of scores (n, actions)."""
-        heard = self.concepts.centred(
-            activity(self.concepts.layout.excess2s(scores.astype(np.float32)), self.concepts.contrast)
+        heard = self.action_map.centred(
+            soft_activity(self.action_map.som.excess2s(scores.astype(np.float32)), self.action_map.contrast)
         )
         cosines: Floats = heard @ self.layer3.weights.T / np.sqrt(np.square(heard).sum(axis=1, keepdims=True))
         return cosines
@@ -94,16 +95,16 @@ def _trained(
         scores, preset.concept_epochs, preset.concept_radius, partial(progress, "map of actions")
     )
     contrast = preset.relative_concept_contrast * variance_within(scores, targets)
-    activities = activity(layout.excess2s(scores), contrast)
+    activities = soft_activity(layout.excess2s(scores), contrast)
     unit = activities / np.sqrt(np.square(activities).sum(axis=1, keepdims=True))
-    concepts = Concepts(layout, contrast, unit.mean(axis=0, dtype=np.float64).astype(np.float32))
-    inputs = concepts.centred(activities).astype(np.float64)
+    action_map = ActionMap(layout, contrast, unit.mean(axis=0, dtype=np.float64).astype(np.float32))
+    inputs = action_map.centred(activities).astype(np.float64)
     if not inputs.any():
         raise TrainingError("all samples move alike: their actions cannot be told apart")
     layer3 = SupervisedLayer.of_means(inputs, targets, actions).train(
         inputs, targets, preset.beta, preset.epochs, rng, partial(progress, "neurons")
     )
-    return UpperLayers(concepts, SupervisedLayer(layer3.weights.astype(np.float32)))
+    return UpperLayers(action_map, SupervisedLayer(layer3.weights.astype(np.float32)))
 
 
 def variance_within(scores: Floats, targets: Indices) -> float:

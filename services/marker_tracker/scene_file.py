@@ -1,4 +1,7 @@
-"""The scene file, `objects.yaml`: which object carries which markers. Whatever is wrong is named with its line."""
+"""The scene: which object carries which markers, from `objects.yaml` or the plain settings.
+
+Whatever is wrong with the file is named with its line.
+"""
 
 from collections.abc import Iterator
 from itertools import combinations
@@ -8,20 +11,23 @@ from typing import Annotated, Any
 import cv2
 import numpy as np
 import yaml
-from numpy.typing import NDArray
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
-from marker_tracker.catalogue import Carried, Catalogue, Key
-from marker_tracker.families import canonical, family
+from actum.arrays import Array
+from marker_tracker.detection.families import UnknownMarkerError, canonical, family
+from marker_tracker.detection.marker import Key
+from marker_tracker.pose.catalogue import Catalogue, MountedMarker
+from marker_tracker.settings import Settings
 
-Array = NDArray[np.float64]
 Degrees = Annotated[FiniteFloat, Field(ge=-360, le=360)]
 Metres = Annotated[FiniteFloat, Field(ge=-5, le=5)]
 FamilyName = Annotated[str, AfterValidator(canonical)]
 Size = Annotated[float, Field(gt=0, le=10)]
-
+Location = tuple[str | int, ...]
+"""Keys and indices that lead from the file's root to a field."""
 
 INTEGER = "tag:yaml.org,2002:int"
+"""YAML's tag of integers: `1` and `0x1` are the same key."""
 
 
 class SceneFileError(ValueError):
@@ -33,13 +39,13 @@ class _Part(BaseModel):
 
 
 class Placement(_Part):
-    """Where a marker is on its object: its centre seen from the object's, and turns about x, then y, then z."""
+    """Where a marker is on its object: its centre from the object's, and rotations about fixed x, then y, then z."""
 
     translation_m: Annotated[list[Metres], Field(min_length=3, max_length=3)] = [0.0, 0.0, 0.0]
     rotation_deg: Annotated[list[Degrees], Field(min_length=3, max_length=3)] = [0.0, 0.0, 0.0]
 
     def transform(self) -> Array:
-        """Build object_from_marker (4, 4)."""
+        """Build object_from_marker: a rigid transform (4, 4), in metres."""
         object_from_marker = np.eye(4)
         for axis, degrees in zip(np.eye(3), self.rotation_deg, strict=True):
             object_from_marker[:3, :3] = cv2.Rodrigues(axis * np.radians(degrees))[0] @ object_from_marker[:3, :3]
@@ -73,6 +79,20 @@ class SceneFile(_Part):
     objects: dict[Annotated[int, Field(ge=0, lt=2**31)], ObjectEntry] = Field(min_length=1, max_length=1024)
 
 
+def catalogue(settings: Settings) -> Catalogue:
+    """Read what carries which marker, from the scene file if there is one, else from the settings.
+
+    Raises:
+        SceneFileError: the scene file cannot be read or used, or the settings describe objects as well.
+        UnknownMarkerError: the settings name a marker that their dictionary does not have.
+    """
+    if settings.scene is None:
+        return _from_settings(settings)
+    if settings.objects:
+        raise SceneFileError("scene and objects both say what carries which marker: set only one of them")
+    return load(settings.scene)
+
+
 def load(path: Path) -> Catalogue:
     """Read a scene file.
 
@@ -95,42 +115,59 @@ def load(path: Path) -> Catalogue:
         raise SceneFileError(f"{path} contains itself: write out what its `*` stand for") from None
     except ValidationError as error:
         raise SceneFileError("; ".join(_problem(path, root, each) for each in error.errors())) from None
-    return _catalogue(path, root, scene)
+    return _from_scene(path, root, scene)
 
 
-def _catalogue(path: Path, root: yaml.Node, scene: SceneFile) -> Catalogue:
-    markers: dict[Key, Carried] = {}
-    for place, object_id, key, carried in _carried(path, root, scene):
+def _from_settings(settings: Settings) -> Catalogue:
+    """Describe the settings' objects: each carries the marker of its own id, in its centre."""
+    name = canonical(settings.dictionary)
+    if not settings.objects:
+        return Catalogue((name,), {}, {}, settings.marker_size_m)
+    ids = len(family(name).codes)
+    for number in settings.objects:
+        if not 0 <= number < ids:
+            raise UnknownMarkerError(f"objects: {name} has no marker {number}: use 0 to {ids - 1}")
+    markers = {
+        (name, number): MountedMarker(number, spec.size_m or settings.marker_size_m)
+        for number, spec in settings.objects.items()
+    }
+    return Catalogue((name,), markers, {number: spec.name for number, spec in settings.objects.items()})
+
+
+def _from_scene(path: Path, root: yaml.Node, scene: SceneFile) -> Catalogue:
+    markers: dict[Key, MountedMarker] = {}
+    for location, key, mounted in _mounted_markers(path, root, scene):
         owner = markers.get(key)
         if owner is not None:
             raise _refusal(
                 path,
                 root,
-                place,
+                location,
                 f"marker {key[1]} of {key[0]} is already on object {owner.object_id}: "
-                f"give object {object_id} another marker",
+                f"give object {mounted.object_id} another marker",
             )
-        markers[key] = carried
+        markers[key] = mounted
     families = tuple(sorted({name for name, _ in markers}))
     _refuse_shared_codes(path, families)
     return Catalogue(families, markers, {number: entry.name for number, entry in scene.objects.items()})
 
 
-def _carried(
-    path: Path, root: yaml.Node, scene: SceneFile
-) -> Iterator[tuple[tuple[str | int, ...], int, Key, Carried]]:
+def _mounted_markers(path: Path, root: yaml.Node, scene: SceneFile) -> Iterator[tuple[Location, Key, MountedMarker]]:
+    """Yield each marker with its location in the file, family and size filled in from the object's or the file's."""
     for number, entry in scene.objects.items():
         for index, marker in enumerate(entry.markers or [MarkerEntry(id=number)]):
-            place: tuple[str | int, ...] = ("objects", number) + (("markers", index) if entry.markers else ())
+            location: Location = ("objects", number) + (("markers", index) if entry.markers else ())
             name = marker.family or entry.family or scene.family
             size_m = marker.size_m or entry.size_m or scene.size_m
             if name is None or size_m is None:
                 lacking = "family" if name is None else "size_m"
-                raise _refusal(path, root, place, f"`{lacking}` is given neither here nor for the whole file: add it")
+                raise _refusal(
+                    path, root, location, f"`{lacking}` is given neither here nor for the whole file: add it"
+                )
             ids = len(family(name).codes)
             if marker.id >= ids:
-                raise _refusal(path, root, place, f"{name} has no marker {marker.id}: use 0 to {ids - 1}")
-            yield place, number, (name, marker.id), Carried(number, size_m, marker.object_from_marker.transform())
+                raise _refusal(path, root, location, f"{name} has no marker {marker.id}: use 0 to {ids - 1}")
+            yield location, (name, marker.id), MountedMarker(number, size_m, marker.object_from_marker.transform())
 
 
 def _refuse_shared_codes(path: Path, families: tuple[str, ...]) -> None:
@@ -165,14 +202,14 @@ def _problem(path: Path, root: yaml.Node, error: Any) -> str:
     return str(_refusal(path, root, error["loc"], said))
 
 
-def _refusal(path: Path, root: yaml.Node, place: tuple[str | int, ...], said: str) -> SceneFileError:
-    field = ".".join(str(part) for part in place if part != "[key]")
-    return SceneFileError(f"{path}, line {_line(root, place)}: {field}: {said}")
+def _refusal(path: Path, root: yaml.Node, location: Location, said: str) -> SceneFileError:
+    field = ".".join(str(part) for part in location if part != "[key]")
+    return SceneFileError(f"{path}, line {_line(root, location)}: {field}: {said}")
 
 
-def _line(node: yaml.Node, place: tuple[str | int, ...]) -> int:
-    """Find the line of the deepest part of a place that the file has."""
-    for part in place:
+def _line(node: yaml.Node, location: Location) -> int:
+    """Find the line of a location, or of as much of it as the file has."""
+    for part in location:
         if isinstance(node, yaml.MappingNode):
             inner = [(key, value) for key, value in node.value if key.value == str(part)]
             if not inner:

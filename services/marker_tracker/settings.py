@@ -6,11 +6,11 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from actum.settings import ServiceSettings
-from marker_tracker.families import canonical
+from marker_tracker.detection.families import canonical
 
 
 class ObjectSpec(BaseModel):
-    """What carries a marker: the object's name, and its marker's side where it is not the usual one."""
+    """An object that carries a marker: its name, and its marker's side in metres where it is not the usual one."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -19,7 +19,7 @@ class ObjectSpec(BaseModel):
 
 
 class Settings(ServiceSettings):
-    """What the tracker can be told beside what every service can."""
+    """Settings of the marker tracker, besides those of every service."""
 
     scene: Path | None = Field(
         None, description="a YAML file of objects and their markers, instead of dictionary, marker-size-m and objects"

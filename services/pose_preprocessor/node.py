@@ -1,24 +1,36 @@
 """The preprocessor's pure step: each agent of a skeleton frame becomes one posture."""
 
-import math
 from collections.abc import Iterable
+from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from actum import geometry, keys
+from actum.arrays import Array, joints_to_array, joints_to_list
 from actum.messages import Agent, Joint, Message, Posture, Skeleton
 from actum.node import Counters, Tick
 from actum.skeletons import INDEX, JOINTS
-from actum.stamps import Order, StampGuard
-from pose_preprocessor.checks import BadFrameError, as_array, check, missing_joints
-from pose_preprocessor.missing import MissingLately
-from pose_preprocessor.person import Person
+from actum.stamps import LostFrames, Order, StampGuard
+from pose_preprocessor.bridging import Bridge
+from pose_preprocessor.frame_checks import BadFrameError, check_frame
+from pose_preprocessor.heading import HeadingFilter
+from pose_preprocessor.missing_joints import RecentlyMissing
+from pose_preprocessor.part_motion import PartMotionFilter
 from pose_preprocessor.settings import Settings
 
 _TORSO = INDEX["torso"]
 ALWAYS = (_TORSO, INDEX["neck"])
-"""The joints that every valid posture has, if only from a moment before."""
+"""The joints that every valid posture has, if only bridged from a moment before."""
+
+
+@dataclass
+class _Person:
+    """An agent's last usable joints as they came, and its filters."""
+
+    joints: list[Joint] | None = None
+    bridge: Bridge = field(default_factory=Bridge)
+    motion: PartMotionFilter = field(default_factory=PartMotionFilter)
+    heading: HeadingFilter = field(default_factory=HeadingFilter)
 
 
 class PosePreprocessor:
@@ -27,14 +39,14 @@ class PosePreprocessor:
     name = "pose_preprocessor"
     inputs = (keys.SKELETON,)
 
-    def __init__(self, settings: Settings | None = None) -> None:
+    def __init__(self, settings: Settings) -> None:
         self.counters = Counters()
-        self._settings = settings or Settings()
+        self._settings = settings
         self._order = StampGuard()
-        self._missing = MissingLately(self.counters)
-        self._persons: dict[int, Person] = {}
+        self._lost = LostFrames()
+        self._missing = RecentlyMissing(self.counters)
+        self._persons: dict[int, _Person] = {}
         self._previous_ns: int | None = None
-        self._last_seq: int | None = None
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
         """Turn a skeleton into one posture per agent, or one for agent 0 when nobody is there."""
@@ -47,9 +59,9 @@ class PosePreprocessor:
         if order is Order.RESTART:
             self._persons.clear()
             self._previous_ns = None
-        postures = self._postures(message, self._missed(message, order))
+        postures = self._postures(message, self._lost.before(message.seq, order))
         self._previous_ns = message.stamp_ns
-        self._forget_the_gone(message)
+        self._forget_absent(message)
         self._missing.report(message.stamp_ns)
         return postures
 
@@ -60,24 +72,18 @@ class PosePreprocessor:
         present = [agent.agent for agent in agents]
         return [self._posture(message, agent, missed, present) for agent in agents]
 
-    def _missed(self, message: Skeleton, order: Order) -> int:
-        last, self._last_seq = self._last_seq, message.seq
-        if last is None or message.seq is None or order is Order.RESTART:
-            return 0
-        return max(message.seq - last - 1, 0)
-
-    def _forget_the_gone(self, frame: Skeleton) -> None:
-        """Let go of those who have left: a tracker that numbers people anew at each return would pile them up."""
-        present = {agent.agent for agent in frame.agents}
-        for agent in self._persons.keys() - present:
-            if self._persons[agent].motion.is_over(frame.stamp_ns):
-                del self._persons[agent]
-
     def _distinct_agents(self, message: Skeleton) -> list[Agent]:
         agents = {agent.agent: agent for agent in message.agents}
         if len(agents) < len(message.agents):
             self.counters.reject("repeated_agent", f"{len(message.agents)} agents, {len(agents)} distinct")
         return list(agents.values())
+
+    def _forget_absent(self, frame: Skeleton) -> None:
+        """Forget people who have left: a tracker that numbers them anew at each return would pile them up."""
+        present = {agent.agent for agent in frame.agents}
+        for agent in self._persons.keys() - present:
+            if self._persons[agent].motion.is_over(frame.stamp_ns):
+                del self._persons[agent]
 
     def _posture(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
         if not frame.valid:
@@ -91,26 +97,28 @@ class PosePreprocessor:
             return self._invalid(frame, agent.agent, f"{kind}: {error}", missed, present)
 
     def _valid(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
-        missing = missing_joints(agent.joints)
-        person = self._persons.setdefault(agent.agent, Person())
-        measured = as_array(agent.joints)
+        missing = [index for index, joint in enumerate(agent.joints) if joint is None]
+        person = self._persons.setdefault(agent.agent, _Person())
+        measured = joints_to_array(agent.joints)
         bridged = self._usable(frame.stamp_ns, agent, person, measured, missing)
-        both = np.stack([bridged, geometry.scaled(bridged)])
-        egos = geometry.ego_from_camera(both)
-        metric_ego, scaled_ego = geometry.apply(egos, both)
+        metric_and_scaled = np.stack([bridged, geometry.scaled(bridged)])
+        ego_from_camera = geometry.ego_from_camera(metric_and_scaled)
+        metric_ego, scaled_ego = geometry.apply(ego_from_camera, metric_and_scaled)
         person.joints = agent.joints
         person.bridge.keep(frame.stamp_ns, bridged, missing)
         self._missing.note(frame.stamp_ns, [JOINTS[index] for index in missing])
         metric_ego[[index for index in missing if index not in ALWAYS]] = np.nan
         measured[_TORSO] = bridged[_TORSO]
+        metric_level, scaled_level = _untilted(metric_and_scaled, frame.up_in_camera)
+        left = person.heading.step(frame.stamp_ns, metric_level)
         return Posture(
             stamp_ns=frame.stamp_ns,
             sensor=frame.sensor,
             agent=agent.agent,
-            joints_m=_listed(metric_ego),
-            joints=_listed(scaled_ego),
-            upright=_listed(person.upright(frame.stamp_ns, *_untilted(both, frame.up_in_camera))),
-            ego_from_camera=geometry.flat(egos[0]),
+            joints_m=joints_to_list(metric_ego),
+            joints=joints_to_list(scaled_ego),
+            upright=joints_to_list(geometry.upright(scaled_level, *left)),
+            ego_from_camera=geometry.flat(ego_from_camera[0]),
             motion=person.motion.step(frame.stamp_ns, measured),
             depth_std_m=agent.depth_std_m,
             up_in_camera=frame.up_in_camera,
@@ -120,12 +128,15 @@ class PosePreprocessor:
             session_id=frame.session_id,
         )
 
-    def _usable(
-        self, stamp_ns: int, agent: Agent, person: Person, measured: NDArray[np.float64], missing: list[int]
-    ) -> NDArray[np.float64]:
-        bridged = person.bridge.over(stamp_ns, measured, missing) if missing else measured
+    def _usable(self, stamp_ns: int, agent: Agent, person: _Person, measured: Array, missing: list[int]) -> Array:
+        """Return the joints (15, 3) with missing ones bridged where that is possible.
+
+        Raises:
+            BadFrameError: they cannot be used, or are those of the frame before.
+        """
+        bridged = person.bridge.filled(stamp_ns, measured, missing) if missing else measured
         unknown = [index for index in missing if np.isnan(bridged[index, 0])]
-        check(bridged, unknown, self._settings.reach_limit_m, self._settings.bone_limit_m)
+        check_frame(bridged, unknown, self._settings.reach_limit_m, self._settings.bone_limit_m)
         if agent.joints == person.joints:
             raise BadFrameError("repeated_joints", "the same joints as in the frame before")
         return bridged
@@ -149,12 +160,6 @@ class PosePreprocessor:
         )
 
 
-def _untilted(joints: NDArray[np.float64], up_in_camera: list[float] | None) -> NDArray[np.float64]:
+def _untilted(joints: Array, up_in_camera: list[float] | None) -> Array:
+    """Express joints (…, 3) of the camera frame as a level camera would see them."""
     return joints if up_in_camera is None else joints @ geometry.untilted_from_camera(up_in_camera).T
-
-
-def _listed(joints: NDArray[np.float64]) -> list[Joint]:
-    listed: list[Joint] = joints.tolist()
-    if math.isnan(joints.sum()):
-        return [None if unknown else joint for joint, unknown in zip(listed, np.isnan(joints[:, 0]), strict=True)]
-    return listed

@@ -10,3 +10,8 @@ class Settings(ServiceSettings):
 
     reach_limit_m: float = Field(10.0, gt=0, description="a joint further than this from the camera is absurd")
     bone_limit_m: float = Field(1.5, gt=0, description="a bone longer than this is absurd")
+
+    @classmethod
+    def defaults(cls) -> "Settings":
+        """Return the default values without reading the environment or a file, for whatever has to repeat itself."""
+        return cls.model_construct()

@@ -5,13 +5,13 @@ import time
 from actum.runtime import needs_extra, run_source
 
 with needs_extra("scene-simulator"):
-    from scene_simulator.endless import scene_of
+    from scene_simulator.endless_simulator import simulator_of
     from scene_simulator.settings import Settings
 
 
 def main() -> None:
     """Serve until SIGTERM."""
-    run_source(Settings, lambda settings: scene_of(settings, start_ns=time.time_ns()))
+    run_source(Settings, lambda settings: simulator_of(settings, start_ns=time.time_ns()))
 
 
 if __name__ == "__main__":

@@ -1,32 +1,52 @@
-"""The person: proportions and habits drawn from a seed, and the posture that brings a hand to a place."""
+"""The person: proportions and habits drawn from a seed, and the inverse kinematics of reaching."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from actum.arrays import Array
 from actum.messages import Hand
 from actum.skeletons import INDEX, JOINTS
-from scene_simulator.chance import normal, normals, stream
-from scene_simulator.motion import Array
 from scene_simulator.parameters import ActorParameters
+from scene_simulator.random_streams import draw_normal, draw_normals, random_stream
 
-HIP_HEIGHT, TRUNK, HEAD, SPINE = 0.53, 0.29, 0.115, 0.14
-"""Of stature: hip joints above the floor; hips to neck, neck to head, hips to torso joint."""
-SHOULDER_SIDE, SHOULDER_DROP, HIP_SIDE = 0.108, 0.02, 0.052
-UPPER_ARM, FOREARM, FINGER, EYE = 0.186, 0.200, 0.055, 0.05
-"""Of stature; the forearm ends in the palm, the finger begins there; the eye lies before the head's middle."""
-FOOT_HEIGHT, KNEE_SHARE = 0.04, 0.5
+# Lengths as shares of stature, after Drillis and Contini (1966).
+HIP_HEIGHT = 0.53  # floor to hip joints
+TRUNK = 0.29  # hips to neck
+HEAD = 0.115  # neck to the head's middle
+SPINE = 0.14  # hips to the torso joint
+SHOULDER_SIDE = 0.108  # from the spine to a shoulder
+SHOULDER_DROP = 0.02  # from the neck down to the shoulders
+HIP_SIDE = 0.052  # from the spine to a hip joint
+UPPER_ARM = 0.186  # shoulder to elbow
+FOREARM = 0.200  # elbow to palm
+FINGER = 0.055  # palm to the tip of the index finger
+EYE = 0.05  # from the head's middle forward to the eyes
+FOOT_HEIGHT = 0.04  # floor to the foot joint
+KNEE_SHARE = 0.5  # of the way from hip to foot
 
 FULL_STRETCH = 0.995
-COMFORTABLE_STRETCH, STRETCH_SOFTNESS = 0.93, 0.05
+"""Of the arm's length: at 1 the elbow's direction is undefined."""
+COMFORTABLE_STRETCH = 0.93
+"""Of the arm's length: people lean rather than stretch their arm further."""
+STRETCH_SOFTNESS = 0.05
+"""Of the arm's length: the width of the transition to that limit, so that the trunk starts to lean smoothly."""
 LEAN_LIMIT_RAD = np.deg2rad(60.0)
+"""Nobody leans further; the hand then stays short of its goal."""
 LEAST_AHEAD_M = 0.1
+"""A hand beside or behind the hips is treated as this far ahead: the trunk never turns round."""
 BISECTIONS = 30
+"""Halvings of 60°: the lean is then exact to less than a millionth of a degree."""
 
 
 @dataclass(frozen=True)
 class Actor:
-    """One person. Angles in radians; `bias_rad` is the error of pointing (azimuth, elevation)."""
+    """One person.
+
+    Attributes:
+        bias_rad: (2,), the constant error of pointing, azimuth and elevation.
+        appearance_seed: of clothes, skin and hair.
+    """
 
     height_m: float
     hand: Hand
@@ -40,7 +60,7 @@ class Actor:
     arc_scale: float
     noise_scale: float
     bias_rad: Array
-    looks: int
+    appearance_seed: int
 
     @property
     def side(self) -> int:
@@ -60,7 +80,7 @@ class Actor:
 
 @dataclass(frozen=True)
 class Stance:
-    """How the person stands, over T frames: the pelvis (T, 3), heading (T,) and trunk lean (T,) in radians."""
+    """How the person stands over T frames: pelvis_m (T, 3), heading_rad (T,), lean_rad (T,) of the trunk."""
 
     pelvis_m: Array
     heading_rad: Array
@@ -75,22 +95,22 @@ class Stance:
 
 
 def draw_actor(parameters: ActorParameters, actor_seed: int) -> Actor:
-    """Make up a person; the same seed is always the same person."""
-    rng = stream("actor", actor_seed)
+    """Draw a person; the same seed is always the same person."""
+    rng = random_stream("actor", actor_seed)
     return Actor(
-        height_m=normal(rng, parameters.height_mean_sd_m),
+        height_m=draw_normal(rng, parameters.height_mean_sd_m),
         hand="left" if rng.random() < parameters.left_handed_probability else "right",
-        heading_rad=np.deg2rad(normal(rng, (0.0, parameters.heading_sd_deg))),
-        stand_off_m=normal(rng, parameters.stand_off_mean_sd_m),
-        stand_x_m=normal(rng, (0.0, parameters.stand_x_sd_m)),
-        tempo=normal(rng, parameters.tempo_mean_sd),
-        lean_rad=np.deg2rad(normal(rng, parameters.lean_mean_sd_deg)),
-        twist_gain=normal(rng, parameters.twist_gain_mean_sd),
-        elbow_out=normal(rng, parameters.elbow_out_mean_sd),
-        arc_scale=normal(rng, parameters.arc_mean_sd),
-        noise_scale=normal(rng, parameters.noise_mean_sd),
-        bias_rad=np.deg2rad(normals(rng, parameters.pointing_bias_sd_deg, 2)),
-        looks=int(rng.integers(2**31)),
+        heading_rad=np.deg2rad(draw_normal(rng, (0.0, parameters.heading_sd_deg))),
+        stand_off_m=draw_normal(rng, parameters.stand_off_mean_sd_m),
+        stand_x_m=draw_normal(rng, (0.0, parameters.stand_x_sd_m)),
+        tempo=draw_normal(rng, parameters.tempo_mean_sd),
+        lean_rad=np.deg2rad(draw_normal(rng, parameters.lean_mean_sd_deg)),
+        twist_gain=draw_normal(rng, parameters.twist_gain_mean_sd),
+        elbow_out=draw_normal(rng, parameters.elbow_out_mean_sd),
+        arc_scale=draw_normal(rng, parameters.arc_mean_sd),
+        noise_scale=draw_normal(rng, parameters.noise_mean_sd),
+        bias_rad=np.deg2rad(draw_normals(rng, parameters.pointing_bias_sd_deg, 2)),
+        appearance_seed=int(rng.integers(2**31)),
     )
 
 
@@ -98,7 +118,7 @@ def pose(actor: Actor, stance: Stance, hands_m: Array) -> Array:
     """Return the joints (T, 15, 3) of a person whose left and right palm are at `hands_m` (T, 2, 3).
 
     The trunk turns and leans after the acting hand; the elbows hang. A hand beyond the arm's reach is
-    drawn back to it.
+    drawn back into it.
     """
     trunk = _Trunk(actor, stance, hands_m[:, 0 if actor.hand == "left" else 1])
     joints = np.empty((len(hands_m), len(JOINTS), 3))
@@ -110,7 +130,7 @@ def pose(actor: Actor, stance: Stance, hands_m: Array) -> Array:
         elbow, hand = _bend_arm(actor, trunk, side, shoulder, hands_m[:, column])
         for part, position in (("shoulder", shoulder), ("elbow", elbow), ("hand", hand)):
             joints[:, INDEX[f"{name}_{part}"]] = position
-        _stand(joints, actor, stance, name, side)
+        _place_leg(joints, actor, stance, name, side)
     return joints
 
 
@@ -144,11 +164,11 @@ class _Trunk:
         self._lean_to(stance.lean_rad + self._needed_lean(actor, stance.lean_rad, hand_m))
 
     def along(self, share: float) -> Array:
-        """Return the point that far up the spine from the hips, as a share of stature."""
+        """Return the point (T, 3) that far up the spine from the hips, as a share of stature."""
         return np.asarray(self._pelvis + share * self._height_m * self.up)
 
     def shoulder(self, side: int) -> Array:
-        """Return a shoulder joint; side +1 is the left."""
+        """Return a shoulder joint (T, 3); side +1 is the left."""
         across = side * SHOULDER_SIDE * self._height_m * self._leant_across
         return np.asarray(self.along(TRUNK - SHOULDER_DROP) + across)
 
@@ -167,7 +187,7 @@ class _Trunk:
         return np.asarray(np.linalg.norm(hand_m - self.shoulder(self._side), axis=-1))
 
     def _needed_lean(self, actor: Actor, lean_rad: Array, hand_m: Array) -> Array:
-        """Find by bisection how much further to lean so that the arm is stretched comfortably at most."""
+        """Find by bisection how much further to lean (T,) so that the arm is stretched comfortably at most."""
         wanted = _soft_minimum(self._distance(hand_m) / actor.arm_m) * actor.arm_m
         low, high = np.zeros_like(lean_rad), np.full_like(lean_rad, LEAN_LIMIT_RAD)
         for _ in range(BISECTIONS):
@@ -179,7 +199,7 @@ class _Trunk:
 
 
 def _soft_minimum(stretch: Array) -> Array:
-    """Limit a stretch to the comfortable one without a kink, so that the trunk starts and stops smoothly."""
+    """Limit a stretch (T,) smoothly to the comfortable one: min(x, c) with softplus in place of the kink."""
     excess = (stretch - COMFORTABLE_STRETCH) / STRETCH_SOFTNESS
     return np.asarray(stretch - STRETCH_SOFTNESS * np.logaddexp(0.0, excess))
 
@@ -196,8 +216,8 @@ def _bend_arm(actor: Actor, trunk: _Trunk, side: int, shoulder: Array, hand: Arr
     return shoulder + foot * along + height * pole, shoulder + distance * along
 
 
-def _stand(joints: Array, actor: Actor, stance: Stance, name: str, side: int) -> None:
-    """Put one leg under the pelvis: hip, knee, foot."""
+def _place_leg(joints: Array, actor: Actor, stance: Stance, name: str, side: int) -> None:
+    """Write one leg's hip, knee and foot into the joints (T, 15, 3)."""
     left, up, forward = stance.axes()
     hip = stance.pelvis_m + side * HIP_SIDE * actor.height_m * left
     foot = hip - (HIP_HEIGHT - FOOT_HEIGHT) * actor.height_m * up + 0.02 * forward + 0.02 * side * left

@@ -5,33 +5,39 @@ from collections.abc import Callable
 import cv2
 import numpy as np
 
-from scene_simulator.motion import Array
-from scene_simulator.paint import Canvas, Colour, Pinhole
+from actum.arrays import Array
+from scene_simulator.drawing_primitives import Canvas, Colour, Pinhole
 from scene_simulator.props import DICTIONARY
 
-CELLS, FEWEST_WRONG_CELLS = 4, 3
+CELLS = 4
+"""Along each side of the dictionary's markers."""
+FEWEST_WRONG_CELLS = 3
+"""By which a false marker differs from every marker: more than a detector corrects."""
 SIZE_RANGE_M = (0.06, 0.22)
+"""Sides of the things: about those of the markers and the objects."""
 TEXTURE_PX = 48
+"""Side of a texture before it is drawn in perspective."""
 UNIT_SQUARE = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
+"""Its corners (4, 2)."""
 
 
 def draw_clutter(canvas: Canvas, camera: Pinhole, origin_m: Array, sides_m: Array, count: int, seed: int) -> None:
-    """Scatter things over a rectangle in space, from its corner `origin_m` (3,) along its sides (2, 3)."""
+    """Scatter `count` squares of all textures over a rectangle with a corner `origin_m` (3,) and sides (2, 3; m)."""
     rng = np.random.default_rng(seed)
     along = sides_m / np.linalg.norm(sides_m, axis=1, keepdims=True)
     for number in range(count):
         texture = TEXTURES[number % len(TEXTURES)](rng)
         middle = origin_m + rng.random(2) @ sides_m
-        corners = middle + rng.uniform(*SIZE_RANGE_M) * (_turned(rng.uniform(0, 2 * np.pi)) @ along)
-        _paste(canvas, texture, camera.project(corners))
+        corners = middle + rng.uniform(*SIZE_RANGE_M) * (_rotated_square(rng.uniform(0, 2 * np.pi)) @ along)
+        _draw_texture(canvas, texture, camera.project(corners))
 
 
-def _turned(angle: float) -> Array:
+def _rotated_square(angle: float) -> Array:
     cos, sin = np.cos(angle), np.sin(angle)
     return np.asarray(UNIT_SQUARE @ np.array([[cos, sin], [-sin, cos]]))
 
 
-def _paste(canvas: Canvas, texture: Canvas, corners_px: Array) -> None:
+def _draw_texture(canvas: Canvas, texture: Canvas, corners_px: Array) -> None:
     side = TEXTURE_PX - 1
     flat = np.array([[0, 0], [side, 0], [side, side], [0, side]], dtype=np.float32)
     homography = cv2.getPerspectiveTransform(flat, corners_px.astype(np.float32))

@@ -1,4 +1,4 @@
-"""What makes the scene harder than it need be: the objects' places, and what the camera sees of them."""
+"""Conditions that make a scene harder: where the objects stand, and what the camera sees of them."""
 
 import tomllib
 from collections.abc import Mapping
@@ -11,17 +11,20 @@ from pydantic import Field
 from scene_simulator.parameters import ObjectParameters, Parameters, Section, TableParameters
 
 SIZE_TO_SPACING = 0.875
-"""Objects that stand closer than this allows are smaller, with everything on them."""
+"""Width of the widest object as a share of the spacing, at most: objects in a closer row are scaled down."""
 
 ROW_BEHIND_EDGE_M = 0.05
+"""From the table's near edge to a row of objects."""
 ROW_DEPTH_M = 0.02
+"""How much the objects of a row may stand before one another."""
 PANTOMIME_RANGE_M = 0.05
+"""How much further than `pantomime_m` a pantomime may stay from the nearest object."""
 
 Length = Annotated[float, Field(gt=0, le=5)]
 
 
 class Conditions(Section):
-    """Hardships of one scene; without any, the scene is as its parameters have it.
+    """What is made harder in one scene; by default nothing, and the scene is as its parameters have it.
 
     Attributes:
         spacing_m: middle to middle of neighbouring objects, which then stand in a row.
@@ -44,7 +47,7 @@ class Conditions(Section):
     covers_marker: bool = False
 
     def arranged(self, parameters: Parameters) -> Parameters:
-        """Put the objects and the person where the conditions have them."""
+        """Return the parameters with objects, person and pantomime placed as the conditions say."""
         objects = parameters.objects if self.spacing_m is None else _in_a_row(parameters.objects, self.spacing_m)
         pantomime = parameters.pantomime
         if self.pantomime_m is not None:
@@ -68,13 +71,13 @@ PLAIN = Conditions()
 
 @cache
 def load_conditions() -> Mapping[str, Conditions]:
-    """Read the named conditions that are part of the package."""
+    """Read the package's named conditions from `conditions.toml`."""
     text = files(__package__).joinpath("conditions.toml").read_text(encoding="utf-8")
     return {name: Conditions.model_validate(section) for name, section in tomllib.loads(text).items()}
 
 
 def _in_a_row(objects: ObjectParameters, spacing_m: float) -> ObjectParameters:
-    """Let the objects stand side by side, small enough for it."""
+    """Return the objects side by side, scaled down where they would touch."""
     widest_m = max(item.size_m[0] for item in objects.items)
     scale = min(1.0, SIZE_TO_SPACING * spacing_m / widest_m)
     middle_m = sum(objects.place_z_range_m) / 2

@@ -1,4 +1,4 @@
-"""What a camera takes in while its shutter is open."""
+"""Motion blur: the mean of what a camera sees while its shutter is open."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -6,22 +6,23 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from scene_simulator.paint import Canvas
-from scene_simulator.scene import SceneState
+from scene_simulator.drawing_primitives import Canvas
+from scene_simulator.simulated_scene import SceneState
 
 INSTANTS = 3
+"""Of one exposure: enough for a smear, each costs the drawing of an image."""
 MOVING = ("joints_m", "fingertip_m", "positions_m", "yaw_rad", "riser_tops_m", "grip", "pointing")
 
 
-def while_open(before: SceneState, state: SceneState, share: float) -> list[SceneState]:
-    """Give instants of the last `share` (0 to 1) of the way from the frame before to a frame, which ends them."""
+def states_while_open(before: SceneState, state: SceneState, share: float) -> list[SceneState]:
+    """Return instants of the last `share` (0 to 1) of the interval between two frames; the last is the second frame."""
     if share == 0:
         return [state]
-    return [_between(before, state, 1 - share * (1 - step)) for step in np.linspace(0, 1, INSTANTS)]
+    return [_interpolated(before, state, 1 - share * (1 - step)) for step in np.linspace(0, 1, INSTANTS)]
 
 
-def averaged(images: Sequence[Canvas]) -> Canvas:
-    """Return the mean of images."""
+def mean_image(images: Sequence[Canvas]) -> Canvas:
+    """Return the mean of images (height, width, 3)."""
     if len(images) == 1:
         return images[0]
     total = np.zeros(images[0].shape, dtype=np.float32)
@@ -30,6 +31,6 @@ def averaged(images: Sequence[Canvas]) -> Canvas:
     return np.asarray(np.round(total / len(images)), dtype=np.uint8)
 
 
-def _between(before: SceneState, state: SceneState, share: float) -> SceneState:
+def _interpolated(before: SceneState, state: SceneState, share: float) -> SceneState:
     values = {name: (1 - share) * getattr(before, name) + share * getattr(state, name) for name in MOVING}
     return replace(state, **values)

@@ -2,51 +2,50 @@
 
 import numpy as np
 
+from actum.arrays import Array
 from scene_simulator.actor import Actor
-from scene_simulator.chance import uniform
-from scene_simulator.motion import Array
 from scene_simulator.parameters import Parameters
-from scene_simulator.programme import Sample
+from scene_simulator.programme import Task
+from scene_simulator.random_streams import draw_uniform
 from scene_simulator.trial import Layout, Trial, draw_bulge, draw_displacement, draw_layout, draw_timing
 
 TRIES = 10_000
+"""Places drawn before a scene counts as too full: a small corner of empty space is still found."""
 
 
-def draw_pantomime(
-    parameters: Parameters, actor: Actor, sample: Sample, places: Array, rng: np.random.Generator
-) -> Trial:
-    """Draw one repetition of an action without its object; the objects (3,) stand at their lanes.
+def draw_pantomime(parameters: Parameters, actor: Actor, task: Task, places: Array, rng: np.random.Generator) -> Trial:
+    """Draw one repetition of an action without its object; `places` (3,) are the objects' lanes, x in metres.
 
     Raises:
         ValueError: there is no empty space within the person's reach.
     """
-    layout = draw_layout(parameters, actor, sample.action, places, None, rng)
+    layout = draw_layout(parameters, actor, task.action, places, None, rng)
     imagined = parameters.objects.items[rng.integers(len(parameters.objects.items))]
-    displacement = draw_displacement(parameters, sample.action, layout, imagined, rng)
-    if sample.action == "put":
-        displacement[1] = uniform(rng, parameters.trial.riser_height_range_m)
+    displacement = draw_displacement(parameters, task.action, layout, imagined, rng)
+    if task.action == "put":
+        displacement[1] = draw_uniform(rng, parameters.trial.riser_height_range_m)
     return Trial(
-        sample=sample,
-        timing=draw_timing(parameters.trial, actor, sample.action, rng),
+        task=task,
+        timing=draw_timing(parameters.trial, actor, task.action, rng),
         layout=layout,
         target=None,
         hand_m=_draw_empty_place(parameters, actor, layout, displacement, rng),
         bulge_m=draw_bulge(parameters.trial, actor, rng),
         displacement_m=displacement,
         finger_overlap_m=0.0,
-        pause_s=uniform(rng, parameters.pause.reset_range_s),
+        pause_s=draw_uniform(rng, parameters.pause.reset_range_s),
     )
 
 
 def _draw_empty_place(
     parameters: Parameters, actor: Actor, layout: Layout, displacement_m: Array, rng: np.random.Generator
 ) -> Array:
-    """Draw where the palm is when it takes nothing."""
+    """Draw where the palm (3,) grasps nothing, by rejection: far enough from all objects."""
     where = parameters.pantomime
     lowest_y_m = parameters.table_y_m - where.above_range_m[0]
     for _ in range(TRIES):
         ranges_m = (where.aside_range_m, where.above_range_m, where.ahead_range_m)
-        aside, above, ahead = (uniform(rng, one) for one in ranges_m)
+        aside, above, ahead = (draw_uniform(rng, one) for one in ranges_m)
         x, z = layout.pelvis_m[0] + actor.side * aside, layout.pelvis_m[2] - ahead
         place = np.array([x, parameters.table_y_m - above, z])
         nearest_m = _nearest_m(place, displacement_m, layout.positions_m)
@@ -57,6 +56,6 @@ def _draw_empty_place(
 
 
 def _nearest_m(place: Array, displacement_m: Array, positions_m: Array) -> float:
-    """Measure how near the palm comes to an object's middle from where it takes nothing to where it leaves it."""
+    """Return the palm's least distance from any object's middle between the imagined grasp and release."""
     way = place + np.linspace(0, 1, 8)[:, None] * displacement_m
     return float(np.linalg.norm(way[:, None] - positions_m, axis=2).min())

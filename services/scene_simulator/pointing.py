@@ -1,17 +1,21 @@
-"""Where the hand goes when somebody points: the fingertip is put on the line from the eye to the object."""
+"""Where the palm is when somebody points: the fingertip lies on the line from the eye to the object."""
 
 import numpy as np
 
+from actum.arrays import Array
 from actum.skeletons import INDEX
 from scene_simulator.actor import Actor, Stance, eye, fingertip, pose
-from scene_simulator.motion import Array
 
 STRETCH = 0.97
+"""Of the length of arm and finger: people point with an arm that is not quite straight."""
 ITERATIONS = 25
+"""Of the fixed point, which is then found to within rounding."""
 
 
-def aim(actor: Actor, stance: Stance, hands_m: Array, target_m: Array, error_rad: Array, stand_off_m: float) -> Array:
-    """Return the pointing hand's place (3,) for a target (3,), the other hand staying as in `hands_m` (1, 2, 3).
+def pointing_palm(
+    actor: Actor, stance: Stance, hands_m: Array, target_m: Array, error_rad: Array, stand_off_m: float
+) -> Array:
+    """Return the pointing palm (3,) for a target (3,), the other palm staying as in `hands_m` (1, 2, 3).
 
     The line from eye to fingertip misses the target by `error_rad` (azimuth, elevation); the fingertip ends
     `stand_off_m` before the target, or where the arm is stretched. Trunk and eye follow the hand, so the place
@@ -23,13 +27,13 @@ def aim(actor: Actor, stance: Stance, hands_m: Array, target_m: Array, error_rad
     for _ in range(ITERATIONS):
         joints = pose(actor, stance, hands)
         eye_m = eye(actor, stance, joints)[0]
-        tip = _tip_on_ray(actor, eye_m, joints[0], _turned(target_m - eye_m, error_rad), stand_off_m)
+        tip = _tip_on_ray(actor, eye_m, joints[0], _rotated_ray(target_m - eye_m, error_rad), stand_off_m)
         hands[0, column] = tip - (fingertip(actor, joints) - joints[:, INDEX[f"{actor.hand}_hand"]])[0]
     return np.asarray(hands[0, column])
 
 
 def _tip_on_ray(actor: Actor, eye_m: Array, joints_m: Array, ray: Array, stand_off_m: float) -> Array:
-    """Place the fingertip on the ray: before the target, or where the stretched arm meets the ray."""
+    """Return the fingertip (3,) on the ray (3,): before the target, or where the stretched arm meets the ray."""
     length = float(np.linalg.norm(ray))
     direction = ray / length
     offset = eye_m - joints_m[INDEX[f"{actor.hand}_shoulder"]]
@@ -39,8 +43,8 @@ def _tip_on_ray(actor: Actor, eye_m: Array, joints_m: Array, ray: Array, stand_o
     return np.asarray(eye_m + min(length - stand_off_m, stretched) * direction)
 
 
-def _turned(ray: Array, error_rad: Array) -> Array:
-    """Turn a ray by small angles (azimuth, elevation), keeping its length."""
+def _rotated_ray(ray: Array, error_rad: Array) -> Array:
+    """Rotate a ray (3,) by small angles (2,; azimuth, elevation), keeping its length."""
     side = np.cross(ray, [0.0, -1.0, 0.0])
     side /= np.linalg.norm(side)
     length = np.linalg.norm(ray)

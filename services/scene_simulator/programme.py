@@ -1,21 +1,21 @@
-"""What the actor is to do: a list of actions, each on one object."""
+"""The programme: a list of tasks, each an action on one object."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from scene_simulator.chance import stream
 from scene_simulator.parameters import load_parameters
+from scene_simulator.random_streams import random_stream
 
 ACTIONS: tuple[str, ...] = ("push", "pull", "put", "lift", "point")
 
 NO_OBJECT = -1
-"""Where an id belongs: a pantomime, done in empty space as if an object were there."""
+"""In place of an object's id: a pantomime, done in empty space as if an object were there."""
 
 
 @dataclass(frozen=True)
-class Sample:
-    """One repetition: an action of `ACTIONS` on the object with that id, or a pantomime of it (`NO_OBJECT`).
+class Task:
+    """What one repetition does: an action of `ACTIONS` on the object with that id, or a pantomime (`NO_OBJECT`).
 
     Raises:
         ValueError: there is no such action or object, or pointing is to be pantomimed.
@@ -43,16 +43,17 @@ def object_ids() -> tuple[int, ...]:
     return tuple(item.id for item in load_parameters().objects.items)
 
 
-def balanced_programme(repetitions: int, seed: int, actor_seed: int = 0) -> list[Sample]:
-    """Shuffle `repetitions` of each action; the objects take turns within every action, and from person to person.
+def balanced_programme(repetitions: int, seed: int, actor_seed: int = 0) -> list[Task]:
+    """Return `repetitions` of each action in random order; the objects take turns in each action and among actors.
 
-    Of people numbered in a row, any three do each action to each object as often, so that no action tells its object.
+    Any three actors with successive numbers do each action to each object equally often, so that no action tells its
+    object.
     """
-    rng = stream("programme", seed)
+    rng = random_stream("programme", seed)
     ids = rng.permutation(object_ids())
-    samples = [
-        Sample(action, int(ids[(row + repetition + actor_seed) % len(ids)]))
+    tasks = [
+        Task(action, int(ids[(row + repetition + actor_seed) % len(ids)]))
         for row, action in enumerate(ACTIONS)
         for repetition in range(repetitions)
     ]
-    return [samples[i] for i in np.asarray(rng.permutation(len(samples)))]
+    return [tasks[i] for i in np.asarray(rng.permutation(len(tasks)))]

@@ -3,22 +3,33 @@
 import cv2
 import numpy as np
 
-from scene_simulator.motion import Array
-from scene_simulator.paint import Canvas, Colour, Pinhole, hull, line, polygon, shade
+from actum.arrays import Array
+from scene_simulator.drawing_primitives import Canvas, Colour, Pinhole, hull, line, polygon, shade
 from scene_simulator.parameters import ObjectItem
 
 DICTIONARY = cv2.aruco.DICT_4X4_50
-MARKER_CELLS, QUIET_CELLS, CELL_PX = 6, 1, 8
+"""The marker tracker's default: an object's id is its marker's."""
+MARKER_CELLS = 6
+"""Along each side of a marker, with its black border."""
+QUIET_CELLS = 1
+"""Of white around a marker, which detectors need."""
+CELL_PX = 8
+"""Side of a cell in the card's texture: more than it has in any image."""
 OVERSAMPLING = 3
+"""Texture lookups along each side of a pixel, averaged: edges are as soft as a lens makes them."""
 FACES = (
     ((0, 1, 5, 4), 1.18),  # top
     ((1, 3, 7, 5), 0.78),  # right
     ((2, 0, 4, 6), 0.86),  # left
     ((0, 1, 3, 2), 1.0),  # front
 )
+"""Corners of a cuboid's visible faces, and how bright each is."""
 RISER_COLOUR: Colour = (150, 160, 170)
-DAZZLING: Colour = (250, 250, 250)
+"""Unlike the table's and the objects'."""
+GLARE: Colour = (250, 250, 250)
+"""Of a card that reflects a light: as bright as its white."""
 TURN = np.linspace(0, 2 * np.pi, 32, endpoint=False)
+"""Angles (32,; rad) at which round things are drawn."""
 
 
 class MarkerCard:
@@ -34,16 +45,16 @@ class MarkerCard:
 
     @property
     def reach_m(self) -> float:
-        """From the middle to a corner."""
+        """The distance (m) from the middle to a corner."""
         return float(np.linalg.norm(self._corners_m[0]))
 
-    def draw_dazzling(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
-        """Draw the card with light reflected on it: the print does not show."""
-        polygon(canvas, camera.project(_moved(camera_from_object, self._corners_m)), DAZZLING)
+    def draw_with_glare(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
+        """Draw the card at a pose (4, 4) with glare on it, which hides the print."""
+        polygon(canvas, camera.project(_transformed(camera_from_object, self._corners_m)), GLARE)
 
     def draw(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
-        """Draw the card through the homography of its face, oversampled and averaged."""
-        corners = camera.project(_moved(camera_from_object, self._corners_m))
+        """Draw the card through the homography of its face at a pose (4, 4), oversampled and averaged."""
+        corners = camera.project(_transformed(camera_from_object, self._corners_m))
         low = np.maximum(np.floor(corners.min(axis=0)).astype(int) - 1, 0)
         high = np.minimum(np.ceil(corners.max(axis=0)).astype(int) + 2, (camera.width, camera.height))
         width, height = (high - low).tolist()
@@ -54,14 +65,14 @@ class MarkerCard:
         patch[:] = np.round(card + (1 - cover) * patch)
 
     def _warped(self, corners_px: Array, width: int, height: int) -> tuple[Array, Array]:
-        """Return the card's light and how far it covers each pixel, each (height, width, 1)."""
+        """Return the card's brightness and its coverage of each pixel (0 to 1), each (height, width, 1)."""
         side = len(self._texture) - 0.5
         flat = np.array([[-0.5, -0.5], [side, -0.5], [side, side], [-0.5, side]], dtype=np.float32)
         homography = cv2.getPerspectiveTransform(flat, corners_px.astype(np.float32))
         fine = (width * OVERSAMPLING, height * OVERSAMPLING)
         printed = cv2.warpPerspective(self._texture, homography, fine).astype(np.float32)
-        light, cover = cv2.split(cv2.resize(printed, (width, height), interpolation=cv2.INTER_AREA))
-        return np.asarray(light, dtype=float)[..., None], np.asarray(cover, dtype=float)[..., None] / 255
+        brightness, coverage = cv2.split(cv2.resize(printed, (width, height), interpolation=cv2.INTER_AREA))
+        return np.asarray(brightness, dtype=float)[..., None], np.asarray(coverage, dtype=float)[..., None] / 255
 
 
 class Prop:
@@ -73,22 +84,22 @@ class Prop:
         self._draw_body = {"cuboid": self._draw_cuboid, "cup": self._draw_cup}[item.shape]
 
     def draw(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
-        """Draw body and card."""
+        """Draw body and card at a pose (4, 4)."""
         self._draw_body(canvas, camera, camera_from_object)
         self._card.draw(canvas, camera, camera_from_object)
 
-    def draw_dazzling(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
-        """Draw body and card, with light reflected on the card."""
+    def draw_with_glare(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
+        """Draw body and card at a pose (4, 4), with glare on the card."""
         self._draw_body(canvas, camera, camera_from_object)
-        self._card.draw_dazzling(canvas, camera, camera_from_object)
+        self._card.draw_with_glare(canvas, camera, camera_from_object)
 
     @property
     def card_reach_m(self) -> float:
-        """How far the card's corners are from its middle."""
+        """The distance (m) from the card's middle to its corners."""
         return self._card.reach_m
 
     def draw_shadow(self, canvas: Canvas, camera: Pinhole, position_m: Array, ground_y_m: float) -> None:
-        """Darken the ground under the object; the higher it hangs, the smaller the shadow."""
+        """Darken the ground under the object at `position_m` (3,); the higher it hangs, the smaller the shadow."""
         width, height, depth = self._item.size_m
         lift = max(ground_y_m - position_m[1] - height / 2, 0.0)
         radius = 0.62 * max(1 - 2.0 * lift, 0.4)
@@ -97,7 +108,7 @@ class Prop:
         _darken(canvas, camera.project(centre + ring))
 
     def draw_riser(self, canvas: Canvas, camera: Pinhole, top_m: Array, table_y_m: float) -> None:
-        """Draw the raised plate under the object's place; `top_m` is below the marked face's middle."""
+        """Draw the raised plate under the object's place; `top_m` (3,) is below the marked face's middle."""
         width, _, depth = self._item.size_m
         upright = np.eye(4)
         upright[1, 1] = upright[2, 2] = -1
@@ -112,12 +123,12 @@ class Prop:
         colour = self._item.bgr
         turn = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 10)
         handle = np.stack([width * (0.5 + 0.26 * np.cos(turn)), 0.3 * height * np.sin(turn), 0 * turn - depth / 2], -1)
-        bend = camera.project(_moved(camera_from_object, handle))
+        bend = camera.project(_transformed(camera_from_object, handle))
         stroke = max(round(camera.pixels(0.016, camera_from_object[2, 3])), 2)
         line(canvas, bend, shade(colour, 0.6), stroke + 2)
         line(canvas, bend, shade(colour, 0.9), stroke)
         rim, base = (_ring(self._item, y, scale) for y, scale in ((height / 2, 1.0), (-height / 2, 0.9)))
-        rim_px, base_px = (camera.project(_moved(camera_from_object, ring)) for ring in (rim, base))
+        rim_px, base_px = (camera.project(_transformed(camera_from_object, ring)) for ring in (rim, base))
         hull(canvas, np.concatenate([rim_px, base_px]), shade(colour, 0.72))
         middle = base_px.mean(axis=0)
         hull(canvas, np.concatenate([rim_px, base_px]) * 0.94 + 0.06 * middle, colour)
@@ -138,7 +149,7 @@ def _cuboid(
     """Draw the visible faces of a block whose marked face is centred at the object's origin."""
     width, height, depth = size_m
     signs = [(x, y, z) for z in (0, -1) for y in (1, -1) for x in (-1, 1)]
-    corners = _moved(camera_from_object, np.array(signs) * (width / 2, height / 2, depth))
+    corners = _transformed(camera_from_object, np.array(signs) * (width / 2, height / 2, depth))
     pixels = camera.project(corners)
     for face, factor in FACES:
         outline = pixels[list(face)]
@@ -151,7 +162,7 @@ def _cuboid(
 
 
 def _darken(canvas: Canvas, outline_px: Array) -> None:
-    """Put a translucent shadow inside an outline."""
+    """Draw a translucent shadow inside an outline (n, 2; px)."""
     low = np.maximum(np.floor(outline_px.min(axis=0)).astype(int) - 1, 0)
     high = np.ceil(outline_px.max(axis=0)).astype(int) + 2
     patch = canvas[low[1] : high[1], low[0] : high[0]]
@@ -163,6 +174,6 @@ def _darken(canvas: Canvas, outline_px: Array) -> None:
     cv2.copyTo(dark, cover, patch)
 
 
-def _moved(b_from_a: Array, points_m: Array) -> Array:
-    """Bring points (n, 3) into another frame."""
+def _transformed(b_from_a: Array, points_m: Array) -> Array:
+    """Transform points (n, 3) from frame a to frame b by `b_from_a` (4, 4)."""
     return np.asarray(points_m @ b_from_a[:3, :3].T + b_from_a[:3, 3])

@@ -4,22 +4,24 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scene_simulator.chance import stream
+from actum.arrays import Array
+from scene_simulator.background import WALL_Z_M, draw_room, draw_table
 from scene_simulator.clutter import draw_clutter
-from scene_simulator.exposure import averaged
+from scene_simulator.drawing_primitives import Canvas, Pinhole
+from scene_simulator.exposure import mean_image
 from scene_simulator.figure import Figure, Stroke
-from scene_simulator.motion import Array
-from scene_simulator.paint import Canvas, Pinhole
 from scene_simulator.props import Prop
-from scene_simulator.scene import CLOSED, Scene, SceneState
-from scene_simulator.stage import WALL_Z_M, draw_room, draw_table
+from scene_simulator.random_streams import random_stream
+from scene_simulator.simulated_scene import CLOSED, Scene, SceneState
 
 SLACK_PX = 64
+"""How much larger than the image the grain is drawn: shifted by chance, it differs from image to image."""
 VISIBLE_RISER_M = 0.004
+"""A lower riser, as while one grows between two repetitions, is not drawn."""
 
 
 class Renderer:
-    """Draws the states of one scene; `rng` feeds the sensor's noise."""
+    """Draws the states of one scene; `rng` draws the sensor's noise."""
 
     def __init__(self, scene: Scene, rng: np.random.Generator) -> None:
         parameters = scene.parameters
@@ -39,8 +41,8 @@ class Renderer:
         self._grain = np.round(rng.normal(0, parameters.image.grey_noise_sd, size)).astype(np.int16)
 
     def image(self, *states: SceneState) -> Canvas:
-        """Draw one frame, BGR, with the camera's blur and grain, from its instants while the shutter is open."""
-        taken = averaged([self.clean_image(state) for state in states])
+        """Draw one frame (height, width, 3; BGR) with blur and grain, from its instants while the shutter is open."""
+        taken = mean_image([self.clean_image(state) for state in states])
         if self._conditions.defocus_sd_px:
             taken = np.asarray(cv2.GaussianBlur(taken, (0, 0), self._conditions.defocus_sd_px), dtype=np.uint8)
         blurred = cv2.GaussianBlur(taken, (3, 3), self._blur_sd_px)
@@ -49,7 +51,7 @@ class Renderer:
         return np.asarray(cv2.add(blurred, grain, dtype=cv2.CV_8U), dtype=np.uint8)
 
     def clean_image(self, state: SceneState) -> Canvas:
-        """Draw one frame, BGR, as it is."""
+        """Draw one frame (height, width, 3; BGR) without blur and grain."""
         canvas = self._room.copy()
         self._figure.draw_below(canvas, self.camera, state.joints_m)
         cv2.copyTo(self._table, self._table_mask, canvas)
@@ -61,8 +63,8 @@ class Renderer:
         return canvas
 
     def _prop_strokes(self, state: SceneState) -> list[Stroke]:
-        dazzling = self._dazzling(state.frame)
-        strokes = [self._object_stroke(state, row, bool(dazzling[row])) for row in range(len(self._props))]
+        glare = self._has_glare(state.frame)
+        strokes = [self._object_stroke(state, row, bool(glare[row])) for row in range(len(self._props))]
         strokes += [
             self._riser_stroke(row, state.riser_tops_m[row])
             for row in range(len(self._props))
@@ -74,14 +76,16 @@ class Renderer:
             strokes.append(self._palm_stroke(state, state.target))
         return strokes
 
-    def _dazzling(self, frame: int) -> NDArray[np.bool_]:
-        """Tell on which objects' cards light is reflected in a frame (n,)."""
+    def _has_glare(self, frame: int) -> NDArray[np.bool_]:
+        """Return on which objects' cards there is glare in a frame (n,), for `unread_share` of all frames."""
         share, count = self._conditions.unread_share, len(self._props)
-        return stream("unread", *self._seeds, frame).random(count) < share if share else np.zeros(count, dtype=bool)
+        return (
+            random_stream("unread", *self._seeds, frame).random(count) < share if share else np.zeros(count, dtype=bool)
+        )
 
-    def _object_stroke(self, state: SceneState, row: int, dazzling: bool) -> Stroke:
+    def _object_stroke(self, state: SceneState, row: int, glare: bool) -> Stroke:
         pose, prop = state.camera_from_object(row), self._props[row]
-        draw = prop.draw_dazzling if dazzling else prop.draw
+        draw = prop.draw_with_glare if glare else prop.draw
         return float(state.positions_m[row, 2]), lambda canvas: draw(canvas, self.camera, pose)
 
     def _riser_stroke(self, row: int, top_m: Array) -> Stroke:
@@ -89,7 +93,7 @@ class Renderer:
         return float(top_m[2]) + 0.005, lambda canvas: prop.draw_riser(canvas, self.camera, top_m, self._table_y_m)
 
     def _finger_stroke(self, state: SceneState, target: int) -> Stroke:
-        """The closed hand's fingers lie before the face they hold."""
+        """Draw the closed hand's fingers before the face they hold."""
         position = state.positions_m[target]
         edge = position - (0.0, self._items[target].size_m[1] / 2, 0.0)
         down = np.array([0.0, max(state.finger_overlap_m, 0.0), 0.0])
@@ -97,13 +101,13 @@ class Renderer:
         return depth, lambda canvas: self._figure.draw_fingers(canvas, self.camera, state, (edge, down))
 
     def _palm_stroke(self, state: SceneState, target: int) -> Stroke:
-        """The hand lies over the card of what it holds."""
+        """Draw the hand over the card of what it holds."""
         middle, radius_m = state.positions_m[target] - (0.0, 0.0, 0.02), self._props[target].card_reach_m
         return float(middle[2]), lambda canvas: self._figure.draw_palm_over(canvas, self.camera, middle, radius_m)
 
     def _draw_clutter(self, scene: Scene) -> None:
-        """Fill the wall and the table with things."""
-        wall_seed, table_seed = stream("clutter", *self._seeds).integers(2**31, size=2).tolist()
+        """Scatter clutter over the wall and the table."""
+        wall_seed, table_seed = random_stream("clutter", *self._seeds).integers(2**31, size=2).tolist()
         half, top = np.array([2.2, 1.6]), scene.parameters.table
         wall = np.array([[2 * half[0], 0.0, 0.0], [0.0, 2 * half[1], 0.0]])
         corner = np.array([-half[0], -half[1], WALL_Z_M])

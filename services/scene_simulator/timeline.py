@@ -1,19 +1,30 @@
-"""Stretches of the scene, as arrays over T frames: standing still, acting, and going back to rest."""
+"""Episodes of the scene as arrays over T frames: standing still, acting, returning to rest."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scene_simulator.motion import Array, arc, carry, glide, minimum_jerk, phase, reach, set_down
+from actum.arrays import Array
 from scene_simulator.parameters import Parameters
+from scene_simulator.trajectories import (
+    bent_path,
+    bump,
+    elapsed_share,
+    interpolated,
+    minimum_jerk,
+    set_down_displacement,
+    straight_displacement,
+)
 from scene_simulator.trial import Trial
 
 CLOSING_S = 0.2
+"""How long the hand takes to close or to open."""
 OPENING_SHARE = 0.3
+"""Of the way back to rest, during which what is still held is let go."""
 
 
 @dataclass(frozen=True)
-class Clip:
+class Episode:
     """T frames of one repetition or of the pause after it (`segment` is None).
 
     Shapes: `pelvis_m` (T, 3), `heading_rad` (T,), `hands_m` (T, 2, 3), objects' `positions_m` (T, n, 3) and
@@ -35,13 +46,13 @@ class Clip:
         return len(self.grip)
 
 
-def still(parameters: Parameters, trial: Trial, seconds: float) -> Clip:
-    """Nothing happens for a while, everything stands as the repetition's layout has it."""
+def still(parameters: Parameters, trial: Trial, seconds: float) -> Episode:
+    """Return an episode in which everything stands still as a repetition's layout has it."""
     layout = trial.layout
     count = round(seconds * parameters.camera.frame_rate_hz)
     tops = layout.positions_m.copy()
     tops[:, 1] = parameters.table_y_m - layout.riser_heights_m
-    return Clip(
+    return Episode(
         trial=trial,
         segment=None,
         pelvis_m=_repeated(layout.pelvis_m, count),
@@ -55,63 +66,64 @@ def still(parameters: Parameters, trial: Trial, seconds: float) -> Clip:
     )
 
 
-def acting(parameters: Parameters, trial: Trial, segment: int, column: int) -> Clip:
-    """One repetition: reach, grasp, effect, hold; `column` is the acting hand's, 0 left and 1 right."""
+def acting(parameters: Parameters, trial: Trial, segment: int, column: int) -> Episode:
+    """Return one repetition: reach, grasp, effect, hold; `column` is the acting hand's, 0 left and 1 right."""
     rate = parameters.camera.frame_rate_hz
     base = still(parameters, trial, trial.timing.duration_s + 1 / rate)
     time = np.arange(len(base)) / rate
-    share = phase(time, 0.0, trial.timing.reach_s)
+    share = elapsed_share(time, 0.0, trial.timing.reach_s)
     moved = _moved(trial, time)
     hands, positions = base.hands_m.copy(), base.positions_m.copy()
-    hands[:, column] = moved + reach(trial.layout.rest_m[column], trial.hand_m, trial.bulge_m, share)
+    hands[:, column] = moved + bent_path(trial.layout.rest_m[column], trial.hand_m, trial.bulge_m, share)
     if trial.target is not None:
         positions[:, trial.target] += moved
-    pointing = minimum_jerk(share) * (trial.sample.action == "point")
+    pointing = minimum_jerk(share) * (trial.task.action == "point")
     return replace(
         base, segment=segment, hands_m=hands, positions_m=positions, grip=_grip(trial, time), pointing=pointing
     )
 
 
-def resetting(parameters: Parameters, done: Clip, following: Trial, seconds: float) -> Clip:
-    """The hand goes back to rest and everything glides to where the next repetition starts."""
+def resetting(parameters: Parameters, done: Episode, following: Trial, seconds: float) -> Episode:
+    """Return the pause: the hand returns to rest, everything moves to where the next repetition starts."""
     goal = still(parameters, following, seconds)
     time = np.arange(1, len(goal) + 1) / parameters.camera.frame_rate_hz
-    share = phase(time, 0.0, parameters.pause.return_share * done.trial.pause_s)
-    opened = 1 - minimum_jerk(phase(share, 0.0, OPENING_SHARE))
-    hop = arc(share)[:, None, None] * np.array([0.0, -parameters.pause.hop_m, 0.0])
+    share = elapsed_share(time, 0.0, parameters.pause.return_share * done.trial.pause_s)
+    opened = 1 - minimum_jerk(elapsed_share(share, 0.0, OPENING_SHARE))
+    hop = bump(share)[:, None, None] * np.array([0.0, -parameters.pause.hop_m, 0.0])
     return replace(
         goal,
         trial=done.trial,
-        pelvis_m=glide(done.pelvis_m[-1], goal.pelvis_m, share),
-        heading_rad=glide(done.heading_rad[-1], goal.heading_rad, share),
-        hands_m=glide(done.hands_m[-1], goal.hands_m, share) + 2 * hop,
-        positions_m=glide(done.positions_m[-1], goal.positions_m, share) + hop,
-        yaw_rad=glide(done.yaw_rad[-1], goal.yaw_rad, share),
-        riser_tops_m=glide(done.riser_tops_m[-1], goal.riser_tops_m, share),
+        pelvis_m=interpolated(done.pelvis_m[-1], goal.pelvis_m, share),
+        heading_rad=interpolated(done.heading_rad[-1], goal.heading_rad, share),
+        hands_m=interpolated(done.hands_m[-1], goal.hands_m, share) + 2 * hop,
+        positions_m=interpolated(done.positions_m[-1], goal.positions_m, share) + hop,
+        yaw_rad=interpolated(done.yaw_rad[-1], goal.yaw_rad, share),
+        riser_tops_m=interpolated(done.riser_tops_m[-1], goal.riser_tops_m, share),
         grip=done.grip[-1] * opened,
         pointing=done.pointing[-1] * opened,
     )
 
 
 def _moved(trial: Trial, time_s: Array) -> Array:
-    """How far the object has been moved (T, 3); the hand goes with it."""
+    """Return the object's displacement (T, 3; m) at times (T,); the hand goes with it."""
     timing = trial.timing
-    if trial.sample.action == "point":
+    if trial.task.action == "point":
         return np.zeros((len(time_s), 3))
-    share = phase(time_s, timing.reach_s + timing.grasp_s, timing.effect_s)
-    return (set_down if trial.sample.action == "put" else carry)(trial.displacement_m, share)
+    share = elapsed_share(time_s, timing.reach_s + timing.grasp_s, timing.effect_s)
+    displacement = set_down_displacement if trial.task.action == "put" else straight_displacement
+    return displacement(trial.displacement_m, share)
 
 
 def _grip(trial: Trial, time_s: Array) -> Array:
-    """How far the hand is closed (T,): it closes as it arrives, and opens after the effect unless it lifts."""
+    """Return how far the hand is closed (T,; 0 to 1): from its arrival to after the effect, or to a lift's end."""
     timing = trial.timing
-    if trial.sample.action == "point":
+    if trial.task.action == "point":
         return np.zeros_like(time_s)
     grasped = timing.reach_s + timing.grasp_s
-    closed = minimum_jerk(phase(time_s, grasped - CLOSING_S, CLOSING_S))
-    if trial.sample.action == "lift":
+    closed = minimum_jerk(elapsed_share(time_s, grasped - CLOSING_S, CLOSING_S))
+    if trial.task.action == "lift":
         return closed
-    return closed * (1 - minimum_jerk(phase(time_s, grasped + timing.effect_s, CLOSING_S)))
+    return closed * (1 - minimum_jerk(elapsed_share(time_s, grasped + timing.effect_s, CLOSING_S)))
 
 
 def _repeated(value: Array, count: int) -> Array:

@@ -4,14 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from actum.arrays import Array
 from scene_simulator.actor import HIP_HEIGHT, Actor, Stance
-from scene_simulator.chance import normal, normals, uniform
-from scene_simulator.motion import Array
 from scene_simulator.parameters import ObjectItem, Parameters, TrialParameters
-from scene_simulator.pointing import aim
-from scene_simulator.programme import Sample
+from scene_simulator.pointing import pointing_palm
+from scene_simulator.programme import Task
+from scene_simulator.random_streams import draw_normal, draw_normals, draw_uniform
 
-RISEN = {"put": 1.0, "push": 0.0, "pull": 0.0}
+RISER_PROBABILITY = {"put": 1.0, "push": 0.0, "pull": 0.0}
+"""That the target stands on a riser, where the action decides it."""
 
 
 @dataclass(frozen=True)
@@ -26,10 +27,15 @@ class Timing:
 
 @dataclass(frozen=True)
 class Layout:
-    """Where things stand at the start; rows in the order of the objects, camera frame.
+    """Where things stand at the start; camera frame, the three objects in their order.
 
-    `positions_m` (3, 3) are the marker centres, `riser_heights_m` (3,) how far each place is raised above
-    the table, `pelvis_m` (3,) and `heading_rad` the person's stance, `rest_m` (2, 3) the palms.
+    Attributes:
+        positions_m: (3, 3), the centres of the markers.
+        yaw_rad: (3,).
+        riser_heights_m: (3,), how far each place is raised above the table.
+        pelvis_m: (3,).
+        heading_rad: where the person faces.
+        rest_m: (2, 3), the resting palms, left and right.
     """
 
     positions_m: Array
@@ -42,13 +48,18 @@ class Layout:
 
 @dataclass(frozen=True)
 class Trial:
-    """One drawn repetition; `target` is the object's row, None for a pantomime.
+    """One drawn repetition.
 
-    `hand_m` (3,) is where the reach ends, `bulge_m` (3,) how it is bent, `displacement_m` (3,) what the effect
-    does to the object, `finger_overlap_m` how far the fingers come down over the marked face.
+    Attributes:
+        target: the object's row; None in a pantomime.
+        hand_m: (3,), where the palm's reach ends.
+        bulge_m: (3,), how far the reach is bent from a straight line.
+        displacement_m: (3,), how far the effect moves the object.
+        finger_overlap_m: how far the fingers come down over the marked face.
+        pause_s: how long the pause after it lasts.
     """
 
-    sample: Sample
+    task: Task
     timing: Timing
     layout: Layout
     target: int | None
@@ -59,96 +70,98 @@ class Trial:
     pause_s: float
 
 
-def draw_trial(parameters: Parameters, actor: Actor, sample: Sample, places: Array, rng: np.random.Generator) -> Trial:
-    """Draw one repetition; `places` (3,) is where each object's lane lies, x in metres."""
+def draw_trial(parameters: Parameters, actor: Actor, task: Task, places: Array, rng: np.random.Generator) -> Trial:
+    """Draw one repetition; `places` (3,) are the objects' lanes, x in metres."""
     items = parameters.objects.items
-    target = [item.id for item in items].index(sample.object_id)
-    layout = draw_layout(parameters, actor, sample.action, places, target, rng)
-    hand = {True: _draw_aim, False: _draw_grasp}[sample.action == "point"]
+    target = [item.id for item in items].index(task.object_id)
+    layout = draw_layout(parameters, actor, task.action, places, target, rng)
+    hand = {True: _draw_aim, False: _draw_grasp}[task.action == "point"]
     return Trial(
-        sample=sample,
-        timing=draw_timing(parameters.trial, actor, sample.action, rng),
+        task=task,
+        timing=draw_timing(parameters.trial, actor, task.action, rng),
         layout=layout,
         target=target,
         hand_m=hand(parameters, actor, layout, target, rng),
         bulge_m=draw_bulge(parameters.trial, actor, rng),
-        displacement_m=draw_displacement(parameters, sample.action, layout, items[target], rng),
-        finger_overlap_m=uniform(rng, parameters.trial.finger_overlap_range_m),
-        pause_s=uniform(rng, parameters.pause.reset_range_s),
+        displacement_m=draw_displacement(parameters, task.action, layout, items[target], rng),
+        finger_overlap_m=draw_uniform(rng, parameters.trial.finger_overlap_range_m),
+        pause_s=draw_uniform(rng, parameters.pause.reset_range_s),
     )
 
 
 def draw_timing(parameters: TrialParameters, actor: Actor, action: str, rng: np.random.Generator) -> Timing:
     """Draw how long the phases last."""
-    duration = float(np.clip(actor.tempo * normal(rng, parameters.duration_mean_sd_s), *parameters.duration_range_s))
+    duration = float(
+        np.clip(actor.tempo * draw_normal(rng, parameters.duration_mean_sd_s), *parameters.duration_range_s)
+    )
     if action == "point":
-        return Timing(duration, duration * normal(rng, parameters.pointing_reach_share_mean_sd), 0.0, 0.0)
+        return Timing(duration, duration * draw_normal(rng, parameters.pointing_reach_share_mean_sd), 0.0, 0.0)
     shares = (parameters.reach_share_mean_sd, parameters.grasp_share_mean_sd, parameters.effect_share_mean_sd)
-    return Timing(duration, *(duration * normal(rng, share) for share in shares))
+    return Timing(duration, *(duration * draw_normal(rng, share) for share in shares))
 
 
 def draw_layout(
     parameters: Parameters, actor: Actor, action: str, places: Array, target: int | None, rng: np.random.Generator
 ) -> Layout:
-    """Draw where things stand, the target perhaps on a riser; a pantomime has no target."""
+    """Draw where things stand, the target (none in a pantomime) perhaps on a riser; `places` (3,) are the lanes."""
     objects, items = parameters.objects, parameters.objects.items
     risers = np.zeros(len(items))
-    if rng.random() < RISEN.get(action, parameters.trial.riser_probability) and target is not None:
-        risers[target] = uniform(rng, parameters.trial.riser_height_range_m)
+    if rng.random() < RISER_PROBABILITY.get(action, parameters.trial.riser_probability) and target is not None:
+        risers[target] = draw_uniform(rng, parameters.trial.riser_height_range_m)
     heights = np.array([item.size_m[1] for item in items])
-    x = places + normals(rng, objects.place_jitter_x_sd_m, len(items))
+    x = places + draw_normals(rng, objects.place_jitter_x_sd_m, len(items))
     z = rng.uniform(*objects.place_z_range_m, size=len(items))
     pelvis = _draw_pelvis(parameters, actor, rng)
     return Layout(
         positions_m=np.stack([x, parameters.table_y_m - risers - heights / 2, z], axis=-1),
-        yaw_rad=np.deg2rad(normals(rng, objects.yaw_sd_deg, len(items))),
+        yaw_rad=np.deg2rad(draw_normals(rng, objects.yaw_sd_deg, len(items))),
         riser_heights_m=risers,
         pelvis_m=pelvis,
-        heading_rad=actor.heading_rad + np.deg2rad(normal(rng, (0.0, parameters.trial.heading_sd_deg))),
+        heading_rad=actor.heading_rad + np.deg2rad(draw_normal(rng, (0.0, parameters.trial.heading_sd_deg))),
         rest_m=np.stack([_draw_rest(parameters, pelvis[0], side, rng) for side in (1, -1)]),
     )
 
 
 def _draw_pelvis(parameters: Parameters, actor: Actor, rng: np.random.Generator) -> Array:
-    """Draw where the person stands: behind the table's far edge, on the floor."""
-    x, z = normals(rng, parameters.trial.stance_sd_m, 2)
+    """Draw the pelvis (3,) of the person, who stands on the floor behind the table's far edge."""
+    x, z = draw_normals(rng, parameters.trial.stance_sd_m, 2)
     y = parameters.camera.height_m - HIP_HEIGHT * actor.height_m
     return np.array([actor.stand_x_m + x, y, parameters.table.far_z_m + actor.stand_off_m + z])
 
 
 def _draw_rest(parameters: Parameters, middle_x_m: float, side: int, rng: np.random.Generator) -> Array:
-    """Draw where a palm rests: on the table, by its far edge."""
+    """Draw where a palm (3,) rests: on the table, by its far edge."""
     trial = parameters.trial
-    x, height = normals(rng, trial.rest_sd_m, 2)
-    inset = uniform(rng, trial.rest_inset_range_m)
+    x, height = draw_normals(rng, trial.rest_sd_m, 2)
+    inset = draw_uniform(rng, trial.rest_inset_range_m)
     y = parameters.table_y_m - trial.rest_height_m - abs(height)
     return np.array([middle_x_m + side * trial.rest_side_m + x, y, parameters.table.far_z_m - inset])
 
 
 def draw_bulge(parameters: TrialParameters, actor: Actor, rng: np.random.Generator) -> Array:
     """Draw how the reach is bent, (3,) metres in the camera frame: upward, and a little to a side."""
-    up = actor.arc_scale * uniform(rng, parameters.arc_height_range_m)
-    return np.array([normal(rng, (0.0, parameters.arc_side_sd_m)), -up, 0.0])
+    up = actor.arc_scale * draw_uniform(rng, parameters.arc_height_range_m)
+    return np.array([draw_normal(rng, (0.0, parameters.arc_side_sd_m)), -up, 0.0])
 
 
 def _draw_grasp(parameters: Parameters, actor: Actor, layout: Layout, target: int, rng: np.random.Generator) -> Array:
-    """Draw where the palm lies on the object: on its top, more or less towards the acting hand's side."""
+    """Draw where the palm (3,) grasps the object: on its top, more or less towards the acting hand's side."""
     trial = parameters.trial
     width, height, depth = parameters.objects.items[target].size_m
-    angle = np.deg2rad(uniform(rng, trial.grasp_side_range_deg))
+    angle = np.deg2rad(draw_uniform(rng, trial.grasp_side_range_deg))
     sin, cos = np.sin(angle), np.cos(angle)
     out = min(width / 2 / max(abs(sin), 1e-9), height / 2 / cos) + trial.grasp_clearance_m
     offset = np.array([actor.side * sin * out, -cos * out, depth / 2])
-    return np.asarray(layout.positions_m[target] + offset + normals(rng, trial.grasp_sd_m, 3))
+    return np.asarray(layout.positions_m[target] + offset + draw_normals(rng, trial.grasp_sd_m, 3))
 
 
 def _draw_aim(parameters: Parameters, actor: Actor, layout: Layout, target: int, rng: np.random.Generator) -> Array:
-    """Draw where the palm ends when pointing: the person's own error and this repetition's."""
+    """Draw where the palm (3,) ends when pointing, with the person's own error and this repetition's."""
     trial = parameters.trial
     stance = Stance(layout.pelvis_m[None], np.array([layout.heading_rad]), np.array([actor.lean_rad]))
-    error = actor.bias_rad + np.deg2rad(normals(rng, trial.pointing_sd_deg, 2))
-    stand_off = uniform(rng, trial.pointing_stand_off_range_m)
-    return aim(actor, stance, layout.rest_m[None], layout.positions_m[target], error, stand_off)
+    error = actor.bias_rad + np.deg2rad(draw_normals(rng, trial.pointing_sd_deg, 2))
+    stand_off = draw_uniform(rng, trial.pointing_stand_off_range_m)
+    return pointing_palm(actor, stance, layout.rest_m[None], layout.positions_m[target], error, stand_off)
 
 
 def draw_displacement(
@@ -156,16 +169,16 @@ def draw_displacement(
 ) -> Array:
     """Draw how far the action moves its object, (3,) metres in the camera frame; the directions are the person's."""
     trial = parameters.trial
-    angle = layout.heading_rad + np.deg2rad(normal(rng, (0.0, trial.effect_direction_sd_deg)))
+    angle = layout.heading_rad + np.deg2rad(draw_normal(rng, (0.0, trial.effect_direction_sd_deg)))
     away = np.array([-np.sin(angle), 0.0, -np.cos(angle)])
-    far = uniform(rng, trial.effect_distance_range_m)
+    far = draw_uniform(rng, trial.effect_distance_range_m)
     match action:
         case "push":
             return np.asarray(far * away)
         case "pull":
-            return np.asarray(-uniform(rng, trial.pull_distance_range_m) * away)
+            return np.asarray(-draw_uniform(rng, trial.pull_distance_range_m) * away)
         case "lift":
-            return np.array([0.0, -far, 0.0]) + normals(rng, 0.1 * far, 3) * (1, 0, 1)
+            return np.array([0.0, -far, 0.0]) + draw_normals(rng, 0.1 * far, 3) * (1, 0, 1)
         case "put":
             drop = np.array([0.0, float(layout.riser_heights_m.max()), 0.0])
             return np.asarray((item.size_m[2] + trial.put_clearance_m) * away + drop)

@@ -1,1 +1,1 @@
-"""A camera, a recording or a simulated scene, as skeletons and images on Zenoh."""
+"""A camera or a recording, as skeletons and images on Zenoh."""

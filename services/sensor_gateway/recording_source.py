@@ -1,4 +1,4 @@
-"""A recording as a sensor: its skeletons and images once more, at their own pace."""
+"""Recordings as a sensor: their skeletons and images again, at their own pace."""
 
 from collections.abc import Iterable, Iterator
 from itertools import chain, groupby
@@ -17,10 +17,8 @@ TOPICS = (keys.SKELETON, keys.COLOR, keys.DEPTH)
 class RecordingSource:
     """Plays the skeletons and images of one recording, or of a folder's in order of name, as the given sensor's.
 
-    One that is damaged is played up to there.
-
     Stamps, numbers and session ids are the recorded ones; from a folder's second recording on, stamps and numbers are
-    shifted so that they go on rising.
+    shifted so that they continue to rise. A damaged recording is played up to the damage.
 
     Raises:
         RecordingError: the folder holds no recording, or one of the files is none.
@@ -35,8 +33,8 @@ class RecordingSource:
         self._recordings = [Recording(file) for file in _files(path)]
 
     def frames(self) -> Iterator[list[Message]]:
-        """Yield what was captured at one instant, instant by instant."""
-        return _instants(joined(self._messages(recording) for recording in self._recordings))
+        """Yield the messages of one stamp after another."""
+        return _by_stamp(joined(self._messages(recording) for recording in self._recordings))
 
     def _messages(self, recording: Recording) -> Iterator[Message]:
         try:
@@ -50,15 +48,15 @@ class RecordingSource:
 
 
 class LoopedSource:
-    """Another source from files, played again and again: stamps and numbers go on rising."""
+    """A source of recordings, played again and again; stamps and numbers continue to rise."""
 
     def __init__(self, source: Source) -> None:
         self._source = source
         self.name, self.paced, self.counters = source.name, source.paced, source.counters
 
     def frames(self) -> Iterator[list[Message]]:
-        """Yield the source's frames for ever; none where it has none."""
-        return _instants(joined(self._rounds()))
+        """Yield the source's frames again and again; nothing where it has none."""
+        return _by_stamp(joined(self._rounds()))
 
     def _rounds(self) -> Iterator[Iterable[Message]]:
         while (first := next(frames := self._source.frames(), None)) is not None:
@@ -72,7 +70,7 @@ def _files(path: Path) -> list[Path]:
     return files
 
 
-def _instants(messages: Iterable[Message]) -> Iterator[list[Message]]:
-    """Group neighbours that have the same stamp."""
-    for _, instant in groupby(messages, key=attrgetter("stamp_ns")):
-        yield list(instant)
+def _by_stamp(messages: Iterable[Message]) -> Iterator[list[Message]]:
+    """Group successive messages of the same stamp."""
+    for _, group in groupby(messages, key=attrgetter("stamp_ns")):
+        yield list(group)

@@ -1,5 +1,7 @@
 """Settings of the sensor gateway."""
 
+import os
+import sys
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -7,9 +9,23 @@ from pydantic import BeforeValidator, Field
 
 from actum.messages import Direction
 from actum.settings import ServiceSettings
-from sensor_gateway.camera.model_file import default_model
 
 SourceName = Literal["camera", "marker-camera", "realsense", "openni2", "recording"]
+
+
+POSE_MODEL = "pose_landmarker_full.task"
+
+
+def default_pose_model() -> Path:
+    """Return where `actum models fetch` puts the pose model: among the program data of this system's user."""
+    home = Path.home()
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = home / "Library" / "Application Support"
+    else:
+        base = Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share")
+    return base / "actum" / POSE_MODEL
 
 
 def _text(number: object) -> object:
@@ -46,7 +62,7 @@ class Settings(ServiceSettings):
     )
     mirrored: bool = Field(False, description="camera: its images are mirrored, and are to be turned back")
     pose_model: Path = Field(
-        default_factory=default_model, description="any camera: the pose model that `actum models fetch` gets"
+        default_factory=default_pose_model, description="any camera: the pose model that `actum models fetch` gets"
     )
     person_height_m: float | None = Field(
         None, gt=0.5, lt=2.5, description="any camera: how tall the person is; where given, distances rest on it"

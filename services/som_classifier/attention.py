@@ -76,8 +76,8 @@ class PostureInput:
             there: (choices,), which of the rows have a joint in some frame.
         """
         if self.attention == ALL:
-            return attended(motion), 0
-        part = attended(motion, None if self.attention == MOVING else self.attention, there)
+            return attended_part(motion), 0
+        part = attended_part(motion, None if self.attention == MOVING else self.attention, there)
         return part, part
 
 
@@ -86,7 +86,7 @@ def _hips(points: Array) -> Array:
     return points[_TORSO] - _UP_TO_THE_NECK if np.isnan(hips).any() else hips
 
 
-def attended(motion: NDArray[Any], fixed: str | None = None, there: Flags | None = None) -> int:
+def attended_part(motion: NDArray[Any], fixed: str | None = None, there: Flags | None = None) -> int:
     """Return the index of the part that moves most over a segment, or of the fixed one; ties by listed order.
 
     A part that is never there is not attended to while another is.

@@ -43,7 +43,7 @@ def mirrored(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     return other
 
 
-def moments(posture: NDArray[np.float64]) -> Integers:
+def limb_moments(posture: NDArray[np.float64]) -> Integers:
     """Return for each limb what its spread is made of, in whole millimetres, shape (4, 8).
 
     Six coordinates of its two joints, the sum of their squares, and 1; all 0 where a joint is missing. Being integers
@@ -61,13 +61,13 @@ def moments(posture: NDArray[np.float64]) -> Integers:
 
 
 @dataclass(frozen=True)
-class Spreads:
+class LimbSpreads:
     """How much each limb moves about its mean over a segment, in mm."""
 
     limbs: Sequence[float]
 
     @classmethod
-    def of(cls, summed: Integers) -> "Spreads":
+    def of(cls, summed: Integers) -> "LimbSpreads":
         """Work it out from the summed moments of the frames, shape (4, 8)."""
         return cls([_spread(limb) for limb in summed.tolist()])
 

@@ -1,4 +1,4 @@
-"""What every trained recogniser is, whatever it is made of: a description, arrays, and answers."""
+"""The interface of every trained recogniser: metadata, arrays, and answers."""
 
 import hashlib
 import json
@@ -14,20 +14,29 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from actum.skeletons import JOINTS
+from som_classifier.frames import Frame
 from som_classifier.recognition import Recognition
-from som_classifier.streams import Frame
 
 Arrays = Mapping[str, NDArray[Any]]
 
 
-class Description(BaseModel):
-    """What a model is, beside its weights.
+class ModelMetadata(BaseModel):
+    """What a model file holds beside the weights; field names are keys of the stored JSON.
 
     Attributes:
+        format: of the file.
         kind: which of the recognisers it is.
+        labels: the actions it tells apart.
+        joint_order: the joints that its inputs consist of.
+        preset: name of the set of training parameters.
+        parameters: their values.
+        seed: of every random number drawn in training.
+        persons: whose samples it was trained on.
+        samples: how many these were.
         data_digest: SHA-256 over the training samples.
-        held_out: of samples scored without their person, or without themselves where that was the only one: by action
-            done how many were taken for which. Empty where the kind of recogniser holds nothing out.
+        actum_version: that trained it.
+        held_out: confusion counts of cross-validation, by action done and by action answered; each sample is scored
+            without its person, or without itself where that was the only one. Empty where nothing was held out.
     """
 
     model_config = ConfigDict(frozen=True, extra="ignore", strict=True)
@@ -47,7 +56,7 @@ class Description(BaseModel):
 
     @property
     def held_out_answers(self) -> list[tuple[str, str]]:
-        """The same as one pair of action done and action answered for each sample."""
+        """`held_out` as one pair of action done and action answered for each sample."""
         return [
             (done, answered)
             for done, answers in self.held_out.items()
@@ -57,32 +66,33 @@ class Description(BaseModel):
 
 
 class Encoder(Protocol):
-    """Reads one agent's frames in their order, for one model."""
+    """Computes the activity of a model's first layer, for one agent's frames in order."""
 
     def encode(self, frame: Frame) -> Any:
-        """Return what the model will need of a valid frame."""
+        """Return what the model needs of a valid frame, to be kept as `Frame.activity`."""
         ...
 
 
 class Model(ABC):
-    """A trained recogniser."""
+    """A trained recogniser.
 
+    Attributes:
+        metadata: what the file holds beside the weights.
+        min_frames: fewer valid frames than these are not answered.
+    """
+
+    metadata: ModelMetadata
     min_frames: ClassVar[int] = 3
 
     @property
     @abstractmethod
-    def about(self) -> Description:
-        """What it is."""
-
-    @property
-    @abstractmethod
     def arrays(self) -> Arrays:
-        """All its weights, by name, in a fixed order."""
+        """All weights by the names they are stored under, in a fixed order."""
 
     @classmethod
     @abstractmethod
     def restored(cls, metadata: str, arrays: Arrays) -> "Model":
-        """Put together what `metadata` and `arrays` gave.
+        """Build the model of a file's metadata (JSON) and arrays.
 
         Raises:
             ValueError, KeyError: the parts are not there or do not fit together.
@@ -90,14 +100,14 @@ class Model(ABC):
 
     @abstractmethod
     def encoder(self) -> Encoder:
-        """Begin to read an agent."""
+        """Return a new encoder, for one agent."""
 
     @abstractmethod
     def recognise(self, frames: Sequence[Frame], complete: bool) -> Recognition:
-        """Say which action a segment is.
+        """Recognise the action of a segment.
 
         Args:
-            frames: its valid frames in order, each with the code its encoder gave.
+            frames: its valid frames in order, each with the activity that its encoder gave.
             complete: whether the segment has ended; else more frames will come.
 
         Raises:
@@ -106,7 +116,7 @@ class Model(ABC):
 
     @abstractmethod
     def trace(self, frames: Sequence[Frame]) -> NDArray[np.float64]:
-        """Return the way over the first map, row and column of winners or of centres of activity, shape (n, 2)."""
+        """Return the trajectory over the first map: row and column of winners or centres of activity, shape (n, 2)."""
 
     @abstractmethod
     def maps(self, frames: Sequence[Frame]) -> Arrays:
@@ -115,25 +125,24 @@ class Model(ABC):
     @property
     def labels(self) -> list[str]:
         """The actions it tells apart."""
-        return self.about.labels
-
-    @property
-    def metadata(self) -> dict[str, Any]:
-        """The description as plain values."""
-        return self.about.model_dump()
+        return self.metadata.labels
 
     @cached_property
     def id(self) -> str:
-        """The first 12 hex digits of a SHA-256 over description and weights."""
-        digest = hashlib.sha256(self._description().encode())
+        """The first 12 hex digits of a SHA-256 over metadata and weights."""
+        digest = hashlib.sha256(self._metadata_json().encode())
         for name, array in self.arrays.items():
             digest.update(f"{name} {array.shape} {array.dtype.str}".encode())
             digest.update(array.tobytes())
         return digest.hexdigest()[:12]
 
     def save(self, path: Path) -> None:
-        """Write the file (npz, no pickle) beside its place and move it there in one step."""
-        contents: dict[str, NDArray[Any]] = {"metadata": np.array(self._description()), **self.arrays}
+        """Write the file (npz, no pickle) beside its place and move it there in one step.
+
+        Raises:
+            OSError: the file cannot be written.
+        """
+        contents: dict[str, NDArray[Any]] = {"metadata": np.array(self._metadata_json()), **self.arrays}
         unfinished = path.with_name(f".{path.name}.{os.getpid()}.tmp")
         try:
             with unfinished.open("wb") as file:
@@ -142,5 +151,5 @@ class Model(ABC):
         finally:
             unfinished.unlink(missing_ok=True)
 
-    def _description(self) -> str:
-        return json.dumps(self.metadata, sort_keys=True)
+    def _metadata_json(self) -> str:
+        return json.dumps(self.metadata.model_dump(), sort_keys=True)

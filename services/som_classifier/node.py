@@ -10,12 +10,12 @@ from actum import keys
 from actum.messages import Action, Message, Posture, Segment, Tensor
 from actum.node import Counters, Tick
 from actum.skeletons import JOINTS
+from som_classifier.frames import Frame
 from som_classifier.model import Model
-from som_classifier.model_file import ModelFile
 from som_classifier.recognition import Recognition
-from som_classifier.segments import Closed, OpenSegment, Segmenter
+from som_classifier.segments import ClosedSegment, OpenSegment, Segmenter
 from som_classifier.settings import Settings
-from som_classifier.streams import Frame
+from som_classifier.watched_model import WatchedModel
 
 POLL_TICKS = 5
 
@@ -50,7 +50,7 @@ class SomClassifier:
     @classmethod
     def configured(cls, settings: Settings) -> "SomClassifier":
         """Build the node as the settings say; the model file need not exist yet."""
-        node = cls(source=ModelFile(settings.model) if settings.model else None, publish_maps=settings.publish_maps)
+        node = cls(source=WatchedModel(settings.model) if settings.model else None, publish_maps=settings.publish_maps)
         if settings.model is None:
             node.counters.state = "no model: --model (ACTUM_MODEL) names none"
         node._reload()
@@ -122,7 +122,7 @@ class SomClassifier:
             return None
         return self._model.recognise(usable, complete)
 
-    def _answer(self, closed: Closed) -> Action:
+    def _answer(self, closed: ClosedSegment) -> Action:
         recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
         reason = closed.reason or (None if recognition else self._why_not(closed))
         if reason:
@@ -157,7 +157,7 @@ class SomClassifier:
         maps = {name: _tensor(activity) for name, activity in self._model.maps(usable).items()}
         return {"maps": maps, "trace": _tensor(self._model.trace(usable))}
 
-    def _why_not(self, closed: Closed) -> str:
+    def _why_not(self, closed: ClosedSegment) -> str:
         if self._model is None:
             return "no model"
         frames = sum(frame.valid for frame in closed.frames)

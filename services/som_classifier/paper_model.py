@@ -6,30 +6,30 @@ from functools import cached_property
 from typing import Annotated, Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from actum.arrays import Array
 from actum.skeletons import JOINTS
 from actum.som import Som
 from som_classifier.attention import PART_NAMES, Axes, Origin, PostureInput
-from som_classifier.model import Arrays, Description, Encoder, Model
+from som_classifier.frames import Frame
+from som_classifier.map_activity import NO_WINNER, MapActivity, map_activity, soft_activity
+from som_classifier.model import Arrays, Encoder, Model, ModelMetadata
+from som_classifier.ordered_vector import ordered_vector, trajectory
 from som_classifier.recognition import Recognition
-from som_classifier.streams import Frame
-from som_classifier.supervised import SupervisedLayer, activity
-from som_classifier.trace import UNSEEN, Activities, activities, ordered_vector, way
+from som_classifier.supervised import SupervisedLayer
 
-Array = NDArray[np.float64]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
-class PaperDescription(Description):
-    """What a model of this kind is.
+class PaperMetadata(ModelMetadata):
+    """What a file of the paper's recogniser holds beside the weights; field names are keys of the stored JSON.
 
     Attributes:
-        axes, origin, attention: what the first map is shown.
-        centre_contrast: of the first map's activity, in squared metres.
+        axes, origin, attention: the first map's input, see `PostureInput`.
+        centre_contrast: of the first map's soft activity, in squared metres.
         points: the length of an ordered vector in points: the paper's N_max.
-        contrast: of the second map's activity, in squared grid units of the first map.
+        contrast: of the second map's soft activity, in squared grid units of the first map.
     """
 
     kind: Literal["paper"] = "paper"
@@ -47,7 +47,7 @@ class PaperDescription(Description):
 
     @cached_property
     def posture(self) -> PostureInput:
-        """What the first map is shown."""
+        """The first map's input."""
         return PostureInput(self.axes, self.origin, self.attention)
 
 
@@ -59,118 +59,116 @@ class PaperModel(Model):
         layer1: the map of postures, or of one part's.
         layer2: the map of ordered vectors.
         layer3: one neuron per label on the second map's activity.
+        metadata: what is stored beside the weights.
     """
 
     layer1: Som
     layer2: Som
     layer3: SupervisedLayer
-    description: PaperDescription
+    metadata: PaperMetadata
 
     def __post_init__(self) -> None:
         if problem := self._mismatch():
             raise ValueError(problem)
 
     @property
-    def about(self) -> Description:
-        """What it is."""
-        return self.description
-
-    @property
     def arrays(self) -> Arrays:
-        """All its weights, maps as component planes."""
+        """All weights by the names they are stored under, maps as component planes (rows, cols, dim)."""
         return {"layer1": self.layer1.planes, "layer2": self.layer2.planes, "layer3": self.layer3.weights}
 
     @classmethod
     def restored(cls, metadata: str, arrays: Arrays) -> "PaperModel":
-        """Put together what `metadata` and `arrays` gave.
+        """Build the model of a file's metadata (JSON) and arrays.
 
         Raises:
             ValueError, KeyError: the parts are not there or do not fit together.
         """
-        description = PaperDescription.model_validate_json(metadata)
-        layer3 = SupervisedLayer(arrays["layer3"])
-        return cls(Som.of_planes(arrays["layer1"]), Som.of_planes(arrays["layer2"]), layer3, description)
+        stored = PaperMetadata.model_validate_json(metadata)
+        layer1, layer2 = Som.of_planes(arrays["layer1"]), Som.of_planes(arrays["layer2"])
+        return cls(layer1, layer2, SupervisedLayer(arrays["layer3"]), stored)
 
     def encoder(self) -> Encoder:
-        """Begin to read an agent."""
-        return _Looking(self)
+        """Return a new encoder, for one agent."""
+        return _FrameEncoder(self)
 
     def recognise(self, frames: Sequence[Frame], complete: bool) -> Recognition:
-        """Say which action a segment's frames so far are; the same whether it is complete or not.
+        """Recognise the action of a segment's frames so far; the same whether it is complete or not.
 
         Raises:
             ValueError: there is no frame.
         """
         if not frames:
             raise ValueError("no frame to recognise an action from")
-        part, seen = self.attended(frames)
-        cosines = self.layer3.cosines(self._heard(way(seen))).tolist()
+        part, attended = self.attended(frames)
+        cosines = self.layer3.cosines(self._second_activity(trajectory(attended))).tolist()
         winner = int(np.argmax(cosines))
         return Recognition(
             label=self.labels[winner],
-            confidence=_share(cosines, winner) * float((seen.winners != UNSEEN).mean()),
+            confidence=_share(cosines, winner) * float((attended.winners != NO_WINNER).mean()),
             activations=dict(zip(self.labels, cosines, strict=True)),
             part=PART_NAMES[part],
         )
 
-    def look(self, joints: Array, upright: Array) -> Activities:
-        """Return where one frame's inputs make the first map active, of all that attention chooses among.
+    def first_activity(self, joints: Array, upright: Array) -> MapActivity:
+        """Return the first map's activity for each of one frame's inputs among which attention chooses, (choices,).
 
         Args:
             joints: (15, 3), along the axes of the posture.
             upright: (15, 3), upright.
         """
-        rows = self.description.posture.rows(joints, upright)
-        return activities(self.layer1, rows, self.description.centre_contrast)
+        rows = self.metadata.posture.rows(joints, upright)
+        return map_activity(self.layer1, rows, self.metadata.centre_contrast)
 
-    def attended(self, frames: Sequence[Frame]) -> tuple[int, Activities]:
-        """Return the part attended to, and the first map's activities at each frame of a segment, (n,)."""
-        codes: list[Activities] = [frame.code for frame in frames]
-        seen = Activities(np.stack([code.winners for code in codes]), np.stack([code.centres for code in codes]))
+    def attended(self, frames: Sequence[Frame]) -> tuple[int, MapActivity]:
+        """Return the part attended to over a segment, and the first map's activity for it at each frame, (n,)."""
+        activities: list[MapActivity] = [frame.activity for frame in frames]
+        winners = np.stack([activity.winners for activity in activities])
+        centres = np.stack([activity.centres for activity in activities])
         motion = np.array([frame.motion for frame in frames])
-        part, row = self.description.posture.attended(motion, (seen.winners != UNSEEN).any(axis=0))
-        return part, seen[:, row]
+        part, row = self.metadata.posture.attended(motion, (winners != NO_WINNER).any(axis=0))
+        return part, MapActivity(winners, centres)[:, row]
 
     def trace(self, frames: Sequence[Frame]) -> Array:
-        """Return the way of the activity's centre over the first map, shape (stays, 2)."""
-        return way(self.attended(frames)[1])
+        """Return the trajectory of the centre of activity over the first map, shape (changes, 2)."""
+        return trajectory(self.attended(frames)[1])
 
     def place(self, frames: Sequence[Frame]) -> int:
-        """Return the second map's winner."""
-        return self.layer2.bmu(ordered_vector(self.trace(frames), self.description.points))
+        """Return the second map's winner for a segment."""
+        return self.layer2.bmu(ordered_vector(self.trace(frames), self.metadata.points))
 
     def maps(self, frames: Sequence[Frame]) -> Arrays:
-        """Return the activity of the second map."""
-        return {"actions": self._heard(self.trace(frames)).reshape(self.layer2.rows, self.layer2.cols)}
+        """Return the activity of the second map, by its name, (rows, cols)."""
+        return {"actions": self._second_activity(self.trace(frames)).reshape(self.layer2.rows, self.layer2.cols)}
 
-    def _heard(self, path: Array) -> Array:
-        excess2 = self.layer2.excess2(ordered_vector(path, self.description.points))
-        heard: Array = activity(excess2, self.description.contrast)
-        return heard
+    def _second_activity(self, path: Array) -> Array:
+        """Return the second map's soft activity for a trajectory (n, 2), shape (units,)."""
+        excess2 = self.layer2.excess2(ordered_vector(path, self.metadata.points))
+        activity: Array = soft_activity(excess2, self.metadata.contrast)
+        return activity
 
     def _mismatch(self) -> str | None:
         """Name the first thing about the layers that does not fit together."""
-        about = self.description
+        stored = self.metadata
         neurons = len(self.layer2.weights)
-        if about.joint_order != list(JOINTS):
+        if stored.joint_order != list(JOINTS):
             return "its joint order is not this version's"
-        sizes = about.posture.size, 2 * about.points
+        sizes = stored.posture.size, 2 * stored.points
         if (self.layer1.dim, self.layer2.dim) != sizes:
             return f"its maps take vectors of {self.layer1.dim} and {self.layer2.dim}, not of {sizes[0]} and {sizes[1]}"
-        if len(set(about.labels)) < len(about.labels) or self.layer3.weights.shape != (len(about.labels), neurons):
-            return f"its third layer {self.layer3.weights.shape} does not fit {len(about.labels)} labels"
+        if len(set(stored.labels)) < len(stored.labels) or self.layer3.weights.shape != (len(stored.labels), neurons):
+            return f"its third layer {self.layer3.weights.shape} does not fit {len(stored.labels)} labels"
         return None
 
 
-class _Looking:
-    """Each frame's activities."""
+class _FrameEncoder:
+    """Computes the first map's activity for each frame by itself."""
 
     def __init__(self, model: PaperModel) -> None:
         self._model = model
 
-    def encode(self, frame: Frame) -> Activities:
-        assert frame.joints is not None and frame.movement is not None
-        return self._model.look(frame.joints, frame.movement.posture)
+    def encode(self, frame: Frame) -> MapActivity:
+        assert frame.joints is not None and frame.kinematics is not None
+        return self._model.first_activity(frame.joints, frame.kinematics.posture)
 
 
 def _share(cosines: list[float], winner: int) -> float:

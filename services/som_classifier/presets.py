@@ -9,7 +9,7 @@ from som_classifier.attention import MOVING, PostureInput
 
 
 @dataclass(frozen=True)
-class MapPlan:
+class MapTraining:
     """A map's size and how it is trained."""
 
     rows: int
@@ -19,7 +19,7 @@ class MapPlan:
 
 
 @dataclass(frozen=True)
-class Others:
+class BodyVariation:
     """As what other people each sample is also shown.
 
     Attributes:
@@ -71,8 +71,8 @@ class PaperPreset:
 
     name: str
     posture: PostureInput
-    layer1: MapPlan
-    layer2: MapPlan
+    layer1: MapTraining
+    layer2: MapTraining
     centre_contrast: float
     relative_contrast: float
     beta: float
@@ -120,8 +120,8 @@ class PyramidPreset:
     overlap: float
     turns_deg: tuple[float, ...]
     leans_deg: tuple[float, ...]
-    others: Others
-    others_of_few: Others
+    others: BodyVariation
+    others_of_few: BodyVariation
     few_people: int
     stages: tuple[tuple[float, ...], ...]
     shrinkage: float
@@ -143,8 +143,8 @@ Preset = PaperPreset | PyramidPreset
 PAPER = PaperPreset(
     name="paper",
     posture=PostureInput(axes="upright", origin="torso", attention=MOVING),
-    layer1=MapPlan(30, 30, 100_000, Schedule(alpha=(0.1, 0.01), radius=(15.0, 3.0))),
-    layer2=MapPlan(35, 35, 30_000, Schedule(alpha=(0.5, 0.02), radius=(17.5, 0.5))),
+    layer1=MapTraining(30, 30, 100_000, Schedule(alpha=(0.1, 0.01), radius=(15.0, 3.0))),
+    layer2=MapTraining(35, 35, 30_000, Schedule(alpha=(0.5, 0.02), radius=(17.5, 0.5))),
     centre_contrast=1.0,
     relative_contrast=0.15,
     beta=0.35,
@@ -167,8 +167,8 @@ PYRAMID = PyramidPreset(
     overlap=0.25,
     turns_deg=(-15.0, 15.0),
     leans_deg=(-10.0, 10.0),
-    others=Others(2, build_sd=0.1, tempo=1.0),
-    others_of_few=Others(8, build_sd=0.2, tempo=0.5),
+    others=BodyVariation(2, build_sd=0.1, tempo=1.0),
+    others_of_few=BodyVariation(8, build_sd=0.2, tempo=0.5),
     few_people=2,
     stages=((0.1, 0.2, 0.3, 0.4, 0.5), (0.3, 0.4, 0.5, 0.6, 0.7, 0.8), (1.0,)),
     shrinkage=0.15,

@@ -1,7 +1,7 @@
 """The temporal pyramid: mean activity of the first maps in overlapping cells of a segment, from prefix sums.
 
-Activities are kept as whole numbers and added up modulo 2³², so that the sum over any window is the difference of two
-running sums to the bit, whenever the summing began.
+Activities are quantised and added up modulo 2³², so that the sum over any window of frames is exactly the difference
+of two prefix sums, wherever the summation began.
 """
 
 from collections.abc import Sequence
@@ -12,28 +12,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Indices
+
 Floats = NDArray[Any]
 Sums = NDArray[np.uint32]
 
 SCALE = float(2**19)
-"""The whole number that stands for an activity of 1."""
+"""Quantisation steps per unit of activity; a finer step would leave fewer frames before a sum wraps around."""
 MOST_FRAMES = 2**32 // 2**19 - 1
-"""So many frames of it stay below 2³²."""
+"""So many frames of activity 1 stay below 2³²; longer segments are summed in steps of as many."""
 
 
 def quantised(activities: Floats) -> Sums:
-    """Return activities within [0, 1] as whole numbers."""
+    """Return activities within [0, 1] as whole numbers, in the same shape."""
     whole: Sums = np.rint(activities * SCALE).astype(np.uint32)
     return whole
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Instant:
-    """Running totals between two frames.
+class Prefix:
+    """Sums over all frames up to an instant between two frames.
 
     Attributes:
-        sums: for each side (the actor as seen, and in a mirror) those of its activities, (units,), modulo 2³².
-        travelled_um: how far the parts have moved, micrometres.
+        sums: of quantised activities modulo 2³², (units,) each: of the actor as seen and, where kept, mirrored.
+        travelled_um: of the displacements of all body parts, micrometres.
     """
 
     sums: Sequence[Sums]
@@ -41,67 +43,71 @@ class Instant:
 
 
 @dataclass(frozen=True, eq=False)
-class Trail:
-    """A segment of n frames.
+class PrefixSums:
+    """The prefix sums of a segment of n frames.
 
     Attributes:
-        instants: the n + 1 before, between and after its frames.
-        side: which of their sums count.
+        prefixes: the n + 1 before, between and after its frames.
+        side: which of their sums are read: 0 for the actor as seen, 1 for the mirror image.
     """
 
-    instants: Sequence[Instant]
+    prefixes: Sequence[Prefix]
     side: int = 0
 
     def __len__(self) -> int:
-        return len(self.instants) - 1
+        return len(self.prefixes) - 1
 
-    def until(self, frames: int) -> "Trail":
-        """Return the first frames alone."""
-        return Trail(self.instants[: frames + 1], self.side)
+    def until(self, frames: int) -> "PrefixSums":
+        """Return those of the first frames alone."""
+        return PrefixSums(self.prefixes[: frames + 1], self.side)
 
-    def gained(self, at: Sequence[int]) -> NDArray[np.unsignedinteger]:
-        """Return the sums at these instants, 0 to n, less those at the start, shape (instants, units)."""
+    def since_start(self, at: Sequence[int]) -> NDArray[np.unsignedinteger]:
+        """Return the quantised activities summed up to each of the instants `at` (0 to n), shape (len(at), units)."""
         if len(self) > MOST_FRAMES:
-            return self._gained_in_steps(at)
+            return self._since_start_in_steps(at)
         sums = self._sums(at)
-        sums -= self.instants[0].sums[self.side]
+        sums -= self.prefixes[0].sums[self.side]
         return sums
 
-    def _gained_in_steps(self, at: Sequence[int]) -> NDArray[np.uint64]:
-        """Return the same where the sums may have passed 2³² more than once."""
-        marks = self._sums(range(0, len(self.instants), MOST_FRAMES))
+    def _since_start_in_steps(self, at: Sequence[int]) -> NDArray[np.uint64]:
+        """Return the same for segments over which a sum may wrap around 2³² more than once."""
+        marks = self._sums(range(0, len(self.prefixes), MOST_FRAMES))
         before = np.cumsum(np.diff(marks, axis=0, prepend=marks[:1]), axis=0, dtype=np.uint64)
         step = [k // MOST_FRAMES for k in at]
-        gained: NDArray[np.uint64] = before[step] + (self._sums(at) - marks[step])
-        return gained
+        summed: NDArray[np.uint64] = before[step] + (self._sums(at) - marks[step])
+        return summed
 
     def _sums(self, at: Sequence[int]) -> Sums:
-        instants, side = self.instants, self.side
-        return np.concatenate([instants[k].sums[side] for k in at]).reshape(len(at), -1)
+        prefixes, side = self.prefixes, self.side
+        return np.concatenate([prefixes[k].sums[side] for k in at]).reshape(len(at), -1)
 
-    def when(self, shares: Sequence[float]) -> Floats:
-        """Return at which instants, 0 to n, the segment is on by these shares (0 to 1): half by time, half by movement.
+    def instants_of(self, progress: Sequence[float]) -> Floats:
+        """Return the fractional instants, from 0 (start) to n (end), at which the segment has progressed so far.
 
-        By time alone where all is still. Between instants it goes on evenly.
+        Progress rises from 0 to 1: half of it with time, half with the distance that the body parts travel; with time
+        alone where nothing moves. Within a frame it is linear.
+
+        Args:
+            progress: (k,); the result has the same shape.
         """
-        begin_um = self.instants[0].travelled_um
-        moved_um = self.instants[-1].travelled_um - begin_um
+        begin_um = self.prefixes[0].travelled_um
+        moved_um = self.prefixes[-1].travelled_um - begin_um
         per_frame, per_um = (0.5 / len(self), 0.5 / moved_um) if moved_um > 0 else (1.0 / len(self), 0.0)
-        progress = [per_frame * k + per_um * (at.travelled_um - begin_um) for k, at in enumerate(self.instants)]
-        instants: Floats = np.interp(shares, progress, np.arange(len(self.instants)))
+        reached = [per_frame * k + per_um * (at.travelled_um - begin_um) for k, at in enumerate(self.prefixes)]
+        instants: Floats = np.interp(progress, reached, np.arange(len(self.prefixes)))
         return instants
 
 
 @dataclass(frozen=True)
 class Pyramid:
-    """Cells that divide a segment evenly on each level, each reaching over its borders.
+    """Cells that divide a segment evenly on each level, each reaching over its borders into its neighbours.
 
-    Where a cell begins and ends is measured half by time and half by movement, so that rests before and after an
-    action shift the cells less.
+    Their borders are placed by progress (see `PrefixSums.instants_of`), so that rests before and after an action shift
+    the cells less.
 
     Attributes:
         levels: the number of cells on each level.
-        overlap: how far a cell reaches over each border, in parts of its length.
+        overlap: how far a cell reaches over each border, as a fraction of its length.
     """
 
     levels: tuple[int, ...]
@@ -112,20 +118,20 @@ class Pyramid:
         """How many cells there are in all."""
         return sum(self.levels)
 
-    def vector(self, trail: Trail) -> NDArray[np.float32]:
-        """Return the fourth root of each cell's mean activity, shape (cells * units,).
+    def vector(self, segment: PrefixSums) -> NDArray[np.float32]:
+        """Return the fourth root of each cell's mean activity, cell after cell, shape (cells * units,).
 
         Raises:
             ValueError: there is no frame.
         """
-        if not len(trail):
+        if not len(segment):
             raise ValueError("no frame to pool over")
-        at = trail.when(self._borders)
-        below = np.minimum(at.astype(np.intp), len(trail) - 1)
-        sums, beyond = _sums_beside(trail, below.tolist())
-        beyond -= sums
-        beyond *= (at - below).astype(np.float32)[:, None]
-        sums += beyond
+        at = segment.instants_of(self._borders)
+        below = np.minimum(at.astype(np.intp), len(segment) - 1)
+        sums, growth = _sums_beside(segment, below.tolist())
+        growth -= sums
+        growth *= (at - below).astype(np.float32)[:, None]
+        sums += growth
         pooled: NDArray[np.float32] = sums[self._ends]
         pooled -= sums[self._begins]
         pooled /= ((at[self._ends] - at[self._begins]) * SCALE).astype(np.float32)[:, None]
@@ -134,6 +140,7 @@ class Pyramid:
 
     @cached_property
     def _spans(self) -> list[tuple[float, float]]:
+        """The progress at which each cell begins and ends."""
         return [
             (max((cell - self.overlap) / level, 0.0), min((cell + 1 + self.overlap) / level, 1.0))
             for level in self.levels
@@ -142,20 +149,21 @@ class Pyramid:
 
     @cached_property
     def _borders(self) -> list[float]:
-        """Where cells begin or end, each once, from the start on."""
+        """Where cells begin or end, each once, rising."""
         return sorted({border for span in self._spans for border in span})
 
     @cached_property
-    def _begins(self) -> NDArray[np.intp]:
-        """At which border each cell begins."""
+    def _begins(self) -> Indices:
+        """At which of the borders each cell begins, shape (cells,)."""
         return np.array([self._borders.index(begin) for begin, _ in self._spans])
 
     @cached_property
-    def _ends(self) -> NDArray[np.intp]:
+    def _ends(self) -> Indices:
+        """At which of the borders each cell ends, shape (cells,)."""
         return np.array([self._borders.index(end) for _, end in self._spans])
 
 
-def _sums_beside(trail: Trail, below: Sequence[int]) -> NDArray[np.float32]:
-    """Return the sums at these instants and at those that follow, less those at the start, (2, instants, units)."""
-    sums = trail.gained([*below, *(k + 1 for k in below)])
+def _sums_beside(segment: PrefixSums, below: Sequence[int]) -> NDArray[np.float32]:
+    """Return the sums since the start at these instants and at those right after, shape (2, len(below), units)."""
+    sums = segment.since_start([*below, *(k + 1 for k in below)])
     return sums.astype(np.float32).reshape(2, len(below), -1)

@@ -3,49 +3,61 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import mul
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from actum.arrays import Array, Indices
 from actum.node import SECOND_NS
 from actum.skeletons import JOINTS
 from actum.som import Som
-from som_classifier.codes import Code, FrameEncoder, left_handed, mean_log_error, most_moved_part, seen_share, trail_of
-from som_classifier.layers import ARM_INPUTS, HEARD, Concepts, FirstMaps
-from som_classifier.model import Arrays, Description, Model
-from som_classifier.pyramid import Pyramid, Trail
+from som_classifier.first_layer import ARM_INPUTS, CHANNELS, FirstMaps
+from som_classifier.frame_activity import (
+    FrameActivity,
+    FrameEncoder,
+    left_handed,
+    mean_log_error,
+    most_moved_part,
+    seen_share,
+    segment_sums,
+)
+from som_classifier.frames import Frame
+from som_classifier.map_activity import soft_activity
+from som_classifier.model import Arrays, Model, ModelMetadata
+from som_classifier.ordered_vector import without_repeats
+from som_classifier.pyramid import PrefixSums, Pyramid
 from som_classifier.recognition import Recognition
-from som_classifier.stages import Stages, familiarity_of
-from som_classifier.streams import Frame
-from som_classifier.supervised import SupervisedLayer, activity
-from som_classifier.trace import without_repeats
+from som_classifier.second_layer import ActionMap
+from som_classifier.stage_discriminants import StageDiscriminants, familiarity_of
+from som_classifier.supervised import SupervisedLayer
 
 Floats = NDArray[Any]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
-class PyramidDescription(Description):
-    """What a model of this kind is.
+class PyramidMetadata(ModelMetadata):
+    """What a file of the default recogniser holds beside the weights; field names are keys of the stored JSON.
 
     Attributes:
-        posture_contrast: of the posture map's activity, in squared metres.
-        velocity_contrast: of the velocity map's activity.
-        arm_contrast: of the activity of the map of arms.
-        arm_shares: what the latter adds up to, for the acting arm and for the other one.
-        mirrors: whether an action of the left arm is read in a mirror.
+        posture_contrast: of the posture map's soft activity, in squared metres.
+        velocity_contrast: of the velocity map's.
+        arm_contrast: of the arm map's.
+        arm_shares: what the arm map's activity adds up to, for the acting arm and for the other one.
+        mirrors: whether an action of the left arm is read as its mirror image.
         levels: the pyramid's cells on each level.
-        overlap: how far each reaches over its borders, in parts of its length.
-        fractions: the share of an action that each stage of the discriminant axes has seen.
+        overlap: how far each reaches over its borders, as a fraction of its length.
+        fractions: the share of an action that each stage of the discriminants has seen.
         log_duration_mean: mean of the logarithm of the training segments' durations (s).
         log_duration_sd: their standard deviation.
-        concept_contrast: of the second map's activity, in squared scores.
-        gains: what makes cosines logits, by stage.
+        concept_contrast: of the action map's soft activity, in squared scores.
+        gains: the inverse temperatures of the softmax that turns cosines into probabilities, by stage.
         familiar: the familiarity below which an action may be none of those trained.
-        usual_log_errors: for each action, to what mean log(d²) of its postures from the map of postures a stranger who
-            does it may well come, d in metres over all joints of a standard body.
+        usual_log_errors: for each action, the mean log(d²) of its postures from the map of postures that a person not
+            trained on may well reach, d in metres over all joints of a standard body.
     """
 
     kind: Literal["pyramid"] = "pyramid"
@@ -71,145 +83,151 @@ class PyramidModel(Model):
 
     Attributes:
         first: the maps of posture, velocity and the acting arm.
-        stages: the discriminant axes on their pooled activities.
-        concepts: the map of actions.
-        layer3: one neuron per label on its activity.
+        stages: the discriminants on their pooled activities.
+        action_map: the second layer, a map of the discriminants' scores.
+        layer3: one neuron per action on the second layer's activity.
+        metadata: what is stored beside the weights.
     """
 
     first: FirstMaps
-    stages: Stages
-    concepts: Concepts
+    stages: StageDiscriminants
+    action_map: ActionMap
     layer3: SupervisedLayer
-    description: PyramidDescription
+    metadata: PyramidMetadata
 
     def __post_init__(self) -> None:
-        if problem := self._mismatch():
+        if problem := self._metadata_problem() or self._array_problem():
             raise ValueError(problem)
 
     @property
-    def about(self) -> Description:
-        """What it is."""
-        return self.description
-
-    @property
     def arrays(self) -> Arrays:
-        """All its weights, maps as component planes."""
+        """All weights by the names they are stored under, maps as component planes (rows, cols, dim)."""
         return {
             "postures": self.first.postures.planes,
             "velocities": self.first.velocities.planes,
             "arms": self.first.arms.planes,
             "axes": self.stages.axes,
             "offsets": self.stages.offsets,
-            "concepts": self.concepts.layout.planes,
-            "concept_mean": self.concepts.mean,
+            "concepts": self.action_map.som.planes,
+            "concept_mean": self.action_map.mean,
             "layer3": self.layer3.weights,
         }
 
     @classmethod
     def restored(cls, metadata: str, arrays: Arrays) -> "PyramidModel":
-        """Put together what `metadata` and `arrays` gave.
+        """Build the model of a file's metadata (JSON) and arrays.
 
         Raises:
             ValueError, KeyError: the parts are not there or do not fit together.
         """
-        about = PyramidDescription.model_validate_json(metadata)
-        layout = Som.of_planes(arrays["concepts"])
+        stored = PyramidMetadata.model_validate_json(metadata)
+        action_som = Som.of_planes(arrays["concepts"])
         postures, velocities, arms = (Som.of_planes(arrays[name]) for name in ("postures", "velocities", "arms"))
-        contrasts = about.posture_contrast, about.velocity_contrast, about.arm_contrast
-        durations = about.log_duration_mean, about.log_duration_sd
+        contrasts = stored.posture_contrast, stored.velocity_contrast, stored.arm_contrast
+        durations = stored.log_duration_mean, stored.log_duration_sd
         return cls(
-            FirstMaps(postures, velocities, arms, contrasts, (about.arm_shares[0], about.arm_shares[1])),
-            Stages(arrays["axes"], arrays["offsets"], tuple(about.fractions), *durations),
-            Concepts(layout, about.concept_contrast, arrays["concept_mean"]),
+            FirstMaps(postures, velocities, arms, contrasts, (stored.arm_shares[0], stored.arm_shares[1])),
+            StageDiscriminants(arrays["axes"], arrays["offsets"], tuple(stored.fractions), *durations),
+            ActionMap(action_som, stored.concept_contrast, arrays["concept_mean"]),
             SupervisedLayer(arrays["layer3"]),
-            about,
+            stored,
         )
 
     @cached_property
     def pyramid(self) -> Pyramid:
         """How activities are pooled over a segment."""
-        return Pyramid(tuple(self.description.levels), self.description.overlap)
+        return Pyramid(tuple(self.metadata.levels), self.metadata.overlap)
 
     def encoder(self) -> FrameEncoder:
-        """Begin to read an agent."""
+        """Return a new encoder, for one agent."""
         return FrameEncoder(self.first)
 
     def recognise(self, frames: Sequence[Frame], complete: bool) -> Recognition:
-        """Say which action a segment is.
+        """Recognise the action of a segment.
 
         Raises:
             ValueError: there is no frame.
         """
         if not frames:
             raise ValueError("no frame to recognise an action from")
-        codes: list[Code] = [frame.code for frame in frames]
-        weights = self.stages.weights((frames[-1].stamp_ns - frames[0].stamp_ns) / SECOND_NS, complete)
-        scores = self.scores(codes, weights)
-        cosines = self.layer3.cosines(self.concepts.activity(scores))
+        activities: list[FrameActivity] = [frame.activity for frame in frames]
+        stages = self.stages.weights((frames[-1].stamp_ns - frames[0].stamp_ns) / SECOND_NS, complete)
+        scores = self.scores(activities, stages)
+        cosines = self.layer3.cosines(self.action_map.activity(scores))
         winner = int(cosines.argmax())
-        gain = sum(weight * gain for weight, gain in zip(weights, self.description.gains, strict=True))
-        familiarity = self.familiarity(codes, scores)
+        inverse_temperature = sum(map(mul, stages, self.metadata.gains))
+        familiarity = self.familiarity(activities, scores)
         return Recognition(
             label=self.labels[winner],
-            confidence=_probability(cosines, winner, gain * seen_share(codes)),
+            confidence=_probability(cosines, winner, inverse_temperature * seen_share(activities)),
             activations=dict(zip(self.labels, cosines.tolist(), strict=True)),
-            part=most_moved_part(codes),
+            part=most_moved_part(activities),
             familiarity=familiarity,
-            unknown=complete and familiarity < self.description.familiar,
+            unknown=complete and familiarity < self.metadata.familiar,
         )
 
-    def trail(self, codes: Sequence[Code]) -> Trail:
-        """Return a segment's running sums, of the actor as seen or in a mirror."""
-        return trail_of(codes, self.reads_in_mirror(codes))
+    def prefix_sums(self, activities: Sequence[FrameActivity]) -> PrefixSums:
+        """Return a segment's prefix sums, of the actor as seen or mirrored."""
+        return segment_sums(activities, self.reads_in_mirror(activities))
 
-    def reads_in_mirror(self, codes: Sequence[Code]) -> bool:
+    def reads_in_mirror(self, activities: Sequence[FrameActivity]) -> bool:
         """Tell whether a segment is read as its mirror image, because the left arm acts."""
-        return self.description.mirrors and left_handed(codes)
+        return self.metadata.mirrors and left_handed(activities)
 
-    def winners(self, frames: Sequence[Frame]) -> NDArray[np.intp]:
-        """Return the posture map's winner at each frame, of the actor as seen or in a mirror, shape (n,)."""
-        codes: list[Code] = [frame.code for frame in frames]
-        side = int(self.reads_in_mirror(codes))
-        return np.array([code.winners[side] for code in codes], dtype=np.intp)
+    def winners(self, frames: Sequence[Frame]) -> Indices:
+        """Return the posture map's winner at each frame, of the actor as seen or mirrored, shape (n,)."""
+        activities: list[FrameActivity] = [frame.activity for frame in frames]
+        side = int(self.reads_in_mirror(activities))
+        return np.array([activity.winners[side] for activity in activities], dtype=np.intp)
 
-    def trace(self, frames: Sequence[Frame]) -> NDArray[np.float64]:
+    def trace(self, frames: Sequence[Frame]) -> Array:
         """Return row and column of the posture map's winners, repeats removed, shape (n, 2)."""
-        coordinates: NDArray[np.float64] = self.first.postures.coordinates
-        return coordinates[without_repeats(self.winners(frames))]
+        return self.first.postures.coordinates[without_repeats(self.winners(frames))]
 
     def maps(self, frames: Sequence[Frame]) -> Arrays:
-        """Return the mean activity of the first maps, relative to the most active unit's, and that of actions."""
-        codes: list[Code] = [frame.code for frame in frames]
-        scores = self.scores(codes, self.stages.weights(0.0, complete=True))
-        seen = self.trail(codes)
-        sums = seen.gained([len(seen)]).reshape(len(HEARD), -1)[: len(self.first.maps)]
-        heard = activity(self.concepts.layout.excess2(scores), self.concepts.contrast)
-        layers = zip(
-            ("postures", "velocities", "arms"), self.first.maps, sums / sums.max(axis=1, keepdims=True), strict=True
-        )
-        first = {name: own.reshape(som.rows, som.cols) for name, som, own in layers}
-        return first | {"actions": heard.reshape(self.concepts.layout.rows, self.concepts.layout.cols)}
+        """Return the activity of each map over a segment, by name, (rows, cols) each.
 
-    def familiarity(self, codes: Sequence[Code], scores: NDArray[np.float32]) -> float:
-        """Return how much a segment with these scores is like an action that was trained."""
-        log_error = mean_log_error(codes, self.reads_in_mirror(codes))
-        return familiarity_of(scores, log_error, self.description.usual_log_errors)
+        That of the first layer is its mean over the frames, relative to the most active unit's.
+        """
+        activities: list[FrameActivity] = [frame.activity for frame in frames]
+        scores = self.scores(activities, self.stages.weights(0.0, complete=True))
+        segment = self.prefix_sums(activities)
+        sums = segment.since_start([len(segment)]).reshape(len(CHANNELS), -1)[: len(self.first.maps)]
+        relative = sums / sums.max(axis=1, keepdims=True)
+        first = {
+            name: own.reshape(som.rows, som.cols)
+            for name, som, own in zip(("postures", "velocities", "arms"), self.first.maps, relative, strict=True)
+        }
+        action_som = self.action_map.som
+        active = soft_activity(action_som.excess2(scores), self.action_map.contrast)
+        return first | {"actions": active.reshape(action_som.rows, action_som.cols)}
 
-    def scores(self, codes: Sequence[Code], weights: Sequence[float]) -> NDArray[np.float32]:
-        """Return the actions' scores on the discriminant axes of the stages that the weights name."""
-        return self.stages.scores(self.pyramid.vector(self.trail(codes)), weights)
+    def familiarity(self, activities: Sequence[FrameActivity], scores: NDArray[np.float32]) -> float:
+        """Return how similar a segment with these scores (actions,) is to an action that was trained."""
+        log_error = mean_log_error(activities, self.reads_in_mirror(activities))
+        return familiarity_of(scores, log_error, self.metadata.usual_log_errors)
 
-    def _mismatch(self) -> str | None:
-        """Name the first thing about the layers that does not fit together."""
-        about, first, layout = self.description, self.first, self.concepts.layout
-        actions, stages, inputs = len(about.labels), len(about.fractions), self.pyramid.cells * first.units
-        if about.joint_order != list(JOINTS):
+    def scores(self, activities: Sequence[FrameActivity], stages: Sequence[float]) -> NDArray[np.float32]:
+        """Return the actions' scores on the discriminants, weighted by stage, shape (actions,)."""
+        return self.stages.scores(self.pyramid.vector(self.prefix_sums(activities)), stages)
+
+    def _metadata_problem(self) -> str | None:
+        """Name the first thing about the metadata that does not fit together."""
+        stored = self.metadata
+        actions, stages = len(stored.labels), len(stored.fractions)
+        if stored.joint_order != list(JOINTS):
             return "its joint order is not this version's"
-        if len({som.dtype for som in first.maps}) > 1:
+        if len({som.dtype for som in self.first.maps}) > 1:
             return "its maps are not of the same precision"
-        if len(set(about.labels)) < actions or len(about.gains) != stages or len(about.usual_log_errors) != actions:
+        if len(set(stored.labels)) < actions or len(stored.gains) != stages or len(stored.usual_log_errors) != actions:
             return "its labels or its stages do not fit together"
-        loose = (self.stages.axes, self.stages.offsets, self.concepts.mean)
+        return None
+
+    def _array_problem(self) -> str | None:
+        """Name the first of the arrays that does not fit the metadata or the other arrays."""
+        first, units = self.first, len(self.action_map.som.weights)
+        actions, stages = len(self.metadata.labels), len(self.metadata.fractions)
+        loose = (self.stages.axes, self.stages.offsets, self.action_map.mean)
         if not all(array.dtype == np.float32 and np.isfinite(array).all() for array in loose):
             return "its axes, their offsets or its mean are not finite single-precision numbers"
         shapes = {
@@ -217,11 +235,11 @@ class PyramidModel(Model):
             "map of postures": (first.postures.weights.shape[1:], (3 * len(JOINTS),)),
             "map of velocities": (first.velocities.weights.shape[1:], (3 * len(JOINTS),)),
             "map of arms": (first.arms.weights.shape[1:], (ARM_INPUTS,)),
-            "discriminant axes": (self.stages.axes.shape, (stages, inputs, actions)),
+            "discriminant axes": (self.stages.axes.shape, (stages, self.pyramid.cells * first.units, actions)),
             "offsets of them": (self.stages.offsets.shape, (stages, actions)),
-            "map of actions": (layout.weights.shape[1:], (actions,)),
-            "its mean": (self.concepts.mean.shape, (len(layout.weights),)),
-            "third layer": (self.layer3.weights.shape, (actions, len(layout.weights))),
+            "map of actions": (self.action_map.som.weights.shape[1:], (actions,)),
+            "its mean": (self.action_map.mean.shape, (units,)),
+            "third layer": (self.layer3.weights.shape, (actions, units)),
         }
         wrong = (
             f"its {name} is of shape {has}, not {should}" for name, (has, should) in shapes.items() if has != should
@@ -229,6 +247,6 @@ class PyramidModel(Model):
         return next(wrong, None)
 
 
-def _probability(cosines: Floats, winner: int, gain: float) -> float:
-    """Return the winner's share of the softmax of gain × cosines."""
-    return float(1.0 / np.exp(gain * (cosines - cosines[winner])).sum())
+def _probability(cosines: Floats, winner: int, inverse_temperature: float) -> float:
+    """Return the winner's share of softmax(inverse temperature × cosines), for cosines (actions,)."""
+    return float(1.0 / np.exp(inverse_temperature * (cosines - cosines[winner])).sum())

@@ -8,10 +8,12 @@ from collections import OrderedDict, deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
 from actum.messages import Hand, Posture, Segment
 from actum.node import SECOND_NS, Counters, Tick
 from actum.stamps import Order
-from som_classifier.streams import LONGEST_NS, SKEW_NS, Encode, Frame, Streams
+from som_classifier.frames import Frame
+from som_classifier.streams import Encode, Streams
 
 REMEMBERED = 10_000
 LATE_FOR = 16
@@ -46,7 +48,7 @@ class OpenSegment:
 
 
 @dataclass(frozen=True)
-class Closed:
+class ClosedSegment:
     """An answered segment: its frames, or the reason for which it is rejected."""
 
     segment_id: str
@@ -82,7 +84,7 @@ class Segmenter:
         """Encode every agent's frames by an encoder of its own, those remembered and those to come."""
         self._streams.use(encoders)
 
-    def posture(self, posture: Posture) -> tuple[Frame | None, list[Closed]]:
+    def posture(self, posture: Posture) -> tuple[Frame | None, list[ClosedSegment]]:
         """Take the next posture; return its frame, None if it is stale, and the segments it closes."""
         closed = self._restart(posture.session_id)
         order, frame = self._streams.add(posture)
@@ -100,23 +102,23 @@ class Segmenter:
         self._begin_or_go_on(posture.stamp_ns)
         return frame, closed + self._settle()
 
-    def mark(self, mark: Segment) -> list[Closed]:
+    def mark(self, mark: Segment) -> list[ClosedSegment]:
         """Take a start or end mark; return the segments it closes."""
         answered = self._answered.get(mark.segment_id)
         if answered is not None:
             return self._repeated(mark, answered)
         return self._start(mark) if mark.kind == "start" else self._end(mark)
 
-    def tick(self, tick: Tick) -> list[Closed]:
+    def tick(self, tick: Tick) -> list[ClosedSegment]:
         """Give up waiting: two seconds for the frames up to an end, a longest segment for an end that may come."""
         closed = []
         for segment in list(self._open.values()):
             if segment.waiting_since_ns is None:
                 segment.waiting_since_ns = tick.monotonic_ns
             waited_ns = tick.monotonic_ns - segment.waiting_since_ns
-            if segment.end_ns is None and waited_ns > LONGEST_NS + SKEW_NS:
+            if segment.end_ns is None and waited_ns > MAX_SEGMENT_NS + MAX_SKEW_NS:
                 closed.append(self._reject(segment, self._why_no_end(segment)))
-            elif segment.end_ns is not None and waited_ns > SKEW_NS:
+            elif segment.end_ns is not None and waited_ns > MAX_SKEW_NS:
                 closed.append(self._close(segment))
         return closed
 
@@ -153,7 +155,7 @@ class Segmenter:
             if segment.end_ns is None and segment.start_ns <= stamp_ns:
                 segment.waiting_since_ns = None
 
-    def _settle(self) -> list[Closed]:
+    def _settle(self) -> list[ClosedSegment]:
         """Name the agents that can be named, and close what has been reached or overrun."""
         closed = []
         for segment in list(self._open.values()):
@@ -170,7 +172,7 @@ class Segmenter:
         newest_ns = self._streams.newest_ns
         if segment.start_ns is None or newest_ns is None:
             return False
-        return newest_ns > segment.start_ns + LONGEST_NS + SKEW_NS
+        return newest_ns > segment.start_ns + MAX_SEGMENT_NS + MAX_SKEW_NS
 
     def _nearest(self, segment: OpenSegment) -> int | None:
         """Name the agent nearest to the camera at the first valid frame from the start on, once that is certain."""
@@ -183,10 +185,10 @@ class Segmenter:
     def _first(self, segment: OpenSegment) -> tuple[int, int] | None:
         if segment.start_ns is None:
             return None
-        end_ns = segment.start_ns + LONGEST_NS if segment.end_ns is None else segment.end_ns
+        end_ns = segment.start_ns + MAX_SEGMENT_NS if segment.end_ns is None else segment.end_ns
         return self._streams.first(segment.start_ns, end_ns)
 
-    def _start(self, mark: Segment) -> list[Closed]:
+    def _start(self, mark: Segment) -> list[ClosedSegment]:
         if mark.segment_id in self._open:
             self._counters.reject("duplicate_mark", f"second start of {mark.segment_id!r}")
             return []
@@ -194,7 +196,7 @@ class Segmenter:
         self._open[mark.segment_id] = OpenSegment(mark.segment_id, start_ns, mark.agent, mark.hand, mark.label)
         return self._settle()
 
-    def _end(self, mark: Segment) -> list[Closed]:
+    def _end(self, mark: Segment) -> list[ClosedSegment]:
         segment = self._open.get(mark.segment_id)
         if segment is None:
             return [self._end_without_start(mark)]
@@ -206,17 +208,17 @@ class Segmenter:
         segment.nearest = segment.waiting_since_ns = None
         if segment.start_ns is not None and segment.end_ns < segment.start_ns:
             return [self._reject(segment, "end before start")]
-        if segment.start_ns is not None and segment.end_ns - segment.start_ns > LONGEST_NS:
+        if segment.start_ns is not None and segment.end_ns - segment.start_ns > MAX_SEGMENT_NS:
             return [self._reject(segment, NO_END)]
         return self._settle()
 
-    def _end_without_start(self, mark: Segment) -> Closed:
+    def _end_without_start(self, mark: Segment) -> ClosedSegment:
         end_ns = mark.stamp_ns if mark.stamp_ns is not None else self._streams.newest_ns or 0
         segment = OpenSegment(mark.segment_id, end_ns, mark.agent, mark.hand, mark.label, end_ns)
         self._remember(mark.segment_id, _Answered(None, end_ns))
         return _rejected(segment, "end without start")
 
-    def _repeated(self, mark: Segment, answered: _Answered) -> list[Closed]:
+    def _repeated(self, mark: Segment, answered: _Answered) -> list[ClosedSegment]:
         """A mark of an answered segment: the same again, the end that came too late, or the id used anew."""
         is_start = mark.kind == "start"
         known_ns = answered.start_ns if is_start else answered.end_ns
@@ -235,7 +237,7 @@ class Segmenter:
             return [_rejected(segment, "segment_id reused")]
         return []
 
-    def _close(self, segment: OpenSegment) -> Closed:
+    def _close(self, segment: OpenSegment) -> ClosedSegment:
         """Answer a segment that has its end, with the frames that are there."""
         assert segment.end_ns is not None
         start_ns = segment.start_ns if segment.start_ns is not None else 0
@@ -245,19 +247,19 @@ class Segmenter:
         if stream is None or agent is None:
             why = self._streams.why_not(start_ns, segment.end_ns) if agent is None else None
             return self._reject(segment, _because("no person" if why is None else "no person with a usable frame", why))
-        if segment.end_ns - start_ns > LONGEST_NS:
+        if segment.end_ns - start_ns > MAX_SEGMENT_NS:
             return self._reject(segment, NO_END)
         if stream.newest_ns < segment.end_ns:
             self._late.append((agent, range(start_ns, segment.end_ns + 1)))
         frames = stream.between(start_ns, segment.end_ns)
         missed = sum(frame.missed for frame in frames) + stream.missed_after(segment.end_ns)
         self._forget(segment)
-        return Closed(
+        return ClosedSegment(
             segment.segment_id, start_ns, segment.end_ns, agent, segment.hand, segment.label, frames, missed,
             _why_unusable(frames),
         )  # fmt: skip
 
-    def _reject(self, segment: OpenSegment, reason: str) -> Closed:
+    def _reject(self, segment: OpenSegment, reason: str) -> ClosedSegment:
         self._forget(segment)
         return _rejected(segment, reason)
 
@@ -270,7 +272,7 @@ class Segmenter:
         while len(self._answered) > REMEMBERED:
             self._answered.popitem(last=False)
 
-    def _restart(self, session_id: str) -> list[Closed]:
+    def _restart(self, session_id: str) -> list[ClosedSegment]:
         if session_id == self._session:
             return []
         first, self._session = self._session is None, session_id
@@ -282,17 +284,17 @@ class Segmenter:
         self._late.clear()
         return closed
 
-    def _close_all(self, reason: str) -> list[Closed]:
+    def _close_all(self, reason: str) -> list[ClosedSegment]:
         return [
             self._close(segment) if segment.end_ns is not None else self._reject(segment, reason)
             for segment in list(self._open.values())
         ]
 
 
-def _rejected(segment: OpenSegment, reason: str) -> Closed:
+def _rejected(segment: OpenSegment, reason: str) -> ClosedSegment:
     start_ns = segment.start_ns if segment.start_ns is not None else 0
     end_ns = segment.end_ns if segment.end_ns is not None else start_ns
-    return Closed(
+    return ClosedSegment(
         segment.segment_id, start_ns, end_ns, segment.whose or 0, segment.hand, segment.label, reason=reason
     )  # fmt: skip
 

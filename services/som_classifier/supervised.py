@@ -11,20 +11,6 @@ Array = NDArray[np.float64]
 Floats = NDArray[Any]
 
 
-def activity(excess2: Floats, contrast: float) -> Floats:
-    """Return the second map's activity y = exp(−(d² − d²_min) / contrast), 1 at the winner.
-
-    The paper's exp(−s / 10⁶) is 1 everywhere in floating point at any usual scale of the input, so the contrast
-    is set relative to the distances between training vectors and the winner's own distance is taken off.
-
-    Args:
-        excess2: d² − d²_min of each neuron.
-        contrast: in the same unit as d².
-    """
-    activities: Floats = np.exp(excess2 / -contrast)
-    return activities
-
-
 @dataclass(frozen=True, eq=False)
 class SupervisedLayer:
     """Neurons that answer with the cosine between the input and their weights.

@@ -113,6 +113,12 @@ def quaternion_xyzw(rotation: Array) -> list[float]:
     return listed
 
 
+def angle_between_rad(one: Array, other: Array) -> float:
+    """Return the angle between two rotations (3, 3), or between those of two transforms (4, 4)."""
+    cosine = (float((one[:3, :3] * other[:3, :3]).sum()) - 1) / 2
+    return math.acos(min(1.0, max(-1.0, cosine)))
+
+
 def rotated_xyzw(b_from_a: Array, quaternion_xyzw_a: Array) -> Array:
     """Turn an orientation (4,), a unit quaternion, from frame a to frame b by a rigid transform (4, 4)."""
     x, y, z, w = quaternion_xyzw(b_from_a[:3, :3])

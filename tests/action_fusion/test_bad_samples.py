@@ -6,8 +6,8 @@ import pytest
 
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
-from actum.messages import Event, Message
 from actum.skeletons import INDEX
+from fused import events_of
 from scenes import Scene, acting_on, action, still
 
 MIRRORED = [-1.0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
@@ -19,10 +19,6 @@ TOUCH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.45))
 @pytest.fixture
 def node() -> ActionFusion:
     return ActionFusion(Settings())
-
-
-def told(node: ActionFusion, *messages: Message) -> list[Event]:
-    return [event for message in messages for event in node.handle(message) if isinstance(event, Event)]
 
 
 @pytest.mark.parametrize(
@@ -40,7 +36,7 @@ def told(node: ActionFusion, *messages: Message) -> list[Event]:
 def test_a_posture_that_is_valid_only_in_name_is_counted(node, fields) -> None:
     bad = [posture.model_copy(update=fields) for posture in TOUCH.postures(end_s=1.5)]
     good = TOUCH.postures(start_s=1.5)
-    (event,) = told(node, *bad, *good, *TOUCH.sightings(), action("touch"))
+    (event,) = events_of(node, *bad, *good, *TOUCH.sightings(), action("touch"))
     assert node.counters.rejects == {"bad_posture": len(bad)}
     assert event.object is not None and event.object.id == 1
 
@@ -53,7 +49,7 @@ def test_a_hand_that_is_never_known_was_near_nothing(node, joint) -> None:
         return posture.model_copy(update={"joints_m": joints})
 
     postures = [handless(posture) for posture in TOUCH.postures()]
-    (event,) = told(node, *postures, *TOUCH.sightings(), action("touch"))
+    (event,) = events_of(node, *postures, *TOUCH.sightings(), action("touch"))
     assert (event.object, event.distances_m, event.objects_present) == (None, {}, [1])
 
 
@@ -64,27 +60,27 @@ def test_a_hand_lost_in_some_frames_is_judged_by_the_others(node, label) -> None
         joints = list(postures[i].joints_m or [])
         joints[INDEX["right_hand"]] = None
         postures[i] = postures[i].model_copy(update={"joints_m": joints})
-    (event,) = told(node, *postures, *TOUCH.sightings(), action(label))
+    (event,) = events_of(node, *postures, *TOUCH.sightings(), action(label))
     assert event.object is not None and event.object.id == 1
 
 
 @pytest.mark.parametrize("far_m", [2.0**31, 1e308, -1e200])
 def test_an_absurdly_far_object_is_counted_and_left_out(node, far_m) -> None:
     scene = Scene(right_hand=TOUCH.right_hand, objects={1: still((0.1, 0.0, 0.45)), 2: still((far_m, 0.0, 0.0))})
-    (event,) = told(node, *scene.postures(), *scene.sightings(), action("touch"))
+    (event,) = events_of(node, *scene.postures(), *scene.sightings(), action("touch"))
     assert event.objects_present == [1]
     assert node.counters.rejects == {"bad_object": len(scene.sightings())}
 
 
 def test_an_actor_who_lies_down_has_no_forward(node) -> None:
     lying = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65), lean=lambda _: math.pi / 2)
-    (event,) = told(node, *lying.postures(), *lying.sightings(), action("push"))
+    (event,) = events_of(node, *lying.postures(), *lying.sightings(), action("push"))
     assert event.object is not None
     assert (event.motion, event.result, event.sentence) == (None, None, 'push object 1 "cup", 0.94')
 
 
 def test_a_crowd_takes_no_more_than_so_many_streams(node) -> None:
     for agent in range(1, 200):
-        told(node, TOUCH.posture(agent / 100, agent=agent))
-    told(node, *TOUCH.postures(start_s=0.0), *TOUCH.sightings())
-    assert len(told(node, action("touch"))) == 1
+        events_of(node, TOUCH.posture(agent / 100, agent=agent))
+    events_of(node, *TOUCH.postures(start_s=0.0), *TOUCH.sightings())
+    assert len(events_of(node, action("touch"))) == 1

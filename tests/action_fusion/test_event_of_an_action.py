@@ -9,22 +9,13 @@ from hypothesis import strategies as st
 
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
-from actum.messages import Action, Event, Message
+from actum.messages import Event
 from actum.node import Tick
+from fused import event_in, event_of
 from scenes import ELBOW_RIGHT, HEAD, NAMES, REST_RIGHT, SHOULDER_RIGHT, Scene, Stance, acting_on, action, moving, still
 
 CUP = (0.1, 0.0, 0.45)
 OTHERS = {2: (-0.25, 0.0, 0.5), 3: (0.45, 0.0, 0.5)}
-
-
-def event_of(scene: Scene, act: Action, **chosen: object) -> Event:
-    """Let fusion hear the whole scene, then the action."""
-    node = ActionFusion(Settings(**chosen))
-    messages: list[Message] = [*scene.postures(), *scene.sightings(), act]
-    (event,) = [event for message in messages for event in node.handle(message)]
-    assert isinstance(event, Event)
-    assert not node.counters.rejects
-    return event
 
 
 @pytest.mark.parametrize(
@@ -39,8 +30,8 @@ def event_of(scene: Scene, act: Action, **chosen: object) -> Event:
         ("touch", (0.11, 0.01, 0.45), "unmoved"),
     ],
 )
-def test_the_carried_object_is_named_with_what_became_of_it(label, then, result) -> None:
-    event = event_of(acting_on(CUP, then, others=OTHERS), action(label))
+def test_the_object_in_the_hand_is_named_with_what_became_of_it(label, then, result) -> None:
+    event = event_in(acting_on(CUP, then, others=OTHERS), action(label))
     assert event.object is not None and (event.object.id, event.object.name) == (1, "cup")
     assert event.motion is not None
     assert np.allclose(event.motion.displacement_m, np.subtract(then, CUP), atol=1e-9)
@@ -49,23 +40,23 @@ def test_the_carried_object_is_named_with_what_became_of_it(label, then, result)
 
 
 def test_distances_are_the_smallest_from_hand_to_object() -> None:
-    event = event_of(acting_on(CUP, (0.1, 0.0, 0.65), hand_above_m=0.08, others={3: (0.1, 0.0, 0.85)}), action("push"))
+    event = event_in(acting_on(CUP, (0.1, 0.0, 0.65), hand_above_m=0.08, others={3: (0.1, 0.0, 0.85)}), action("push"))
     assert event.distances_m == pytest.approx({"1": 0.08, "3": np.hypot(0.2, 0.08)})
     assert event.object is not None and event.object.distance_m == event.distances_m["1"]
     assert event.objects_present == [1, 3]
 
 
-def test_what_the_action_says_is_carried_over() -> None:
+def test_what_the_action_says_is_copied() -> None:
     act = action("push", activations={"push": 0.94, "pull": 0.1}, frames=61, missed=2)
-    event = event_of(acting_on(CUP, CUP), act)
+    event = event_in(acting_on(CUP, CUP), act)
     kept = "stamp_ns sensor agent segment_id start_ns end_ns action confidence activations frames"
     assert {name: getattr(event, name) for name in kept.split()} == {name: getattr(act, name) for name in kept.split()}
     assert (event.valid, event.missed, event.held) == (True, 2, None)
 
 
-def test_an_object_covered_by_the_hand_is_followed_between_its_sightings() -> None:
+def test_an_object_occluded_by_the_hand_is_known_between_its_sightings() -> None:
     covered = acting_on(CUP, (0.1, 0.0, 0.65), others=OTHERS, hidden=lambda number, t: number == 1 and 0.7 < t < 1.7)
-    event = event_of(covered, action("push"))
+    event = event_in(covered, action("push"))
     assert event.object is not None and event.object.id == 1
     assert event.result == "0.20 m away"
     assert event.objects_present == [1, 2, 3]
@@ -73,20 +64,20 @@ def test_an_object_covered_by_the_hand_is_followed_between_its_sightings() -> No
 
 def test_an_object_only_seen_long_before_the_segment_is_not_present() -> None:
     scene = acting_on(CUP, CUP, others=OTHERS, hidden=lambda number, t: number == 2 and t > -0.95)
-    assert event_of(scene, action("touch")).objects_present == [1, 3]
+    assert event_in(scene, action("touch")).objects_present == [1, 3]
 
 
 def test_nothing_within_reach_and_nothing_moved_is_a_pantomime() -> None:
     far = {number: (0.0, 0.0, 1.5 + number) for number in (1, 2)}
     scene = Scene(right_hand=acting_on(CUP, (0.1, 0.0, 0.65)).right_hand, objects={k: still(v) for k, v in far.items()})
-    event = event_of(scene, action("push"))
+    event = event_in(scene, action("push"))
     assert (event.object, event.motion, event.result) == (None, None, None)
     assert (event.objects_present, set(event.distances_m)) == ([1, 2], {"1", "2"})
     assert event.sentence == "push, no object within reach, 0.94"
 
 
 def test_without_objects_the_sentence_is_the_action_alone() -> None:
-    event = event_of(Scene(), action("high arm wave"))
+    event = event_in(Scene(), action("high arm wave"))
     assert (event.object, event.distances_m, event.objects_present) == (None, {}, [])
     assert event.sentence == "high arm wave, 0.94"
 
@@ -103,13 +94,13 @@ def test_without_objects_the_sentence_is_the_action_alone() -> None:
 )
 def test_the_hand_is_the_marked_one_or_the_moving_arms_or_the_nearer(fields, hand, chosen) -> None:
     scene = Scene(objects={2: still((-0.2, 0.0, 0.3)), 3: still((0.2, 0.02, 0.2))})
-    event = event_of(scene, action("touch", **fields))
+    event = event_in(scene, action("touch", **fields))
     assert event.hand == hand
     assert event.object is not None and event.object.id == chosen
 
 
 def test_no_hand_is_named_where_either_may_have_acted_on_nothing() -> None:
-    assert event_of(Scene(), action("bow", part="body")).hand is None
+    assert event_in(Scene(), action("bow", part="body")).hand is None
 
 
 def pointing_at(target: tuple[float, float, float], share: float) -> Scene:
@@ -127,7 +118,7 @@ def pointing_at(target: tuple[float, float, float], share: float) -> Scene:
 @pytest.mark.parametrize(("target", "pointed_at"), [((-0.3, 0.0, 0.9), 1), ((0.1, 0.0, 0.9), 2), ((0.5, 0.0, 0.9), 3)])
 @pytest.mark.parametrize("share", [0.4, 0.7])
 def test_pointing_is_resolved_by_the_line_from_the_head_through_the_fingertip(target, pointed_at, share) -> None:
-    event = event_of(pointing_at(target, share), action("point"))
+    event = event_in(pointing_at(target, share), action("point"))
     assert event.object is not None and event.object.id == pointed_at
     assert event.object.distance_m == event.distances_m[str(pointed_at)]
     assert event.sentence == f'point object {pointed_at} "{NAMES[pointed_at]}", unmoved, 0.94'
@@ -141,7 +132,7 @@ def test_pointing_is_resolved_by_the_ray_of_the_arm(target, pointed_at) -> None:
         "right_hand": moving((0.0, REST_RIGHT), (1.0, hand)),
         "right_elbow": moving((0.0, ELBOW_RIGHT), (1.0, elbow)),
     }
-    event = event_of(Scene(**arm, objects=pointing_at(target, 0.5).objects), action("point"))
+    event = event_in(Scene(**arm, objects=pointing_at(target, 0.5).objects), action("point"))
     assert event.object is not None and event.object.id == pointed_at
     assert event.pointing is not None and event.pointing.angle_deg == pytest.approx(0.0, abs=1e-5)
 
@@ -150,25 +141,25 @@ def test_pointing_may_choose_an_object_that_is_not_the_nearest() -> None:
     behind = (0.1, 0.0, 1.6)
     scene = pointing_at(behind, 0.4)
     nearer = {**scene.objects, 1: still((0.1, -0.1, 0.5)), 2: still(behind)}
-    event = event_of(Scene(right_hand=scene.right_hand, objects=nearer), action("point"))
+    event = event_in(Scene(right_hand=scene.right_hand, objects=nearer), action("point"))
     assert event.distances_m["1"] < event.distances_m["2"]
     assert event.object is not None and event.object.id == 2
 
 
 def test_the_pointing_hand_is_named_where_it_may_have_been_either() -> None:
-    event = event_of(pointing_at((0.1, 0.0, 0.9), 0.6), action("point", part="body"))
+    event = event_in(pointing_at((0.1, 0.0, 0.9), 0.6), action("point", part="body"))
     assert event.hand == "right"
 
 
 def test_pointing_at_the_ceiling_is_at_no_object() -> None:
-    event = event_of(pointing_at((0.1, 2.0, 0.5), 0.5), action("point"))
+    event = event_in(pointing_at((0.1, 2.0, 0.5), 0.5), action("point"))
     assert event.object is None
     assert event.sentence == "point, no object along the arm, 0.94"
 
 
 def test_a_leaning_torso_moves_no_object() -> None:
     leaning = acting_on(CUP, CUP, others=OTHERS, lean=lambda t: 0.5 * np.clip(t, 0.0, 1.0))
-    event = event_of(leaning, action("touch"))
+    event = event_in(leaning, action("touch"))
     assert event.motion is not None
     assert np.allclose(event.motion.displacement_m, 0.0, atol=1e-9)
     assert event.result == "unmoved"
@@ -179,10 +170,7 @@ def test_up_is_against_gravity_where_the_camera_is_not_level() -> None:
     lifted, tilt = acting_on(CUP, (0.1, 0.2, 0.45)), np.radians(20)
     up = [0.0, -float(np.cos(tilt)), float(np.sin(tilt))]
     told = [posture.model_copy(update={"up_in_camera": up}) for posture in lifted.postures()]
-    node = ActionFusion(Settings())
-    messages: list[Message] = [*told, *lifted.sightings(), action("lift")]
-    (event,) = [event for message in messages for event in node.handle(message)]
-    assert isinstance(event, Event)
+    event = event_of(*told, *lifted.sightings(), action("lift"))
     assert event.motion is not None
     # The true rise, seen by a camera that believes to look 20 degrees upwards at an actor who faces it.
     assert np.allclose(event.motion.displacement_m, [0.0, 0.2 * np.cos(tilt), 0.2 * np.sin(tilt)], atol=1e-9)
@@ -191,7 +179,7 @@ def test_up_is_against_gravity_where_the_camera_is_not_level() -> None:
 @cache
 def pushed_from(stance: Stance) -> Event:
     bowed = acting_on(CUP, (0.15, 0.05, 0.65), others=OTHERS, lean=lambda _: 0.3, stance=stance)
-    return event_of(bowed, action("push"))
+    return event_in(bowed, action("push"))
 
 
 @settings(max_examples=25)
@@ -207,23 +195,19 @@ def test_where_the_actor_stands_and_faces_changes_nothing(x_m, z_m, heading_rad)
 def test_postures_lost_on_the_way_to_fusion_are_added_to_the_missed() -> None:
     scene = acting_on(CUP, CUP)
     inside = [posture for posture in scene.postures() if 0.5 < (posture.stamp_ns - action("x").start_ns) / 1e9 < 0.65]
-    node = ActionFusion(Settings())
     kept = [posture for posture in scene.postures() if posture not in inside]
-    messages: list[Message] = [*kept, *scene.sightings(), action("touch", missed=2)]
-    (event,) = [event for message in messages for event in node.handle(message)]
+    event = event_of(*kept, *scene.sightings(), action("touch", missed=2))
     assert len(inside) > 0
-    assert isinstance(event, Event) and event.missed == 2 + len(inside)
+    assert event.missed == 2 + len(inside)
 
 
 def test_numbers_that_start_anew_are_no_gap() -> None:
     scene = acting_on(CUP, CUP)
-    node = ActionFusion(Settings())
     renumbered = [
         posture.model_copy(update={"seq": i if i < 50 else i - 50}) for i, posture in enumerate(scene.postures())
     ]
-    messages: list[Message] = [*renumbered, *scene.sightings(), action("touch")]
-    (event,) = [event for message in messages for event in node.handle(message)]
-    assert isinstance(event, Event) and event.missed == 0
+    event = event_of(*renumbered, *scene.sightings(), action("touch"))
+    assert event.missed == 0
 
 
 def test_it_has_nothing_to_say_to_ticks_and_partial_actions() -> None:
@@ -233,7 +217,7 @@ def test_it_has_nothing_to_say_to_ticks_and_partial_actions() -> None:
 
 
 def test_pointing_tells_its_angle_and_its_margin_over_the_runner_up() -> None:
-    event = event_of(pointing_at((0.1, 0.0, 0.9), 0.5), action("point"))
+    event = event_in(pointing_at((0.1, 0.0, 0.9), 0.5), action("point"))
     assert event.pointing is not None and event.pointing.margin_deg is not None
     assert event.pointing.angle_deg == pytest.approx(0.0, abs=1e-5)
     sights = [np.subtract(place, HEAD) for place in ((0.1, 0.0, 0.9), (0.5, 0.0, 0.9), (-0.3, 0.0, 0.9))]
@@ -243,7 +227,7 @@ def test_pointing_tells_its_angle_and_its_margin_over_the_runner_up() -> None:
 
 
 def test_pointing_between_two_objects_names_both() -> None:
-    event = event_of(pointing_at((-0.1, 0.0, 0.9), 0.5), action("point"))
+    event = event_in(pointing_at((-0.1, 0.0, 0.9), 0.5), action("point"))
     assert event.object is not None
     assert {candidate.id for candidate in event.candidates} == {1, 2}
     assert event.candidates[0].id == event.object.id
@@ -252,5 +236,5 @@ def test_pointing_between_two_objects_names_both() -> None:
 
 def test_with_one_object_there_is_no_margin() -> None:
     scene = pointing_at((0.1, 0.0, 0.9), 0.5)
-    event = event_of(Scene(right_hand=scene.right_hand, objects={2: scene.objects[2]}), action("point"))
+    event = event_in(Scene(right_hand=scene.right_hand, objects={2: scene.objects[2]}), action("point"))
     assert event.pointing is not None and event.pointing.margin_deg is None

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from action_fusion.proximity import Actor, pointing_angle, pointing_hand
+from action_fusion.actors import Actor
+from action_fusion.pointing_ray import fingertip_m, pointing_angle, pointing_side
 from actum.skeletons import INDEX
 
 
@@ -11,13 +12,16 @@ def still_actor(frames: int, **joints: tuple[float, float, float]) -> Actor:
     postures = np.full((frames, 15, 3), np.nan)
     for name, place in joints.items():
         postures[:, INDEX[name]] = place
-    return Actor(np.arange(frames, dtype=float), np.tile(np.eye(3), (frames, 1, 1)), np.zeros((frames, 3)), postures)
+    ego_from_camera, up = np.tile(np.eye(4), (frames, 1, 1)), np.tile([0.0, -1.0, 0.0], (frames, 1))
+    return Actor(
+        np.arange(frames, dtype=float), ego_from_camera, postures, np.zeros(frames), up, np.ones(frames, dtype=bool)
+    )
 
 
 def test_the_fingertip_is_a_decimetre_beyond_the_hand_along_the_forearm() -> None:
     actor = still_actor(2, left_elbow=(0.2, 0.0, 0.1), left_hand=(0.2, 0.3, 0.5))
-    assert np.allclose(actor.fingertip("left"), (0.2, 0.3 + 0.06, 0.5 + 0.08))
-    assert np.isnan(actor.fingertip("right")).all()
+    assert np.allclose(fingertip_m(actor, "left"), (0.2, 0.3 + 0.06, 0.5 + 0.08))
+    assert np.isnan(fingertip_m(actor, "right")).all()
 
 
 def test_the_angle_is_between_the_lines_from_the_head() -> None:
@@ -41,10 +45,10 @@ def test_the_hand_that_points_is_the_one_furthest_from_the_body() -> None:
     actor = still_actor(
         6, head=head, left_elbow=(0.2, 0.3, 0.3), left_hand=out, right_elbow=(-0.25, 0.3, 0.0), right_hand=hanging
     )
-    assert pointing_hand(actor, ("right", "left")) == "left"
-    assert pointing_hand(actor, ("right",)) == "right"
+    assert pointing_side(actor, ("right", "left")) == "left"
+    assert pointing_side(actor, ("right",)) == "right"
 
 
 def test_a_hand_that_is_never_known_does_not_point() -> None:
     actor = still_actor(4, head=(0.0, 0.75, 0.0), left_elbow=(0.2, 0.3, 0.0), left_hand=(0.2, 0.0, 0.0))
-    assert pointing_hand(actor, ("right", "left")) == "left"
+    assert pointing_side(actor, ("right", "left")) == "left"

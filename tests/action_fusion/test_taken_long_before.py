@@ -2,8 +2,7 @@
 
 import pytest
 
-from action_fusion.node import ActionFusion
-from action_fusion.settings import Settings
+import fused
 from actum.messages import Event, Message
 from scenes import REST_LEFT, REST_RIGHT, Path, Place, Scene, action, at, moving, still
 
@@ -14,12 +13,9 @@ ABOVE_CUP: Place = (0.1, 0.12, 0.45)
 
 def event_of(scene: Scene, since_s: float = -8.0, without: tuple[float, float] = (0.0, 0.0)) -> Event:
     """Answer a segment of which the streams begin long before; nothing comes `without`, from one time to another."""
-    node = ActionFusion(Settings())
     streams: list[Message] = [*scene.postures(start_s=since_s), *scene.sightings(start_s=since_s)]
     heard = [m for m in streams if not at(without[0]) < (m.stamp_ns or 0) < at(without[1])]
-    (event,) = [event for message in (*heard, action("act")) for event in node.handle(message)]
-    assert isinstance(event, Event)
-    return event
+    return fused.event_of(*heard, action("act"))
 
 
 def over(path: Path) -> Path:

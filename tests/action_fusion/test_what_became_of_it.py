@@ -1,14 +1,13 @@
-"""The outcome comes from the object's own track, or from the hand that covers it; it may contradict the action."""
+"""The outcome comes from the object's own track, or from the hand that occludes it; it may contradict the action."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+import fused
 from action_fusion.displacement import outcome
-from action_fusion.node import ActionFusion
-from action_fusion.settings import Settings
-from actum.messages import Event, Message
+from actum.messages import Event
 from scenes import Place, Scene, Stance, acting_on, action, moving, still
 
 CUP: Place = (0.1, 0.0, 0.45)
@@ -16,12 +15,8 @@ OTHERS = {2: (-0.25, 0.0, 0.5), 3: (0.45, 0.0, 0.5)}
 
 
 def event_of(scene: Scene, label: str, frame: str = "egocentric", **chosen: object) -> Event:
-    node = ActionFusion(Settings(**chosen))
     postures = [posture.model_copy(update={"frame": frame}) for posture in scene.postures()]
-    messages: list[Message] = [*postures, *scene.sightings(), action(label)]
-    (event,) = [event for message in messages for event in node.handle(message)]
-    assert isinstance(event, Event)
-    return event
+    return fused.event_of(*postures, *scene.sightings(), action(label), **chosen)
 
 
 @pytest.mark.parametrize(
@@ -66,7 +61,7 @@ def test_without_a_body_away_and_towards_mean_nothing() -> None:
 
 @pytest.mark.parametrize("until_s", [9.0, 1.9])
 @pytest.mark.parametrize("then", [(0.1, 0.18, 0.45), (0.1, 0.0, 0.66)])
-def test_a_covered_object_goes_with_the_hand_until_it_is_seen_again(then, until_s) -> None:
+def test_an_occluded_object_goes_with_the_hand_until_it_is_seen_again(then, until_s) -> None:
     covered = acting_on(CUP, then, others=OTHERS, hidden=lambda number, t: number == 1 and 0.75 < t < until_s)
     event = event_of(covered, "move")
     assert event.object is not None and event.motion is not None
@@ -74,14 +69,14 @@ def test_a_covered_object_goes_with_the_hand_until_it_is_seen_again(then, until_
     assert np.allclose(event.motion.displacement_m, np.subtract(then, CUP), atol=0.02)
 
 
-def test_the_plain_measure_takes_what_was_seen_alone() -> None:
+def test_the_plain_measure_takes_sightings_alone() -> None:
     covered = acting_on(CUP, (0.1, 0.18, 0.45), hidden=lambda number, t: number == 1 and t > 0.75)
     event = event_of(covered, "lift", measure="proximity")
     assert event.object is not None
     assert (event.object.carried, event.outcome) == (False, "unmoved")
 
 
-def test_an_object_covered_by_a_hand_that_moves_another_stays() -> None:
+def test_an_object_occluded_by_a_hand_that_moves_another_stays() -> None:
     covered = acting_on(
         CUP, (0.1, 0.0, 0.66), others={2: (0.2, 0.0, 0.45)}, hidden=lambda number, t: number == 2 and t > 0.7
     )
@@ -101,7 +96,7 @@ def test_an_object_that_is_seen_again_where_it_was_has_stayed() -> None:
     assert (event.object.carried, event.outcome) == (False, "unmoved")
 
 
-def test_an_object_out_of_reach_when_it_was_seen_last_is_not_carried() -> None:
+def test_an_object_out_of_reach_when_it_was_seen_last_is_not_in_the_hand() -> None:
     scene = Scene(
         right_hand=moving((0.5, (0.2, 0.1, 0.2)), (1.5, (0.2, 0.1, 0.5))),
         objects={1: still((0.8, 0.0, 0.5))},
@@ -127,7 +122,7 @@ def test_one_sighting_where_it_was_left_tells_all() -> None:
     assert np.allclose(event.motion.displacement_m, np.subtract(then, CUP), atol=1e-9)
 
 
-def test_a_thing_not_seen_since_before_the_hand_came_goes_with_it() -> None:
+def test_an_object_not_seen_since_before_the_hand_came_goes_with_it() -> None:
     covered = acting_on(CUP, (0.1, 0.0, 0.66), others=OTHERS, hidden=lambda number, t: number == 1 and t > 0.1)
     event = event_of(covered, "push")
     assert event.object is not None
@@ -149,14 +144,12 @@ def test_what_was_moved_before_the_segment_has_not_moved_in_it() -> None:
 def test_one_crooked_posture_at_the_start_turns_no_direction() -> None:
     scene = acting_on(CUP, (0.1, 0.0, 0.66), others=OTHERS)
     aside = replace(scene, stance=Stance(heading_rad=0.6))
-    node = ActionFusion(Settings())
     first = min(p.stamp_ns for p in scene.postures() if p.stamp_ns >= action("push").start_ns)
     turned = {p.stamp_ns: p for p in aside.postures()}
     postures = [
         turned[p.stamp_ns].model_copy(update={"joints_m": p.joints_m}) if p.stamp_ns == first else p
         for p in scene.postures()
     ]
-    messages: list[Message] = [*postures, *scene.sightings(), action("push")]
-    (event,) = [event for message in messages for event in node.handle(message)]
-    assert isinstance(event, Event) and event.motion is not None
+    event = fused.event_of(*postures, *scene.sightings(), action("push"))
+    assert event.motion is not None
     assert np.allclose(event.motion.displacement_m, (0.0, 0.0, 0.21), atol=0.01)

@@ -1,13 +1,13 @@
-"""Closeness, the reach's heading and moving together decide the object over the whole segment, not one frame."""
+"""Closeness, the reach's heading and co-motion decide the object over the whole segment, not one frame."""
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from action_fusion.node import ActionFusion
-from action_fusion.settings import Settings
-from actum.messages import Event, Hand, Message
+import fused
+from actum.messages import Event, Hand
+from fused import event_in
 from scenes import REST_LEFT, REST_RIGHT, Path, Place, Scene, acting_on, action, moving, still
 
 CUP: Place = (0.1, 0.0, 0.45)
@@ -22,12 +22,7 @@ def event_of(
     marked: Hand | None = None,
     **chosen: object,
 ) -> Event:
-    node = ActionFusion(Settings(**chosen))
-    act = action(label, start_s, end_s, hand=marked)
-    messages: list[Message] = [*scene.postures(), *scene.sightings(), act]
-    (event,) = [event for message in messages for event in node.handle(message)]
-    assert isinstance(event, Event)
-    return event
+    return event_in(scene, action(label, start_s, end_s, hand=marked), **chosen)
 
 
 def names(event: Event) -> tuple[str | None, str | None]:
@@ -61,7 +56,7 @@ def test_what_moves_with_the_hand_is_acted_on_though_another_thing_is_nearer() -
     assert names(plain) == ("box", None)
 
 
-def test_a_thing_that_another_hand_carries_past_is_not_this_hands() -> None:
+def test_an_object_that_another_hand_transports_past_is_not_this_hands() -> None:
     left = moving((0.3, (-0.3, 0.1, 0.5)), (1.0, (0.0, 0.1, 0.5)), (1.7, (-0.3, 0.1, 0.5)))
     scene = Scene(
         right_hand=still((0.1, 0.1, 0.5)),
@@ -128,18 +123,18 @@ def working(radius_m: float = 0.03) -> Scene:
     )
 
 
-def test_what_is_worked_at_is_acted_on_with_what_is_held() -> None:
+def test_what_a_held_tool_is_used_on_is_acted_on() -> None:
     event = event_of(working(), "stir")
     assert names(event) == ("cup", "box")
     assert event.sentence == 'stir object 1 "cup" with object 2 "box", unmoved, 0.94'
 
 
-def test_an_action_that_is_to_move_its_object_applies_no_tool() -> None:
+def test_an_action_that_is_to_move_its_object_uses_no_tool() -> None:
     assert names(event_of(working(), "push")) == ("box", "box")
     assert names(event_of(working(), "stir", expected_outcomes={"stir": "moved"})) == ("box", "box")
 
 
-def test_a_thing_carried_past_another_is_not_applied_to_it() -> None:
+def test_an_object_transported_past_another_is_not_used_on_it() -> None:
     hand = moving((0.2, (0.1, 0.1, 0.3)), (1.8, (0.1, 0.1, 0.65)))
     scene = Scene(right_hand=hand, objects={1: beyond(hand, (0.0, -0.08, 0.0)), 2: still((0.2, 0.0, 0.5))})
     assert names(event_of(scene)) == ("cup", "cup")
@@ -170,20 +165,16 @@ def test_neither_noise_nor_lost_sightings_make_another_object_of_it(seed: int, t
         )
         for m in scene.sightings()
     ]
-    node = ActionFusion(Settings())
-    (event,) = [e for m in (*postures, *sightings, action("push")) for e in node.handle(m)]
-    assert isinstance(event, Event)
+    event = fused.event_of(*postures, *sightings, action("push"))
     assert event.object is not None and event.object.id == 1
 
 
 @pytest.mark.parametrize("measure", ["joint", "proximity"])
 def test_a_hand_seen_once_is_enough_to_be_near(measure: str) -> None:
     scene = acting_on(CUP, CUP)
-    node = ActionFusion(Settings(measure=measure))
     once = [p for p in scene.postures() if p.stamp_ns > action("x").start_ns + 1.9e9][:1]
-    messages: list[Message] = [*once, *scene.sightings(), scene.posture(3.0), action("touch")]
-    (event,) = [e for message in messages for e in node.handle(message)]
-    assert isinstance(event, Event) and event.object is not None
+    event = fused.event_of(*once, *scene.sightings(), scene.posture(3.0), action("touch"), measure=measure)
+    assert event.object is not None
 
 
 LEFT_BRINGS = moving((0.5, (-0.3, 0.08, 0.45)), (1.2, (0.0, 0.18, 0.5)), (1.5, (0.0, 0.18, 0.5)), (2.2, REST_LEFT))

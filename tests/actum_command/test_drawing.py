@@ -13,12 +13,12 @@ from actum.messages import Agent
 from actum.skeletons import INDEX
 from actum_command import drawing
 from actum_command.__main__ import app
+from actum_command.skeleton_overlay import LEFT, MIDDLE, RIGHT, drawn, sheet
 from camera_bodies import K, as_seen, projected, standing_at
 from camera_videos import write_video
 from people import STANDING, lacking, listed
-from sensor_gateway.camera.drawing import LEFT, MIDDLE, RIGHT, drawn, sheet
-from sensor_gateway.camera.landmarks import Landmarks
-from sensor_gateway.camera.lens import Lens
+from sensor_gateway.lens import Lens
+from sensor_gateway.people.landmarks import Landmarks
 
 LENS = Lens(K, np.zeros(5), assumed=False)
 GREY = np.full((480, 640, 3), 90, np.uint8)

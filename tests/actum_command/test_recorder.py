@@ -14,7 +14,7 @@ from actum_command.recorder import IMAGES, SKEW_NS, STREAMS, StreamRecorder
 from actum_command.scene import mark_of
 from empty_messages import action, image, mark, skeleton, status
 from scene_simulator.programme import balanced_programme
-from scene_simulator.source import Simulator, labelled_stream
+from scene_simulator.simulator import Simulator, labelled_stream
 
 
 class Take:

@@ -26,6 +26,7 @@ from actum_command.watching import json_line, line
 from empty_messages import action, image, mark, skeleton, status
 from people import reaches
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 
 MARKUP = ("[b]", "[/b]", "[a]", "wave[/b]", "a\\")
 
@@ -137,7 +138,7 @@ def test_people_are_shown_with_their_places() -> None:
 
 def test_a_posture_is_shown_with_where_hips_and_hands_are() -> None:
     (frame,) = reaches(1)
-    (posture,) = PosePreprocessor().handle(frame)
+    (posture,) = PosePreprocessor(PoseSettings.defaults()).handle(frame)
     joints = np.array(frame.agents[0].joints)
     told = [
         np.array([float(number) for number in point.split(", ")])

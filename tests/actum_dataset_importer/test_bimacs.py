@@ -10,7 +10,7 @@ from actum.geometry import from_flat, invert
 from actum.messages import Objects, Posture, Segment, Truth
 from actum.recording import Recording
 from actum.skeletons import INDEX
-from actum_dataset_importer.bimacs import camera, read_take, take_files
+from actum_dataset_importer.bimacs import camera_from_world, read_take, take_files
 from actum_dataset_importer.importing import import_bimacs
 from actum_dataset_importer.takes import DatasetError
 
@@ -46,7 +46,7 @@ def take(folder: Path, name: str = "subject0_take0", frames: int = 6, lost: tupl
 
 
 def test_the_worlds_up_is_the_cameras_up() -> None:
-    assert camera([1.0, 2.0, 3.0]) == [1.0, -3.0, 2.0]
+    assert camera_from_world([1.0, 2.0, 3.0]) == [1.0, -3.0, 2.0]
 
 
 def test_hands_are_where_they_were_in_the_cameras_frame_and_nothing_else_is_known(tmp_path: Path) -> None:
@@ -57,7 +57,7 @@ def test_hands_are_where_they_were_in_the_cameras_frame_and_nothing_else_is_know
     assert set(known) == {"left_hand", "right_hand"}
     camera_from_ego = invert(from_flat(posture.ego_from_camera))
     hand = posture.joints_m[INDEX["right_hand"]]
-    assert (camera_from_ego[:3, :3] @ hand).tolist() == pytest.approx(camera(PLACES["HandRight"]))
+    assert (camera_from_ego[:3, :3] @ hand).tolist() == pytest.approx(camera_from_world(PLACES["HandRight"]))
 
 
 def test_stamps_are_those_of_the_table_to_the_microsecond(tmp_path: Path) -> None:

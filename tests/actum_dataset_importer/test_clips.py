@@ -15,8 +15,8 @@ from actum_dataset_importer.importing import ImportReport, import_video
 from actum_dataset_importer.takes import DatasetError
 from camera_bodies import as_seen, standing_at
 from camera_videos import write_video
-from sensor_gateway.camera.landmarks import Landmarks
-from sensor_gateway.camera.perceiving import Optics
+from sensor_gateway.optics import Optics
+from sensor_gateway.people.landmarks import Landmarks
 
 FLORENCE = r".*actor(?P<person>\d+)idAction\d+category(?P<action>\d+)"
 

@@ -93,7 +93,7 @@ def test_the_real_sets_are_imported_whole(tmp_path: Path, data: Path) -> None:
 
     utkinect = import_utkinect(data / "utkinect", tmp_path / "ut", lambda done, total: None)
     assert (utkinect.files, utkinect.frames, utkinect.segments) == (20, 15318, 199)
-    assert utkinect.notes == {"duplicate_row": 542, "overlapping_pair": 7}
+    assert utkinect.oddities == {"duplicate_row": 542, "overlapping_pair": 7}
     assert utkinect.skipped == ["s10_e02 carry"]
     assert sum(len(list(Recording(f).messages())) for f in (tmp_path / "ut").iterdir()) == 15318 + 2 * 199
 

@@ -88,12 +88,12 @@ def test_the_whole_sequence_is_one_labelled_segment(tmp_path: Path) -> None:
 def test_names_say_action_person_and_execution(tmp_path: Path) -> None:
     take = read_sequence(sequence(tmp_path, "a07_s03_e01"), "kinect0")
     assert (take.name, take.person) == ("a07_s03_e01", "3")
-    assert take.fields == {"action": "a07", "execution": "1"}
+    assert take.metadata == {"action": "a07", "execution": "1"}
 
 
 def test_the_ten_outside_the_usual_protocol_are_marked_excluded(tmp_path: Path) -> None:
     assert len(EXCLUDED) == 10
-    assert read_sequence(sequence(tmp_path, "a13_s09_e02"), "kinect0").fields["excluded"] == "true"
+    assert read_sequence(sequence(tmp_path, "a13_s09_e02"), "kinect0").metadata["excluded"] == "true"
 
 
 @pytest.mark.parametrize(

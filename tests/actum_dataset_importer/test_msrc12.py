@@ -41,7 +41,7 @@ def test_every_joint_is_found_by_its_name_in_the_camera_frame(tmp_path: Path) ->
 
 def test_a_stream_tells_whose_it_is_and_keeps_its_stamps(tmp_path: Path) -> None:
     read = take(tmp_path)
-    assert (read.name, read.person, read.fields) == (NAME, "1", {"instruction": "3", "set": "1", "gesture": "10A"})
+    assert (read.name, read.person, read.metadata) == (NAME, "1", {"instruction": "3", "set": "1", "gesture": "10A"})
     assert [frame.stamp_ns for frame in read.frames] == [1000 * S * second for second in range(5, 15)]
     assert {(frame.sensor, frame.session_id) for frame in read.frames} == {("door", NAME)}
 

@@ -42,14 +42,14 @@ def test_frames_are_stamped_by_image_number_at_thirty_a_second(tmp_path: Path) -
     take = read_recording(recording(tmp_path, [30, 31, 35]), "door")
     assert [frame.stamp_ns for frame in take.frames] == [SECOND_NS, 1_033_333_333, 1_166_666_667]
     assert {frame.sensor for frame in take.frames} == {"door"}
-    assert (take.name, take.person, take.fields) == ("s01_e01", "1", {"execution": "1"})
+    assert (take.name, take.person, take.metadata) == ("s01_e01", "1", {"execution": "1"})
 
 
 def test_of_rows_with_the_same_image_number_the_first_is_kept(tmp_path: Path) -> None:
     take = read_recording(recording(tmp_path, [4, 6, 6, 6, 8]), "kinect0")
     heights = [frame.agents[0].joints[INDEX["head"]] for frame in take.frames]
     assert heights == [[-3, 0, 2], [-3, -10, 2], [-3, -40, 2]]
-    assert take.notes == {"duplicate_row": 2}
+    assert take.oddities == {"duplicate_row": 2}
 
 
 def test_labelled_segments_become_marks(tmp_path: Path) -> None:
@@ -83,7 +83,7 @@ def test_overlaps_are_kept_and_counted(tmp_path: Path, bounds: list[tuple[int, i
     segments = [LabelledSegment(f"class{i}", b) for i, b in enumerate(bounds)]
     assert overlapping_pairs(segments) == pairs
     take = read_recording(recording(tmp_path, [1]), "kinect0", segments)
-    assert take.notes["overlapping_pair"] == pairs
+    assert take.oddities["overlapping_pair"] == pairs
     assert len(take.marks) == 2 * sum(b is not None for b in bounds)
 
 
@@ -133,9 +133,9 @@ def test_the_real_set_has_its_known_size_and_faces_the_camera(data: Path) -> Non
     label_table = read_labels(folder)
     takes = [read_labelled(file, "kinect0", label_table) for file in recording_files(folder)]
     assert len(takes) == 20
-    assert sum(len(take.frames) + take.notes["duplicate_row"] for take in takes) == 15860
-    assert sum(take.notes["duplicate_row"] for take in takes) == 542
-    assert sum(take.notes["overlapping_pair"] for take in takes) == 7
+    assert sum(len(take.frames) + take.oddities["duplicate_row"] for take in takes) == 15860
+    assert sum(take.oddities["duplicate_row"] for take in takes) == 542
+    assert sum(take.oddities["overlapping_pair"] for take in takes) == 7
     assert [name for take in takes for name in take.skipped] == ["s10_e02 carry"]
     assert sum(len(take.marks) for take in takes) == 2 * 199
     assert min(facing(take) for take in takes) > 0.8

@@ -12,7 +12,7 @@ from actum_model_trainer.evaluation import evaluate
 from handmade import paper_model, pyramid_model
 from people import FRAME_NS
 from performers import mark, performance
-from som_classifier.trace import without_repeats
+from som_classifier.ordered_vector import without_repeats
 
 Record = Callable[..., Recording]
 
@@ -70,7 +70,7 @@ def test_the_neurons_answer_at_each_unit_as_if_the_input_lay_there() -> None:
     assert PaperAnatomy(paper_model()).answers().argmax(axis=1).tolist() == [0, 1]
     model = pyramid_model()
     answers = PyramidAnatomy(model).answers()
-    expected = model.layer3.cosines(model.concepts.activity(model.concepts.layout.weights[4]))
+    expected = model.layer3.cosines(model.action_map.activity(model.action_map.som.weights[4]))
     assert answers[4] == pytest.approx(expected)
 
 

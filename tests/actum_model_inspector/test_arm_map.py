@@ -8,9 +8,9 @@ from actum.som import Som
 from actum_model_inspector.arm_map import ArmsOnBodies, arm_map, fastest_m
 from actum_model_inspector.bodies import STANDING
 from recognisers import tiny_samples
+from som_classifier.first_layer import VELOCITY_WEIGHT, arm_inputs, frame_inputs
 from som_classifier.handedness import mirrored
-from som_classifier.layers import ARM_SPEED, arm_inputs, frame_inputs
-from som_classifier.movement import LAG_TIME_CONSTANT_S
+from som_classifier.kinematics import LAG_TIME_CONSTANT_S
 
 SHOULDER, ELBOW, HAND = (INDEX[f"right_{name}"] for name in ("shoulder", "elbow", "hand"))
 POSTURES, VELOCITIES = tiny_samples()[0].postures, tiny_samples()[0].velocities
@@ -46,7 +46,7 @@ def test_in_a_mirror_it_is_the_left_arm() -> None:
 
 def test_the_fastest_unit_is_named_by_its_speed() -> None:
     units = np.zeros((6, 12))
-    units[4, 9] = ARM_SPEED * LAG_TIME_CONSTANT_S * 2.0
+    units[4, 9] = VELOCITY_WEIGHT * LAG_TIME_CONSTANT_S * 2.0
     arms = Som(2, 3, units)
     assert fastest_m(arms) == pytest.approx(LAG_TIME_CONSTANT_S * 2.0)
     assert "the longest at 2.0 m/s" in arm_map(arms, mirrors=True).axes[0].get_title(loc="left")

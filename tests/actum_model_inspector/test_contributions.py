@@ -9,7 +9,7 @@ from actum_model_inspector.answered import Answered, answered_segments, encoded
 from actum_model_inspector.contributions import contributions
 from actum_model_inspector.reasons import leading
 from handmade import pyramid_model
-from som_classifier.layers import HEARD
+from som_classifier.first_layer import CHANNELS
 from som_classifier.pyramid_model import PyramidModel
 
 
@@ -24,11 +24,11 @@ def segments(model: PyramidModel, recording: Recording) -> list[Answered]:
 
 
 def test_contributions_add_up_to_the_difference_of_the_scores(model: PyramidModel, segments: list[Answered]) -> None:
-    complete = [0.0] * (len(model.description.fractions) - 1) + [1.0]
+    complete = [0.0] * (len(model.metadata.fractions) - 1) + [1.0]
     for segment in segments:
         frames = encoded(model, segment.frames)
         found = contributions(model, frames)
-        scores = model.scores([frame.code for frame in frames], complete)
+        scores = model.scores([frame.activity for frame in frames], complete)
         assert found.difference == pytest.approx(float(scores[found.winner] - scores[found.second]), abs=1e-5)
         assert found.cells.sum() + found.level == pytest.approx(found.difference, abs=1e-4)
         assert found.units.sum() == pytest.approx(found.cells.sum(), abs=1e-6)
@@ -61,28 +61,28 @@ def test_a_segment_of_the_left_arm_is_known_to_be_read_in_a_mirror(pyramid: Pyra
 def test_each_cell_s_activities_are_shares_of_each_map(pyramid: PyramidModel, recording: Recording) -> None:
     (segment, *_) = answered_segments(PyramidAnatomy(pyramid), [recording])
     found = contributions(pyramid, encoded(pyramid, segment.frames))
-    shares = [1.0, 1.0, *pyramid.description.arm_shares]
+    shares = [1.0, 1.0, *pyramid.metadata.arm_shares]
     np.testing.assert_allclose(found.activities.sum(axis=2), [shares] * 7, atol=1e-3)
 
 
 def test_the_activities_of_the_whole_are_the_mean_of_its_frames(pyramid: PyramidModel, recording: Recording) -> None:
     (segment, *_) = answered_segments(PyramidAnatomy(pyramid), [recording])
     frames = encoded(pyramid, segment.frames)
-    movements = [frame.movement for frame in frames if frame.movement is not None]
-    sides = [pyramid.first.sides(movement.posture, movement.velocity)[0] for movement in movements]
+    movements = [frame.kinematics for frame in frames if frame.kinematics is not None]
+    sides = [pyramid.first.frame_activities(movement.posture, movement.velocity)[0] for movement in movements]
     whole = contributions(pyramid, frames).activities[0]
     np.testing.assert_allclose(whole.ravel(), np.mean(sides, axis=0), atol=1e-5)
 
 
-@pytest.mark.parametrize("which", range(len(HEARD)))
+@pytest.mark.parametrize("which", range(len(CHANNELS)))
 def test_each_map_adds_what_its_own_axes_make_of_it(model: PyramidModel, segments: list[Answered], which: int) -> None:
     """Where only the axes of one map are not zero, the others add nothing."""
-    parts = model.pyramid.cells, len(HEARD), len(model.first.arms.weights), len(model.labels)
+    parts = model.pyramid.cells, len(CHANNELS), len(model.first.arms.weights), len(model.labels)
     axes = np.zeros((len(model.stages.axes), *parts), np.float32)
     axes[:, :, which] = model.stages.axes.reshape(axes.shape)[:, :, which]
     of_one = replace(model, stages=replace(model.stages, axes=axes.reshape(model.stages.axes.shape)))
     found = contributions(of_one, encoded(of_one, segments[0].frames))
-    assert found.cells.any(axis=0).tolist() == [index == which for index in range(len(HEARD))]
+    assert found.cells.any(axis=0).tolist() == [index == which for index in range(len(CHANNELS))]
     assert found.cells[:, which].sum() + found.level == pytest.approx(found.difference, abs=1e-4)
 
 

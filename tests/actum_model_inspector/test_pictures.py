@@ -26,7 +26,7 @@ from actum_model_trainer.evaluation import Evaluation, Prediction, evaluate
 from handmade import paper_model, pyramid_model
 from people import FRAME_NS, STANDING, lacking, skeleton
 from performers import mark, performance
-from som_classifier.paper_model import PaperDescription, PaperModel
+from som_classifier.paper_model import PaperMetadata, PaperModel
 from som_classifier.supervised import SupervisedLayer
 
 Record = Callable[..., Recording]
@@ -90,17 +90,17 @@ def test_names_stand_where_their_actions_are() -> None:
 
 def test_an_action_without_a_place_is_named_beneath_the_map() -> None:
     model = paper_model()
-    deaf = PaperModel(model.layer1, model.layer2, SupervisedLayer(np.array([[1, 0], [1, 0]])), model.description)
+    deaf = PaperModel(model.layer1, model.layer2, SupervisedLayer(np.array([[1, 0], [1, 0]])), model.metadata)
     axes = action_map(PaperAnatomy(deaf)).axes[0]
     assert axes.get_xlabel() == "without a place of their own: push"
 
 
 def many_actions(labels: list[str]) -> PaperAnatomy:
-    about = paper_model().description.model_dump() | {"labels": labels}
+    about = paper_model().metadata.model_dump() | {"labels": labels}
     rng = np.random.default_rng(1)
     layer2 = Som.random(6, 7, 6, rng)
     layer3 = SupervisedLayer.random(len(labels), 42, rng)
-    return PaperAnatomy(PaperModel(paper_model().layer1, layer2, layer3, PaperDescription.model_validate(about)))
+    return PaperAnatomy(PaperModel(paper_model().layer1, layer2, layer3, PaperMetadata.model_validate(about)))
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ def of(label: str, model: PyramidModel, recording: Recording) -> Answered:
 
 
 def without_mirror(model: PyramidModel) -> PyramidModel:
-    return replace(model, description=model.description.model_copy(update={"mirrors": False}))
+    return replace(model, metadata=model.metadata.model_copy(update={"mirrors": False}))
 
 
 def words(figure: Figure) -> str:
@@ -82,8 +82,8 @@ def test_what_is_the_same_for_every_segment_is_explained(pyramid: PyramidModel, 
 
 def test_it_takes_off_what_the_boxes_come_to_in_an_average_segment(pyramid: PyramidModel) -> None:
     """Each action was trained as often as the others, so that an average segment leads to none of them."""
-    codes = [[frame.code for frame in encoded_sample(pyramid, sample)] for sample in tiny_samples()]
-    average = np.mean([pyramid.pyramid.vector(pyramid.trail(each)) for each in codes], axis=0)
+    codes = [[frame.activity for frame in encoded_sample(pyramid, sample)] for sample in tiny_samples()]
+    average = np.mean([pyramid.pyramid.vector(pyramid.prefix_sums(each)) for each in codes], axis=0)
     boxes = average @ pyramid.stages.axes[-1]
     leads, levels = (np.subtract.outer(each, each) for each in (boxes, pyramid.stages.offsets[-1]))
     np.testing.assert_allclose(leads, -levels, atol=0.1 * np.abs(levels).max())

@@ -14,7 +14,7 @@ from actum_model_trainer.samples import SegmentSample
 from performers import TINY
 from recognisers import tiny_samples
 from som_classifier.handedness import mirrored
-from som_classifier.presets import Others
+from som_classifier.presets import BodyVariation
 
 PARENTS, CHILDREN = (np.array([bone[end] for bone in BONES]) for end in (0, 1))
 BONE_NAMES = sorted({JOINTS[child].removeprefix("left_").removeprefix("right_") for child in CHILDREN})
@@ -26,8 +26,8 @@ def shown(sample: SegmentSample, seed: int = 0, mirrors: bool = True, **changes:
     return list(views(sample, replace(TINY, **changes), mirrors, np.random.default_rng(seed)))
 
 
-def others(count: int, tempo: float = 1.0) -> Others:
-    return Others(count, build_sd=0.1, tempo=tempo)
+def others(count: int, tempo: float = 1.0) -> BodyVariation:
+    return BodyVariation(count, build_sd=0.1, tempo=tempo)
 
 
 def bones(postures: np.ndarray) -> np.ndarray:

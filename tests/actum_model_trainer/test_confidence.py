@@ -15,7 +15,7 @@ from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.upper_layers import Scored, UpperLayers, train_upper
 from performers import TINY
 from recognisers import tiny_samples
-from som_classifier.layers import FirstMaps
+from som_classifier.first_layer import FirstMaps
 
 ACTIONS, EACH = 3, 30
 TARGETS = np.repeat(np.arange(ACTIONS), EACH)

@@ -13,9 +13,9 @@ from actum_model_trainer.samples import SegmentSample, samples_from
 from actum_model_trainer.training import TrainingError, train
 from people import FRAME_NS, skeleton
 from performers import HAND_PATHS, TINY, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
+from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.presets import Preset
-from som_classifier.streams import Frame
 
 Record = Callable[..., Recording]
 each_preset = pytest.mark.parametrize("preset", TINY_OF_EACH_KIND, ids=lambda preset: preset.name)

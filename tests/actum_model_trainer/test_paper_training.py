@@ -23,7 +23,7 @@ def trained(samples: list[SegmentSample], preset: PaperPreset = TINY_PAPER) -> P
 
 
 def test_the_description_says_what_it_was_made_of(samples: list[SegmentSample]) -> None:
-    about = trained(samples).metadata
+    about = trained(samples).metadata.model_dump()
     assert (about["kind"], about["axes"], about["origin"], about["attention"]) == ("paper", "upright", "hips", "moving")
     assert about["parameters"]["layer1"]["steps"] == TINY_PAPER.layer1.steps
 
@@ -31,7 +31,7 @@ def test_the_description_says_what_it_was_made_of(samples: list[SegmentSample]) 
 def test_vectors_are_as_long_as_the_longest_training_trace(samples: list[SegmentSample]) -> None:
     model = trained(samples)
     walked = [len(model.trace(encoded(model, sample))) for sample in samples]
-    assert model.description.points == max(walked)
+    assert model.metadata.points == max(walked)
 
 
 def test_a_person_who_never_moves_can_be_learned(samples: list[SegmentSample]) -> None:
@@ -47,7 +47,7 @@ def test_a_person_who_never_moves_can_be_learned(samples: list[SegmentSample]) -
         for sample in samples
     ]
     model = trained(still)
-    assert model.description.points == 2
+    assert model.metadata.points == 2
     assert all(len(model.trace(encoded(model, sample))) == 1 for sample in still)
 
 
@@ -62,7 +62,7 @@ def test_only_the_attended_part_is_learned(samples: list[SegmentSample]) -> None
     models = [trained(each, right_arm) for each in (samples, altered)]
     assert (models[0].layer1.weights == models[1].layer1.weights).all()
     assert (models[0].layer3.weights == models[1].layer3.weights).all()
-    assert models[0].description.attention == "right_arm"
+    assert models[0].metadata.attention == "right_arm"
 
 
 def test_progress_names_every_stage_to_its_end(samples: list[SegmentSample]) -> None:

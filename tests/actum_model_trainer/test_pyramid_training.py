@@ -18,11 +18,11 @@ from actum_model_trainer.training import train
 from actum_model_trainer.typical import typical_error2
 from performers import TINY
 from recognisers import in_a_mirror
-from som_classifier.layers import arm_inputs, frame_inputs
-from som_classifier.presets import Others, PyramidPreset
+from som_classifier.first_layer import arm_inputs, frame_inputs
+from som_classifier.presets import BodyVariation, PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 
-NOBODY = Others(0, build_sd=0.0, tempo=1.0)
+NOBODY = BodyVariation(0, build_sd=0.0, tempo=1.0)
 PLAIN = replace(TINY, turns_deg=(), leans_deg=(), others=NOBODY, stages=((1.0,),))
 
 
@@ -33,8 +33,8 @@ def trained(samples: list[SegmentSample], preset: PyramidPreset = TINY, seed: in
 
 
 def pooled(model: PyramidModel, sample: SegmentSample, fraction: float = 1.0) -> np.ndarray:
-    codes = [frame.code for frame in encoded(model, sample)]
-    return model.pyramid.vector(model.trail(codes[: round(fraction * len(codes))]))
+    codes = [frame.activity for frame in encoded(model, sample)]
+    return model.pyramid.vector(model.prefix_sums(codes[: round(fraction * len(codes))]))
 
 
 def wanted(model: PyramidModel, samples: list[SegmentSample]) -> np.ndarray:
@@ -56,7 +56,7 @@ def test_axes_are_fitted_to_what_the_recogniser_pools(samples: list[SegmentSampl
     axes = discriminant_axes(vectors, wanted(model, samples), folds_of(samples), PLAIN.shrinkage)
     np.testing.assert_allclose(vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.own, atol=0.02)
     usual = familiar(axes.held_out, samples, PLAIN)
-    assert model.description.familiar == pytest.approx(usual, abs=0.02)
+    assert model.metadata.familiar == pytest.approx(usual, abs=0.02)
 
 
 def test_a_model_of_one_person_knows_what_is_none_of_its_actions(samples: list[SegmentSample]) -> None:
@@ -68,19 +68,19 @@ def test_a_model_of_one_person_knows_what_is_none_of_its_actions(samples: list[S
 
 
 def test_a_model_remembers_what_left_out_samples_were_taken_for(samples: list[SegmentSample]) -> None:
-    told = trained(samples).description.held_out_answers
+    told = trained(samples).metadata.held_out_answers
     assert sorted(done for done, _ in told) == sorted(sample.label for sample in samples)
     assert np.mean([done == answered for done, answered in told]) > 0.9
     rng = np.random.default_rng(0)
     drawn = rng.choice(["a", "b"], len(samples))
     mixed_up = [replace(s, label=str(name)) if s.label == "lift" else s for s, name in zip(samples, drawn, strict=True)]
-    told = trained(mixed_up).description.held_out_answers
+    told = trained(mixed_up).metadata.held_out_answers
     assert {("a", "b"), ("b", "a")} & set(told)
     assert not {answered for done, answered in told if done in "ab"} - {"a", "b"}
 
 
 def test_few_peoples_samples_are_shown_as_more_other_people(samples: list[SegmentSample]) -> None:
-    several = Others(3, build_sd=0.2, tempo=0.5)
+    several = BodyVariation(3, build_sd=0.2, tempo=0.5)
     of_few = replace(PLAIN, others_of_few=several, few_people=2)
     for names in ("11", "12"):
         few = [replace(sample, person=names[k % 2]) for k, sample in enumerate(samples)]
@@ -94,7 +94,7 @@ def test_few_peoples_samples_are_shown_as_more_other_people(samples: list[Segmen
 
 def test_each_stage_is_fitted_to_that_share_of_the_action(samples: list[SegmentSample]) -> None:
     model = trained(samples, replace(PLAIN, stages=((0.3, 0.5), (1.0,))))
-    assert model.description.fractions == pytest.approx([0.4, 1.0])
+    assert model.metadata.fractions == pytest.approx([0.4, 1.0])
     vectors = np.stack([pooled(model, sample, fraction) for sample in samples for fraction in (0.3, 0.5)])
     twice = [sample for sample in samples for _ in range(2)]
     axes = discriminant_axes(vectors, wanted(model, twice), folds_of(twice), PLAIN.shrinkage)
@@ -124,10 +124,10 @@ def test_what_was_seen_so_far_is_read_by_the_arm_that_acts_so_far(samples: list[
 def test_durations_are_those_of_the_samples(samples: list[SegmentSample]) -> None:
     slower = [replace(s, stamps_ns=s.stamps_ns * (1 + i % 4)) for i, s in enumerate(samples)]
     durations_s = np.array([np.ptp(sample.stamps_ns) / SECOND_NS for sample in slower])
-    about = trained(slower).description
+    about = trained(slower).metadata
     assert about.log_duration_mean == pytest.approx(np.log(durations_s).mean())
     assert about.log_duration_sd == pytest.approx(np.log(durations_s).std())
-    assert trained(samples).description.log_duration_sd == pytest.approx(0.1), "however alike they are"
+    assert trained(samples).metadata.log_duration_sd == pytest.approx(0.1), "however alike they are"
 
 
 def right_handed(samples: list[SegmentSample]) -> list[SegmentSample]:
@@ -142,10 +142,10 @@ def with_a_left_hander(samples: list[SegmentSample]) -> list[SegmentSample]:
 def test_where_people_change_hands_the_hand_belongs_to_the_action(samples: list[SegmentSample]) -> None:
     assert {sample.acting_hands[-1] for sample in samples if sample.label == "swing"} == {"left"}
     assert not keep_to_one_hand(samples)
-    assert not trained(samples).description.mirrors
+    assert not trained(samples).metadata.mirrors
     for others in (right_handed(samples), with_a_left_hander(samples), [replace(s, person=s.label) for s in samples]):
         assert keep_to_one_hand(others)
-        assert trained(others).description.mirrors
+        assert trained(others).metadata.mirrors
 
 
 def test_now_and_then_a_person_may_use_the_other_hand(samples: list[SegmentSample]) -> None:
@@ -158,13 +158,13 @@ def test_contrasts_are_relative_to_the_distances_on_the_maps(samples: list[Segme
     mixed = with_a_left_hander(samples)
     half, whole = (trained(mixed, replace(TINY, relative_contrast=contrast)) for contrast in (0.5, 1.0))
     for name in ("posture_contrast", "velocity_contrast", "arm_contrast"):
-        assert getattr(whole.description, name) == pytest.approx(2 * getattr(half.description, name))
+        assert getattr(whole.metadata, name) == pytest.approx(2 * getattr(half.metadata, name))
     postures = np.concatenate([sample.postures for sample in samples]).reshape(-1, 45)
     plain = trained(mixed, PLAIN)
     acting = np.concatenate([sample.postures for sample in right_handed(samples)])
     distances2 = [plain.first.postures.distances2(x.ravel()).min() for x in acting]
     assert len(distances2) == len(postures)
-    assert plain.description.posture_contrast == pytest.approx(0.5 * np.median(distances2), rel=1e-3)
+    assert plain.metadata.posture_contrast == pytest.approx(0.5 * np.median(distances2), rel=1e-3)
 
 
 def test_the_map_of_arms_learns_the_arm_that_acts(samples: list[SegmentSample]) -> None:
@@ -176,8 +176,8 @@ def test_the_map_of_arms_learns_the_arm_that_acts(samples: list[SegmentSample]) 
     )
     arms = arm_inputs(frame_inputs(postures, velocities))
     distances2 = [model.first.arms.distances2(row).min() for row in arms]
-    assert model.description.arm_contrast == pytest.approx(0.5 * np.median(distances2), rel=1e-3)
-    assert tuple(model.description.arm_shares) == model.first.arm_shares == PLAIN.arm_shares
+    assert model.metadata.arm_contrast == pytest.approx(0.5 * np.median(distances2), rel=1e-3)
+    assert tuple(model.metadata.arm_shares) == model.first.arm_shares == PLAIN.arm_shares
     assert model.first.arms.weights.mean(axis=0) == pytest.approx(arms.mean(axis=0), abs=0.1)
 
 
@@ -263,7 +263,7 @@ def test_an_action_that_one_person_alone_did_is_judged_by_samples_left_out(
     mine = [replace(sample, person="me") for sample in samples if sample.person != "3"]
     lifts = [replace(sample, person="friend") for sample in samples if sample.person == "3" and sample.label == "lift"]
     model = trained(mine + lifts[:friends])
-    assert model.description.familiar < 0.7
+    assert model.metadata.familiar < 0.7
     answers = [answer(model, encoded(model, sample)) for sample in samples]
     assert [found.label for found in answers] == [sample.label for sample in samples]
     assert np.mean([found.confidence for found in answers]) > 0.85

@@ -11,6 +11,7 @@ from actum_model_trainer.samples import samples_from, select
 from people import FRAME_NS, skeleton
 from performers import FRAMES, PAUSE_FRAMES, mark, performance
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 
 Record = Callable[..., Recording]
 
@@ -31,7 +32,7 @@ def test_a_labelled_segment_is_a_sample_of_its_frames(record: Record) -> None:
 
 def test_a_samples_frames_are_the_preprocessors(record: Record) -> None:
     skeletons, marks = performance(["lift", "push"])
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     postures = [p for frame in skeletons for p in node.handle(frame) if isinstance(p, Posture)]
     first = FRAMES + PAUSE_FRAMES
     expected = postures[first : first + FRAMES]

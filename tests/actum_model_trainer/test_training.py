@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from actum.recording import Recording
 from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.description import digest_of
-from actum_model_trainer.samples import SegmentSample
+from actum_model_trainer.samples import SegmentSample, samples_from
 from actum_model_trainer.training import TrainingError, train
 from performers import HAND_PATHS, TINY, TINY_OF_EACH_KIND, TINY_PAPER
 from som_classifier.model import Model
@@ -41,6 +42,15 @@ def test_the_same_seed_makes_the_same_model(samples: list[SegmentSample], preset
         assert not np.array_equal(array, other.arrays[name])
 
 
+@pytest.mark.parametrize("setting", ["ACTUM_REACH_LIMIT_M", "ACTUM_BONE_LIMIT_M"])
+def test_the_environment_does_not_change_a_trained_model(
+    three_people: list[Recording], samples: list[SegmentSample], setting: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With limits this tight the preprocessor that runs live would reject every frame."""
+    monkeypatch.setenv(setting, "0.1")
+    assert train(samples_from(three_people).usable, TINY).id == train(samples, TINY).id
+
+
 @each_preset
 def test_samples_are_left_as_they_were(samples: list[SegmentSample], preset: Preset) -> None:
     before = digest_of(samples)
@@ -50,7 +60,7 @@ def test_samples_are_left_as_they_were(samples: list[SegmentSample], preset: Pre
 
 @each_preset
 def test_the_description_says_what_it_was_made_of(samples: list[SegmentSample], preset: Preset) -> None:
-    about = train(samples, preset, seed=5).metadata
+    about = train(samples, preset, seed=5).metadata.model_dump()
     assert about["labels"] == sorted(HAND_PATHS)
     assert about["persons"] == ["1", "2", "3"]
     assert (about["preset"], about["seed"], about["samples"]) == (preset.name, 5, len(samples))

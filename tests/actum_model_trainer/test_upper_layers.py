@@ -39,7 +39,7 @@ def test_unseen_scores_are_answered() -> None:
 
 def test_cosines_are_those_of_each_row_alone() -> None:
     layers, rows = upper(scored(0.1, 0.2)), scores(0.2, seed=7)[:6].astype(np.float32)
-    alone = [layers.layer3.cosines(layers.concepts.activity(row)) for row in rows]
+    alone = [layers.layer3.cosines(layers.action_map.activity(row)) for row in rows]
     np.testing.assert_allclose(layers.cosines(rows), np.stack(alone), atol=1e-5)
 
 
@@ -49,8 +49,8 @@ def test_what_the_map_learns_is_partly_the_one_partly_the_other() -> None:
     swapped = Axes(NOBODY, NOBODY, one.axes.held_out, one.axes.own)
     mirrored = Scored(swapped, one.owners, one.targets, one.folds)
     assert TINY.held_out_share == 0.5
-    np.testing.assert_array_equal(upper(one).concepts.layout.weights, upper(mirrored).concepts.layout.weights)
-    assert (upper(one).concepts.layout.weights != upper(other).concepts.layout.weights).any()
+    np.testing.assert_array_equal(upper(one).action_map.som.weights, upper(mirrored).action_map.som.weights)
+    assert (upper(one).action_map.som.weights != upper(other).action_map.som.weights).any()
 
 
 def test_one_example_of_each_action_is_enough() -> None:

@@ -7,9 +7,9 @@ import pytest
 from benchmarks.paper.details import turns_deg
 from benchmarks.paper.set1 import FOCAL_PX, positions_m, read_sequence
 
+from actum_dataset_importer import msr_action3d
 from actum_dataset_importer.takes import DatasetError
 from people import STANDING
-from sensor_gateway import msr_action3d
 
 NAMES = ["a01_s01_e01", "a05_s06_e02", "a07_s08_e02"]
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from marker_tracker.corners import refine
+from marker_tracker.detection.corners import refine
 
 SUPERSAMPLING = 6
 SIZE = 140
@@ -56,7 +56,7 @@ def test_rough_corners_lead_to_the_same_exact_ones(side_px, angle, squeezed, see
 
 @settings(max_examples=100)
 @given(st.lists(st.floats(-50, 210), min_size=8, max_size=8), st.integers(0, 2**32 - 1))
-def test_corners_never_run_away_nor_become_nan(numbers, seed) -> None:
+def test_corners_never_diverge_nor_become_nan(numbers, seed) -> None:
     quad = np.reshape(numbers, (1, 4, 2))
     pixels = np.random.default_rng(seed).integers(0, 256, (SIZE, SIZE), dtype=np.uint8)
     shortest = np.linalg.norm(quad[0] - np.roll(quad[0], 1, axis=0), axis=1).min()

@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
-from marker_tracker.decoding import CLEAR, read_in_place
-from marker_tracker.detection import MarkerDetector
-from marker_tracker.families import family
+from marker_tracker.detection.decoding import MAX_COVERED_CLEAR, read_in_place
+from marker_tracker.detection.detector import MarkerDetector
+from marker_tracker.detection.families import family
 
 FAMILY = "DICT_4X4_50"
 SIDE_PX, FINE = 24, 8
@@ -33,7 +33,7 @@ def corners_px(x_px, y_px):
 
 @pytest.fixture
 def first():
-    (marker,) = MarkerDetector({FAMILY: (3,)}).detect(drawn(40, 30))
+    (marker,) = MarkerDetector({FAMILY: (3,)}).search(drawn(40, 30))
     return marker
 
 
@@ -41,7 +41,7 @@ def first():
 def test_what_goes_on_steadily_is_found_in_every_image(first, step_px) -> None:
     marker = first
     for i in range(1, 30):
-        (marker,) = read_in_place(drawn(40 + step_px * i, 30), [marker], family(FAMILY))
+        (marker,) = read_in_place(drawn(40 + step_px * i, 30), [marker], [family(FAMILY)])
         assert np.linalg.norm(marker.corners_px - corners_px(40 + step_px * i, 30), axis=1).max() < 0.25
 
 
@@ -49,14 +49,14 @@ def test_what_speeds_up_soon_goes_many_pixels_at_once(first) -> None:
     marker, x_px = first, 40.0
     for i in range(8):
         x_px += i
-        (marker,) = read_in_place(drawn(x_px, 30), [marker], family(FAMILY))
+        (marker,) = read_in_place(drawn(x_px, 30), [marker], [family(FAMILY)])
     assert np.linalg.norm(marker.corners_px - corners_px(x_px, 30), axis=1).max() < 0.25
 
 
 def test_what_stays_is_found_where_it_was_and_does_not_creep(first) -> None:
     marker = first
     for _ in range(50):
-        (marker,) = read_in_place(drawn(40, 30), [marker], family(FAMILY))
+        (marker,) = read_in_place(drawn(40, 30), [marker], [family(FAMILY)])
     assert np.abs(marker.corners_px - first.corners_px).max() < 0.05
 
 
@@ -66,10 +66,10 @@ def test_what_stays_is_found_where_it_was_and_does_not_creep(first) -> None:
     ids=["elsewhere", "another", "under a finger", "gone"],
 )
 def test_what_does_not_is_left_to_the_search(first, image) -> None:
-    assert read_in_place(image, [first], family(FAMILY)) == []
+    assert read_in_place(image, [first], [family(FAMILY)]) == []
 
 
 def test_what_is_covered_in_part_has_no_place_to_begin_from() -> None:
-    (marker,) = MarkerDetector({FAMILY: (3,)}).detect(drawn(40, 30, finger=0.06))
-    assert marker.covered > CLEAR
+    (marker,) = MarkerDetector({FAMILY: (3,)}).search(drawn(40, 30, finger=0.06))
+    assert marker.covered > MAX_COVERED_CLEAR
     assert marker.start is None

@@ -6,11 +6,11 @@ import cv2
 import numpy as np
 import pytest
 
+from actum.geometry import angle_between_rad
 from actum.messages import Image, TrackedObject
-from marker_tracker.decoding import Marker
-from marker_tracker.detection import MarkerDetector
+from marker_tracker.detection.detector import MarkerDetector
+from marker_tracker.detection.marker import Marker
 from marker_tracker.node import MarkerTracker
-from marker_tracker.rotations import apart_rad
 from marker_tracker.settings import Settings
 from rotation_of import rotation_of
 
@@ -50,7 +50,7 @@ PUBLISHED_PX = {
 
 def found(data: Path, name: str, families: tuple[str, ...]) -> list[Marker]:
     pixels = cv2.imread(str(data / "markers" / name), cv2.IMREAD_GRAYSCALE)
-    return MarkerDetector(dict.fromkeys(families, ())).detect(pixels)
+    return MarkerDetector(dict.fromkeys(families, ())).search(pixels)
 
 
 @pytest.mark.parametrize(("name", "ids"), MARKERS.items())
@@ -100,7 +100,7 @@ def test_the_tag_has_turned_as_far_as_it_was_turned(data) -> None:
 @pytest.mark.parametrize("degrees", ANGLES)
 def test_the_tag_stays_where_it_is_turned(data, degrees) -> None:
     straight, turned = the_tag(data, 0), the_tag(data, degrees)
-    angle = np.degrees(apart_rad(rotation_of(straight.quaternion_xyzw), rotation_of(turned.quaternion_xyzw)))
+    angle = np.degrees(angle_between_rad(rotation_of(straight.quaternion_xyzw), rotation_of(turned.quaternion_xyzw)))
     assert angle == pytest.approx(abs(degrees), abs=5.0)
     assert np.allclose(straight.position_m, turned.position_m, atol=0.02)
 

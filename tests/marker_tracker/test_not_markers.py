@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from marker_tracker.detection import MarkerDetector
+from marker_tracker.detection.detector import MarkerDetector
 
 SIDE, CELLS = 96, 6
 DARK, PAPER = 30, 200
@@ -23,7 +23,7 @@ def cut_out(number: int, edge_px: int) -> np.ndarray:
 @pytest.mark.parametrize("edge_px", [4, 5, 6, 7, 8, 12])
 @pytest.mark.parametrize("number", [7, 21, 25, 28])
 def test_a_marker_cut_out_with_hardly_any_white_is_found_on_a_dark_thing(number, edge_px) -> None:
-    (marker,) = MarkerDetector({"DICT_4X4_50": (number,)}).detect(cut_out(number, edge_px))
+    (marker,) = MarkerDetector({"DICT_4X4_50": (number,)}).search(cut_out(number, edge_px))
     assert marker.id == number
     assert marker.side_px == pytest.approx(SIDE, abs=1.0)
 
@@ -36,4 +36,4 @@ def mirrored(number: int) -> np.ndarray:
 
 @pytest.mark.parametrize("number", [1, 12, 25, 39, 47, 81, 83, 85, 92, 95, 101, 186])
 def test_a_code_read_from_cells_that_do_not_show_it_is_no_marker(number) -> None:
-    assert MarkerDetector({"DICT_4X4_1000": ()}).detect(mirrored(number)) == []
+    assert MarkerDetector({"DICT_4X4_1000": ()}).search(mirrored(number)) == []

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from marker_tracker.detection import MarkerDetector
+from marker_tracker.detection.detector import MarkerDetector
 
 WIDTH, HEIGHT = 240, 180
 FINE = 4
@@ -33,7 +33,7 @@ def half_in_shadow(family: str, number: int, side_px: int, light: float, directi
 def test_a_marker_half_in_a_shadow_is_found_from_eight_of_nine_sides(family, side_px, light) -> None:
     detector = MarkerDetector({family: (17,)})
     found = [
-        [marker.id for marker in detector.detect(half_in_shadow(family, 17, side_px, light, direction_deg))]
+        [marker.id for marker in detector.search(half_in_shadow(family, 17, side_px, light, direction_deg))]
         for direction_deg in range(0, 360, 40)
     ]
     assert found.count([17]) >= 8
@@ -42,7 +42,7 @@ def test_a_marker_half_in_a_shadow_is_found_from_eight_of_nine_sides(family, sid
 
 @pytest.mark.parametrize("direction_deg", range(0, 360, 40))
 def test_its_corners_stay_where_they_are(direction_deg) -> None:
-    (marker,) = MarkerDetector({"DICT_APRILTAG_36h11": (17,)}).detect(
+    (marker,) = MarkerDetector({"DICT_APRILTAG_36h11": (17,)}).search(
         half_in_shadow("DICT_APRILTAG_36h11", 17, 32, 0.4, direction_deg)
     )
     middle, half = np.array([(WIDTH - 1) / 2, (HEIGHT - 1) / 2]), 16.0

@@ -10,6 +10,7 @@ from actum.skeletons import INDEX, JOINTS
 from people import FRAME_NS, STANDING, lacking, skeleton
 from pose_preprocessor.bridging import BRIDGED_NS
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 
 Array = NDArray[np.float64]
 WALKED_M = np.array([0.02, 0.0, -0.01])
@@ -29,7 +30,7 @@ def put(node: PosePreprocessor, stamp_ns: int, joints: Array) -> Posture:
 @pytest.mark.parametrize("lost", [("right_hand",), ("torso",), ("neck", "left_hip", "right_shoulder"), JOINTS[1:]])
 def test_a_walkers_lost_joints_walk_on(lost: tuple[str, ...]) -> None:
     """However many: a single joint that is still there tells where the body went."""
-    whole, partial = PosePreprocessor(), PosePreprocessor()
+    whole, partial = PosePreprocessor(PoseSettings.defaults()), PosePreprocessor(PoseSettings.defaults())
     for node in (whole, partial):
         put(node, 0, walking(0))
     expected = put(whole, FRAME_NS, walking(1))
@@ -40,7 +41,7 @@ def test_a_walkers_lost_joints_walk_on(lost: tuple[str, ...]) -> None:
 
 
 def test_what_was_not_seen_is_not_told_as_measured_but_for_the_trunk() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     put(node, 0, walking(0))
     found = put(node, FRAME_NS, lacking(walking(1), "right_hand", "torso", "neck"))
     assert found.joints_m is not None
@@ -49,7 +50,7 @@ def test_what_was_not_seen_is_not_told_as_measured_but_for_the_trunk() -> None:
 
 @pytest.mark.parametrize(("gap_ns", "bridged"), [(BRIDGED_NS, True), (BRIDGED_NS + 1, False)])
 def test_a_joint_is_bridged_no_longer_than_it_can_be_known(gap_ns: int, bridged: bool) -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     put(node, 0, walking(0))
     put(node, gap_ns // 2, lacking(walking(1), "right_hand"))
     found = put(node, gap_ns, lacking(walking(2), "right_hand"))
@@ -60,7 +61,7 @@ def test_a_joint_is_bridged_no_longer_than_it_can_be_known(gap_ns: int, bridged:
 
 
 def test_one_persons_joints_are_not_anothers() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     put(node, 0, walking(0))
     other = skeleton(FRAME_NS, lacking(walking(1), "right_hand"))
     stranger = other.model_copy(update={"agents": [other.agents[0].model_copy(update={"agent": 2})]})
@@ -70,18 +71,19 @@ def test_one_persons_joints_are_not_anothers() -> None:
 
 
 def test_an_absurd_frame_is_not_remembered() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     put(node, 0, walking(0))
     absurd = walking(1)
     absurd[HAND] += 20.0
     assert not put(node, FRAME_NS, absurd).valid
     found = put(node, 2 * FRAME_NS, lacking(walking(2), "right_hand"))
     assert found.joints is not None
-    np.testing.assert_allclose(found.joints[HAND], put(PosePreprocessor(), 0, walking(2)).joints[HAND], atol=1e-9)  # type: ignore[index]
+    whole = put(PosePreprocessor(PoseSettings.defaults()), 0, walking(2))
+    np.testing.assert_allclose(found.joints[HAND], whole.joints[HAND], atol=1e-9)  # type: ignore[index]
 
 
 def test_what_is_bridged_is_still_named_in_the_state() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     put(node, 0, walking(0))
     put(node, FRAME_NS, lacking(walking(1), "right_hand"))
     assert node.counters.state == "running without right_hand"

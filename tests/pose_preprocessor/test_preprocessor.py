@@ -7,12 +7,13 @@ from actum import geometry
 from actum.messages import Agent, Posture, Skeleton
 from actum.skeletons import INDEX, PARTS
 from people import FRAME_NS, STANDING, reaches, reaching, skeleton
-from pose_preprocessor.motion import TIME_CONSTANT_S
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.part_motion import TIME_CONSTANT_S
+from pose_preprocessor.settings import Settings as PoseSettings
 
 
 def postures(*frames: Skeleton, node: PosePreprocessor | None = None) -> list[Posture]:
-    node = node or PosePreprocessor()
+    node = node or PosePreprocessor(PoseSettings.defaults())
     return [posture for frame in frames for posture in node.handle(frame) if isinstance(posture, Posture)]
 
 
@@ -69,7 +70,7 @@ def test_noise_does_not_pass_for_movement(seed: int) -> None:
 
 
 def test_motion_starts_anew_after_a_gap_and_after_a_restart() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     late = skeleton(2_000_000_000, reaching(0.5))
     restarted = skeleton(2_000_000_000 + FRAME_NS, reaching(0.9), session_id="other")
     _, after_gap, after_restart = postures(skeleton(0, STANDING), late, restarted, node=node)
@@ -89,7 +90,7 @@ def test_motion_starts_anew_after_a_gap_and_after_a_restart() -> None:
     ],
 )
 def test_a_bad_frame_is_published_invalid_counted_and_survived(kind: str, frame: Skeleton) -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     [posture] = postures(frame, node=node)
     assert not posture.valid
     assert posture.reason and kind in posture.reason
@@ -100,7 +101,7 @@ def test_a_bad_frame_is_published_invalid_counted_and_survived(kind: str, frame:
 
 
 def test_a_tracker_that_repeats_itself_has_lost_the_person() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     first, again, moved = postures(
         skeleton(0, STANDING), skeleton(FRAME_NS, STANDING), skeleton(2 * FRAME_NS, reaching(0.1)), node=node
     )
@@ -109,7 +110,7 @@ def test_a_tracker_that_repeats_itself_has_lost_the_person() -> None:
 
 
 def test_older_and_repeated_stamps_are_dropped_and_counted() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     frames = [skeleton(stamp, reaching(i / 9)) for i, stamp in enumerate((10, 20, 20, 15, 30))]
     assert [posture.stamp_ns for posture in postures(*frames, node=node)] == [10, 20, 30]
     assert node.counters.rejects["stale_stamp"] == 2

@@ -13,8 +13,9 @@ from actum import geometry
 from actum.messages import Posture
 from actum.skeletons import INDEX
 from people import FRAME_NS, STANDING, lacking, reaching, skeleton, turned
-from pose_preprocessor.heading import DOUBT, FACING_SD_RAD, FIRST_S, TIME_CONSTANT_S, HeadingFilter
+from pose_preprocessor.heading import FACING_SD_RAD, FIRST_S, TIME_CONSTANT_S, VARIANCE_INFLATION, HeadingFilter
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 
 Array = NDArray[np.float64]
 
@@ -29,7 +30,7 @@ HIPS, SHOULDERS = ("left_hip", "right_hip"), ("left_shoulder", "right_shoulder")
 
 def upright(frames: list[Array], first_ns: int = 0, step_ns: int = FRAME_NS) -> Array:
     """Each frame's upright joints (n, 15, 3)."""
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     made = [p for i, joints in enumerate(frames) for p in node.handle(skeleton(first_ns + i * step_ns, joints))]
     assert all(isinstance(posture, Posture) and posture.valid and posture.upright for posture in made)
     return np.array([posture.upright for posture in made if isinstance(posture, Posture)])
@@ -140,8 +141,9 @@ def swaying(rate_hz: int, *headings_rad: float, seconds: int = 20) -> tuple[Head
 
 
 def drawn(yaw_rad: float, variance_rad2: float) -> float:
-    """How far a yaw is believed that sways with a variance."""
-    return yaw_rad * (1 - max(np.cos(yaw_rad), 0) * DOUBT * variance_rad2 / (DOUBT * variance_rad2 + FACING_SD_RAD**2))
+    """The yaw shrunk towards facing the camera, as its variance says."""
+    variance = VARIANCE_INFLATION * variance_rad2
+    return yaw_rad * (1 - max(np.cos(yaw_rad), 0) * variance / (variance + FACING_SD_RAD**2))
 
 
 @given(HEADINGS)
@@ -250,7 +252,7 @@ def test_what_swayed_before_a_gap_is_forgotten() -> None:
 
 
 def test_another_session_begins_anew() -> None:
-    node, person = PosePreprocessor(), level(STANDING)
+    node, person = PosePreprocessor(PoseSettings.defaults()), level(STANDING)
     frames = [skeleton(0, person), skeleton(FRAME_NS, turned(person, 2.0), session_id="other")]
     first, other = [p for frame in frames for p in node.handle(frame) if isinstance(p, Posture)]
     np.testing.assert_allclose(np.array(other.upright), np.array(first.upright), atol=1e-12)
@@ -276,7 +278,7 @@ def test_who_lies_down_on_the_side_does_not_sway() -> None:
 
 
 def test_each_person_has_a_heading_of_their_own() -> None:
-    node, person = PosePreprocessor(), level(STANDING)
+    node, person = PosePreprocessor(PoseSettings.defaults()), level(STANDING)
     for i in range(20):
         drift = np.array([1.0, 0.0, 1e-6 * i])
         frame = skeleton(i * FRAME_NS, turned(person, 0.5) + drift, turned(person, -1.5) - drift)
@@ -293,7 +295,7 @@ def test_a_camera_that_says_how_it_is_tilted_sees_the_postures_of_a_level_one(
     camera_from_level = tilted(pitch_deg, roll_deg)
     up_in_camera = (camera_from_level @ [0.0, -1.0, 0.0]).tolist()
     frames = [skeleton(k * FRAME_NS, joints @ camera_from_level.T) for k, joints in enumerate(steady())]
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     made = [
         posture
         for frame in frames

@@ -12,6 +12,7 @@ from actum.skeletons import INDEX
 from chain import answers, by_key, delayed, replayed
 from people import FRAME_NS, STANDING, reaches, skeleton
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from recognisers import tiny_model
 from som_classifier.node import SomClassifier
 
@@ -44,7 +45,7 @@ def told(
 
     Marks come in their order, when they say or at the latest time given: they may be stamped ahead.
     """
-    preprocessor = PosePreprocessor()
+    preprocessor = PosePreprocessor(PoseSettings.defaults())
     captured = frames() if skeletons is None else skeletons
     postures = chained.from_iterable(preprocessor.handle(frame) for frame in captured)
     images = (Objects(stamp_ns=frame.stamp_ns, sensor="kinect0", objects=[]) for frame in captured)
@@ -147,7 +148,7 @@ def test_an_end_that_comes_when_the_segment_was_given_up_is_not_answered_again()
 
 @pytest.mark.parametrize("agent", [None, 1])
 def test_a_start_from_the_future_is_given_up_while_frames_go_on(agent: int | None) -> None:
-    preprocessor = PosePreprocessor()
+    preprocessor = PosePreprocessor(PoseSettings.defaults())
     frames = [(posture.stamp_ns, posture) for frame in slow_minute() for posture in preprocessor.handle(frame)]
     put = replayed(SomClassifier(tiny_model()), [(0, mark("start", FAR, agent=agent)), *frames])
     ((given_up_ns, action),) = put

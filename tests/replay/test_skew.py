@@ -13,8 +13,9 @@ from chain import answers, by_key, delayed
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from scene_simulator.programme import balanced_programme
-from scene_simulator.source import Simulator
+from scene_simulator.simulator import Simulator
 from wire import without_seq
 
 SKEW_NS = 2 * SECOND_NS
@@ -89,7 +90,7 @@ def streams() -> dict[str, list[Message]]:
     frames = [frame.model_copy(update={"agents": script.agents(i), "seq": i}) for i, frame in enumerate(script.frames)]
     lost = {len(frames) // 5, int(0.44 * len(frames))}
     images, truths = ([m for m in captured if isinstance(m, kind)] for kind in (Image, Truth))
-    preprocessor, tracker = PosePreprocessor(), MarkerTracker(Settings())
+    preprocessor, tracker = PosePreprocessor(PoseSettings.defaults()), MarkerTracker(Settings())
     return by_key(
         [
             *(p for i, frame in enumerate(frames) if i not in lost for p in preprocessor.handle(frame)),

@@ -11,9 +11,11 @@ from camera_bodies import Array, as_seen, landmark_points
 from chain import answers, by_key, delayed
 from people import reaching
 from pose_preprocessor.node import PosePreprocessor
-from sensor_gateway.camera.landmarks import Landmarks
-from sensor_gateway.camera.perceiving import Optics, Perceiver
-from sensor_gateway.camera.video import Picture
+from pose_preprocessor.settings import Settings as PoseSettings
+from sensor_gateway.captured_picture import Picture
+from sensor_gateway.optics import Optics
+from sensor_gateway.people.landmarks import Landmarks
+from sensor_gateway.perceiver import Perceiver
 
 FRAME_NS = SECOND_NS // 20
 FRAMES = 80
@@ -88,7 +90,8 @@ def _torsos_x(frames: Sequence[list[Agent]], number: int) -> list[float]:
 
 @pytest.mark.parametrize("acting", [1, 2])
 def test_the_event_names_the_agent_that_was_marked(frames, acting: int) -> None:
-    perceiver, preprocessor = Perceiver(Crossing(), Optics(), "kinect0", "test", Counters()), PosePreprocessor()
+    perceiver = Perceiver(Crossing(), Optics(), "kinect0", "test", Counters())
+    preprocessor = PosePreprocessor(PoseSettings.defaults())
     messages: list[Message] = []
     for i in range(FRAMES):
         messages += preprocessor.handle(perceiver.skeleton(Picture(DARK, (i + 1) * FRAME_NS)))

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from actum.arrays import Array
 from actum.skeletons import INDEX, JOINTS
 from scene_simulator.actor import FOREARM, UPPER_ARM, Actor, Stance, draw_actor, eye, fingertip, pose
-from scene_simulator.motion import Array
 from scene_simulator.parameters import load_parameters
-from scene_simulator.pointing import aim
+from scene_simulator.pointing import pointing_palm
 
 PARAMETERS = load_parameters().actor
 PELVIS = np.array([0.0, 0.4, 2.3])
@@ -90,7 +90,7 @@ def test_pointing_puts_the_fingertip_on_the_line_from_the_eye(
     actor: Actor, target: Array, azimuth: float, elevation: float
 ) -> None:
     stance = standing(actor)
-    hand = aim(actor, stance, RESTING[None], target, np.array([azimuth, elevation]), stand_off_m=0.15)
+    hand = pointing_palm(actor, stance, RESTING[None], target, np.array([azimuth, elevation]), stand_off_m=0.15)
     joints = pose(actor, stance, hands_of(actor, hand))
 
     towards, tip = target - eye(actor, stance, joints)[0], fingertip(actor, joints)[0]

@@ -9,24 +9,24 @@ from pydantic import ValidationError
 
 from actum.messages import Message, Truth
 from actum.skeletons import INDEX
-from scene_simulator.chance import stream
 from scene_simulator.conditions import Conditions, load_conditions
-from scene_simulator.exposure import averaged, while_open
-from scene_simulator.programme import NO_OBJECT, Sample
+from scene_simulator.exposure import mean_image, states_while_open
+from scene_simulator.programme import NO_OBJECT, Task
+from scene_simulator.random_streams import random_stream
 from scene_simulator.render import Renderer
-from scene_simulator.scene import CLOSED, Scene, SceneState
-from scene_simulator.source import Simulator
+from scene_simulator.simulated_scene import CLOSED, Scene, SceneState
+from scene_simulator.simulator import Simulator
 
-PROGRAMME = [Sample("push", 1), Sample("lift", 2), Sample("put", 3)]
+PROGRAMME = [Task("push", 1), Task("lift", 2), Task("put", 3)]
 CONTACT = ("push", "pull", "put", "lift")
 
 
-def scene(programme: list[Sample] = PROGRAMME, **conditions: float) -> Scene:
+def scene(programme: list[Task] = PROGRAMME, **conditions: float) -> Scene:
     return Scene(programme, 42, 7, conditions=Conditions.model_validate(conditions))
 
 
 def renderer(of: Scene) -> Renderer:
-    return Renderer(of, stream("test"))
+    return Renderer(of, random_stream("test"))
 
 
 def detected(image: np.ndarray) -> set[int]:
@@ -85,7 +85,7 @@ def test_objects_shrink_with_their_markers_only_where_there_is_no_room() -> None
 
 @pytest.mark.parametrize("distance_m", [1.0, 2.0])
 def test_a_person_points_from_as_far_as_asked(distance_m: float) -> None:
-    pointing = scene([Sample("point", 2)], spacing_m=0.2, distance_m=distance_m)
+    pointing = scene([Task("point", 2)], spacing_m=0.2, distance_m=distance_m)
     state = next(s for s in pointing.states() if s.pointing > 0.99)
     eye, target = state.joints_m[INDEX["head"]], state.positions_m[1]
     ray = state.fingertip_m - eye
@@ -135,20 +135,20 @@ def test_defocus_takes_detail_away() -> None:
 def test_an_open_shutter_takes_in_the_way_since_and_smears_only_what_moves() -> None:
     made = scene()
     before, state = max(pairwise(made.states()), key=way_of_the_hand)
-    instants = while_open(before, state, 0.5)
+    instants = states_while_open(before, state, 0.5)
     drawn = [renderer(made).clean_image(instant) for instant in instants]
-    smeared = np.abs(averaged(drawn).astype(int) - drawn[-1]).max(axis=2) > 20
+    smeared = np.abs(mean_image(drawn).astype(int) - drawn[-1]).max(axis=2) > 20
 
     np.testing.assert_allclose(instants[0].joints_m, (before.joints_m + state.joints_m) / 2)
     np.testing.assert_allclose(instants[-1].joints_m, state.joints_m)
-    assert while_open(before, state, 0.0) == [state]
+    assert states_while_open(before, state, 0.0) == [state]
     assert 0.001 < smeared.mean() < 0.05
-    np.testing.assert_array_equal(averaged([drawn[0]] * 3), drawn[0])
+    np.testing.assert_array_equal(mean_image([drawn[0]] * 3), drawn[0])
 
 
 @pytest.mark.parametrize("spacing_m", [0.10, 0.20, 0.30])
 def test_a_pantomime_is_done_far_from_every_object_and_moves_none(spacing_m: float) -> None:
-    programme = [Sample(action, NO_OBJECT) for action in CONTACT] * 3
+    programme = [Task(action, NO_OBJECT) for action in CONTACT] * 3
     made = scene(programme, spacing_m=spacing_m)
     hand = INDEX[f"{made.actor.hand}_hand"]
     for state in made.states():
@@ -164,7 +164,7 @@ def test_a_pantomime_is_done_far_from_every_object_and_moves_none(spacing_m: flo
 
 @pytest.mark.parametrize("near_m", [0.12, 0.2])
 def test_a_pantomime_comes_as_near_to_an_object_as_asked(near_m: float) -> None:
-    made = scene([Sample(action, NO_OBJECT) for action in CONTACT], spacing_m=0.2, pantomime_m=near_m)
+    made = scene([Task(action, NO_OBJECT) for action in CONTACT], spacing_m=0.2, pantomime_m=near_m)
     hand = INDEX[f"{made.actor.hand}_hand"]
     for number in range(len(CONTACT)):
         held = [state for state in made.states() if state.segment == number and state.grip > CLOSED]
@@ -173,7 +173,7 @@ def test_a_pantomime_comes_as_near_to_an_object_as_asked(near_m: float) -> None:
 
 
 def test_pantomimes_differ_as_the_actions_do() -> None:
-    moved = {action: scene([Sample(action, NO_OBJECT)]).trials[0].displacement_m for action in CONTACT}
+    moved = {action: scene([Task(action, NO_OBJECT)]).trials[0].displacement_m for action in CONTACT}
     assert moved["push"][2] < -0.08
     assert moved["pull"][2] > 0.08
     assert moved["lift"][1] < -0.09
@@ -181,7 +181,7 @@ def test_pantomimes_differ_as_the_actions_do() -> None:
 
 
 def test_the_truth_of_a_pantomime_names_no_object() -> None:
-    simulator = Simulator([Sample("push", NO_OBJECT)], image_hz=0)
+    simulator = Simulator([Task("push", NO_OBJECT)], image_hz=0)
     start, end = truths([message for messages in simulator.frames() for message in messages])
 
     assert (start.action, end.action) == ("push", "push")
@@ -190,12 +190,12 @@ def test_the_truth_of_a_pantomime_names_no_object() -> None:
 
 def test_pointing_has_no_pantomime() -> None:
     with pytest.raises(ValueError, match="no pantomime"):
-        Sample("point", NO_OBJECT)
+        Task("point", NO_OBJECT)
 
 
 def test_a_pantomime_without_room_is_refused() -> None:
     with pytest.raises(ValueError, match="no empty space"):
-        scene([Sample("push", NO_OBJECT)], pantomime_m=3.0)
+        scene([Task("push", NO_OBJECT)], pantomime_m=3.0)
 
 
 def test_the_named_conditions_are_all_different() -> None:

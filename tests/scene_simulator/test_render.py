@@ -4,12 +4,12 @@ import cv2
 import numpy as np
 import pytest
 
-from scene_simulator.chance import stream
-from scene_simulator.motion import Array
+from actum.arrays import Array
 from scene_simulator.parameters import load_parameters
-from scene_simulator.programme import Sample
+from scene_simulator.programme import Task
+from scene_simulator.random_streams import random_stream
 from scene_simulator.render import Renderer
-from scene_simulator.scene import Scene, SceneState
+from scene_simulator.simulated_scene import Scene, SceneState
 
 HALF_M = 0.04
 CORNERS_M = np.array([[-HALF_M, HALF_M, 0], [HALF_M, HALF_M, 0], [HALF_M, -HALF_M, 0], [-HALF_M, -HALF_M, 0]])
@@ -17,7 +17,7 @@ CORNERS_M = np.array([[-HALF_M, HALF_M, 0], [HALF_M, HALF_M, 0], [HALF_M, -HALF_
 
 @pytest.fixture(scope="module")
 def scene() -> Scene:
-    return Scene([Sample("push", 1), Sample("lift", 2), Sample("put", 3), Sample("point", 1)], 4, 9)
+    return Scene([Task("push", 1), Task("lift", 2), Task("put", 3), Task("point", 1)], 4, 9)
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def free(scene: Scene) -> list[SceneState]:
 
 @pytest.fixture
 def renderer(scene: Scene) -> Renderer:
-    return Renderer(scene, stream("test"))
+    return Renderer(scene, random_stream("test"))
 
 
 def detect(image: np.ndarray) -> dict[int, Array]:
@@ -59,8 +59,8 @@ def test_uncovered_markers_are_found_where_they_are(scene: Scene, renderer: Rend
 def test_a_sharper_camera_sees_the_markers_exactly_where_they_are() -> None:
     plain = load_parameters()
     sharp = plain.camera.model_copy(update={"width": 2560, "height": 1920, "focal_px": 2100.0})
-    scene = Scene([Sample("push", 1)], 4, 9, plain.model_copy(update={"camera": sharp}))
-    renderer, state = Renderer(scene, stream("test")), next(scene.states())
+    scene = Scene([Task("push", 1)], 4, 9, plain.model_copy(update={"camera": sharp}))
+    renderer, state = Renderer(scene, random_stream("test")), next(scene.states())
     markers = detect(renderer.image(state))
 
     for row, item in enumerate(scene.items):

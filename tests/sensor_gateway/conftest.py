@@ -7,7 +7,7 @@ import pytest
 
 from actum.recording import Recorder
 from scene_simulator.programme import balanced_programme
-from scene_simulator.source import Simulator
+from scene_simulator.simulator import Simulator
 
 FRAMES = 40
 

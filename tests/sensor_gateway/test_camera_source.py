@@ -13,11 +13,12 @@ from actum.messages import Image, Message, Skeleton
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from camera_bodies import K, as_seen, standing_at
-from sensor_gateway.camera.capture import CameraLostError, CaptureEndedError
-from sensor_gateway.camera.landmarks import Landmarks
-from sensor_gateway.camera.perceiving import Optics
-from sensor_gateway.camera.source import CameraSource, optics_of
-from sensor_gateway.camera.video import Picture
+from sensor_gateway.camera_source import CameraSource
+from sensor_gateway.cameras import optics_of
+from sensor_gateway.captured_picture import Picture
+from sensor_gateway.devices.capture import CameraLostError, CaptureEndedError
+from sensor_gateway.optics import Optics
+from sensor_gateway.people.landmarks import Landmarks
 from sensor_gateway.settings import Settings
 
 FRAME_NS = SECOND_NS // 20

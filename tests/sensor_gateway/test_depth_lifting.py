@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from actum.skeletons import INDEX, JOINTS
 from rendered_bodies import Person, depth_of, landmarks_of, person
-from sensor_gateway.camera.landmarks import Landmarks, joints_of
-from sensor_gateway.camera.lens import Lens
-from sensor_gateway.camera.placing import Placed, placed
-from sensor_gateway.depth.lifting import lifted
+from sensor_gateway.lens import Lens
+from sensor_gateway.people.depth_lifting import lifted
+from sensor_gateway.people.landmarks import Landmarks, joints_of
+from sensor_gateway.people.placing import Placed, placed
 
 WIDTH, HEIGHT = 640, 480
 LENS = Lens(np.array([[600.0, 0, 319.5], [0, 600.0, 239.5], [0, 0, 1]]), np.zeros(5), assumed=False)

@@ -11,14 +11,17 @@ from actum.messages import Image, Message, Skeleton
 from oni_files import DEPTH, IMAGE, Track, write_oni
 from realsense_devices import Known
 from rendered_bodies import depth_of, landmarks_of, person
-from sensor_gateway.camera.capture import CameraLostError, FileCapture
-from sensor_gateway.camera.landmarks import joints_of
-from sensor_gateway.camera.lens import Lens
-from sensor_gateway.camera.source import CameraSource
-from sensor_gateway.camera.video import Picture, VideoError
-from sensor_gateway.depth.openni2 import OpenNi2Capture, recorded_pictures, together
-from sensor_gateway.depth.openni2_library import OpenNiError, library
-from sensor_gateway.depth.picture import DepthOptics, DepthPicture
+from sensor_gateway.camera_source import CameraSource
+from sensor_gateway.captured_picture import DepthPicture, Picture
+from sensor_gateway.devices.capture import CameraLostError
+from sensor_gateway.devices.file_capture import FileCapture
+from sensor_gateway.devices.openni2 import OpenNi2Capture, recorded_pictures
+from sensor_gateway.devices.openni2_library import OpenNiError, library
+from sensor_gateway.devices.openni2_streams import together
+from sensor_gateway.devices.video import VideoError
+from sensor_gateway.lens import Lens
+from sensor_gateway.optics import DepthOptics
+from sensor_gateway.people.landmarks import joints_of
 
 try:
     OPENNI2 = library()
@@ -188,7 +191,7 @@ class OneCamera:
 
 def test_an_unplugged_camera_is_lost_at_once_and_comes_back(monkeypatch: pytest.MonkeyPatch) -> None:
     fake = OneCamera()
-    monkeypatch.setattr("sensor_gateway.depth.openni2.library", lambda: fake)
+    monkeypatch.setattr("sensor_gateway.devices.openni2.library", lambda: fake)
 
     def first_picture(capture: OpenNi2Capture) -> Picture:
         return next(picture for picture in (capture.next(1.0) for _ in range(20)) if picture is not None)

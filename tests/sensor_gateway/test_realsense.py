@@ -10,14 +10,10 @@ import pytest
 from actum.messages import Image, Message, Skeleton
 from realsense_devices import COLOR_LENS, HEIGHT, PERIOD_MS, WIDTH, Known, SoftwareCamera, color_image, intrinsics
 from rendered_bodies import landmarks_of, person
-from sensor_gateway.camera.capture import CameraLostError, FileCapture
-from sensor_gateway.camera.landmarks import joints_of
-from sensor_gateway.camera.lens import Lens
-from sensor_gateway.camera.source import CameraSource
-from sensor_gateway.camera.video import VideoError
-from sensor_gateway.depth.lifting import lifted
-from sensor_gateway.depth.picture import DepthOptics
-from sensor_gateway.depth.realsense import (
+from sensor_gateway.camera_source import CameraSource
+from sensor_gateway.devices.capture import CameraLostError
+from sensor_gateway.devices.file_capture import FileCapture
+from sensor_gateway.devices.realsense import (
     Aligner,
     RealSenseCapture,
     RealSenseError,
@@ -25,6 +21,11 @@ from sensor_gateway.depth.realsense import (
     library,
     recorded_pictures,
 )
+from sensor_gateway.devices.video import VideoError
+from sensor_gateway.lens import Lens
+from sensor_gateway.optics import DepthOptics
+from sensor_gateway.people.depth_lifting import lifted
+from sensor_gateway.people.landmarks import joints_of
 
 try:
     rs = library()
@@ -155,7 +156,7 @@ def test_a_lens_that_tells_sights_from_pixels_becomes_one_that_tells_pixels_from
     pixels = np.array([[5.0, 5.0], [320.0, 240.0], [630.0, 470.0], [100.0, 400.0]])
     expected = [rs.rs2_deproject_pixel_to_point(told, pixel.tolist(), 1.0)[:2] for pixel in pixels]
 
-    np.testing.assert_allclose(lens_of(rs, told).sights(pixels), expected, atol=2e-4)
+    np.testing.assert_allclose(lens_of(rs, told).rays(pixels), expected, atol=2e-4)
 
 
 def test_a_lens_as_opencv_has_it_is_taken_as_it_is() -> None:
@@ -228,7 +229,7 @@ class FakeLibrary:
 def test_an_unplugged_camera_is_lost_at_once_and_a_silent_one_is_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
     complete = [frames for frames in SoftwareCamera(rs).frame_sets(BODY, 4) if frames.size() == 2]
     fake = FakeLibrary(complete[:1])
-    monkeypatch.setattr("sensor_gateway.depth.realsense.library", lambda: fake)
+    monkeypatch.setattr("sensor_gateway.devices.realsense.library", lambda: fake)
     monkeypatch.setattr(RealSenseCapture, "_config", lambda *_: None)
     capture = RealSenseCapture(now_ns=lambda: START_NS)
 

@@ -6,7 +6,7 @@ import pytest
 from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS
 from people import STANDING, lacking
-from som_classifier.attention import ALL, ATTENTIONS, MOVING, PART_NAMES, PostureInput, attended
+from som_classifier.attention import ALL, ATTENTIONS, MOVING, PART_NAMES, PostureInput, attended_part
 
 
 @pytest.mark.parametrize("part", range(5))
@@ -14,21 +14,21 @@ def test_the_part_that_moves_most_over_all_frames_is_attended(part: int) -> None
     motion = np.full((10, 5), 0.02)
     motion[4:6, part] = 0.05
     motion[7, (part + 1) % 5] = 0.07
-    assert attended(motion) == part
+    assert attended_part(motion) == part
 
 
 def test_ties_are_settled_by_the_listed_order() -> None:
-    assert PART_NAMES[attended(np.zeros((4, 5)))] == "right_arm"
-    assert PART_NAMES[attended(np.array([[0, 0, 0, 0, 0], [0, 1, 0, 1, 1]]))] == "left_arm"
+    assert PART_NAMES[attended_part(np.zeros((4, 5)))] == "right_arm"
+    assert PART_NAMES[attended_part(np.array([[0, 0, 0, 0, 0], [0, 1, 0, 1, 1]]))] == "left_arm"
 
 
 def test_motion_from_before_the_segment_does_not_count() -> None:
     motion = np.array([[0, 0, 9.0, 0, 0], [0, 0.1, 0, 0, 0]])
-    assert PART_NAMES[attended(motion)] == "left_arm"
+    assert PART_NAMES[attended_part(motion)] == "left_arm"
 
 
 def test_a_fixed_part_is_kept_whatever_moves() -> None:
-    assert PART_NAMES[attended(np.array([[0, 0, 0, 0, 0], [1.0, 0, 0, 0, 0]]), "left_leg")] == "left_leg"
+    assert PART_NAMES[attended_part(np.array([[0, 0, 0, 0, 0], [1.0, 0, 0, 0, 0]]), "left_leg")] == "left_leg"
 
 
 def shown(attention: str, origin: str = "torso", axes: str = "posture") -> PostureInput:

@@ -16,12 +16,14 @@ from people import FRAME_NS, lacking, skeleton
 from performers import FRAMES, HAND_PATHS, PAUSE_FRAMES, TINY, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
 from pose_preprocessor.bridging import BRIDGED_NS
 from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from recognisers import tiny_model, tiny_samples
+from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.node import POLL_TICKS, SomClassifier
 from som_classifier.presets import Preset
 from som_classifier.pyramid_model import PyramidModel
-from som_classifier.streams import Frame, Stream
+from som_classifier.streams import Stream
 from wire import Wire, without_seq
 
 each_preset = pytest.mark.parametrize("preset", TINY_OF_EACH_KIND, ids=lambda preset: preset.name)
@@ -30,7 +32,7 @@ BESIDE_M = np.array([1.0, 0.0, 1.0])
 
 
 def postures_of(skeletons: Iterable[Message]) -> list[Posture]:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     return [p for frame in skeletons for p in node.handle(frame) if isinstance(p, Posture)]
 
 
@@ -151,7 +153,7 @@ def test_an_end_before_the_usual_time_ends_the_action_all_the_same() -> None:
 def test_what_is_unfamiliar_is_told_at_the_end() -> None:
     model = tiny_model()
     assert isinstance(model, PyramidModel)
-    strict = replace(model, description=model.description.model_copy(update={"familiar": 1e9}))
+    strict = replace(model, metadata=model.metadata.model_copy(update={"familiar": 1e9}))
     actions = live(SomClassifier(strict), scene())
     assert [action.unknown for action in actions] == [action.final for action in actions]
     assert all((action.familiarity is None) != action.final for action in actions)

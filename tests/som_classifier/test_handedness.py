@@ -7,15 +7,15 @@ from hypothesis import strategies as st
 
 from actum.skeletons import INDEX, JOINTS
 from people import STANDING
-from som_classifier.handedness import Spreads, mirrored, moments
+from som_classifier.handedness import LimbSpreads, limb_moments, mirrored
 
 LIMBS = ("right arm", "left arm", "right leg", "left leg")
 ENDS = ("right_hand", "left_hand", "right_foot", "left_foot")
 POSTURE = STANDING - STANDING[2]
 
 
-def spreads(postures: np.ndarray) -> Spreads:
-    return Spreads.of(np.sum([moments(posture) for posture in postures], axis=0))
+def spreads(postures: np.ndarray) -> LimbSpreads:
+    return LimbSpreads.of(np.sum([limb_moments(posture) for posture in postures], axis=0))
 
 
 def swaying(**reach_m: float) -> np.ndarray:
@@ -62,7 +62,7 @@ def test_spread_is_the_root_mean_square_distance_to_the_mean_of_elbow_and_hand()
 
 @given(st.permutations(range(12)), st.integers(0, 12))
 def test_moments_add_up_to_the_same_in_any_order_and_in_parts(order: list[int], cut: int) -> None:
-    each = np.array([moments(posture) for posture in np.random.default_rng(0).normal(0, 0.3, (12, 15, 3))])
+    each = np.array([limb_moments(posture) for posture in np.random.default_rng(0).normal(0, 0.3, (12, 15, 3))])
     assert each.dtype == np.int64
     parts = each[order[:cut]].sum(axis=0) + each[order[cut:]].sum(axis=0)
     np.testing.assert_array_equal(parts, each.sum(axis=0))
@@ -122,4 +122,4 @@ def test_a_limb_that_is_never_there_does_not_move() -> None:
 
 
 def test_no_frame_is_no_movement() -> None:
-    assert Spreads.of(np.zeros((4, 8), np.int64)).limbs == [0.0] * 4
+    assert LimbSpreads.of(np.zeros((4, 8), np.int64)).limbs == [0.0] * 4

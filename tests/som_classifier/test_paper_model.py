@@ -8,11 +8,12 @@ from hypothesis import strategies as st
 from actum.skeletons import PARTS
 from handmade import paper_model
 from people import STANDING, lacking
-from som_classifier.movement import Movement
+from som_classifier.frames import Frame
+from som_classifier.kinematics import Kinematics
+from som_classifier.map_activity import NO_WINNER, MapActivity
+from som_classifier.ordered_vector import ordered_vector
 from som_classifier.paper_model import PaperModel
-from som_classifier.streams import Frame
 from som_classifier.supervised import SupervisedLayer
-from som_classifier.trace import UNSEEN, Activities, ordered_vector
 
 LEFT_ARM = list(PARTS).index("left_arm")
 
@@ -23,10 +24,10 @@ def walk(*cells: int, part: int = 0) -> list[Frame]:
     for number, cell in enumerate(cells):
         winners = np.full(5, 4)
         winners[part] = cell
-        centres = np.where(winners[:, None] == UNSEEN, np.nan, paper_model().layer1.coordinates[winners])
+        centres = np.where(winners[:, None] == NO_WINNER, np.nan, paper_model().layer1.coordinates[winners])
         motion = np.zeros(5)
         motion[part] = 0.1
-        frames.append(Frame(number, None, (), 0, 0.0, STANDING, motion, code=Activities(winners, centres)))
+        frames.append(Frame(number, None, (), 0, 0.0, STANDING, motion, activity=MapActivity(winners, centres)))
     return frames
 
 
@@ -47,7 +48,7 @@ def test_confidence_is_the_winners_share_of_the_cosines_by_hand() -> None:
 
 def test_a_negative_cosine_is_no_confidence() -> None:
     model = paper_model()
-    against = PaperModel(model.layer1, model.layer2, SupervisedLayer(-np.eye(2)), model.description)
+    against = PaperModel(model.layer1, model.layer2, SupervisedLayer(-np.eye(2)), model.metadata)
     assert against.recognise(walk(0, 3, 6), True).confidence == 0.0
 
 
@@ -81,22 +82,22 @@ def test_a_look_is_the_nearest_unit_of_each_part() -> None:
     model = paper_model()
     joints = np.random.default_rng(1).random((15, 3))
     looked = joints - joints[[9, 12]].mean(axis=0)
-    for winner, part in zip(model.look(joints, STANDING).winners, PARTS.values(), strict=True):
+    for winner, part in zip(model.first_activity(joints, STANDING).winners, PARTS.values(), strict=True):
         distances = np.linalg.norm(model.layer1.weights - looked[list(part)].ravel(), axis=1)
         assert winner == np.argmin(distances)
 
 
 def test_a_part_without_a_joint_has_no_winner() -> None:
-    seen = paper_model().look(lacking(STANDING, "left_shoulder", "left_elbow", "left_hand"), STANDING)
-    whole = paper_model().look(STANDING, STANDING)
-    assert (seen.winners == UNSEEN).tolist() == [part == "left_arm" for part in PARTS]
+    seen = paper_model().first_activity(lacking(STANDING, "left_shoulder", "left_elbow", "left_hand"), STANDING)
+    whole = paper_model().first_activity(STANDING, STANDING)
+    assert (seen.winners == NO_WINNER).tolist() == [part == "left_arm" for part in PARTS]
     assert np.isnan(seen.centres).all(axis=1).tolist() == [part == "left_arm" for part in PARTS]
     np.testing.assert_array_equal(np.delete(seen.winners, LEFT_ARM), np.delete(whole.winners, LEFT_ARM))
 
 
 def test_frames_without_the_part_leave_no_trace_and_less_confidence() -> None:
     model = paper_model()
-    whole, partly = walk(0, 3, 3, 6), walk(0, 3, UNSEEN, 6)
+    whole, partly = walk(0, 3, 3, 6), walk(0, 3, NO_WINNER, 6)
     assert model.trace(partly).tolist() == model.trace(whole).tolist()
     assert model.recognise(partly, True).activations == model.recognise(whole, True).activations
     assert model.recognise(partly, True).confidence == pytest.approx(0.75 * model.recognise(whole, True).confidence)
@@ -111,15 +112,15 @@ def test_frames_are_read_through_the_codes_of_the_encoder(axes: str) -> None:
     )
     drawn = [STANDING + rng.normal(0, 0.3, (2, 15, 3)) for _ in range(6)]
     frames = [
-        Frame(i, None, (), 0, 0.0, joints, np.zeros(5), Movement(upright, upright))
+        Frame(i, None, (), 0, 0.0, joints, np.zeros(5), Kinematics(upright, upright))
         for i, (joints, upright) in enumerate(drawn)
     ]
     encoder = model.encoder()
     for frame, (joints, upright) in zip(frames, drawn, strict=True):
-        frame.code = encoder.encode(frame)
+        frame.activity = encoder.encode(frame)
         elsewhere = np.zeros((15, 3))
         given = (joints, elsewhere) if axes == "posture" else (elsewhere, upright)
-        np.testing.assert_array_equal(frame.code.centres, model.look(*given).centres)
+        np.testing.assert_array_equal(frame.activity.centres, model.first_activity(*given).centres)
     for complete in (False, True):
         answer = model.recognise(frames, complete)
         assert (answer.part, answer.familiarity, answer.unknown) == ("left_leg", None, False)
@@ -128,7 +129,7 @@ def test_frames_are_read_through_the_codes_of_the_encoder(axes: str) -> None:
 def test_the_map_of_actions_is_most_active_where_the_way_is_nearest() -> None:
     model, frames = paper_model(), walk(0, 3, 6)
     (activities,) = model.maps(frames).values()
-    nearest = model.layer2.bmu(ordered_vector(model.trace(frames), model.description.points))
+    nearest = model.layer2.bmu(ordered_vector(model.trace(frames), model.metadata.points))
     assert nearest == model.place(frames)
     assert activities.shape == (model.layer2.rows, model.layer2.cols)
     assert activities.max() == activities.ravel()[nearest] == 1

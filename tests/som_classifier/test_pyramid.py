@@ -5,20 +5,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from som_classifier.pyramid import MOST_FRAMES, SCALE, Instant, Pyramid, Trail, quantised
+from som_classifier.pyramid import MOST_FRAMES, SCALE, Prefix, PrefixSums, Pyramid, quantised
 
 UNITS = 4
 PLAIN = Pyramid((1, 2, 4), 0.0)
 OVERLAPPING = Pyramid((1, 2, 4), 0.25)
 
 
-def trail(activities: np.ndarray, steps_um: np.ndarray | None = None, begun: int = 0, far_um: int = 0) -> Trail:
+def trail(activities: np.ndarray, steps_um: np.ndarray | None = None, begun: int = 0, far_um: int = 0) -> PrefixSums:
     """Running sums of activities (n, units), over parts that have moved so far in each frame."""
     steps = np.zeros(len(activities), np.int64) if steps_um is None else steps_um
     running = np.concatenate([np.zeros((1, activities.shape[1]), np.uint32), quantised(activities)])
     sums = np.cumsum(running, axis=0, dtype=np.uint32) + np.uint32(begun)
     travelled_um = [far_um, *(far_um + np.cumsum(steps)).tolist()]
-    return Trail([Instant([own], so_far_um) for own, so_far_um in zip(sums, travelled_um, strict=True)])
+    return PrefixSums([Prefix([own], so_far_um) for own, so_far_um in zip(sums, travelled_um, strict=True)])
 
 
 def random_activities(frames: int, seed: int = 0) -> np.ndarray:
@@ -30,7 +30,7 @@ def random_steps(frames: int, seed: int = 0) -> np.ndarray:
     return np.random.default_rng(seed + 1).integers(0, 50_000, frames)
 
 
-def means(pyramid: Pyramid, trail: Trail) -> np.ndarray:
+def means(pyramid: Pyramid, trail: PrefixSums) -> np.ndarray:
     """Each cell's mean activity (cells, units)."""
     return np.asarray(pyramid.vector(trail).astype(np.float64) ** 4).reshape(pyramid.cells, UNITS)
 
@@ -56,7 +56,7 @@ def test_however_many_frames_there_are_every_cell_is_its_fourth_root(frames: int
     activity = np.array([0.0, 0.0625, 0.5, 1.0])
     long = trail(np.tile(activity, (frames, 1)), begun=begun)
     np.testing.assert_allclose(OVERLAPPING.vector(long), np.tile(activity**0.25, OVERLAPPING.cells), rtol=1e-6)
-    np.testing.assert_array_equal(long.gained([0, 1, frames]), np.outer([0, 1, frames], activity * SCALE))
+    np.testing.assert_array_equal(long.since_start([0, 1, frames]), np.outer([0, 1, frames], activity * SCALE))
 
 
 def test_a_unit_that_wins_one_frame_in_sixteen_counts_half_of_one_that_always_wins() -> None:
@@ -79,7 +79,7 @@ def test_when_the_summing_began_does_not_matter_to_the_bit(frames: int, begun: i
 def test_a_window_of_a_long_trail_is_the_same_as_alone_to_the_bit(before: int, frames: int) -> None:
     activities, steps = random_activities(before + frames), random_steps(before + frames)
     whole = trail(activities, steps)
-    window = Trail(whole.instants[before:])
+    window = PrefixSums(whole.prefixes[before:])
     alone = trail(activities[before:], steps[before:])
     np.testing.assert_array_equal(OVERLAPPING.vector(window), OVERLAPPING.vector(alone))
     begun = whole.until(before + 1)

@@ -13,14 +13,14 @@ from actum.skeletons import INDEX
 from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.samples import SegmentSample
 from recognisers import in_a_mirror, tiny_model, tiny_samples
-from som_classifier.attention import PART_NAMES, attended
-from som_classifier.codes import Code, seen_share
+from som_classifier.attention import PART_NAMES, attended_part
+from som_classifier.frame_activity import FrameActivity, seen_share
+from som_classifier.frames import Frame
 from som_classifier.handedness import mirrored
 from som_classifier.pyramid import SCALE, Pyramid
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.recognition import Recognition
-from som_classifier.stages import familiarity_of
-from som_classifier.streams import Frame
+from som_classifier.stage_discriminants import familiarity_of
 
 SAMPLES = tiny_samples()
 each_sample = pytest.mark.parametrize("sample", SAMPLES[:3], ids=lambda sample: sample.label)
@@ -59,7 +59,7 @@ def test_every_training_sample_is_learned() -> None:
 
 def read_by(model: PyramidModel, sample: SegmentSample) -> np.ndarray:
     """Its postures, in a mirror where the left arm acts."""
-    in_mirror = model.reads_in_mirror([frame.code for frame in encoded(model, sample)])
+    in_mirror = model.reads_in_mirror([frame.activity for frame in encoded(model, sample)])
     return mirrored(sample.postures) if in_mirror else sample.postures
 
 
@@ -67,12 +67,12 @@ def read_by(model: PyramidModel, sample: SegmentSample) -> np.ndarray:
 def test_an_answer_is_cosines_and_the_share_of_their_softmax(sample: SegmentSample) -> None:
     frames = encoded(model(), sample)
     found = model().recognise(frames, complete=True)
-    scores = model().scores([frame.code for frame in frames], [0.0, 0.0, 1.0])
-    cosines = model().layer3.cosines(model().concepts.activity(scores))
-    shares = np.exp(model().description.gains[-1] * cosines)
+    scores = model().scores([frame.activity for frame in frames], [0.0, 0.0, 1.0])
+    cosines = model().layer3.cosines(model().action_map.activity(scores))
+    shares = np.exp(model().metadata.gains[-1] * cosines)
     assert found.activations == dict(zip(model().labels, cosines.tolist(), strict=True))
     assert found.confidence == pytest.approx(shares.max() / shares.sum())
-    usual = model().description.usual_log_errors
+    usual = model().metadata.usual_log_errors
     log_errors = model().first.log_errors(read_by(model(), sample), model().winners(frames))
     assert found.familiarity == pytest.approx(familiarity_of(scores, log_errors.mean(), usual), abs=1e-5)
     assert found.label == model().labels[int(np.argmax(cosines))]
@@ -101,16 +101,17 @@ def test_a_window_is_answered_as_if_the_reading_began_there(which: int, first: i
 
 def test_the_running_sums_may_wrap_around() -> None:
     frames = encoded(model(), SAMPLES[0])
-    wrapped = [replace(frame, code=begun_at(frame.code, 2**32 - int(SCALE))) for frame in frames]
-    assert any((frame.code.after.sums[0] < frame.code.before.sums[0]).any() for frame in wrapped)
+    wrapped = [replace(frame, activity=begun_at(frame.activity, 2**32 - int(SCALE))) for frame in frames]
+    assert any((frame.activity.after.sums[0] < frame.activity.before.sums[0]).any() for frame in wrapped)
     assert model().recognise(wrapped, True) == model().recognise(frames, True)
 
 
-def begun_at(code: Code, begun: int) -> Code:
+def begun_at(activity: FrameActivity, begun: int) -> FrameActivity:
     before, after = (
-        replace(instant, sums=[own + np.uint32(begun) for own in instant.sums]) for instant in (code.before, code.after)
+        replace(instant, sums=[own + np.uint32(begun) for own in instant.sums])
+        for instant in (activity.before, activity.after)
     )
-    return replace(code, before=before, after=after)
+    return replace(activity, before=before, after=after)
 
 
 @each_sample
@@ -123,11 +124,11 @@ def test_the_mirror_image_of_who_acts_with_one_arm_is_answered_alike(sample: Seg
 
 def test_left_handed_segments_are_read_in_the_mirror() -> None:
     for sample in SAMPLES[:3]:
-        codes = [frame.code for frame in encoded(model(), sample)]
+        activities = [frame.activity for frame in encoded(model(), sample)]
         side = 1 if sample.label == "swing" else 0
-        trail = model().trail(codes)
-        read = np.stack([instant.sums[trail.side] for instant in trail.instants[1:]])
-        np.testing.assert_array_equal(read, np.stack([code.after.sums[side] for code in codes]))
+        sums = model().prefix_sums(activities)
+        read = np.stack([prefix.sums[sums.side] for prefix in sums.prefixes[1:]])
+        np.testing.assert_array_equal(read, np.stack([activity.after.sums[side] for activity in activities]))
 
 
 @settings(deadline=None)
@@ -136,7 +137,7 @@ def test_the_part_is_the_one_attended_to(which: int, first: int, seed: int) -> N
     """Whatever moved before the segment, and however its parts move."""
     motion = np.random.default_rng(seed).uniform(0, 0.03, SAMPLES[which].motion.shape)
     frames = encoded(model(), replace(SAMPLES[which], motion=motion))[first:]
-    assert model().recognise(frames, True).part == PART_NAMES[attended(motion[first:])]
+    assert model().recognise(frames, True).part == PART_NAMES[attended_part(motion[first:])]
 
 
 def each_estimate(frames: Sequence[Frame]) -> list[Recognition]:
@@ -176,8 +177,8 @@ def test_no_frame_is_an_error() -> None:
 
 @pytest.mark.parametrize(("familiar", "unknown"), [(-1e9, False), (1e9, True)])
 def test_only_a_whole_segment_is_unknown(familiar: float, unknown: bool) -> None:
-    about = model().description.model_copy(update={"familiar": familiar})
-    strict = replace(model(), description=about)
+    about = model().metadata.model_copy(update={"familiar": familiar})
+    strict = replace(model(), metadata=about)
     frames = encoded(strict, SAMPLES[0])
     assert strict.recognise(frames, True).unknown is unknown
     assert not strict.recognise(frames, False).unknown
@@ -200,8 +201,8 @@ def test_any_joint_may_be_missing(sample: SegmentSample, names: tuple[str, ...])
         assert np.isfinite([*found.activations.values(), found.confidence, found.familiarity or 0]).all()
 
 
-def codes_of(sample: SegmentSample) -> list[Code]:
-    return [frame.code for frame in encoded(model(), sample)]
+def codes_of(sample: SegmentSample) -> list[FrameActivity]:
+    return [frame.activity for frame in encoded(model(), sample)]
 
 
 def test_the_share_of_the_joints_that_was_there() -> None:
@@ -215,7 +216,7 @@ def test_the_share_of_the_joints_that_was_there() -> None:
 
 
 def test_the_more_joints_are_missing_the_lower_the_confidence() -> None:
-    doubtful = replace(model(), description=model().description.model_copy(update={"gains": [2.0] * 3}))
+    doubtful = replace(model(), metadata=model().metadata.model_copy(update={"gains": [2.0] * 3}))
 
     def mean_confidence(*names: str) -> float:
         found = [answer(doubtful, encoded(doubtful, lacking(sample, *names))) for sample in SAMPLES]
@@ -232,8 +233,8 @@ def test_a_missing_share_takes_as_much_off_the_logits() -> None:
     frames = encoded(model(), SAMPLES[0])
     encoder = model().encoder()
     partly = [replace(frame, missing=(0, 11, 14)) for frame in frames]
-    found = model().recognise([replace(frame, code=encoder.encode(frame)) for frame in partly], True)
-    logits = model().description.gains[-1] * 0.8 * np.array([*found.activations.values()])
+    found = model().recognise([replace(frame, activity=encoder.encode(frame)) for frame in partly], True)
+    logits = model().metadata.gains[-1] * 0.8 * np.array([*found.activations.values()])
     assert found.activations == model().recognise(frames, True).activations
     assert found.confidence == pytest.approx(1 / np.exp(logits - logits.max()).sum())
 
@@ -253,7 +254,7 @@ def test_the_trace_is_where_the_postures_won() -> None:
 def test_who_acts_with_the_left_arm_leaves_the_trace_of_the_mirror_image() -> None:
     for sample in SAMPLES[:2]:
         right, left = encoded(model(), sample), encoded(model(), in_a_mirror(sample))
-        assert model().reads_in_mirror([frame.code for frame in left])
+        assert model().reads_in_mirror([frame.activity for frame in left])
         np.testing.assert_array_equal(model().trace(left), model().trace(right))
 
 
@@ -268,6 +269,6 @@ def test_the_maps_show_where_a_segment_was_active() -> None:
         "actions": (8, 8),
     }
     assert all(activities.min() >= 0 and activities.max() == 1 for activities in shown.values())
-    pooled = Pyramid((1,), 0.0).vector(model().trail([frame.code for frame in frames])) ** 4
+    pooled = Pyramid((1,), 0.0).vector(model().prefix_sums([frame.activity for frame in frames])) ** 4
     postures = pooled[:36].reshape(6, 6)
     np.testing.assert_allclose(shown["postures"], postures / postures.max(), rtol=1e-4)

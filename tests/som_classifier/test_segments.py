@@ -7,11 +7,12 @@ from actum.messages import Posture, Segment
 from actum.node import SECOND_NS, TICK_NS, Counters, Tick
 from people import FRAME_NS, STANDING, reaches, reaching, skeleton
 from pose_preprocessor.node import PosePreprocessor
-from som_classifier.segments import Closed, Segmenter
+from pose_preprocessor.settings import Settings as PoseSettings
+from som_classifier.segments import ClosedSegment, Segmenter
 
 
 def postures(frames: int = 30, first_ns: int = 0) -> list[Posture]:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     return [p for frame in reaches(frames, first_ns) for p in node.handle(frame) if isinstance(p, Posture)]
 
 
@@ -26,7 +27,7 @@ class Run:
     def __init__(self) -> None:
         self.counters = Counters()
         self.segmenter = Segmenter(self.counters)
-        self.closed: list[Closed] = []
+        self.closed: list[ClosedSegment] = []
         self._now_ns = 0
 
     def feed(self, *inputs: Posture | Segment) -> "Run":
@@ -48,7 +49,7 @@ class Run:
         return [closed.reason for closed in self.closed]
 
 
-def stamps(closed: Closed) -> list[int]:
+def stamps(closed: ClosedSegment) -> list[int]:
     return [frame.stamp_ns // FRAME_NS for frame in closed.frames]
 
 
@@ -155,7 +156,12 @@ def test_an_answered_id_with_another_stamp_is_rejected_once() -> None:
 
 
 def test_nobody_there() -> None:
-    nobody = [p for i in range(30) for p in PosePreprocessor().handle(skeleton(i * FRAME_NS)) if isinstance(p, Posture)]
+    nobody = [
+        p
+        for i in range(30)
+        for p in PosePreprocessor(PoseSettings.defaults()).handle(skeleton(i * FRAME_NS))
+        if isinstance(p, Posture)
+    ]
     run = Run().feed(*nobody, mark("start", 0), mark("end", 9 * FRAME_NS)).wait(2.3)
     assert run.reasons == ["no person"]
 
@@ -193,7 +199,7 @@ def test_whose_a_segment_is_waits_two_seconds_for_the_postures_of_others() -> No
 
 def test_the_agent_nearest_to_the_camera_at_the_first_valid_frame() -> None:
     near, far = STANDING, STANDING + np.array([0.8, 0.0, 1.0])
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     frames = [skeleton(i * FRAME_NS, far + i * 1e-3, near + i * 1e-3) for i in range(10)]
     both = [p for frame in frames for p in node.handle(frame) if isinstance(p, Posture)]
     run = Run().feed(mark("start", 0), *both, mark("end", 9 * FRAME_NS))
@@ -204,7 +210,7 @@ def test_the_agent_nearest_to_the_camera_at_the_first_valid_frame() -> None:
 
 def test_the_agent_is_named_only_when_all_of_its_frame_have_been_heard() -> None:
     near, far = STANDING, STANDING + np.array([0.8, 0.0, 1.0])
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     frames = [skeleton(i * FRAME_NS, far + i * 1e-3, near + i * 1e-3) for i in range(10)]
     both = [p for frame in frames for p in node.handle(frame) if isinstance(p, Posture)]
     late_second = [p for p in both if p.agent == 1] + [p for p in both if p.agent == 2]
@@ -213,7 +219,7 @@ def test_the_agent_is_named_only_when_all_of_its_frame_have_been_heard() -> None
 
 
 def test_lost_frames_are_counted_wherever_they_were_lost() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     kept: Iterable[Posture] = (
         p.model_copy(update={"seq": seq})
         for seq, frame in enumerate(f for f in reaches(20) if f.seq not in (3, 4))
@@ -240,7 +246,7 @@ def test_a_source_that_starts_anew_leaves_nothing_open() -> None:
 
 
 def test_frames_without_a_posture_belong_to_the_segment_but_not_to_the_recognition() -> None:
-    node = PosePreprocessor()
+    node = PosePreprocessor(PoseSettings.defaults())
     frames = [skeleton(i * FRAME_NS, reaching(i / 10) if i % 2 else np.zeros((15, 3))) for i in range(10)]
     mixed = [p for frame in frames for p in node.handle(frame) if isinstance(p, Posture)]
     run = Run().feed(*mixed, mark("start", 0), mark("end", 9 * FRAME_NS))

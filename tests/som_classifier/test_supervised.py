@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from som_classifier.supervised import SupervisedLayer, activity, adapt
+from som_classifier.supervised import SupervisedLayer, adapt
 
 
 def rng(seed: int = 0) -> np.random.Generator:
@@ -18,16 +18,6 @@ def blobs(seed: int, per_class: int = 20) -> tuple[np.ndarray, np.ndarray]:
     inputs = 0.3 * rng(seed).random((len(targets), 6))
     inputs[np.arange(len(targets)), targets] += 1.0
     return inputs, targets
-
-
-def test_activity_is_one_at_the_winner_and_falls_with_squared_distance() -> None:
-    np.testing.assert_allclose(activity(np.array([0.0, 2.0, 8.0]), 4.0), np.exp([0, -0.5, -2]))
-
-
-def test_activity_distinguishes_where_the_papers_does_not() -> None:
-    distance2 = np.array([1.0, 1.5, 4.0])
-    assert len(set(np.exp(-np.sqrt(distance2) / 1e6).astype(np.float16))) == 1
-    assert np.ptp(activity(distance2 - 1.0, 1.0)) > 0.9
 
 
 def test_cosines_by_hand() -> None:

@@ -18,8 +18,8 @@ from actum_model_trainer.samples import samples_from, select
 from actum_model_trainer.training import train
 from live import System, collect, wait_until
 from models import QUICK
-from sensor_gateway.camera.perceiving import Optics
-from sensor_gateway.camera.pose import PoseEstimator
+from sensor_gateway.optics import Optics
+from sensor_gateway.people.pose_estimator import PoseEstimator
 
 pytestmark = [pytest.mark.system, pytest.mark.pose_model, pytest.mark.data]
 

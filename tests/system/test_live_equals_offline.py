@@ -19,8 +19,8 @@ from actum_model_trainer.samples import samples_from, select
 from actum_model_trainer.training import train
 from live import System, collect
 from models import QUICK, QUICK_PAPER
+from som_classifier.model_loading import load_model
 from som_classifier.presets import PRESETS
-from som_classifier.storage import load_model
 
 pytestmark = [pytest.mark.system, pytest.mark.data]
 

@@ -1,0 +1,103 @@
+"""Where each object was at any instant of a segment, from the images in which it was seen or image-tracked."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from action_fusion.stream_samples import ObjectsSample
+from actum.arrays import Array, Mask
+from actum.node import SECOND_NS
+
+SETTLED_SAMPLES = 3
+"""An object's position at an instant is the median of this many sightings, so that one outlier does no harm."""
+
+SETTLED_NS = SECOND_NS // 4
+"""Sightings further apart than this may be of different positions."""
+
+RESTING_M = 0.05
+"""What a hand holds is at rest where it stays within a hand's breadth: a joint's noise is less than half of it."""
+
+
+@dataclass(frozen=True)
+class ObjectTrack:
+    """An object's n positions: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera frame.
+
+    `seen` (n,) marks the sightings; the other positions are image-tracked, or inferred from the hand that occludes
+    the object. `depth_shift_m` (3,) is what depth alignment has added to all positions.
+    """
+
+    id: int
+    name: str
+    stamps_ns: Array
+    positions_m: Array
+    seen: Mask
+    depth_shift_m: Array = field(default_factory=lambda: np.zeros(3))
+
+    @property
+    def label(self) -> str:
+        """What sentences call the object, e.g. `object 3 "cup"`."""
+        return f'object {self.id} "{self.name}"'
+
+    @property
+    def is_occluded(self) -> bool:
+        """Whether some positions are no sightings."""
+        return not bool(self.seen.all())
+
+    def keeping(self, kept: Mask) -> "ObjectTrack":
+        """Drop the positions that are not `kept` (n,)."""
+        return replace(self, stamps_ns=self.stamps_ns[kept], positions_m=self.positions_m[kept], seen=self.seen[kept])
+
+    def at(self, stamps_ns: Array) -> Array:
+        """Interpolate linearly between positions, holding the first and the last: (p,) to (p, 3)."""
+        axes = [np.interp(stamps_ns, self.stamps_ns, axis) for axis in self.positions_m.T]
+        return np.stack(axes, axis=1)
+
+    def displacement_m(self) -> Array:
+        """Measure the displacement (3,) from the segment's start to the last position, camera frame."""
+        displacement_m: Array = self.end_m() - self._start_m()
+        return displacement_m
+
+    def is_displaced(self, moved_m: float) -> bool:
+        """Whether the object is displaced by `moved_m` or more."""
+        return float(np.linalg.norm(self.displacement_m())) >= moved_m
+
+    def end_m(self) -> Array:
+        """Find the last position (3,): of the last sightings or, in a hand, the mean over the rest at the end."""
+        latest = self.stamps_ns >= self.stamps_ns[-1] - SETTLED_NS
+        if self.seen[-1]:
+            unseen = np.flatnonzero(~self.seen)
+            latest[: unseen[-1] + 1 if len(unseen) else 0] = False
+            return _median(self.positions_m[latest][-SETTLED_SAMPLES:])
+        away = ~latest | (np.linalg.norm(self.positions_m - self.positions_m[-1], axis=1) > RESTING_M)
+        before = np.flatnonzero(away | self.seen)
+        rest_m: Array = self.positions_m[before[-1] + 1 if len(before) else 0 :].mean(axis=0)
+        return rest_m
+
+    def _start_m(self) -> Array:
+        """Find the position (3,) at the segment's start, by the sightings around it."""
+        apart_ns = np.abs(self.stamps_ns[self.seen])
+        nearest = np.argsort(apart_ns, kind="stable")[:SETTLED_SAMPLES]
+        around = nearest[apart_ns[nearest] <= SETTLED_NS]
+        return _median(self.positions_m[self.seen][around]) if len(around) else self.at(np.zeros(1))[0]
+
+
+def _median(positions_m: Array) -> Array:
+    median_m: Array = np.median(positions_m, axis=0)
+    return median_m
+
+
+def object_tracks(frames: Sequence[ObjectsSample], start_ns: int) -> list[ObjectTrack]:
+    """Collect the positions of each object, by id; stamps count from `start_ns`."""
+    ids = sorted({number for frame in frames for number in frame.positions_m})
+    return [_track(number, [frame for frame in frames if number in frame.positions_m], start_ns) for number in ids]
+
+
+def _track(number: int, frames: Sequence[ObjectsSample], start_ns: int) -> ObjectTrack:
+    return ObjectTrack(
+        number,
+        frames[-1].names[number],
+        np.array([frame.stamp_ns - start_ns for frame in frames], dtype=np.float64),
+        np.stack([frame.positions_m[number] for frame in frames]),
+        np.array([number not in frame.image_tracked for frame in frames]),
+    )

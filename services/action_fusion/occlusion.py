@@ -1,0 +1,171 @@
+"""Where an object is while a hand occludes it: it moves with the hand that has grasped it, and else stays."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from action_fusion.comotion import comotion
+from action_fusion.hand_tracks import HandTrack
+from action_fusion.object_tracks import SETTLED_NS, ObjectTrack
+from action_fusion.settings import Settings
+from action_fusion.stops import RESTING_M_PER_S
+from actum.arrays import Array
+from actum.node import SECOND_NS
+
+SHORTEST_GAP_NS = SECOND_NS // 5
+"""Shorter gaps between sightings are interpolated linearly."""
+
+TOUCHING_M = 0.02
+"""A hand this close to its smallest distance has arrived: about a joint's noise."""
+
+SLIP_M = 0.10
+"""What a hand holds stays where it is in the hand, as far as a joint's noise lets one tell."""
+
+
+@dataclass(frozen=True)
+class Grasp:
+    """A hand has an object, unseen, from the instant `taken` of the hand's track to the instant `released`.
+
+    `distance_m` is the hand's smallest distance from where the object was seen before.
+    """
+
+    hand: HandTrack
+    taken: int
+    released: int
+    distance_m: float
+
+    @property
+    def stamps_ns(self) -> Array:
+        """The stamps (g,) of the grasp."""
+        return self.hand.stamps_ns[self.taken : self.released + 1]
+
+    @property
+    def hand_m(self) -> Array:
+        """The hand's positions (g, 3), camera frame."""
+        return self.hand.positions_m[self.taken : self.released + 1]
+
+
+def fill_occlusions(
+    tracks: Sequence[ObjectTrack], hands: Sequence[HandTrack], end_ns: int, settings: Settings
+) -> list[ObjectTrack]:
+    """Let an object that is not seen move with the hand that has it, until it is seen again or the segment ends.
+
+    Its position is the image-tracked one of what occludes it where there is one, and else that of the hand's joint.
+    Only a hand that came within grasp of where the object was seen last can have it. Where the object is seen again, it
+    has to be displaced and within reach of that hand. Of several that are not seen again a hand has the nearest, and
+    none if it transports another one that is seen.
+    """
+    grasped = [_keep_grasped(track, hands, settings) for track in tracks]
+    bridged = [_bridge_gaps(track, hands, settings) for track in grasped if len(track.stamps_ns)]
+    lost = [found for hand in hands if (found := _lost_in_hand(bridged, hand, end_ns, settings)) is not None]
+    grasps = {track.id: grasp for grasp, track in sorted(lost, key=lambda found: -found[0].distance_m)}
+    return [_extrapolated(track, grasps[track.id]) if track.id in grasps else track for track in bridged]
+
+
+def _keep_grasped(track: ObjectTrack, hands: Sequence[HandTrack], settings: Settings) -> ObjectTrack:
+    """Drop image-tracked positions that no grasping hand explains."""
+    kept = track.seen.copy()
+    for run in np.split(np.arange(len(kept)), np.flatnonzero(np.diff(kept)) + 1):
+        if not track.seen[run[0]]:
+            first, last = max(int(run[0]) - 1, 0), int(run[-1])
+            kept[run] = any(_holds(hand, track, first, last, settings) for hand in hands)
+    return track.keeping(kept)
+
+
+def _holds(hand: HandTrack, track: ObjectTrack, first: int, last: int, settings: Settings) -> bool:
+    """Whether a hand came within grasp of the first position, and the object is in the same place in it at the last."""
+    since_ns, until_ns = track.stamps_ns[[first, last]]
+    inside = np.flatnonzero((hand.stamps_ns >= since_ns) & (hand.stamps_ns <= until_ns))
+    if not len(inside):
+        return False
+    distances = np.linalg.norm(hand.positions_m[inside] - track.positions_m[first], axis=1)
+    held = inside[_first_closest(distances) :]
+    stamps_ns = hand.stamps_ns[held]
+    to_hand = hand.positions_m[held] - track.at(stamps_ns)
+    early, late = (to_hand[np.abs(stamps_ns - at_ns) <= SETTLED_NS].mean(axis=0) for at_ns in stamps_ns[[0, -1]])
+    return bool(distances.min() <= settings.grasp_m and np.linalg.norm(late - early) <= SLIP_M)
+
+
+def _bridge_gaps(track: ObjectTrack, hands: Sequence[HandTrack], settings: Settings) -> ObjectTrack:
+    """Fill the gaps between two sightings at different positions with those in the hand that had the object."""
+    for i in np.flatnonzero(np.diff(track.stamps_ns) >= SHORTEST_GAP_NS)[::-1]:
+        before_m, after_m = track.positions_m[i : i + 2]
+        if np.linalg.norm(after_m - before_m) < settings.moved_m:
+            continue
+        grasps = [_grasp(track, int(i), hand, float(track.stamps_ns[i + 1]), settings) for hand in hands]
+        nearest = min((g for g in grasps if g is not None), key=lambda g: g.distance_m, default=None)
+        if nearest is not None:
+            track = _interpolated(track, int(i), nearest)
+    return track
+
+
+def _lost_in_hand(
+    tracks: Sequence[ObjectTrack], hand: HandTrack, end_ns: int, settings: Settings
+) -> tuple[Grasp, ObjectTrack] | None:
+    """Find the object that was seen last before this hand took it: the nearest, if there is one."""
+    unseen = [track for track in tracks if end_ns - track.stamps_ns[-1] >= SHORTEST_GAP_NS]
+    grasps = [(_grasp(track, len(track.stamps_ns) - 1, hand, float(end_ns), settings), track) for track in unseen]
+    lost = [(grasp, track) for grasp, track in grasps if grasp is not None]
+    if not lost:
+        return None
+    pairs = [comotion(hand, track, settings.reach_m, settings.moved_m) for track in tracks]
+    in_hand = [pair for pair in pairs if pair.transport_m(since_ns=0.0) >= settings.moved_m]
+    transported = {pair.track.id for pair in in_hand if pair.is_transported(settings.moved_m)}
+    candidates = [found for found in lost if not transported or found[1].id in transported]
+    return min(candidates, key=lambda found: found[0].distance_m, default=None)
+
+
+def _grasp(track: ObjectTrack, sighting: int, hand: HandTrack, until_ns: float, settings: Settings) -> Grasp | None:
+    """Find when the hand takes the object after a sighting, and when it releases it before the next."""
+    since_ns = track.stamps_ns[sighting]
+    instants = np.flatnonzero((hand.stamps_ns >= since_ns) & (hand.stamps_ns <= until_ns))
+    if not len(instants):
+        return None
+    distances = np.linalg.norm(hand.positions_m[instants] - track.positions_m[sighting], axis=1)
+    nearest_m = float(distances.min())
+    if nearest_m > settings.grasp_m:
+        return None
+    taken = int(instants[_first_closest(distances)])
+    if sighting + 1 == len(track.stamps_ns):
+        return Grasp(hand, taken, int(instants[-1]), nearest_m)
+    after = np.linalg.norm(hand.positions_m[instants] - track.positions_m[sighting + 1], axis=1)
+    released = int(instants[len(instants) - 1 - _first_closest(after[::-1])])
+    if after.min() > settings.reach_m or taken >= released:
+        return None
+    return Grasp(hand, taken, released, nearest_m)
+
+
+def _first_closest(distances_m: Array) -> int:
+    """Find the first of the distances (n,) that is the smallest but for `TOUCHING_M`."""
+    return int(np.argmax(distances_m <= distances_m.min() + TOUCHING_M))
+
+
+def _interpolated(track: ObjectTrack, sighting: int, grasp: Grasp) -> ObjectTrack:
+    """Move the object with the hand between two sightings; the slip between them is spread over the time."""
+    hand_m = grasp.hand_m
+    start_m, end_m = track.positions_m[sighting] - hand_m[0], track.positions_m[sighting + 1] - hand_m[-1]
+    share = np.linspace(0.0, 1.0, len(hand_m))[:, None]
+    return _inserted(track, sighting + 1, grasp.stamps_ns, hand_m + (1 - share) * start_m + share * end_m)
+
+
+def _extrapolated(track: ObjectTrack, grasp: Grasp) -> ObjectTrack:
+    """Move the object with the hand from its last sighting on, in the place in the hand at which it was taken."""
+    hand_m = grasp.hand_m
+    moving = np.flatnonzero(grasp.hand.speeds_m_per_s()[grasp.taken : grasp.released + 1] > RESTING_M_PER_S)
+    at_rest_m = hand_m[: max(1, moving[0] if len(moving) else len(hand_m))]
+    in_hand_m = track.positions_m[-1] - at_rest_m.mean(axis=0)
+    return _inserted(track, len(track.stamps_ns), grasp.stamps_ns, hand_m + in_hand_m)
+
+
+def _inserted(track: ObjectTrack, index: int, stamps_ns: Array, positions_m: Array) -> ObjectTrack:
+    """Insert unseen positions (g, 3) at stamps (g,) before the position `index`, or after all."""
+    inside = (stamps_ns > track.stamps_ns[index - 1]) & (
+        stamps_ns < (track.stamps_ns[index] if index < len(track.stamps_ns) else np.inf)
+    )
+    return replace(
+        track,
+        stamps_ns=np.insert(track.stamps_ns, index, stamps_ns[inside]),
+        positions_m=np.insert(track.positions_m, index, positions_m[inside], axis=0),
+        seen=np.insert(track.seen, index, np.zeros(int(inside.sum()), dtype=bool)),
+    )

@@ -1,0 +1,104 @@
+"""Pointing: the object nearest to the ray on which the actor's stretched arm points is meant."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from action_fusion.actors import Actor
+from action_fusion.choice import NO_HAND, OFF_THE_LINE, Choice
+from action_fusion.object_tracks import ObjectTrack
+from action_fusion.settings import Settings
+from actum.arrays import Array, Indices
+from actum.messages import Hand, Pointing
+
+HOLDING_SHARE = 1 / 3
+"""The last part of a pointing action, in which the arm is stretched out."""
+
+POINTING_M = 0.08
+"""The arm is out while its ray's tip is this near to where it is in that part: a joint's noise is a third of it."""
+
+FINGER_M = 0.10
+"""How far the stretched index finger ends beyond the hand joint, on the line of the forearm."""
+
+CLEARLY = 0.5
+"""One ray fits clearly better than another where an object is off it by less than this share of the angle."""
+
+SMALLEST_M = 1e-9
+"""Divisors are kept at least this large: shorter vectors have no direction."""
+
+
+def pointed_at(tracks: Sequence[ObjectTrack], actor: Actor, sides: Sequence[Hand], settings: Settings) -> Choice:
+    """Choose the object at the smallest angle to the ray of the hand that points; those nearly as close are rivals."""
+    side = pointing_side(actor, sides)
+    by_angle = zip(_angles(tracks, actor, side), tracks, strict=True)
+    ranked = sorted((one for one in by_angle if math.isfinite(one[0])), key=lambda one: one[0])
+    if not ranked:
+        return Choice(why=NO_HAND)
+    angles = [math.degrees(angle) for angle, _ in ranked]
+    if angles[0] > settings.pointing_limit_deg:
+        return Choice(why=OFF_THE_LINE)
+    limit = min(angles[0] + settings.pointing_uncertainty_deg, settings.pointing_limit_deg)
+    rivals = tuple(track for angle, (_, track) in zip(angles[1:], ranked[1:], strict=True) if angle <= limit)
+    margin = angles[1] - angles[0] if len(angles) > 1 else None
+    return Choice(ranked[0][1], side, None, rivals, Pointing(angle_deg=angles[0], margin_deg=margin))
+
+
+def pointing_side(actor: Actor, sides: Sequence[Hand]) -> Hand:
+    """Name the hand whose finger is furthest from the line of hips and head, the median over the action's last part."""
+    return max(sides, key=lambda side: _outstretched_m(actor, side))
+
+
+def fingertip_m(actor: Actor, side: Hand) -> Array:
+    """Return where the hand's stretched index finger ends (p, 3), egocentric."""
+    elbow, hand = actor.joint_m(f"{side}_elbow"), actor.hand_m(side)
+    forearm = hand - elbow
+    length = np.linalg.norm(forearm, axis=1, keepdims=True)
+    tip: Array = hand + FINGER_M * forearm / np.maximum(length, SMALLEST_M)
+    return tip
+
+
+def pointing_angle(object_ego: Array, tip_ego: Array, origin_ego: Array) -> float:
+    """Compute the angle (rad) between the rays origin-to-tip and origin-to-object, medians while the arm is out.
+
+    All are (p, 3) in metres in the actor's egocentric frame, NaN where unknown. The angle is infinite where origin and
+    tip are never known together.
+    """
+    known = np.flatnonzero(np.isfinite(tip_ego + origin_ego).all(axis=1))
+    if not len(known):
+        return np.inf
+    to_tip, to_object = tip_ego[known] - origin_ego[known], object_ego[known] - origin_ego[known]
+    last = np.median(to_tip[-len(_last_part(known)) :], axis=0)
+    out = np.linalg.norm(to_tip - last, axis=1) <= POINTING_M
+    a, b = (np.median(to_tip[out], axis=0), np.median(to_object[out], axis=0)) if out.any() else (last, to_object[-1])
+    length = float(np.linalg.norm(a) * np.linalg.norm(b))
+    return float(np.arccos(np.clip(a @ b / max(length, SMALLEST_M), -1.0, 1.0)))
+
+
+def _angles(tracks: Sequence[ObjectTrack], actor: Actor, side: Hand) -> list[float]:
+    """Measure each object's angle to the ray from head to finger or, where that fits clearly better, the arm's.
+
+    Most people hold the finger where they look, some point with the stretched arm.
+    """
+    objects = [actor.to_ego(track.at(actor.stamps_ns)) for track in tracks]
+    head, tip = actor.joint_m("head"), fingertip_m(actor, side)
+    shoulder, hand = actor.joint_m(f"{side}_shoulder"), actor.hand_m(side)
+    by_eye = [pointing_angle(object_ego, tip, head) for object_ego in objects]
+    by_arm = [pointing_angle(object_ego, hand, shoulder) for object_ego in objects]
+    arm_fits = math.isfinite(min(by_eye)) and min(by_arm) < CLEARLY * min(by_eye)
+    return by_arm if arm_fits else by_eye
+
+
+def _outstretched_m(actor: Actor, side: Hand) -> float:
+    """Measure how far the finger is from the line of hips and head; minus infinity where it is never known."""
+    tip, head = fingertip_m(actor, side), actor.joint_m("head")
+    last = _last_part(np.flatnonzero(np.isfinite(tip + head).all(axis=1)))
+    if not len(last):
+        return -np.inf
+    aside = np.linalg.norm(np.cross(tip[last], head[last]), axis=1)
+    return float(np.median(aside / np.maximum(np.linalg.norm(head[last], axis=1), SMALLEST_M)))
+
+
+def _last_part(known: Indices) -> Indices:
+    """Take the last third of the known instants (n,), at least one if there is one."""
+    return known[-max(1, round(len(known) * HOLDING_SHARE)) :]

@@ -1,0 +1,179 @@
+"""Corners of black squares to a fraction of a pixel.
+
+Of small squares, by the intersections of lines fitted to the four edges, which have no bias. Of large ones, by the
+gradients around each corner (OpenCV's `cornerSubPix`): lens and paper bend long sides by more than its bias.
+"""
+
+import cv2
+import numpy as np
+
+from actum.arrays import Array
+from marker_tracker.detection.images import Pixels
+
+NEXT = [1, 2, 3, 0]
+"""Index of the corner that ends the side which begins at a corner."""
+PREVIOUS = [3, 0, 1, 2]
+"""Index of the side that ends at the corner where a side begins."""
+PROFILES = 16
+"""Across each side: a line through so many edges is some four times as exact as one edge."""
+PROFILE_SAMPLES = 9
+"""Grey levels of a profile, from inside to outside: about one per pixel of the longest."""
+ALONG_SIDE = np.linspace(-1, 1, PROFILES)
+"""Places of the profiles between the margins of a side, from its start to its end."""
+ACROSS_SIDE = np.linspace(-1, 1, PROFILE_SAMPLES)
+"""Places of the samples in a profile, in parts of its reach, from inside to outside."""
+MARGIN_PX = 2.0
+"""Pixels left out at both ends of a side: there the next side blurs in."""
+MAX_MARGIN_SHARE = 0.2
+"""Of a side, most that is left out at each end: short sides keep three fifths."""
+SMALLEST_CELLS = 8
+"""Along a side where cells are smallest (6x6 with border): the black border is one cell wide."""
+MIN_REACH_PX = 1.5
+"""Pixels of a profile to either side, at least: the blur of an edge."""
+MAX_REACH_PX = 4.0
+"""Pixels of a profile to either side, at most, with half a cell between the two: rough corners are nearer."""
+FITS_PER_ROUND = (1, 1, 2)
+"""Line fits in each round; each round centres the profiles on the edge found before; the last fit is robust."""
+EDGE_NOISE_PX = 0.15
+"""Standard deviation in pixels of the edge in one profile; what lies much further from the line counts little."""
+BOW_PER_PX = 1e-5
+"""Standard deviation of a side's bow, as a share of its squared length in pixels: lenses bend long sides only."""
+MAX_CONTRAST_WEIGHT = 64.0
+"""Grey levels of contrast beyond which an edge is no more exact."""
+MIN_MOTION_PX = 2.0
+"""Pixels by which any corner may move: so rough may initial corners be."""
+MAX_MOTION_SHARE = 0.2
+"""Of the shortest side, by which a corner may move if that is more; beyond it the fit has diverged."""
+EDGES_ONLY_PX = 140.0
+"""Shortest side in pixels up to which edges alone count."""
+GRADIENTS_ONLY_PX = 180.0
+"""Shortest side in pixels from which gradients alone count, whose bias is below 0.2 pixels; blended in between."""
+GRADIENT_WINDOW_PX = 5
+"""Half the width in pixels of the window around a corner: within the border of a large marker."""
+MAX_DISAGREEMENT_PX = 1.0
+"""Pixels between edges and gradients: further apart, the gradients are of something else."""
+GRADIENT_STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 30, 0.01)
+"""Iterations and pixels at which `cornerSubPix` stops: a tenth of the accuracy wanted."""
+SINGULAR = 1e-6
+"""Sine of the angle below which two sides are parallel, and pixels below which one has no length."""
+RIDGE = 1e-6
+"""Added to the normal matrix, which stays invertible where no profile has an edge."""
+
+
+def refine(pixels: Pixels, corners_px: Array) -> Array:
+    """Refine the corners of black squares on white; corners that would diverge stay as they are.
+
+    Args:
+        pixels: grey image (height, width).
+        corners_px: (n, 4, 2), clockwise; the result has the same shape.
+    """
+    if not len(corners_px):
+        return corners_px
+    allowed = np.maximum(MIN_MOTION_PX, MAX_MOTION_SHARE * _sides_px(corners_px).min(axis=1))[:, None, None]
+    refined = corners_px
+    for fits in FITS_PER_ROUND:
+        moved = _by_edges(pixels, refined, fits)
+        stays = (np.abs(moved - corners_px) <= allowed).all(axis=(1, 2), keepdims=True)
+        refined = np.where(stays, moved, refined)
+    return _by_gradients_if_large(pixels, refined)
+
+
+def _by_gradients_if_large(pixels: Pixels, corners: Array) -> Array:
+    shortest = _sides_px(corners).min(axis=1)
+    share = np.clip((shortest - EDGES_ONLY_PX) / (GRADIENTS_ONLY_PX - EDGES_ONLY_PX), 0.0, 1.0)
+    limits = np.array(pixels.shape[::-1]) - 1
+    large = (share > 0) & ((corners >= 0) & (corners <= limits)).all(axis=(1, 2))
+    if not large.any():
+        return corners
+    start = corners[large].reshape(-1, 1, 2).astype(np.float32)
+    window = (GRADIENT_WINDOW_PX, GRADIENT_WINDOW_PX)
+    local = cv2.cornerSubPix(pixels, start, window, (-1, -1), GRADIENT_STOP).reshape(-1, 4, 2)
+    step = local.astype(np.float64) - corners[large]
+    agrees = np.linalg.norm(step, axis=2, keepdims=True) < MAX_DISAGREEMENT_PX
+    moved = corners.copy()
+    moved[large] += np.where(agrees, step, 0.0) * share[large, None, None]
+    return moved
+
+
+def _by_edges(pixels: Pixels, corners: Array, fits: int) -> Array:
+    """Fit each side by t(s) = c0 + c1 s + c2 s², s from -1 to 1 along it, t outwards; intersect the end tangents."""
+    length = np.maximum(_sides_px(corners), SINGULAR)
+    along = (corners[:, NEXT] - corners) / length[..., None]
+    outward = np.stack([along[..., 1], -along[..., 0]], axis=-1)
+    inner = 1 - 2 * np.minimum(MAX_MARGIN_SHARE, MARGIN_PX / length)
+    s = inner[..., None] * ALONG_SIDE
+    middle = (corners[:, NEXT] + corners) / 2
+    feet = middle[:, :, None] + (s * length[..., None] / 2)[..., None] * along[:, :, None]
+    reach = np.clip(length / SMALLEST_CELLS / 2, MIN_REACH_PX, MAX_REACH_PX)
+    offset, weight = _edge_offsets(pixels, feet, outward, reach)
+    fitted = _fitted(s, offset, weight, length, fits)
+    return _intersections(middle, along, outward, length, fitted)
+
+
+def _edge_offsets(pixels: Pixels, feet: Array, outward: Array, reach: Array) -> tuple[Array, Array]:
+    """Locate the edge in each profile, as the centroid of the squared rise from inside to outside.
+
+    Args:
+        pixels: (height, width).
+        feet: (n, 4, PROFILES, 2), the middles of the profiles.
+        outward: (n, 4, 2), unit vectors.
+        reach: (n, 4), of the profiles to either side in pixels.
+
+    Returns:
+        Offsets outwards in pixels and weights, both (n, 4, PROFILES).
+    """
+    t = reach[..., None] * ACROSS_SIDE
+    points = (feet[..., None, :] + t[:, :, None, :, None] * outward[:, :, None, None]).astype(np.float32)
+    x, y = np.moveaxis(points.reshape(-1, PROFILE_SAMPLES, 2), -1, 0)
+    sampled = cv2.remap(pixels, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    levels = sampled.astype(np.float64).reshape(points.shape[:-1])
+    rise = np.maximum(levels[..., 1:] - levels[..., :-1], 0.0) ** 2
+    total = rise.sum(axis=-1)
+    between = (t[..., 1:] + t[..., :-1]) / 2
+    offset = np.einsum("nskt,nst->nsk", rise, between) / np.maximum(total, 1e-9)
+    contrast = levels[..., -1] - levels[..., 0]
+    return offset, np.where(contrast > 0, np.minimum(contrast, MAX_CONTRAST_WEIGHT), 0.0)
+
+
+def _fitted(s: Array, offset: Array, weight: Array, length: Array, fits: int) -> Array:
+    """Fit c (n, 4, 3) by weighted least squares, the bow c2 held near 0; later fits weigh outliers down (Cauchy)."""
+    powers = np.stack([np.ones_like(s), s, s * s], axis=-1)
+    prior = np.zeros((*length.shape, 3, 3))
+    prior[..., 2, 2] = (EDGE_NOISE_PX / (BOW_PER_PX * length**2)) ** 2
+    prior += RIDGE * np.eye(3)
+    relative = weight / np.maximum(weight.mean(axis=-1, keepdims=True), 1e-9)
+    robust = relative
+    for _ in range(fits):
+        weighted = powers * robust[..., None]
+        normal = np.swapaxes(weighted, -1, -2) @ powers + prior
+        fitted = np.linalg.solve(normal, (np.swapaxes(weighted, -1, -2) @ offset[..., None]))[..., 0]
+        residual = offset - (powers @ fitted[..., None])[..., 0]
+        robust = relative / (1 + (residual / (2 * EDGE_NOISE_PX)) ** 2)
+    return np.asarray(fitted, dtype=np.float64)
+
+
+def _intersections(middle: Array, along: Array, outward: Array, length: Array, fitted: Array) -> Array:
+    """Intersect each side's tangent at its start with the previous side's tangent at its end: (n, 4, 2)."""
+    half = length[..., None] / 2
+    first, last = (
+        (
+            middle + sign * half * along + (fitted @ [1, sign, 1])[..., None] * outward,
+            along + ((fitted @ [0, 1, 2 * sign]) / half[..., 0])[..., None] * outward,
+        )
+        for sign in (-1, 1)
+    )
+    point, direction = first
+    other, towards = (part[:, PREVIOUS] for part in last)
+    cross = direction[..., 0] * towards[..., 1] - direction[..., 1] * towards[..., 0]
+    gap = other - point
+    reach = (gap[..., 0] * towards[..., 1] - gap[..., 1] * towards[..., 0]) / np.where(
+        np.abs(cross) < SINGULAR, np.nan, cross
+    )
+    crossed: Array = point + reach[..., None] * direction
+    return crossed
+
+
+def _sides_px(corners: Array) -> Array:
+    """Return the length of each side, (n, 4), of squares (n, 4, 2)."""
+    sides: Array = np.sqrt(((corners[:, NEXT] - corners) ** 2).sum(axis=2))
+    return sides

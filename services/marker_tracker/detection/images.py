@@ -1,0 +1,90 @@
+"""From an image message to grey levels; what cannot be decoded is refused before memory is taken for it."""
+
+import io
+import struct
+
+import cv2
+import imagesize
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.darkness import is_black
+from actum.messages import Image
+
+Pixels = NDArray[np.uint8]
+"""A grey image (height, width)."""
+
+LARGEST_PIXELS = 4096 * 4096
+"""Pixels of an image: 16 MB of grey levels, several times what a colour camera gives."""
+JPEG_START = b"\xff\xd8"
+"""The bytes that begin every JPEG: the marker "start of image"."""
+
+
+class UnusableImageError(ValueError):
+    """An image that cannot be used; `kind` is the name it is counted under."""
+
+    def __init__(self, kind: str, detail: str) -> None:
+        super().__init__(f"{kind}: {detail}")
+        self.kind = kind
+        self.detail = detail
+
+
+def gray(image: Image) -> Pixels:
+    """Decode an image message to grey levels (height, width).
+
+    Raises:
+        UnusableImageError: of kind `image_too_large`, `image_size_mismatch` or `undecodable_image`.
+    """
+    if image.width * image.height > LARGEST_PIXELS:
+        raise UnusableImageError("image_too_large", f"{image.width}x{image.height}, at most {LARGEST_PIXELS} pixels")
+    return _from_jpeg(image) if image.format == "jpeg" else _from_bgr(image)
+
+
+def refuse_black(pixels: Pixels) -> None:
+    """Tell an image (height, width) in which nothing can be seen from one that shows no marker.
+
+    Raises:
+        UnusableImageError: of kind `black_image`.
+    """
+    if is_black(pixels):
+        raise UnusableImageError("black_image", "nothing can be seen: is the lens covered, is it dark?")
+
+
+def _from_jpeg(image: Image) -> Pixels:
+    """Decode a JPEG after its header has been checked: decoding allocates as much as the header claims."""
+    size = _jpeg_size(image.data)
+    if size[0] * size[1] > LARGEST_PIXELS:
+        raise UnusableImageError("image_too_large", f"a JPEG of {size[0]}x{size[1]}, at most {LARGEST_PIXELS} pixels")
+    if size != (image.width, image.height):
+        raise UnusableImageError(
+            "image_size_mismatch", f"a JPEG of {size[0]}x{size[1]} in a message of {image.width}x{image.height}"
+        )
+    flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION
+    pixels = cv2.imdecode(np.frombuffer(image.data, dtype=np.uint8), flags)
+    if pixels is None or pixels.shape != (image.height, image.width):
+        raise UnusableImageError("undecodable_image", f"a damaged JPEG of {len(image.data)} bytes")
+    return pixels.astype(np.uint8, copy=False)
+
+
+def _jpeg_size(data: bytes) -> tuple[int, int]:
+    """Read (width, height) from a JPEG's header."""
+    if not data.startswith(JPEG_START):
+        raise UnusableImageError("undecodable_image", f"{len(data)} bytes that do not start as a JPEG")
+    try:
+        width, height = imagesize.get(io.BytesIO(data), exif_rotation=False)
+    except (ValueError, struct.error) as error:
+        raise UnusableImageError("undecodable_image", f"a JPEG with a damaged header: {error}") from None
+    if width <= 0 or height <= 0:
+        raise UnusableImageError("undecodable_image", f"a JPEG of {len(data)} bytes without a size")
+    return width, height
+
+
+def _from_bgr(image: Image) -> Pixels:
+    expected = image.width * image.height * 3
+    if len(image.data) != expected:
+        raise UnusableImageError(
+            "image_size_mismatch",
+            f"{len(image.data)} bytes for {image.width}x{image.height} bgr8, expected {expected}",
+        )
+    pixels = np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
+    return cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)

@@ -1,0 +1,138 @@
+"""Black squares in an image, by OpenCV: those that it decoded, and others that deserve a second look."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.arrays import Array, Mask
+from marker_tracker.detection.alignment import sample_squares
+from marker_tracker.detection.families import Family
+from marker_tracker.detection.images import Pixels
+
+SMALL_FAMILY = 50
+"""Markers up to which a family is searched as a whole, at little cost, so that unknown markers are found and told."""
+MAX_SECOND_LOOKS = 16
+"""Squares per image; each costs about a tenth of a millisecond to refine and read."""
+RIM_OFFSET = 0.1
+"""From a side, as a share of it: a black square on white is white so far outside and black so far inside."""
+RIM_SAMPLES = 8
+"""Along each side: their median is not misled by a finger on less than half of it."""
+RIM_EXTENT = (0.15, 0.85)
+"""Of a side, in which the samples lie: nearer to its ends rough corners miss it."""
+MIN_CONTRAST = 10.0
+"""Grey levels from inside to outside of a side: less is noise."""
+POLYGON_TOLERANCE = 0.03
+"""Of an outline from its polygon, as a share of its length: OpenCV's own `polygonalApproxAccuracyRate`."""
+
+
+@dataclass(frozen=True)
+class Quads:
+    """Quadrilaterals in an image, clockwise.
+
+    Attributes:
+        decoded: (n, 4, 2) that OpenCV took for markers.
+        family: (n,) which of the searched families each of these is of.
+        new: (n,) whether each of these is not in the place of a known marker.
+        rejected: (m, 4, 2) that OpenCV could not decode.
+    """
+
+    decoded: Array
+    family: NDArray[np.int_]
+    new: Mask
+    rejected: Array
+
+
+class QuadDetector:
+    """OpenCV's marker detector for several families."""
+
+    def __init__(self, families: Sequence[Family], wanted: Sequence[Collection[int]]) -> None:
+        """Search each family for its wanted ids, or for all where there are none or the family is small."""
+        dictionaries = [_searched(family, ids) for family, ids in zip(families, wanted, strict=True)]
+        self._detector = cv2.aruco.ArucoDetector(dictionaries, cv2.aruco.DetectorParameters())
+
+    def find(self, pixels: Pixels, known: Array) -> Quads:
+        """Find the quadrilaterals in a grey image (height, width), of which some (k, 4, 2) are known markers."""
+        corners, _ids, rejected, families = self._detector.detectMarkersMultiDict(pixels)
+        family = np.zeros(0, dtype=int) if families is None else np.ravel(families).astype(int)
+        decoded = _array(corners)
+        return Quads(decoded, family, ~within(decoded, known), _array(rejected))
+
+
+def within(squares: Array, others: Array) -> Mask:
+    """Tell which squares (n, 4, 2) have their centre in one of the others (m, 4, 2)."""
+    outlines = others.astype(np.float32)
+    centres = squares.mean(axis=1)
+    inside = [
+        any(cv2.pointPolygonTest(quad, (float(x), float(y)), False) >= 0 for quad in outlines) for x, y in centres
+    ]
+    return np.array(inside, dtype=bool)
+
+
+def inner_squares(pixels: Pixels, squares: Array) -> Array:
+    """Find the darker square in each of the squares (n, 4, 2), as a marker on its paper: (up to n, 4, 2)."""
+    found = [inner for square in squares if (inner := _inner_square(pixels, square)) is not None]
+    return np.array(found).reshape(-1, 4, 2)
+
+
+def rimmed_squares(pixels: Pixels, quads: Quads) -> Array:
+    """Choose rejected squares with a black rim outside the decoded ones, at most `MAX_SECOND_LOOKS`: (n, 4, 2).
+
+    Larger ones come first. Cells of a decoded marker are no squares of their own.
+    """
+    free = quads.rejected[~within(quads.rejected, quads.decoded)]
+    rimmed = free[_has_black_rim(pixels, free)] if len(free) else free
+    largest: Array = rimmed[np.argsort([-cv2.contourArea(quad.astype(np.float32)) for quad in rimmed])]
+    return largest[:MAX_SECOND_LOOKS]
+
+
+def _searched(family: Family, ids: Collection[int]) -> Any:
+    """Leave out of a large family what is not wanted: time and false markers grow with the codes compared."""
+    return family.only(ids) if ids and len(family.codes) > SMALL_FAMILY else family.dictionary
+
+
+def _array(corners: object) -> Array:
+    return np.asarray(corners, dtype=np.float64).reshape(-1, 4, 2)
+
+
+def _inner_square(pixels: Pixels, corners_px: Array) -> Array | None:
+    """Find the darker square that a square (4, 2) encloses: (4, 2), clockwise."""
+    left, top, width, height = cv2.boundingRect(corners_px.astype(np.float32))
+    left, top, right, bottom = max(left, 0), max(top, 0), left + width, top + height
+    window = pixels[top:bottom, left:right]
+    inside = np.zeros(window.shape, dtype=np.uint8)
+    cv2.fillConvexPoly(inside, np.round(corners_px - (left, top)).astype(np.int32), 1)
+    levels = np.ascontiguousarray(window[inside > 0])
+    middle = cv2.threshold(levels[None], 0, 255, cv2.THRESH_OTSU)[0] if levels.size else 0.0
+    dark = ((window <= middle) & (inside > 0)).astype(np.uint8)
+    outlines, _ = cv2.findContours(dark, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
+    if not outlines:
+        return None
+    hull = cv2.convexHull(max(outlines, key=cv2.contourArea))
+    found = cv2.approxPolyDP(hull, POLYGON_TOLERANCE * cv2.arcLength(hull, True), True)
+    if len(found) != 4:
+        return None
+    square: Array = found[:, 0].astype(np.float64) + np.array([left, top])
+    return square if cv2.contourArea(found, oriented=True) > 0 else square[::-1]
+
+
+def _has_black_rim(pixels: Pixels, corners_px: Array) -> Mask:
+    """Tell which squares (n, 4, 2) are darker just inside than just outside, on at least three sides.
+
+    Rough corners may miss a side of a small square by as much as the black border is wide.
+    """
+    outside, inside = (np.concatenate([_along_sides(at), _along_sides(1 - at)]) for at in (-RIM_OFFSET, RIM_OFFSET))
+    levels = sample_squares(pixels, corners_px, np.concatenate([outside, inside]))
+    rise = levels[:, : len(outside)] - levels[:, len(outside) :]
+    sides = np.median(rise.reshape(len(corners_px), 4, RIM_SAMPLES), axis=2)
+    return np.asarray(np.sort(sides, axis=1)[:, 1] > MIN_CONTRAST)
+
+
+def _along_sides(offset: float) -> Array:
+    """Points (2 RIM_SAMPLES, 2) of the unit square along y = offset, then along x = offset."""
+    along = np.linspace(*RIM_EXTENT, RIM_SAMPLES)
+    level = np.full_like(along, offset)
+    return np.concatenate([np.stack([along, level], axis=1), np.stack([level, along], axis=1)])

@@ -1,0 +1,57 @@
+"""A part of an image, blurred and scaled, with its place in the image."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import cv2
+import numpy as np
+
+from actum.arrays import Array
+from marker_tracker.detection.images import Pixels
+
+BLUR_PX = 0.8
+"""Standard deviation in pixels: takes the noise off slopes, and leaves what a hand shows."""
+HALF_PX = 0.5 + 0.5j
+"""Pixels from a pixel's corner to its centre, as x + i y."""
+
+
+@dataclass(frozen=True)
+class Crop:
+    """Part of an image.
+
+    Attributes:
+        levels: (height, width), blurred grey levels, scaled by `scale`.
+        origin_px: its top left pixel in the image.
+        scale: at most 1.
+    """
+
+    levels: Array
+    origin_px: complex
+    scale: float
+
+    @classmethod
+    def around(cls, pixels: Pixels, centre_px: complex, radius_px: float, scale: float) -> Self:
+        """Cut a square out of a grey image (height, width), as far as the image goes."""
+        left, top = max(round(centre_px.real - radius_px), 0), max(round(centre_px.imag - radius_px), 0)
+        right, bottom = max(round(centre_px.real + radius_px), 0) + 1, max(round(centre_px.imag + radius_px), 0) + 1
+        part = pixels[top:bottom, left:right]
+        if scale * min(part.shape) < 1:
+            part = part[:0, :0]
+        elif scale < 1:
+            part = np.asarray(cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+        return cls(blurred(part), complex(left, top), scale)
+
+    def from_image(self, point_px: complex) -> complex:
+        """Map a point of the image into the crop."""
+        return (point_px - self.origin_px + HALF_PX) * self.scale - HALF_PX
+
+    def to_image(self, point_px: complex) -> complex:
+        """Map a point of the crop into the image."""
+        return (point_px + HALF_PX) / self.scale - HALF_PX + self.origin_px
+
+
+def blurred(pixels: Pixels) -> Array:
+    """Take the noise off grey levels (height, width)."""
+    if not pixels.size:
+        return np.zeros(pixels.shape)
+    return np.asarray(cv2.GaussianBlur(pixels.astype(np.float32), (0, 0), BLUR_PX), dtype=np.float64)

@@ -1,0 +1,164 @@
+"""Partly covered markers: one detected a moment ago is followed by the part of it that still shows."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from actum.node import SECOND_NS
+from marker_tracker.detection.alignment import align, align_by_similarity
+from marker_tracker.detection.decoding import wrong_cells
+from marker_tracker.detection.detector import SAME_PLACE_SIDES
+from marker_tracker.detection.families import family
+from marker_tracker.detection.images import Pixels
+from marker_tracker.detection.marker import Key, Marker
+
+Box = tuple[int, int, int, int]
+"""Left, top, right and bottom in whole pixels, the last two exclusive."""
+
+REMEMBERED_NS = SECOND_NS // 2
+"""Nanoseconds for which a marker that is not detected is looked for."""
+MAX_FOLLOWED = 4
+"""Markers per image: each costs a millisecond or so."""
+CELL_PX = 5.0
+"""Pixels: markers with larger cells are followed in a smaller image, or their edges are too far apart to be aligned."""
+QUIET_ZONE_CELLS = 1
+"""White around a marker that belongs to its template, in cells: as much as is printed."""
+SEARCH_RADIUS_SIDES = 0.4
+"""How far a marker may have moved at once, in sides of it."""
+SEARCH_SPEED_SIDES_PER_S = 8.0
+"""How much further it may be for each second since it was seen: 8 cm at 0.6 m/s."""
+MIN_CORRELATION = 0.5
+"""Normalised cross-correlation with the last view from which a place is tried: a finger may cover half of it."""
+TOUCHED_SHARE = 0.015
+"""How much more of a marker than usual must be covered for its shape to be taken from before."""
+USUAL_TIME_CONSTANT_S = 3.0
+"""Seconds after which what covers a marker, or is misprinted, counts as usual."""
+MIN_RIGHT_CELLS = 0.85
+"""Share of the cells of the code that must be right: by chance half of them are."""
+MAX_COVERED = 0.2
+"""Share of a marker; where more is covered, what shows no longer tells its size."""
+MAX_GROWTH = 0.15
+"""Of a side from one image to the next, as a share of it: no hand moves an object towards the camera faster."""
+
+
+@dataclass(frozen=True)
+class LastView:
+    """A marker in the image where it was seen last.
+
+    Attributes:
+        marker: the marker.
+        stamp_ns: of that image.
+        usually_covered: the share of the marker that has been covered for long, or seems so: blurred, or misprinted.
+        template: (height, width), grey levels of the marker with its white, scaled by `scale`.
+        scale: at most 1.
+    """
+
+    marker: Marker
+    stamp_ns: int
+    usually_covered: float
+    template: Pixels
+    scale: float
+
+
+class PartialOcclusionTracker:
+    """Follows partly covered markers for half a second, in the shape they had when they were clear."""
+
+    def __init__(self) -> None:
+        self._last: dict[Key, LastView] = {}
+
+    def clear(self) -> None:
+        """Forget where markers were."""
+        self._last.clear()
+
+    def update(self, stamp_ns: int, pixels: Pixels, detected: Sequence[Marker]) -> list[Marker]:
+        """Add partly covered markers to those detected in a grey image (height, width).
+
+        A detected marker that is touched is replaced, if it can be followed: its corners are pulled by what touches it.
+        """
+        self._last = {key: it for key, it in self._last.items() if stamp_ns - it.stamp_ns <= REMEMBERED_NS}
+        clear = {marker.key for marker in detected if not self._is_touched(marker)}
+        missing = [last for key, last in self._last.items() if key not in clear][:MAX_FOLLOWED]
+        followed = [
+            marker
+            for last in missing
+            if (marker := _follow(stamp_ns, pixels, last)) and not _is_taken(marker, detected)
+        ]
+        replaced = {marker.key for marker in followed}
+        markers = [*followed, *(marker for marker in detected if marker.key not in replaced)]
+        for marker in markers:
+            self._remember(stamp_ns, pixels, marker)
+        return markers
+
+    def _is_touched(self, marker: Marker) -> bool:
+        last = self._last.get(marker.key)
+        return last is not None and marker.covered > last.usually_covered + TOUCHED_SHARE
+
+    def _remember(self, stamp_ns: int, pixels: Pixels, marker: Marker) -> None:
+        """Note how a marker looks, unless it reaches the image's edge."""
+        left, top, right, bottom = _box(marker, 0.0)
+        if left < 0 or top < 0 or right > pixels.shape[1] or bottom > pixels.shape[0]:
+            return
+        scale = min(1.0, CELL_PX * (family(marker.family).cells + 2) / marker.side_px)
+        template = _scaled(pixels[top:bottom, left:right], scale)
+        usual = self._usually_covered(marker, stamp_ns)
+        self._last[marker.key] = LastView(marker, stamp_ns, usual, template, scale)
+
+    def _usually_covered(self, marker: Marker, stamp_ns: int) -> float:
+        last = self._last.get(marker.key)
+        if last is None:
+            return marker.covered
+        share = min(1.0, (stamp_ns - last.stamp_ns) / SECOND_NS / USUAL_TIME_CONSTANT_S)
+        return last.usually_covered + share * (marker.covered - last.usually_covered)
+
+
+def _follow(stamp_ns: int, pixels: Pixels, last: LastView) -> Marker | None:
+    """Find a marker near its last place: roughly by its template, then by aligning its pattern."""
+    marker, scale = last.marker, last.scale
+    radius_sides = SEARCH_RADIUS_SIDES + SEARCH_SPEED_SIDES_PER_S * (stamp_ns - last.stamp_ns) / SECOND_NS
+    left, top, right, bottom = _box(marker, radius_sides * marker.side_px)
+    left, top = max(left, 0), max(top, 0)
+    window = _scaled(pixels[top : max(bottom, top), left : max(right, left)], scale)
+    if window.shape[0] < last.template.shape[0] or window.shape[1] < last.template.shape[1]:
+        return None
+    _, correlation, _, place_px = cv2.minMaxLoc(cv2.matchTemplate(window, last.template, cv2.TM_CCOEFF_NORMED))
+    if not correlation >= MIN_CORRELATION:
+        return None
+    template_origin_px = np.array(_box(marker, 0.0)[:2])
+    start_px = scale * (marker.corners_px - template_origin_px + 0.5) - 0.5 + place_px
+    pattern = family(marker.family).patterns[marker.id]
+    found = align_by_similarity(window, start_px[None], pattern[None])
+    if found.covered[0] <= last.usually_covered + TOUCHED_SHARE:
+        found = align(window, found.corners_px, pattern[None])
+    wrong = wrong_cells(window, found.corners_px[0], pattern)
+    corners_px = (found.corners_px[0] + 0.5) / scale - 0.5 + (left, top)
+    moved = Marker(marker.family, marker.id, corners_px, int(wrong.sum()), float(found.covered[0]))
+    shows = wrong[1:-1, 1:-1].mean() <= 1 - MIN_RIGHT_CELLS and moved.covered <= MAX_COVERED
+    return moved if shows and abs(moved.side_px / marker.side_px - 1) <= MAX_GROWTH else None
+
+
+def _is_taken(marker: Marker, detected: Sequence[Marker]) -> bool:
+    """Tell whether another marker is detected in a marker's place."""
+    return any(
+        each.key != marker.key and math.dist(each.centre_px, marker.centre_px) < SAME_PLACE_SIDES * marker.side_px
+        for each in detected
+    )
+
+
+def _box(marker: Marker, more_px: float) -> Box:
+    """Enclose a marker with its white and a margin."""
+    margin = QUIET_ZONE_CELLS * marker.side_px / (family(marker.family).cells + 2) + more_px
+    low = np.floor(marker.corners_px.min(axis=0) - margin).astype(int).tolist()
+    high = np.ceil(marker.corners_px.max(axis=0) + margin).astype(int).tolist()
+    return low[0], low[1], high[0] + 1, high[1] + 1
+
+
+def _scaled(pixels: Pixels, scale: float) -> Pixels:
+    """Make a grey image smaller; one that would vanish becomes empty."""
+    if scale == 1.0:
+        return pixels
+    if scale * min(pixels.shape) < 1:
+        return pixels[:0, :0]
+    return np.asarray(cv2.resize(pixels, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), dtype=np.uint8)

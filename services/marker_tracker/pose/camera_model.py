@@ -1,0 +1,93 @@
+"""The camera of an image message: a pinhole with lens distortion, checked and scaled to the image's size."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from actum import geometry
+from actum.arrays import Array
+from actum.limits import MAX_COORDINATE_M
+from actum.messages import Image
+from marker_tracker.detection.images import UnusableImageError
+
+LARGEST_FOCAL_PX = 1e5
+"""Pixels: a hundred times the focal length of usual cameras; a larger one is a mistake of units."""
+LARGEST_COEFFICIENT = 100.0
+"""Of distortion: rational models have tens; beyond it projection overflows."""
+LARGEST_OFFSET = 0.2
+"""Of the optical axis from the image's centre, as a share of its size: further off, K is for another image size."""
+ASPECT_TOLERANCE = 0.01
+"""Relative: sizes are whole pixels, so that scaled ones keep their aspect only nearly."""
+DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
+"""Numbers of distortion coefficients that OpenCV takes."""
+
+
+@dataclass(frozen=True)
+class CameraModel:
+    """A camera's calibration.
+
+    Attributes:
+        matrix: the intrinsic matrix K (3, 3), in pixels; pixel centres are at whole numbers.
+        distortion: OpenCV's coefficients, of one of the `DISTORTION_LENGTHS`.
+        skeleton_from_image: the rigid transform (4, 4), in metres, to the camera frame of the skeletons.
+    """
+
+    matrix: Array
+    distortion: Array
+    skeleton_from_image: Array
+
+
+def camera_model(image: Image, calibrated_size_px: tuple[int, int] | None = None) -> CameraModel:
+    """Read an image's calibration; K is scaled to the image where the calibrated (width, height) is given.
+
+    Raises:
+        UnusableImageError: of kind `bad_calibration` or `calibration_size_mismatch`.
+    """
+    matrix = np.array(image.K, dtype=np.float64).reshape(3, 3)
+    focal = (matrix[0, 0], matrix[1, 1])
+    if not all(0 < f < LARGEST_FOCAL_PX for f in focal) or np.abs(matrix).max() > LARGEST_FOCAL_PX:
+        raise UnusableImageError("bad_calibration", f"K has focal lengths {focal[0]:g} and {focal[1]:g} px")
+    if not np.array_equal(matrix[2], (0, 0, 1)):
+        raise UnusableImageError("bad_calibration", f"the last row of K is {matrix[2].tolist()}, not [0, 0, 1]")
+    skeleton_from_image = geometry.from_flat(image.skeleton_from_image)
+    if not geometry.is_rigid(skeleton_from_image, MAX_COORDINATE_M):
+        raise UnusableImageError("bad_calibration", "skeleton_from_image is no rigid transform")
+    matrix = _matrix_for_size(matrix, (image.width, image.height), calibrated_size_px)
+    return CameraModel(matrix, _distortion(image.distortion), skeleton_from_image)
+
+
+def _matrix_for_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tuple[int, int] | None) -> Array:
+    """Scale K (3, 3) to the image's (width, height), or check that it fits where the calibrated size is unknown.
+
+    Pixel centres are at whole numbers, so that it is (c + 1/2) that scales.
+    """
+    width, height = size_px
+    if calibrated_px is None:
+        off_px = np.abs(matrix[:2, 2] + 0.5 - np.divide(size_px, 2))
+        if (off_px > 1 + LARGEST_OFFSET * np.array(size_px)).any():
+            raise UnusableImageError(
+                "calibration_size_mismatch",
+                f"K has its centre at ({matrix[0, 2]:g}, {matrix[1, 2]:g}) in an image of {width}x{height}: "
+                "calibrate at this size, or give calibrated-size-px",
+            )
+        return matrix
+    across, down = width / calibrated_px[0], height / calibrated_px[1]
+    if abs(across / down - 1) > ASPECT_TOLERANCE:
+        raise UnusableImageError(
+            "calibration_size_mismatch",
+            f"an image of {width}x{height}, but calibrated at {calibrated_px[0]}x{calibrated_px[1]}",
+        )
+    half = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1]])
+    scaled: Array = np.linalg.inv(half) @ np.diag([across, down, 1.0]) @ half @ matrix
+    return scaled
+
+
+def _distortion(coefficients: list[float]) -> Array:
+    if len(coefficients) not in DISTORTION_LENGTHS:
+        raise UnusableImageError(
+            "bad_calibration", f"{len(coefficients)} distortion coefficients, not one of {DISTORTION_LENGTHS}"
+        )
+    distortion = np.array(coefficients, dtype=np.float64)
+    if np.abs(distortion).max(initial=0) > LARGEST_COEFFICIENT:
+        raise UnusableImageError("bad_calibration", f"a distortion coefficient beyond {LARGEST_COEFFICIENT:g}")
+    return distortion

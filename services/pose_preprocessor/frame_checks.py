@@ -1,0 +1,62 @@
+"""Tells which frames cannot be used: those with non-finite or absurd joints, or without a trunk."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from actum.arrays import Array
+from actum.geometry import BONES
+from actum.skeletons import JOINTS
+
+_PARENTS = np.array([parent for parent, _, _ in BONES])
+_CHILDREN = np.array([child for _, child, _ in BONES])
+_NEEDED = frozenset({"torso", "neck"})
+"""No egocentric frame is defined without them, nor without one of the pairs below."""
+_PAIRS = (frozenset({"left_hip", "right_hip"}), frozenset({"left_shoulder", "right_shoulder"}))
+
+
+class BadFrameError(ValueError):
+    """A frame that cannot be used; `kind` is the name it is counted under."""
+
+    def __init__(self, kind: str, detail: str) -> None:
+        super().__init__(detail)
+        self.kind = kind
+
+
+def check_frame(joints: Array, missing: Sequence[int], reach_limit_m: float, bone_limit_m: float) -> None:
+    """Refuse joints that cannot be used.
+
+    Args:
+        joints: (15, 3), camera frame, metres.
+        missing: which of them are not known; the others must be finite.
+        reach_limit_m: a joint further away than this along any camera axis is absurd.
+        bone_limit_m: a longer bone is absurd.
+
+    Raises:
+        BadFrameError: of kind `missing_joint` (no torso, no neck, or neither both hips nor both shoulders),
+            `not_finite`, `absurd_joint` or `absurd_bone`.
+    """
+    if missing:
+        _require_trunk([JOINTS[index] for index in missing])
+    if not (np.abs(joints) <= reach_limit_m).all():
+        _require_near(joints, missing, reach_limit_m)
+    bones = joints[_CHILDREN] - joints[_PARENTS]
+    lengths2 = np.einsum("ij,ij->i", bones, bones)
+    if np.fmax.reduce(lengths2) > bone_limit_m**2:
+        child = JOINTS[int(_CHILDREN[int(np.nanargmax(lengths2))])]
+        raise BadFrameError("absurd_bone", f"the bone to {child} is longer than {bone_limit_m:g} m")
+
+
+def _require_trunk(missing: Sequence[str]) -> None:
+    if not _NEEDED.isdisjoint(missing) or not any(pair.isdisjoint(missing) for pair in _PAIRS):
+        raise BadFrameError("missing_joint", f"no {', '.join(missing)}")
+
+
+def _require_near(joints: Array, missing: Sequence[int], reach_limit_m: float) -> None:
+    given = [i for i in range(len(JOINTS)) if i not in missing]
+    for i in given:
+        if not np.isfinite(joints[i]).all():
+            raise BadFrameError("not_finite", f"{JOINTS[i]} is not a finite position")
+    for i in given:
+        if np.abs(joints[i]).max() > reach_limit_m:
+            raise BadFrameError("absurd_joint", f"{JOINTS[i]} is more than {reach_limit_m:g} m away")

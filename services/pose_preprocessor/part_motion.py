@@ -1,0 +1,65 @@
+"""How much each body part moves from frame to frame, which attention is decided by (paper, section 2.1)."""
+
+import math
+
+import numpy as np
+
+from actum.arrays import Array
+from actum.node import SECOND_NS
+from actum.skeletons import INDEX, PARTS
+
+GAP_NS = SECOND_NS // 2
+"""After a longer pause (ns) between two frames nothing is known of the motion in between: filters begin anew."""
+TIME_CONSTANT_S = 0.3
+"""Of the low-pass: noise of single frames averages out, an action of a second or more remains."""
+_IN_PART = np.array([[joint in part for joint in range(len(INDEX))] for part in PARTS.values()], dtype=np.float64)
+_PART_SIZES = _IN_PART.sum(axis=1)
+_TORSO = INDEX["torso"]
+
+
+class PartMotionFilter:
+    """The mean displacement of each body part of one agent, from low-passed joints relative to the torso.
+
+    Sums of unfiltered displacements would add up a joint's noise, which is largest at the feet. Egocentric axes jitter
+    themselves, and move a joint the more the further it is from the hips; so the axes are the camera's.
+    """
+
+    def __init__(self) -> None:
+        self._stamp_ns: int | None = None
+        self._smooth: Array = np.zeros((len(INDEX), 3))
+
+    def is_over(self, stamp_ns: int) -> bool:
+        """Tell whether a step at this stamp would begin anew, after a gap or for the first time."""
+        return self._stamp_ns is None or stamp_ns - self._stamp_ns > GAP_NS
+
+    def step(self, stamp_ns: int, joints: Array) -> list[float]:
+        """Return each part's mean displacement since the frame before, (5,), metres; 0 at first and after a gap.
+
+        The mean is over the joints known in this frame and the one before; 0 where there is none.
+
+        Args:
+            stamp_ns: rising from call to call.
+            joints: (15, 3), camera frame, metres; NaN where unknown.
+        """
+        relative = joints - joints[_TORSO]
+        before_ns, self._stamp_ns = self._stamp_ns, stamp_ns
+        if before_ns is None or stamp_ns - before_ns > GAP_NS:
+            self._smooth = relative
+            return [0.0] * len(PARTS)
+        elapsed_ns = stamp_ns - before_ns
+        share = 1.0 - float(np.exp(-elapsed_ns / SECOND_NS / TIME_CONSTANT_S))
+        steps = share * (relative - self._smooth)
+        lengths = np.sqrt(np.einsum("ij,ij->i", steps, steps))
+        if math.isnan(lengths.sum()):
+            self._smooth = np.where(np.isnan(steps), relative, self._smooth + steps)
+            return _means_where_known(lengths)
+        self._smooth = self._smooth + steps
+        motion: list[float] = (_IN_PART @ lengths / _PART_SIZES).tolist()
+        return motion
+
+
+def _means_where_known(lengths: Array) -> list[float]:
+    """Return the mean of the known lengths (15,) of each part, (5,)."""
+    known = ~np.isnan(lengths)
+    means: list[float] = (_IN_PART @ np.where(known, lengths, 0.0) / np.maximum(_IN_PART @ known, 1.0)).tolist()
+    return means

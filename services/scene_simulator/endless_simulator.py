@@ -1,0 +1,55 @@
+"""The simulator that the settings describe: one scene of so many repetitions, or one scene after another for ever."""
+
+from collections.abc import Iterator
+
+from actum.messages import Message
+from actum.node import SECOND_NS, Counters, Source
+from scene_simulator.programme import balanced_programme
+from scene_simulator.settings import Settings
+from scene_simulator.simulator import GATEWAY, Simulator
+
+REPETITIONS = 4
+"""How often each action is done before the next scene, with another seed, follows."""
+DESCRIPTION = "simulated scene, no camera"
+
+
+def simulator_of(settings: Settings, start_ns: int) -> Source:
+    """Build the source; its stamps begin at `start_ns`."""
+    endless = settings.repetitions == 0
+    source = EndlessSimulator(settings, start_ns) if endless else _simulator(settings, start_ns)
+    source.counters.details["source"] = DESCRIPTION
+    return source
+
+
+class EndlessSimulator:
+    """One simulated scene after another, as one stream."""
+
+    name = GATEWAY
+    paced = True
+
+    def __init__(self, settings: Settings, start_ns: int) -> None:
+        self.counters = Counters()
+        self._settings = settings
+        self._start_ns = start_ns
+
+    def frames(self) -> Iterator[list[Message]]:
+        """Yield frames for ever."""
+        start_ns, seed = self._start_ns, self._settings.seed
+        while True:
+            settings = self._settings.model_copy(update={"repetitions": REPETITIONS, "seed": seed})
+            for messages in _simulator(settings, start_ns, session_id=f"simulator-{self._start_ns}").frames():
+                yield messages
+                newest_ns = messages[0].stamp_ns
+            start_ns, seed = newest_ns + SECOND_NS, seed + 1
+
+
+def _simulator(settings: Settings, start_ns: int, session_id: str | None = None) -> Simulator:
+    return Simulator(
+        balanced_programme(settings.repetitions, settings.seed, settings.actor),
+        actor_seed=settings.actor,
+        seed=settings.seed,
+        sensor=settings.sensor,
+        image_hz=settings.image_hz,
+        start_ns=start_ns,
+        session_id=session_id,
+    )

@@ -1,0 +1,144 @@
+"""The scene over time: the ground truth of each frame, without noise."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from actum.arrays import Array
+from scene_simulator.actor import Stance, draw_actor, fingertip, pose
+from scene_simulator.conditions import PLAIN, Conditions
+from scene_simulator.noise import Sway
+from scene_simulator.pantomime import draw_pantomime
+from scene_simulator.parameters import Parameters, load_parameters
+from scene_simulator.programme import Task
+from scene_simulator.random_streams import random_stream
+from scene_simulator.timeline import Episode, acting, resetting, still
+from scene_simulator.trial import Trial, draw_trial
+
+Mark = Literal["start", "end"]
+CLOSED = 0.5
+"""A hand closed further than this holds what it grasps."""
+
+
+@dataclass(frozen=True)
+class SceneState:
+    """The ground truth of one frame, in the camera frame; n objects in the order of `Scene.items`.
+
+    Attributes:
+        joints_m: (15, 3).
+        fingertip_m: (3,), of the acting hand.
+        positions_m: (n, 3), the centres of the markers.
+        yaw_rad: (n,).
+        riser_tops_m: (n, 3), the top of the riser at each object's place.
+        grip: how far the hand is closed, 0 to 1.
+        pointing: how far the index finger is stretched, 0 to 1.
+        target: the row of the object acted on; None in a pantomime.
+        segment: the number of the repetition going on; None in a pause.
+        mark: whether that repetition starts or ends with this frame.
+    """
+
+    frame: int
+    joints_m: Array
+    fingertip_m: Array
+    positions_m: Array
+    yaw_rad: Array
+    riser_tops_m: Array
+    grip: float
+    pointing: float
+    target: int | None
+    finger_overlap_m: float
+    segment: int | None
+    mark: Mark | None
+
+    @property
+    def held(self) -> int | None:
+        """The row of the object in the hand, or None."""
+        return self.target if self.segment is not None and self.grip > CLOSED else None
+
+    def camera_from_object(self, row: int) -> Array:
+        """Return the pose (4, 4) of an object: x right and y up on the marked face, z out of it."""
+        sin, cos = np.sin(self.yaw_rad[row]), np.cos(self.yaw_rad[row])
+        transform = np.eye(4)
+        transform[:3, :3] = [[cos, 0, sin], [0, -1, 0], [sin, 0, -cos]]
+        transform[:3, 3] = self.positions_m[row]
+        return transform
+
+
+class Scene:
+    """An actor at a table with three marked objects, doing a programme; the same arguments, the same scene.
+
+    Raises:
+        ValueError: the programme is empty.
+    """
+
+    def __init__(
+        self,
+        programme: Sequence[Task],
+        actor_seed: int,
+        seed: int,
+        parameters: Parameters | None = None,
+        conditions: Conditions = PLAIN,
+    ) -> None:
+        if not programme:
+            raise ValueError("the programme is empty: give at least one task")
+        self.conditions = conditions
+        self.parameters = conditions.arranged(parameters or load_parameters())
+        self.items = self.parameters.objects.items
+        self.actor = draw_actor(self.parameters.actor, actor_seed)
+        self.places_x_m = random_stream("places", seed).permutation(self.parameters.objects.place_x_m)
+        self.seeds = (actor_seed, seed)
+        self.trials = tuple(self._trial(number, task) for number, task in enumerate(programme))
+
+    def states(self, tail_s: float = 3.0) -> Iterator[SceneState]:
+        """Yield every frame: a lead-in, the programme with its pauses, and `tail_s` of returning to rest."""
+        sway = Sway(random_stream("sway", *self.seeds), self.parameters.sway)
+        frame = 0
+        for episode in self._episodes(tail_s):
+            yield from self._posed(episode, frame, sway)
+            frame += len(episode)
+
+    def _trial(self, number: int, task: Task) -> Trial:
+        rng = random_stream("trial", *self.seeds, number)
+        draw = draw_pantomime if task.is_pantomime else draw_trial
+        return draw(self.parameters, self.actor, task, self.places_x_m, rng)
+
+    def _episodes(self, tail_s: float) -> Iterator[Episode]:
+        yield still(self.parameters, self.trials[0], self.parameters.pause.lead_in_s)
+        following = [*self.trials[1:], self.trials[-1]]
+        pauses = [*(trial.pause_s for trial in self.trials[:-1]), tail_s]
+        column = 0 if self.actor.hand == "left" else 1
+        for number, trial in enumerate(self.trials):
+            done = acting(self.parameters, trial, number, column)
+            yield done
+            yield resetting(self.parameters, done, following[number], pauses[number])
+
+    def _posed(self, episode: Episode, first: int, sway: Sway) -> Iterator[SceneState]:
+        """Yield an episode's frames with the person's posture, swaying."""
+        shift = sway.at(np.arange(first, first + len(episode)) / self.parameters.camera.frame_rate_hz)
+        pelvis = episode.pelvis_m + np.insert(shift[:, :2], 1, 0.0, axis=1)
+        stance = Stance(pelvis, episode.heading_rad, self.actor.lean_rad + shift[:, 2])
+        joints = pose(self.actor, stance, episode.hands_m)
+        tips = fingertip(self.actor, joints)
+        for i in range(len(episode)):
+            yield SceneState(
+                frame=first + i,
+                joints_m=joints[i],
+                fingertip_m=tips[i],
+                positions_m=episode.positions_m[i],
+                yaw_rad=episode.yaw_rad[i],
+                riser_tops_m=episode.riser_tops_m[i],
+                grip=float(episode.grip[i]),
+                pointing=float(episode.pointing[i]),
+                target=episode.trial.target,
+                finger_overlap_m=episode.trial.finger_overlap_m,
+                segment=episode.segment,
+                mark=_mark(episode, i),
+            )
+
+
+def _mark(episode: Episode, index: int) -> Mark | None:
+    if episode.segment is None:
+        return None
+    return "start" if index == 0 else "end" if index == len(episode) - 1 else None

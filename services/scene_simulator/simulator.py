@@ -1,0 +1,153 @@
+"""The scene as a sensor: noisy skeletons, colour images and the truth, stamped and in order."""
+
+from collections.abc import Iterator, Sequence
+
+import cv2
+import numpy as np
+
+from actum.messages import SIMULATOR, Agent, Image, Message, Segment, Skeleton, Truth
+from actum.node import SECOND_NS, Counters
+from scene_simulator.conditions import PLAIN, Conditions
+from scene_simulator.drawing_primitives import Canvas, Pinhole
+from scene_simulator.exposure import states_while_open
+from scene_simulator.noise import SkeletonNoise
+from scene_simulator.programme import Task
+from scene_simulator.random_streams import random_stream
+from scene_simulator.render import Renderer
+from scene_simulator.simulated_scene import Scene, SceneState
+
+AGENT = 1
+"""The one person of a scene."""
+GATEWAY = "sensor_gateway"
+"""The service whose messages the simulator puts: consumers need not know which of the two a sensor has."""
+
+
+class Simulator:
+    """A source of skeletons, images and truth; the same arguments give the same messages, bit for bit.
+
+    `image_hz` must divide the frame rate; 0 means no images. The first and the last frame of each action have a
+    `Truth`; the one at the end tells the object's displacement, in the camera frame. That of a pantomime has the
+    object id `NO_OBJECT`, an empty name and no displacement.
+
+    Raises:
+        ValueError: the programme is empty, `image_hz` does not divide the frame rate, or there is no room for a
+            pantomime.
+    """
+
+    name = GATEWAY
+    paced = True
+
+    def __init__(  # noqa: PLR0913 - the scene, and how it is published
+        self,
+        programme: Sequence[Task],
+        actor_seed: int = 0,
+        seed: int = 0,
+        *,
+        sensor: str = "kinect0",
+        image_hz: int = 15,
+        start_ns: int = 0,
+        session_id: str | None = None,
+        tail_s: float = 3.0,
+        conditions: Conditions = PLAIN,
+    ) -> None:
+        self.counters = Counters()
+        self.programme = tuple(programme)
+        self.scene = Scene(programme, actor_seed, seed, conditions=conditions)
+        self._rate_hz = self.scene.parameters.camera.frame_rate_hz
+        if image_hz and (image_hz < 0 or self._rate_hz % image_hz):
+            raise ValueError(f"image_hz {image_hz} does not divide the frame rate {self._rate_hz}")
+        self._frames_per_image = self._rate_hz // image_hz if image_hz else 0
+        self._open_share = min(conditions.exposure_s * self._rate_hz, 1.0)
+        self._seeds = (actor_seed, seed)
+        self._sensor, self._start_ns, self._tail_s = sensor, start_ns, tail_s
+        self._session_id = session_id or f"simulator-{actor_seed}-{seed}"
+
+    def frames(self) -> Iterator[list[Message]]:
+        """Yield the messages of one frame after the other, from the beginning."""
+        noise = SkeletonNoise(
+            random_stream("skeleton noise", *self._seeds),
+            self.scene.parameters.noise,
+            self.scene.actor.noise_scale,
+            self._rate_hz,
+        )
+        renderer = Renderer(self.scene, random_stream("image noise", *self._seeds)) if self._frames_per_image else None
+        start = before = None
+        for state in self.scene.states(self._tail_s):
+            messages: list[Message] = [self._skeleton(state, noise)]
+            if state.mark == "start":
+                start = state
+            if state.mark is not None and start is not None:
+                messages.insert(0, self._truth(state, start))
+            if renderer is not None and state.frame % self._frames_per_image == 0:
+                image = renderer.image(*states_while_open(before or state, state, self._open_share))
+                messages.append(self._image(state, image, renderer.camera))
+            yield messages
+            before = state
+
+    def stamp_ns(self, frame: int) -> int:
+        """Return a frame's capture time: exact to the nanosecond, without drift."""
+        return self._start_ns + (frame * SECOND_NS + self._rate_hz // 2) // self._rate_hz
+
+    def segment_id(self, number: int) -> str:
+        """Name the programme's repetition of that number; the name does not tell the action."""
+        actor_seed, seed = self._seeds
+        return f"s{actor_seed}-{seed}-{number:03d}"
+
+    def _skeleton(self, state: SceneState, noise: SkeletonNoise) -> Skeleton:
+        joints, confidence = noise.measure(state.joints_m)
+        agent = Agent(agent=AGENT, joints=joints.tolist(), confidence=confidence)
+        return Skeleton(
+            stamp_ns=self.stamp_ns(state.frame), sensor=self._sensor, agents=[agent], session_id=self._session_id
+        )
+
+    def _truth(self, state: SceneState, start: SceneState) -> Truth:
+        assert state.segment is not None and state.mark is not None
+        task, target = self.programme[state.segment], state.target
+        moved = None if target is None else (state.positions_m[target] - start.positions_m[target]).tolist()
+        return Truth(
+            stamp_ns=self.stamp_ns(state.frame),
+            sensor=self._sensor,
+            kind=state.mark,
+            segment_id=self.segment_id(state.segment),
+            agent=AGENT,
+            hand=self.scene.actor.hand,
+            action=task.action,
+            object_id=task.object_id,
+            object_name="" if target is None else self.scene.items[target].name,
+            displacement_m=moved if state.mark == "end" else None,
+        )
+
+    def _image(self, state: SceneState, taken: Canvas, camera: Pinhole) -> Image:
+        quality = self.scene.parameters.image.jpeg_quality
+        done, data = cv2.imencode(".jpg", taken, [cv2.IMWRITE_JPEG_QUALITY, quality])
+        assert done
+        return Image(
+            stamp_ns=self.stamp_ns(state.frame),
+            sensor=self._sensor,
+            format="jpeg",
+            width=camera.width,
+            height=camera.height,
+            data=data.tobytes(),
+            K=camera.matrix.ravel().tolist(),
+            distortion=[0.0] * 5,
+            skeleton_from_image=np.eye(4).ravel().tolist(),
+            session_id=self._session_id,
+        )
+
+
+def labelled_stream(simulator: Simulator) -> Iterator[Message]:
+    """Yield a simulator's messages with a labelled mark after each truth, as a recording to learn from has them."""
+    for messages in simulator.frames():
+        for message in messages:
+            yield message
+            if isinstance(message, Truth):
+                yield Segment(
+                    stamp_ns=message.stamp_ns,
+                    sensor=message.sensor,
+                    kind=message.kind,
+                    segment_id=message.segment_id,
+                    agent=message.agent,
+                    hand=message.hand,
+                    label=message.action,
+                    origin=SIMULATOR,
+                )

@@ -1,0 +1,186 @@
+"""The cameras that the settings can name, as sources."""
+
+from collections.abc import Callable, Generator
+from contextlib import nullcontext
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from actum.calibration import Calibration, CalibrationError
+from sensor_gateway.camera_source import CameraSource
+from sensor_gateway.captured_picture import Picture
+from sensor_gateway.devices import nite, openni2, openni2_library, realsense
+from sensor_gateway.devices.capture import Capture
+from sensor_gateway.devices.file_capture import FileCapture
+from sensor_gateway.devices.webcam import LiveCapture
+from sensor_gateway.optics import SAME_CAMERA, DepthOptics, Optics
+from sensor_gateway.people.pose_estimator import Nobody, PoseEstimator
+from sensor_gateway.perceiver import MarkersPerceiver, UsersPerceiver
+from sensor_gateway.settings import Settings
+
+Recorded = Callable[[Path, int], Generator[Picture, None, None]]
+"""Reads the pictures of a depth camera's recording; the first gets the given stamp (ns)."""
+
+
+class DepthSourceError(ValueError):
+    """The settings name no usable depth camera: what is wrong and what to do."""
+
+
+class MarkerCamera(CameraSource):
+    """A camera beside the gateway of the same sensor, and so a service of another name."""
+
+    name = "marker_camera"
+
+
+def optics_of(settings: Settings) -> Optics:
+    """Say what the settings tell of the camera that sees the people.
+
+    Raises:
+        CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
+    """
+    path = settings.calibration
+    calibration = None if path is None else Calibration.load(path)
+    if calibration is not None and calibration.skeleton_from_image not in (None, SAME_CAMERA):
+        raise CalibrationError(
+            f"{path}: it has a skeleton_from_image, so it is for a camera beside the one that sees people, and this "
+            "camera sees the people itself: use its own file of 'actum calibrate intrinsics'; the other is --source "
+            "marker-camera"
+        )
+    return Optics(settings.field_of_view_deg, calibration, settings.person_height_m, settings.mirrored)
+
+
+def estimator_of(settings: Settings) -> PoseEstimator:
+    """Open the pose model.
+
+    Raises:
+        PoseModelError: MediaPipe is not installed, or the file is missing or no pose model.
+    """
+    return PoseEstimator(settings.pose_model, settings.people)
+
+
+def capture_of(camera: str, size: tuple[int, int] | None, loop: bool = False) -> Capture:
+    """Open what a setting names: a file that is there, a device's number or path, or a URL; `size` is in px."""
+    path = Path(camera)
+    if path.is_file():
+        return FileCapture(path, loop=loop)
+    return LiveCapture(int(camera) if camera.isdecimal() else camera, size)
+
+
+def camera_of(settings: Settings, start_ns: int) -> CameraSource:
+    """Build the source of a webcam, a stream or a video file.
+
+    Raises:
+        PoseModelError: MediaPipe is not installed, or the file is missing or no pose model.
+        CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
+    """
+    _check_pose_model(settings)
+    source = CameraSource(
+        lambda: estimator_of(settings),
+        optics_of(settings),
+        open_capture=lambda: capture_of(settings.camera, _size_of(settings), settings.loop),
+        sensor=settings.sensor,
+        session_id=f"camera-{start_ns}",
+    )
+    source.counters.details["model"] = settings.pose_model.name
+    return source
+
+
+def marker_camera_of(settings: Settings, start_ns: int) -> MarkerCamera:
+    """Build the source of a camera that sees markers only.
+
+    Raises:
+        CalibrationError: the calibration file is missing, or does not say where the people's camera is.
+    """
+    calibration = None if settings.calibration is None else Calibration.load(settings.calibration)
+    if calibration is None or calibration.skeleton_from_image is None:
+        raise CalibrationError(
+            "a camera that sees markers only needs --calibration (ACTUM_CALIBRATION), a file of "
+            "'actum calibrate extrinsics': where it is from the camera that sees the people"
+        )
+    return MarkerCamera(
+        lambda: nullcontext(Nobody()),
+        Optics(settings.field_of_view_deg, calibration, None, settings.mirrored),
+        open_capture=lambda: capture_of(settings.camera, _size_of(settings), settings.loop),
+        sensor=settings.sensor,
+        session_id=f"markers-{start_ns}",
+        perceiver=MarkersPerceiver,
+    )
+
+
+def realsense_of(settings: Settings, start_ns: int) -> CameraSource:
+    """Build the source of a RealSense camera, or of the recording that `path` names.
+
+    Raises:
+        RealSenseError: pyrealsense2 is not installed.
+        DepthSourceError: there is no such recording.
+        PoseModelError: MediaPipe is not installed, or the pose model is missing or none.
+        CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
+    """
+    realsense.library()
+    live = partial(realsense.RealSenseCapture, _size_of(settings))
+    return _depth_source(settings, f"realsense-{start_ns}", live, realsense.recorded_pictures)
+
+
+def openni2_of(settings: Settings, start_ns: int) -> CameraSource:
+    """Build the source of a camera that OpenNI 2 has a driver for, or of the recording that `path` names.
+
+    Where NiTE 2 is installed, a camera's people are those that it tracks.
+
+    Raises:
+        OpenNiError: OpenNI 2 or its bindings are not installed.
+        DepthSourceError: there is no such recording.
+        PoseModelError: MediaPipe is not installed, or the pose model is missing or none.
+        CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
+    """
+    openni2_library.library()
+    nite2 = nite.nite() if settings.path is None else None
+    if nite2 is not None:
+        return _nite_source(settings, f"openni2-{start_ns}", nite2)
+    live = partial(openni2.OpenNi2Capture, _size_of(settings), settings.field_of_view_deg)
+    recorded = partial(openni2.recorded_pictures, field_of_view_deg=settings.field_of_view_deg)
+    return _depth_source(settings, f"openni2-{start_ns}", live, recorded)
+
+
+def _nite_source(settings: Settings, session_id: str, nite2: Any) -> CameraSource:
+    return CameraSource(
+        lambda: nullcontext(Nobody()),
+        _depth_optics(settings),
+        open_capture=lambda: nite.NiteCapture(nite2, _size_of(settings), settings.field_of_view_deg),
+        sensor=settings.sensor,
+        session_id=session_id,
+        perceiver=UsersPerceiver,
+    )
+
+
+def _depth_source(settings: Settings, session_id: str, live: Callable[[], Capture], recorded: Recorded) -> CameraSource:
+    _check_pose_model(settings)
+    path = settings.path
+    optics = _depth_optics(settings)
+    if path is not None and not path.is_file():
+        raise DepthSourceError(f"{path}: no such recording; leave --path (ACTUM_PATH) out to use a camera")
+    return CameraSource(
+        lambda: estimator_of(settings),
+        optics,
+        open_capture=live if path is None else lambda: FileCapture(path, read=recorded, loop=settings.loop),
+        sensor=settings.sensor,
+        session_id=session_id,
+    )
+
+
+def _depth_optics(settings: Settings) -> DepthOptics:
+    """As `optics_of`; depth images are never mirrored."""
+    optics = optics_of(settings)
+    return DepthOptics(optics.field_of_view_deg, optics.calibration, optics.person_height_m)
+
+
+def _check_pose_model(settings: Settings) -> None:
+    """Open the pose model and close it, so that what is wrong with it is said before anything is served."""
+    estimator_of(settings).close()
+
+
+def _size_of(settings: Settings) -> tuple[int, int] | None:
+    """Return the width and the height (px) to ask a device for, where they are set."""
+    if settings.camera_size is None:
+        return None
+    width, _, height = settings.camera_size.partition("x")
+    return int(width), int(height)

@@ -1,0 +1,35 @@
+"""What every source of pictures offers: a device, a stream or a file."""
+
+from typing import Protocol
+
+from sensor_gateway.captured_picture import Picture
+
+
+class CameraLostError(Exception):
+    """There are no more pictures: why."""
+
+
+class CaptureEndedError(Exception):
+    """A file has been played to its end."""
+
+
+class Capture(Protocol):
+    """Something that gives pictures."""
+
+    @property
+    def live(self) -> bool:
+        """Whether its images come from a colour sensor now, so that noise makes each differ from the last."""
+        ...
+
+    def next(self, patience_s: float) -> Picture | None:
+        """Return the next picture, or None where there is none within so long.
+
+        Raises:
+            CameraLostError: there will be none.
+            CaptureEndedError: the file is over.
+        """
+        ...
+
+    def close(self) -> None:
+        """Let go of the camera."""
+        ...

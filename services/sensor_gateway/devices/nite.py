@@ -1,0 +1,165 @@
+"""People as NiTE 2 tracks them in depth images, where its library is installed; no pose model is needed then."""
+
+import logging
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import chdir, contextmanager, suppress
+from typing import Any
+
+from actum.messages import Agent, Joint
+from actum.skeletons import INDEX, JOINTS, to_actum
+from sensor_gateway.captured_picture import DepthPicture, Picture, UsersPicture
+from sensor_gateway.devices.capture import CameraLostError
+from sensor_gateway.devices.openni2 import OpenNi2Capture
+from sensor_gateway.devices.openni2_library import library
+from sensor_gateway.devices.openni2_streams import Streams
+from sensor_gateway.known_joints import known_joints
+
+log = logging.getLogger("actum")
+
+FOLDERS = "NITE2_REDIST64", "NITE2_REDIST"
+"""Environment variables that NiTE's installer sets to the folder with its library and data."""
+
+MILLIMETRES = 1000.0
+"""Of NiTE's unit in a metre."""
+LEFT_SHOULDER = INDEX["left_shoulder"]
+RIGHT_SHOULDER = INDEX["right_shoulder"]
+
+
+def _opposite(name: str) -> str:
+    side, _, joint = name.partition("_")
+    return f"{({'left': 'right', 'right': 'left'})[side]}_{joint}" if joint else name
+
+
+OTHER_SIDE = tuple(INDEX[_opposite(name)] for name in JOINTS)
+"""For each joint (15), the index of the other side's; the middle joints are their own."""
+
+
+def nite() -> Any | None:
+    """Start NiTE where its installer's environment variable tells that it is there; None elsewhere.
+
+    Raises:
+        OpenNiError: OpenNI 2 or its bindings are not installed.
+    """
+    folders = [os.environ[name] for name in FOLDERS if name in os.environ]
+    if not folders:
+        return None
+    library()
+    from openni import nite2
+    from openni.utils import InitializationError
+
+    try:
+        nite2.initialize(folders)
+    except InitializationError as error:
+        log.warning("NiTE cannot be started, so people are looked for in colour: %s", error)
+        return None
+    return nite2
+
+
+class NiteCapture(OpenNi2Capture):
+    """The first camera found, with the people that NiTE tracks; it sees them in the dark as well."""
+
+    live = False
+
+    def __init__(self, nite2: Any, size: tuple[int, int] | None = None, field_of_view_deg: float = 60.0) -> None:
+        super().__init__(size, field_of_view_deg)
+        self._nite2 = nite2
+        self._tracker: Any = None
+        self._users = Users(self._follow)
+
+    def next(self, patience_s: float) -> Picture | None:
+        """Return a picture newer than the last, with its people, or None.
+
+        Raises:
+            CameraLostError: there is no camera, it cannot be used, was unplugged, has been silent for too long, or NiTE
+                fails.
+        """
+        picture = super().next(patience_s)
+        if not isinstance(picture, DepthPicture):
+            return None
+        with _nite_errors_as_lost(), self._tracker.read_frame() as frame:
+            agents = self._users.agents(frame.users)
+        return UsersPicture(picture.image_bgr, picture.stamp_ns, picture.depth_m, picture.lens, tuple(agents))
+
+    def close(self) -> None:
+        """Let go of the camera."""
+        tracker, self._tracker = self._tracker, None
+        if tracker is not None:
+            with suppress(CameraLostError), _nite_errors_as_lost():
+                tracker.close()
+        super().close()
+
+    def _opened(self) -> Streams:
+        from openni.utils import NiteError
+
+        streams = super()._opened()
+        try:
+            with chdir(self._nite2.loaded_dll_directory):  # its data is looked for from where the process is
+                self._tracker = self._nite2.UserTracker(streams.device)
+        except NiteError as error:
+            streams.close()
+            raise CameraLostError(f"NiTE cannot track people with this camera ({error})") from None
+        return streams
+
+    def _follow(self, user: int) -> None:
+        self._tracker.start_skeleton_tracking(user)
+
+
+@contextmanager
+def _nite_errors_as_lost() -> Iterator[None]:
+    from openni.utils import NiteError
+
+    try:
+        yield
+    except NiteError as error:
+        raise CameraLostError(f"NiTE says: {error}") from None
+
+
+class Users:
+    """Makes agents of NiTE's users; `follow` has a new one's skeleton tracked.
+
+    NiTE gives a number that is free again to somebody else; agents' numbers are never used again. It takes everybody
+    to face the camera, but whether its left is the actor's depends on whether its images were mirrored. The side on
+    which the left shoulder is when somebody is first seen tells.
+    """
+
+    def __init__(self, follow: Callable[[int], None]) -> None:
+        self._follow = follow
+        self._agents: dict[int, int] = {}
+        self._sides_swapped: dict[int, bool] = {}
+        self._next = 1
+
+    def agents(self, users: Sequence[Any]) -> list[Agent]:
+        """Return those whose skeleton is tracked."""
+        for user in users:
+            self._update_user(user)
+        return [self._agent(user) for user in users if user.id in self._agents and _is_tracked(user)]
+
+    def _update_user(self, user: Any) -> None:
+        if user.is_lost():
+            self._agents.pop(user.id, None)
+            self._sides_swapped.pop(user.id, None)
+        elif user.id not in self._agents:
+            self._agents[user.id], self._next = self._next, self._next + 1
+            self._follow(user.id)
+
+    def _agent(self, user: Any) -> Agent:
+        joints: list[Joint] = to_actum([_in_metres(joint.position) for joint in user.skeleton.joints], "nite2-15")
+        confidence = to_actum([float(joint.positionConfidence) for joint in user.skeleton.joints], "nite2-15")
+        if self._has_swapped_sides(user.id, joints):
+            joints, confidence = [joints[i] for i in OTHER_SIDE], [confidence[i] for i in OTHER_SIDE]
+        return Agent(agent=self._agents[user.id], joints=known_joints(joints, confidence), confidence=confidence)
+
+    def _has_swapped_sides(self, user: int, joints: list[Joint]) -> bool:
+        left, right = joints[LEFT_SHOULDER], joints[RIGHT_SHOULDER]
+        assert left is not None and right is not None
+        return self._sides_swapped.setdefault(user, left[0] < right[0])
+
+
+def _is_tracked(user: Any) -> bool:
+    return bool(user.skeleton.state.value == user.skeleton.state.NITE_SKELETON_TRACKED)
+
+
+def _in_metres(position: Any) -> Joint:
+    """Turn NiTE's position (x right, y up, z forward; mm) into the camera frame (x right, y down, z forward; m)."""
+    return [position.x / MILLIMETRES, -position.y / MILLIMETRES, position.z / MILLIMETRES]

@@ -1,0 +1,113 @@
+"""Cameras that OpenNI 2 has a driver for (Kinect v1, Xtion, Astra), and its recordings, by its Python bindings."""
+
+import os
+import time
+from collections.abc import Callable, Generator
+from pathlib import Path
+from typing import Any
+
+from sensor_gateway.captured_picture import Picture
+from sensor_gateway.devices.capture import CameraLostError
+from sensor_gateway.devices.device_clock import DeviceClock
+from sensor_gateway.devices.openni2_library import ERRORS, error_text, library
+from sensor_gateway.devices.openni2_streams import SIZE, Streams
+from sensor_gateway.devices.silence import Silence
+from sensor_gateway.devices.video import VideoError
+
+FILE_ERRORS: tuple[type[Exception], ...] = (*ERRORS, CameraLostError)
+"""What opening a recording raises where it is none, or lacks a stream."""
+MANUAL = -1.0
+"""OpenNI's playback speed for reading as fast as frames are asked for."""
+END_S = 0.5
+"""A recording that gives no frame for so long is over: it does not tell its end."""
+
+
+class OpenNi2Capture:
+    """The first camera found; the newest pair of colour and registered depth, stamped by the device."""
+
+    live = True
+
+    def __init__(
+        self,
+        size: tuple[int, int] | None = None,
+        field_of_view_deg: float = 60.0,
+        now_ns: Callable[[], int] = time.time_ns,
+    ) -> None:
+        self._openni2 = library()
+        self._size, self._field_of_view_deg = size or SIZE, field_of_view_deg
+        self._clock = DeviceClock(now_ns)
+        self._streams: Streams | None = None
+        self._silence = Silence()
+
+    def next(self, patience_s: float) -> Picture | None:
+        """Return a picture newer than the last, or None.
+
+        Raises:
+            CameraLostError: there is no camera, it cannot be used, was unplugged, or has been silent for too long.
+        """
+        try:
+            self._streams = self._streams or self._opened()
+            heard, picture = self._streams.next(patience_s, self._clock)
+            if not heard:
+                self._check_connected(self._streams.uri)
+        except ERRORS as error:
+            raise CameraLostError(f"OpenNI says: {error_text(error)}") from None
+        if picture is None:
+            self._silence.check()
+        else:
+            self._silence.heard()
+        return picture
+
+    def close(self) -> None:
+        """Let go of the camera."""
+        streams, self._streams = self._streams, None
+        if streams is not None:
+            streams.close()
+
+    def _opened(self) -> Streams:
+        if not self._openni2.Device.enumerate_uris():
+            raise CameraLostError("no camera is connected that OpenNI 2 has a driver for")
+        device = self._openni2.Device(None)
+        return Streams(self._openni2, device, self._size, self._field_of_view_deg)
+
+    def _check_connected(self, uri: bytes) -> None:
+        if uri not in self._openni2.Device.enumerate_uris():
+            raise CameraLostError(f"{uri.decode(errors='replace')} was unplugged")
+
+
+def recorded_pictures(path: Path, start_ns: int, field_of_view_deg: float = 60.0) -> Generator[Picture, None, None]:
+    """Yield a recording's pictures; the first is stamped `start_ns`, the others by the device's times.
+
+    Raises:
+        VideoError: it is no recording of colour and depth.
+    """
+    openni2 = library()
+    clock = DeviceClock(lambda: start_ns)
+    try:
+        streams = Streams(openni2, _opened_file(openni2, path), SIZE, field_of_view_deg)
+    except FILE_ERRORS as error:
+        raise VideoError(
+            f"{path}: no recording of colour and depth that OpenNI can play ({error_text(error)})"
+        ) from None
+    try:
+        heard, found_any = True, False
+        while heard:
+            heard, picture = streams.next(END_S, clock)
+            if picture is not None:
+                found_any = True
+                yield picture
+        if not found_any:
+            raise VideoError(f"{path}: the recording has no colour and depth of the same time; record both streams")
+    finally:
+        streams.close()
+
+
+def _opened_file(openni2: Any, path: Path) -> Any:
+    """Open a recording that is read once, as fast as it is asked for."""
+    device = openni2.Device(os.fsencode(path.absolute()))
+    if device.playback is None:
+        device.close()
+        raise CameraLostError("another driver took it")
+    device.playback.set_repeat_enabled(False)
+    device.playback.set_speed(MANUAL)
+    return device

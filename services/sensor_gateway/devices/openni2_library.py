@@ -1,0 +1,73 @@
+"""Finds and starts OpenNI 2 by its Python bindings."""
+
+import os
+from typing import Any
+
+INSTALL = 'the source openni2 needs OpenNI 2: pip install "actum[openni2]", and on Debian apt install libopenni2-0'
+LIBRARIES = "libOpenNI2.so.0", "libOpenNI2.so", "libOpenNI2.dylib", "OpenNI2.dll"
+"""Its names on Debian, other Linux, macOS and Windows, in the order in which they are tried."""
+FOLDERS = "OPENNI2_REDIST64", "OPENNI2_REDIST"
+"""Environment variables that name a folder with a library of one's own, such as Orbbec's."""
+
+
+class OpenNiError(ValueError):
+    """The library is not there: what is wrong and what to do."""
+
+
+def library() -> Any:
+    """Import the bindings and start the library, once in a process.
+
+    Raises:
+        OpenNiError: either is not installed.
+    """
+    try:
+        from openni import openni2
+    except ImportError as error:
+        raise OpenNiError(f"{INSTALL} ({error})") from None
+    if not openni2.is_initialized():
+        _start(openni2)
+    return openni2
+
+
+def _errors() -> tuple[type[Exception], ...]:
+    """Return what the bindings raise where the library says no; nothing where they are not installed."""
+    try:
+        from openni.utils import OpenNIError
+    except ImportError:
+        return ()
+    return (OpenNIError,)
+
+
+def error_text(error: Exception) -> str:
+    """Return the message of an error of the bindings, whose arguments are a code, a message in bytes, a file's name."""
+    message = error.args[1] if len(error.args) > 1 else error
+    return message.decode(errors="replace") if isinstance(message, bytes) else str(message)
+
+
+ERRORS = _errors()
+
+
+def _start(openni2: Any) -> None:
+    """Start the library in the folder that the environment names, or else the system's, which the bindings miss."""
+    from openni.utils import InitializationError, OpenNIError
+
+    folders = [os.environ[name] for name in FOLDERS if name in os.environ]
+    try:
+        if not folders and not openni2.loaded_dll_directory:
+            openni2.loaded_dll_directory = _load(openni2.c_api)
+        openni2.initialize(folders)
+    except (InitializationError, OpenNIError) as error:
+        raise OpenNiError(f"{INSTALL} ({error_text(error)})") from None
+
+
+def _load(c_api: Any) -> str:
+    """Load the system's library into the bindings; return its name."""
+    problems = []
+    for name in LIBRARIES:
+        try:
+            c_api.load_dll(name)
+        except OSError as error:
+            problems.append(str(error))
+        else:
+            return name
+    raise OpenNiError(f"{INSTALL} ({problems[0]})")

@@ -1,0 +1,32 @@
+"""How long a device may give no picture before it counts as lost."""
+
+import time
+from collections.abc import Callable
+
+from sensor_gateway.devices.capture import CameraLostError
+
+SILENT_S = 2.0
+"""After a picture: many frame intervals, so that one lost frame is no lost camera."""
+OPENING_S = 10.0
+"""Before the first picture: opening a stream or starting a depth camera takes longer."""
+
+
+class Silence:
+    """A timeout that each picture restarts; the first picture may take longer."""
+
+    def __init__(self, now_s: Callable[[], float] = time.monotonic) -> None:
+        self._now_s = now_s
+        self._heard_s, self._allowed_s = now_s(), OPENING_S
+
+    def heard(self) -> None:
+        """Restart: there was a picture."""
+        self._heard_s, self._allowed_s = self._now_s(), SILENT_S
+
+    def check(self) -> None:
+        """Pass where the silence is not too long yet.
+
+        Raises:
+            CameraLostError: it is.
+        """
+        if self._now_s() - self._heard_s > self._allowed_s:
+            raise CameraLostError(f"no picture for {self._allowed_s:g} s")

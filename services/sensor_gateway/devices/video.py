@@ -1,0 +1,50 @@
+"""A video file as stamped pictures, read as fast as they are asked for."""
+
+from collections.abc import Generator
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from actum.node import SECOND_NS
+from sensor_gateway.captured_picture import Picture
+
+MILLISECOND_NS = SECOND_NS // 1000
+USUAL_RATE_HZ = 25.0
+"""Of files that tell neither times nor a rate, such as bare H.264 streams."""
+SUFFIXES = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm", ".wmv"})
+
+
+class VideoError(ValueError):
+    """A file holds no pictures that can be read: which and what to do."""
+
+
+def pictures_of(path: Path, start_ns: int = 0) -> Generator[Picture, None, None]:
+    """Yield a file's frames; the first is stamped `start_ns`, the others by the file's own times.
+
+    Where those do not rise, as in a bare H.264 stream or at some files' end, a frame comes one interval after the last.
+
+    Raises:
+        VideoError: it cannot be read as a video, or holds no frame.
+    """
+    capture = cv2.VideoCapture(str(path))
+    try:
+        first_ns = newest_ns = None
+        while (grabbed := capture.read())[0]:
+            at_ns = round(capture.get(cv2.CAP_PROP_POS_MSEC) * MILLISECOND_NS)
+            first_ns = at_ns if first_ns is None else first_ns
+            stamp_ns = start_ns + at_ns - first_ns
+            if newest_ns is not None and stamp_ns <= newest_ns:
+                stamp_ns = newest_ns + _frame_interval_ns(capture)
+            newest_ns = stamp_ns
+            yield Picture(grabbed[1].astype(np.uint8, copy=False), stamp_ns)
+        if first_ns is None:
+            raise VideoError(f"{path}: no video that OpenCV can read; convert it, for example to .mp4 with H.264")
+    finally:
+        capture.release()
+
+
+def _frame_interval_ns(capture: cv2.VideoCapture) -> int:
+    """Return the time between two frames at the rate that the file tells, or else at the usual one."""
+    rate_hz = capture.get(cv2.CAP_PROP_FPS)
+    return round(SECOND_NS / (rate_hz if rate_hz > 0 else USUAL_RATE_HZ))

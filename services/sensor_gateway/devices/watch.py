@@ -1,0 +1,77 @@
+"""Whether a live camera's pictures can be used, and when to open a lost camera again: pure steps over stamps."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.darkness import is_black
+from actum.node import SECOND_NS
+from sensor_gateway.captured_picture import Picture
+
+FROZEN_NS = SECOND_NS
+"""The same picture, bit for bit, for so long means that the driver repeats it: a sensor's noise never does."""
+
+BLACK_NS = SECOND_NS // 2
+"""Shorter black spells, as while a camera adjusts its exposure, are let pass."""
+
+BLACK_LOST_NS = 5 * SECOND_NS
+"""A camera black for so long since it was opened is opened again: a covered lens stays, a failed driver recovers."""
+
+STEP_PX = 8
+"""Every eighth pixel of every eighth row is compared: noise shows in any of them."""
+
+
+class Watch:
+    """Notices pictures that are frozen or stay black; its state outlives the camera's being opened again.
+
+    Attributes:
+        lost: whether opening the camera again may mend the last complaint.
+    """
+
+    def __init__(self) -> None:
+        self.lost = False
+        self._last_sample: NDArray[np.uint8] | None = None
+        self._changed_ns = 0
+        self._lit_ns: int | None = None
+        self._lit_or_opened_ns: int | None = None
+
+    def opened(self) -> None:
+        """Restart the time after which a black camera is opened again; pictures remain black until one is lit."""
+        self._lit_or_opened_ns = None
+
+    def complaint(self, picture: Picture) -> str | None:
+        """Take the next picture; return why it cannot be used, or None. Stamps rise."""
+        sample = np.ascontiguousarray(picture.image_bgr[::STEP_PX, ::STEP_PX])
+        if self._last_sample is None or not np.array_equal(sample, self._last_sample):
+            self._last_sample, self._changed_ns = sample, picture.stamp_ns
+        lit = not is_black(picture.image_bgr)
+        self._lit_ns = picture.stamp_ns if lit or self._lit_ns is None else self._lit_ns
+        self._lit_or_opened_ns = picture.stamp_ns if lit or self._lit_or_opened_ns is None else self._lit_or_opened_ns
+        return self._complaint(picture.stamp_ns, self._lit_ns, self._lit_or_opened_ns)
+
+    def _complaint(self, stamp_ns: int, lit_ns: int, lit_or_opened_ns: int) -> str | None:
+        if stamp_ns - lit_ns >= BLACK_NS:
+            self.lost = stamp_ns - lit_or_opened_ns >= BLACK_LOST_NS
+            return "black: nothing can be seen; is the lens covered?"
+        self.lost = stamp_ns - self._changed_ns >= FROZEN_NS
+        return f"frozen: the picture has not changed for {FROZEN_NS / SECOND_NS:g} s" if self.lost else None
+
+
+class BackOff:
+    """When to try again: twice as long after each failure, up to a limit."""
+
+    FIRST_NS = SECOND_NS // 2
+    """Short, for a plug that was loose for a moment."""
+    LONGEST_NS = 8 * SECOND_NS
+    """How long one that was plugged in again waits at most."""
+
+    def __init__(self) -> None:
+        self._wait_ns = self.FIRST_NS
+
+    def failed(self) -> int:
+        """Return how long to wait now (ns)."""
+        wait_ns, self._wait_ns = self._wait_ns, min(2 * self._wait_ns, self.LONGEST_NS)
+        return wait_ns
+
+    def worked(self) -> None:
+        """Restart with the shortest wait: the camera gave a picture."""
+        self._wait_ns = self.FIRST_NS

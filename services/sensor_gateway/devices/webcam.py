@@ -1,0 +1,110 @@
+"""A camera or a network stream that OpenCV reads, the newest picture first."""
+
+import threading
+import time
+
+import cv2
+import numpy as np
+
+from sensor_gateway.captured_picture import Picture
+from sensor_gateway.devices.capture import CameraLostError
+from sensor_gateway.devices.silence import OPENING_S, Silence
+
+CLOSING_S = 0.5
+"""How long `close` waits for the reading thread: some frames; a driver that hangs must not hold up the service."""
+COMPRESSED = cv2.VideoWriter.fourcc(*"MJPG")
+"""Asked for with a size: uncompressed, few devices give a large one at more than some frames/s."""
+
+
+class LiveCapture:
+    """A device or a stream: a thread reads all it gives and keeps the newest picture only, stamped as it is read."""
+
+    live = True
+
+    def __init__(self, device: int | str, size: tuple[int, int] | None = None) -> None:
+        self._device, self._size = device, size
+        self._changed = threading.Condition()
+        self._newest: Picture | None = None
+        self._lost: str | None = None
+        self._closed = False
+        self._silence = Silence()
+        self._thread = threading.Thread(target=self._read, daemon=True)
+        self._thread.start()
+
+    def next(self, patience_s: float) -> Picture | None:
+        """Return a picture newer than the last, or None.
+
+        Raises:
+            CameraLostError: the device cannot be opened, has stopped, or has been silent for too long.
+        """
+        with self._changed:
+            self._changed.wait_for(lambda: self._newest is not None or self._lost is not None, patience_s)
+            picture, self._newest = self._newest, None
+            if picture is None and self._lost is not None:
+                raise CameraLostError(self._lost)
+            if picture is None:
+                self._silence.check()
+            return picture
+
+    @property
+    def over(self) -> bool:
+        """Whether no further picture will come."""
+        return self._lost is not None
+
+    def close(self) -> None:
+        """Have the thread end; one that the driver holds up ends when that lets go.
+
+        At the interpreter's end it must not be within OpenCV: it would take the process with it.
+        """
+        self._closed = True
+        self._thread.join(CLOSING_S)
+
+    def _read(self) -> None:
+        capture = self._opened()
+        try:
+            reason = self._read_all(capture)
+        except cv2.error as error:
+            reason = f"OpenCV says: {error}"
+        finally:
+            capture.release()
+        with self._changed:
+            self._lost = reason
+            self._changed.notify_all()
+
+    def _read_all(self, capture: cv2.VideoCapture) -> str:
+        """Keep the newest picture until there are no more, and return why."""
+        if not capture.isOpened():
+            return "it cannot be opened"
+        while not self._closed:
+            done, image = capture.read()
+            if not done:
+                return "it gives no more pictures"
+            self._keep(Picture(image.astype(np.uint8, copy=False), time.time_ns()))
+        return "it was closed"
+
+    def _opened(self) -> cv2.VideoCapture:
+        cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what fails is said in status, once
+        capture = cv2.VideoCapture(self._device, cv2.CAP_ANY, timeouts_of(self._device))
+        if self._size is not None:
+            capture.set(cv2.CAP_PROP_FOURCC, COMPRESSED)
+            capture.set(cv2.CAP_PROP_FRAME_WIDTH, self._size[0])
+            capture.set(cv2.CAP_PROP_FRAME_HEIGHT, self._size[1])
+        capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
+        return capture
+
+    def _keep(self, picture: Picture) -> None:
+        with self._changed:
+            self._newest = picture
+            self._silence.heard()
+            self._changed.notify_all()
+
+
+def timeouts_of(device: int | str) -> list[int]:
+    """Return OpenCV's parameters (name, ms, …) by which it gives a silent stream up when `Silence` does.
+
+    Without them one stream that hangs while opening would hold up all others. Devices take no such parameters.
+    """
+    if isinstance(device, int) or "://" not in device:
+        return []
+    limit_ms = round(1000 * OPENING_S)
+    return [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, limit_ms, cv2.CAP_PROP_READ_TIMEOUT_MSEC, limit_ms]

@@ -1,0 +1,214 @@
+"""A person's joints lifted by measured depth: each lies half a limb behind the surface that the camera sees there.
+
+Depth images have holes, mixed values at edges, and whatever stands in front of or beside a joint. So the body that the
+colour image alone gives is first scaled to the distance at which most of its joints agree with the surface. A joint's
+own surface is then looked for near where that body expects it. Where there is none, the joint keeps the expected
+distance, corrected as the next joint towards the torso was.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from actum.arrays import Array
+from actum.geometry import BONES
+from actum.skeletons import INDEX, JOINTS
+from sensor_gateway.captured_picture import DepthImage
+from sensor_gateway.lens import Lens
+from sensor_gateway.people.landmarks import Landmarks, confidence_of, joints_of
+from sensor_gateway.people.placing import Placed, placed, posed
+
+HALF_THICKNESS_M: Mapping[str, float] = MappingProxyType(
+    {
+        "head": 0.085,
+        "neck": 0.07,
+        "torso": 0.11,
+        "left_shoulder": 0.055,
+        "left_elbow": 0.04,
+        "left_hand": 0.02,
+        "right_shoulder": 0.055,
+        "right_elbow": 0.04,
+        "right_hand": 0.02,
+        "left_hip": 0.09,
+        "left_knee": 0.06,
+        "left_foot": 0.065,
+        "right_hip": 0.09,
+        "right_knee": 0.06,
+        "right_foot": 0.065,
+    }
+)
+"""How far a joint of the model's body lies behind the skin before it; the torso's, seen from the front."""
+
+NARROW_M = 0.04
+"""Half the width of an arm or a leg; along the ray feet are longer."""
+
+HALF_WIDTH_M = 0.16
+"""How far the torso lies behind the skin of a trunk seen from the side."""
+
+TRUNK = ("neck", "torso", "left_shoulder", "right_shoulder", "left_hip", "right_hip")
+MIDDLES = ("left_elbow", "right_elbow", "left_knee", "right_knee")
+ENDS = ("left_hand", "right_hand", "left_foot", "right_foot")
+
+REACH_M: Mapping[str, float] = MappingProxyType(
+    {"head": 0.2, **dict.fromkeys(TRUNK, 0.12), **dict.fromkeys(MIDDLES, 0.2), **dict.fromkeys(ENDS, 0.3)}
+)
+"""How far a joint may be from where the rest of the body expects it: a surface beyond belongs to something else."""
+
+SIZE_RANGE = (0.5, 1.6)
+"""The smallest and the largest body, as a share of the model's, that a joint's surface may indicate."""
+
+LEAST_VISIBLE = 0.5
+"""A joint of less confidence is taken to be hidden: the surface there is somebody else's, or another part's."""
+
+LEAST_JOINTS = 3
+"""The median of fewer measured joints says nothing of the body's distance."""
+
+LEAST_PIXELS = 5
+"""Fewer may be noise or the mixed values of an edge."""
+
+LEAST_SHARE = 0.15
+"""Of a window's pixels: even a limb that is narrower than its window covers more."""
+
+NEAREST_QUANTILE = 0.1
+"""What counts as a limb's nearest depth: single outliers before it are passed over."""
+
+LIMB_DEPTH_M = 0.04
+"""How much further away than that a limb's own surface may be: half its width."""
+
+WINDOWS = (0.5, 1.0, 2.0)
+"""Half sides of the windows tried in turn until one has enough surface, in half widths of the limb."""
+
+UNMEASURED = 0.5
+"""A joint's confidence is multiplied by this where its distance is not measured."""
+
+_HALF_THICKNESS_M = np.array([HALF_THICKNESS_M[name] for name in JOINTS])
+_RADIUS_M = np.where(np.isin(JOINTS, MIDDLES + ENDS), np.minimum(_HALF_THICKNESS_M, NARROW_M), _HALF_THICKNESS_M)
+_IN_TRUNK = np.array([name in TRUNK for name in JOINTS])
+_REACH_M = np.array([REACH_M[name] for name in JOINTS])
+
+
+@dataclass(frozen=True)
+class _Body:
+    """The body that the colour image alone gives.
+
+    Attributes:
+        joints_m: (15, 3), camera frame, a body of the model's size.
+        pixels: (15, 2).
+        confidence: (15,).
+        offset_m: (15,), how far along z a joint lies behind its surface.
+        radius_px: (15,), how far around its pixel the surface is its own.
+    """
+
+    joints_m: Array
+    pixels: Array
+    confidence: Array
+    offset_m: Array
+    radius_px: Array
+
+
+def lifted(landmarks: Landmarks, lens: Lens, depth_m: DepthImage, person_height_m: float | None = None) -> Placed:
+    """Place one person by depth (height, width; m, 0 where there is none) that is aligned with the colour image.
+
+    Where too little of the person has depth, they are placed as by the colour image alone.
+
+    Raises:
+        PlacingError: the landmarks fit no place in front of the camera.
+    """
+    body = _body(landmarks, lens)
+    scale = _scale(body, depth_m)
+    if scale is None:
+        return placed(landmarks, lens, person_height_m)
+    expected_m = scale * body.joints_m[:, 2]
+    measured_m = _measured(body, scale, depth_m)
+    distance_m = expected_m + _filled_along_limbs(measured_m - expected_m)
+    confidence = body.confidence * np.where(np.isnan(measured_m), UNMEASURED, 1.0)
+    return Placed(body.joints_m * (distance_m / body.joints_m[:, 2])[:, None], confidence, depth_std_m=None)
+
+
+def _body(landmarks: Landmarks, lens: Lens) -> _Body:
+    rays = lens.rays(landmarks.image_px)
+    z_m = posed(landmarks.world_m, rays, landmarks.visibility)[:, 2:]
+    joints_m = joints_of(z_m * np.column_stack([rays, np.ones(len(rays))]))
+    pixels = joints_of(z_m * landmarks.image_px) / joints_of(z_m)
+    directions = joints_m / np.linalg.norm(joints_m, axis=1, keepdims=True)
+    half_thickness_m = _HALF_THICKNESS_M.copy()
+    half_thickness_m[INDEX["torso"]] = _torso_half_thickness_m(joints_m, directions[INDEX["torso"]])
+    radius_px = lens.matrix[0, 0] * _RADIUS_M / joints_m[:, 2]
+    return _Body(joints_m, pixels, confidence_of(landmarks.visibility), half_thickness_m * directions[:, 2], radius_px)
+
+
+def _torso_half_thickness_m(joints_m: Array, direction: Array) -> float:
+    """Return half the thickness of an elliptic trunk along a ray's direction (3,): 1 / √(cos² φ / a² + sin² φ / b²).
+
+    φ is how far the trunk is turned from the ray, a half its depth, b half its width.
+    """
+    names = ("left_shoulder", "left_hip", "right_shoulder", "right_hip")
+    left_shoulder, left_hip, right_shoulder, right_hip = (joints_m[INDEX[name]] for name in names)
+    across = left_shoulder + left_hip - right_shoulder - right_hip
+    sine = float(across @ direction) / max(float(np.linalg.norm(across)), 1e-9)
+    cosine = np.sqrt(max(1 - sine**2, 0.0))
+    return float(1 / np.hypot(cosine / HALF_THICKNESS_M["torso"], sine / HALF_WIDTH_M))
+
+
+def _scale(body: _Body, depth_m: DepthImage) -> float | None:
+    """Return the body's size in sizes of the model's, the median over its joints; None where too few are measured.
+
+    A body s times as large at s times the distance looks the same. With a joint at z and its surface o before it,
+    s (z - o) is the measured distance.
+    """
+    model_m = body.joints_m[:, 2] - body.offset_m
+    sizes = _surfaces(body, depth_m, SIZE_RANGE[0] * model_m, SIZE_RANGE[1] * model_m) / model_m
+    known = sizes[~np.isnan(sizes)]
+    return float(np.median(known)) if len(known) >= LEAST_JOINTS else None
+
+
+def _measured(body: _Body, scale: float, depth_m: DepthImage) -> Array:
+    """Return the joints' distances (15,; m) where a surface is within `REACH_M` of the expected one; NaN elsewhere."""
+    expected_m = scale * (body.joints_m[:, 2] - body.offset_m)
+    return _surfaces(body, depth_m, expected_m - _REACH_M, expected_m + _REACH_M) + scale * body.offset_m
+
+
+def _surfaces(body: _Body, depth_m: DepthImage, low_m: Array, high_m: Array) -> Array:
+    """Return each visible joint's surface (15,; m) between two distances (15,; m); NaN where there is none."""
+    surfaces = np.full(len(JOINTS), np.nan)
+    for i in np.flatnonzero(body.confidence >= LEAST_VISIBLE):
+        for window in WINDOWS:
+            values = _window(depth_m, body.pixels[i], window * body.radius_px[i])
+            surfaces[i] = _surface(values, float(low_m[i]), float(high_m[i]), whole=bool(_IN_TRUNK[i]))
+            if not np.isnan(surfaces[i]):
+                break
+    return surfaces
+
+
+def _window(depth_m: DepthImage, pixel: Array, half_px: float) -> DepthImage:
+    """Return the depth image's square around a pixel (x, y); empty where that is outside."""
+    height, width = depth_m.shape
+    (x, y), half = np.rint(pixel).astype(int), max(round(half_px), 1)
+    if not (0 <= x < width and 0 <= y < height):
+        return depth_m[:0]
+    return depth_m[max(y - half, 0) : y + half + 1, max(x - half, 0) : x + half + 1]
+
+
+def _surface(values: DepthImage, low_m: float, high_m: float, *, whole: bool) -> float:
+    """Return the middle of the values in range, or of the nearest ones of them; NaN where they are too few.
+
+    A trunk fills its window: its middle is the median of the whole. A limb may be narrower than its window: its
+    values are those within `LIMB_DEPTH_M` of the nearest ones, and mixed values and what lies behind are left out.
+    """
+    near = values[(values > max(low_m, 0.0)) & (values < high_m)]
+    if len(near) and not whole:
+        near = near[near <= np.quantile(near, NEAREST_QUANTILE) + LIMB_DEPTH_M]
+    return float(np.median(near)) if len(near) >= max(LEAST_PIXELS, LEAST_SHARE * values.size) else np.nan
+
+
+def _filled_along_limbs(differences_m: Array) -> Array:
+    """Give each joint without a difference (NaN) that of the next joint towards the torso that has one, or 0."""
+    filled = differences_m.copy()
+    torso = INDEX["torso"]
+    filled[torso] = 0.0 if np.isnan(filled[torso]) else filled[torso]
+    for parent, child, _ in BONES:
+        if np.isnan(filled[child]):
+            filled[child] = filled[parent]
+    return filled

@@ -1,0 +1,91 @@
+"""A person's landmarks placed in the camera frame, in metres.
+
+MediaPipe's world landmarks have a body's shape but no position, and axes rotated with the ray to the person. They are
+rotated back and translated to where they project best onto the image landmarks. The distance follows from the body's
+size, which the model gives as about the same for everybody.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from actum.arrays import Array
+from sensor_gateway.lens import Lens
+from sensor_gateway.people.landmarks import Landmarks, confidence_of, joints_of
+
+MODEL_HEIGHT_M = 1.64
+"""The stature of the model's body: 1.46 m from ankle to ear, which is 0.89 of a stature."""
+
+SIZE_STD = 0.07
+"""By how much people differ in size from the model's body, as a share."""
+
+KNOWN_SIZE_STD = 0.03
+"""The same where the stature is known: the model's bones change with the posture."""
+
+NEAREST_M = 0.2
+"""A body part nearer than this to the camera is a wrong fit."""
+
+LEAST_WEIGHT = 1e-3
+"""Of a landmark that is not visible at all: keeps the fit solvable."""
+
+
+@dataclass(frozen=True)
+class Placed:
+    """One person in the camera frame.
+
+    Attributes:
+        joints_m: (15, 3).
+        confidence: (15,), in [0, 1].
+        depth_std_m: the standard deviation of the distance; None where it is measured.
+    """
+
+    joints_m: Array
+    confidence: Array
+    depth_std_m: float | None
+
+
+class PlacingError(ValueError):
+    """The landmarks fit no place in front of the camera."""
+
+
+def placed(landmarks: Landmarks, lens: Lens, person_height_m: float | None = None) -> Placed:
+    """Place one person by the size of a body: the model's, or that of a person of the given stature.
+
+    Raises:
+        PlacingError: the landmarks fit no place in front of the camera.
+    """
+    scale = 1.0 if person_height_m is None else person_height_m / MODEL_HEIGHT_M
+    rays = lens.rays(landmarks.image_px)
+    points_m = posed(landmarks.world_m * scale, rays, landmarks.visibility)
+    size_std = SIZE_STD if person_height_m is None else KNOWN_SIZE_STD
+    joints_m = joints_of(points_m)
+    return Placed(joints_m, confidence_of(landmarks.visibility), float(size_std * joints_m[:, 2].mean()))
+
+
+def posed(world_m: Array, rays: Array, visibility: Array) -> Array:
+    """Return landmarks (33, 3) rotated and translated to where they project best onto rays (33, 2; x, y at z = 1).
+
+    The translation t minimises Σ w² ‖(p + t)_xy - r (p + t)_z‖² over rotated points p, their rays r and visibility w.
+
+    Raises:
+        PlacingError: the best place is behind the camera or right at it.
+    """
+    weights = np.maximum(visibility, LEAST_WEIGHT)
+    rotated = world_m @ rotation_to_ray(np.average(rays, axis=0, weights=weights)).T
+    coefficients = np.zeros((len(rays), 2, 3))
+    coefficients[:, 0, 0] = coefficients[:, 1, 1] = 1
+    coefficients[:, :, 2] = -rays
+    wanted = rays * rotated[:, 2:] - rotated[:, :2]
+    weighted = coefficients * weights[:, None, None], wanted * weights[:, None]
+    translation = np.linalg.lstsq(weighted[0].reshape(-1, 3), weighted[1].reshape(-1), rcond=None)[0]
+    points_m: Array = rotated + translation
+    if not (points_m[:, 2].min() > NEAREST_M and np.isfinite(points_m).all()):
+        raise PlacingError("the landmarks fit no place in front of the camera")
+    return points_m
+
+
+def rotation_to_ray(ray: Array) -> Array:
+    """Return the smallest rotation (3, 3) that turns the optical axis onto a ray (2,; x, y at z = 1)."""
+    x, y, z = np.array([*ray, 1.0]) / np.linalg.norm([*ray, 1.0])
+    cross = np.array([[0, 0, x], [0, 0, y], [-x, -y, 0]])
+    return np.asarray(np.eye(3) + cross + cross @ cross / (1 + z))

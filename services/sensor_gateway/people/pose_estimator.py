@@ -1,0 +1,187 @@
+"""Finds people's landmarks in images by MediaPipe's pose landmarker."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Protocol, Self
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.node import SECOND_NS
+from sensor_gateway.people.landmarks import Landmarks
+
+MILLISECOND_NS = 1_000_000
+HALF_PX = 0.5
+"""MediaPipe counts from the image's corner, the intrinsics from the first pixel's centre."""
+
+STDERR = 2
+"""The file descriptor of the error stream."""
+BLANK = np.zeros((64, 64, 3), np.uint8)
+"""Shown to a model once it is opened: MediaPipe writes its start-up lines with the first image."""
+SEARCH_NS = SECOND_NS
+"""While there is one person, others are looked for this often: a search costs three times as much as following one."""
+TOGETHER_NS = 2 * SECOND_NS
+"""So long after several were seen, several are looked for in each image: one may be hidden for a moment."""
+INSTALL = 'the camera needs MediaPipe: pip install "actum[camera]"'
+LIBRARIES = "on Debian and Ubuntu, 'apt install libegl1 libgles2' gets what it needs"
+FETCH = "fetch it with 'actum models fetch', or name a file in ACTUM_POSE_MODEL"
+
+
+class PoseModelError(ValueError):
+    """There is no usable pose model: what is wrong and what to do."""
+
+
+class Estimator(Protocol):
+    """Detects people in images."""
+
+    def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
+        """Return those seen in an image (height, width, 3); stamps rise."""
+        ...
+
+
+class Nobody:
+    """The estimator of sources in whose images nobody is looked for."""
+
+    def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
+        """Return nobody."""
+        return []
+
+
+class PoseEstimator:
+    """Finds up to `people` persons in each image of a stream; the model follows them from image to image.
+
+    Looking for several costs three times as much as following one, and the model low-passes one person only. So while
+    there is one, the others are looked for once a second.
+
+    Raises:
+        PoseModelError: MediaPipe is not installed, or the file is missing or no pose model.
+    """
+
+    def __init__(self, model_path: Path, people: int = 2) -> None:
+        if not model_path.is_file():
+            raise PoseModelError(f"no pose model at {model_path}: {FETCH}")
+        self._one = Landmarker(model_path, 1)
+        self._several = Landmarker(model_path, people) if people > 1 else None
+        self._together_ns: int | None = None
+        self._searched_ns: int | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let go of the model; the estimator is of no use afterwards."""
+        self._one.close()
+        if self._several is not None:
+            self._several.close()
+
+    def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
+        """Return those seen in an image of shape (height, width, 3), in no lasting order.
+
+        Stamps are to rise; where they do not by a millisecond, the model is told that they do.
+        """
+        if self._several is not None and (
+            self._sees_several(stamp_ns) or not within(self._searched_ns, stamp_ns, SEARCH_NS)
+        ):
+            self._searched_ns = stamp_ns
+            found = self._several.people(image_bgr, stamp_ns)
+            if len(found) > 1:
+                self._together_ns = stamp_ns
+            if self._sees_several(stamp_ns):
+                return found
+        return self._one.people(image_bgr, stamp_ns)
+
+    def _sees_several(self, stamp_ns: int) -> bool:
+        return within(self._together_ns, stamp_ns, TOGETHER_NS)
+
+
+def within(past_ns: int | None, stamp_ns: int, span_ns: int) -> bool:
+    """Tell whether a past stamp is less than `span_ns` before another."""
+    return past_ns is not None and 0 <= stamp_ns - past_ns < span_ns
+
+
+class Landmarker:
+    """MediaPipe's own: up to `people` persons in each image of a stream.
+
+    Raises:
+        PoseModelError: MediaPipe is not installed, or the file is no pose model.
+    """
+
+    def __init__(self, model_path: Path, people: int) -> None:
+        self._mediapipe = _mediapipe()
+        with native_stderr_dropped():
+            self._landmarker = self._opened(model_path, people)
+            self._landmarker.detect_for_video(self._image(BLANK), 0)
+        self._last_ms = 0
+
+    def close(self) -> None:
+        """Let go of the model; it cannot do so by itself when the interpreter ends."""
+        self._landmarker.close()
+
+    def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
+        """Return those seen in an image."""
+        self._last_ms = max(stamp_ns // MILLISECOND_NS, self._last_ms + 1)
+        height, width = image_bgr.shape[:2]
+        found = self._landmarker.detect_for_video(self._image(image_bgr), self._last_ms)
+        pairs = zip(found.pose_landmarks, found.pose_world_landmarks, strict=True)
+        return [_landmarks(in_image, in_world, width, height) for in_image, in_world in pairs]
+
+    def _image(self, image_bgr: NDArray[np.uint8]) -> Any:
+        rgb = cv2.cvtColor(image_bgr, cv2.COLOR_BGR2RGB)
+        return self._mediapipe.Image(image_format=self._mediapipe.ImageFormat.SRGB, data=rgb)
+
+    def _opened(self, model_path: Path, people: int) -> Any:
+        vision = self._mediapipe.tasks.vision
+        options = vision.PoseLandmarkerOptions(
+            base_options=self._mediapipe.tasks.BaseOptions(model_asset_path=str(model_path)),
+            running_mode=vision.RunningMode.VIDEO,
+            num_poses=people,
+        )
+        try:
+            return vision.PoseLandmarker.create_from_options(options)
+        except PermissionError:
+            raise PoseModelError(f"{model_path}: this user may not read it") from None
+        except (FileNotFoundError, RuntimeError, ValueError) as error:  # "not found": a part within the file
+            first = str(error).partition("\n")[0]
+            raise PoseModelError(f"{model_path}: no pose model ({first}): {FETCH}") from None
+        except OSError as error:
+            raise PoseModelError(f"MediaPipe cannot be loaded ({error}): {LIBRARIES}") from None
+
+
+@contextmanager
+def native_stderr_dropped() -> Iterator[None]:
+    """Drop what native code writes to the error stream: the model's start is said in lines that no setting stops."""
+    kept = os.dup(STDERR)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, STDERR)
+        yield
+    finally:
+        os.dup2(kept, STDERR)
+        os.close(kept)
+        os.close(nowhere)
+
+
+def _mediapipe() -> Any:
+    """Import MediaPipe when it is needed: it takes a second and a hundred megabytes."""
+    try:
+        import mediapipe
+    except ImportError as error:
+        raise PoseModelError(f"{INSTALL} ({error})") from None
+    return mediapipe
+
+
+def _landmarks(in_image: Any, in_world: Any, width: int, height: int) -> Landmarks:
+    return Landmarks(
+        image_px=np.array([(mark.x * width, mark.y * height) for mark in in_image]) - HALF_PX,
+        world_m=np.array([(mark.x, mark.y, mark.z) for mark in in_world]),
+        visibility=np.array([mark.visibility for mark in in_image]),
+    )

@@ -1,0 +1,30 @@
+"""What a gateway reads, in words for `info`: so that somebody whose camera is not read sees what is instead."""
+
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from sensor_gateway.devices.video import SUFFIXES
+from sensor_gateway.settings import Settings
+
+
+def description(settings: Settings) -> str:
+    """Name what the gateway reads by its settings: a file or folder, or which camera."""
+    if settings.source in ("camera", "marker-camera"):
+        return _camera_description(settings.source.replace("-", " "), settings.camera)
+    if settings.path is None:
+        return f"depth camera ({settings.source})"
+    return f"{'folder' if settings.path.is_dir() else 'file'} {settings.path} ({settings.source})"
+
+
+def _camera_description(kind: str, camera: str) -> str:
+    if "://" in camera:
+        return f"{kind} {_without_credentials(camera)}"
+    if Path(camera).is_file() or Path(camera).suffix.lower() in SUFFIXES:
+        return f"file {camera} ({kind})"
+    return f"{kind} {camera}"
+
+
+def _without_credentials(url: str) -> str:
+    """Return an address without user name, password and query, which may hold secrets."""
+    parts = urlsplit(url)
+    return f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}{parts.path}"

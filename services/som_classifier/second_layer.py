@@ -1,0 +1,41 @@
+"""The second layer of the default recogniser: a map of the actions' scores."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.som import Som
+from som_classifier.map_activity import soft_activity
+
+Floats = NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class ActionMap:
+    """A map of score vectors, on which each action has regions of its own; its activity is the third layer's input.
+
+    Attributes:
+        som: the map, of as many input dimensions as there are actions.
+        contrast: of its soft activity, in squared scores.
+        mean: (units,), the mean of the unit-length activities in training, which is subtracted: what all actions have
+            in common tells none from another.
+    """
+
+    som: Som
+    contrast: float
+    mean: NDArray[np.float32]
+
+    def activity(self, scores: Floats) -> Floats:
+        """Return the soft activity of unit length, less its mean, for scores (actions,). Shape (units,)."""
+        activities = soft_activity(self.som.excess2(scores), self.contrast)
+        activities /= np.sqrt(activities @ activities)
+        activities -= self.mean
+        return activities
+
+    def centred(self, activities: Floats) -> Floats:
+        """Scale soft activities (…, units) to unit length and subtract the mean. Same shape."""
+        lengths = np.sqrt(np.square(activities).sum(axis=-1, keepdims=True))
+        centred: Floats = activities / lengths - self.mean
+        return centred

@@ -1,0 +1,46 @@
+"""A model file that may appear, change or be damaged while the classifier runs."""
+
+from pathlib import Path
+
+from actum.node import Counters
+from som_classifier.model import Model
+from som_classifier.model_loading import ModelError, load_model
+
+
+class WatchedModel:
+    """Loads the file whenever it has changed."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._seen: tuple[int, int] | None = None
+        self._loaded = False
+
+    def poll(self, counters: Counters) -> Model | None:
+        """Return the model if the file is new or changed and sound.
+
+        Where it is not, `bad_model` is counted, and the state says so, as where there has been none yet.
+        """
+        try:
+            stat = self._path.stat()
+        except FileNotFoundError:
+            if not self._loaded:
+                counters.state = f"no model: there is no {self._path} yet"
+            return None
+        except OSError as error:
+            self._refuse(counters, str(error))
+            return None
+        version = (stat.st_mtime_ns, stat.st_size)
+        if version == self._seen:
+            return None
+        self._seen = version
+        try:
+            model = load_model(self._path)
+        except ModelError as error:
+            self._refuse(counters, str(error))
+            return None
+        self._loaded = True
+        return model
+
+    def _refuse(self, counters: Counters, why: str) -> None:
+        counters.reject("bad_model", why)
+        counters.state = f"{'model not renewed' if self._loaded else 'no model'}: {why}"

@@ -1,0 +1,117 @@
+"""Filters of signals that are sampled at irregular times."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from actum.arrays import Array
+from actum.node import SECOND_NS
+
+MIN_CUTOFF_HZ = 2.0
+"""Of a point at rest: it jitters little, and lags by 80 ms as it starts to move."""
+BETA_PER_M = 8.0
+"""How fast the cutoff rises with speed (1/m): at 0.5 m/s it is 6 Hz, a delay of 27 ms."""
+SPEED_CUTOFF_HZ = 4.0
+"""Of the speed's own low-pass, so that the noise of a derivative does not pass for speed."""
+GAP_NS = SECOND_NS // 2
+"""After a longer pause the past says nothing of where a point is."""
+_NO_TIME = np.eye(6)
+"""The Kalman filter's transition matrix over no time."""
+_AXES = np.eye(3)
+"""One row for each axis, x, y, z."""
+
+
+class OneEuro:
+    """The one-euro filter (Casiez, Roussel, Vogel 2012): a low-pass whose cutoff rises with each point's own speed.
+
+    f = f_min + β‖v‖; x̂ ← x̂ + (x - x̂) / (1 + 1 / (2π f Δt)); v is the low-passed derivative. A point that moves
+    steadily at v lags by 1 / (2π f) s. A gap of more than half a second starts anew.
+    """
+
+    def __init__(
+        self,
+        min_cutoff_hz: float = MIN_CUTOFF_HZ,
+        beta_per_m: float = BETA_PER_M,
+        speed_cutoff_hz: float = SPEED_CUTOFF_HZ,
+    ) -> None:
+        self._min_cutoff_hz, self._beta_per_m, self._speed_cutoff_hz = min_cutoff_hz, beta_per_m, speed_cutoff_hz
+        self._stamp_ns: int | None = None
+        self._points = np.zeros(0)
+        self._velocity = np.zeros(0)
+
+    def step(self, stamp_ns: int, points: Array) -> Array:
+        """Take points (n, 3; m) and return them low-passed (n, 3); stamps rise."""
+        if self._stamp_ns is None or not 0 < stamp_ns - self._stamp_ns <= GAP_NS:
+            self._points, self._velocity = points, np.zeros_like(points)
+        else:
+            self._update((stamp_ns - self._stamp_ns) / SECOND_NS, points)
+        self._stamp_ns = stamp_ns
+        return self._points
+
+    def _update(self, interval_s: float, points: Array) -> None:
+        derivative = (points - self._points) / interval_s
+        self._velocity = self._velocity + _gain(self._speed_cutoff_hz, interval_s) * (derivative - self._velocity)
+        speed = np.linalg.norm(self._velocity, axis=-1, keepdims=True)
+        cutoff_hz = self._min_cutoff_hz + self._beta_per_m * speed
+        self._points = self._points + _gain(cutoff_hz, interval_s) * (points - self._points)
+
+
+@dataclass(frozen=True, eq=False)
+class MotionEstimate:
+    """A Kalman filter's estimate of a point that moves at a nearly constant velocity.
+
+    Attributes:
+        state: (6,), the position (m), then the velocity (m/s).
+        covariance: (6, 6), of the state.
+    """
+
+    state: Array
+    covariance: Array
+
+    @classmethod
+    def initial(cls, position_m: Array, noise_m2: Array, speed_std_mps: float) -> "MotionEstimate":
+        """Begin at a measured position (3,) with noise covariance (3, 3); the velocity is 0 but for its deviation."""
+        covariance = np.zeros((6, 6))
+        covariance[:3, :3] = noise_m2
+        covariance[3:, 3:] = speed_std_mps**2 * _AXES
+        return cls(np.concatenate([position_m, np.zeros(3)]), covariance)
+
+    @property
+    def position_m(self) -> Array:
+        """The position: (3,)."""
+        return self.state[:3]
+
+    @property
+    def velocity_mps(self) -> Array:
+        """The velocity: (3,)."""
+        return self.state[3:]
+
+    def predicted(self, interval_s: float, acceleration_std_mps2: float | Array) -> "MotionEstimate":
+        """Let time pass: x' = F x, P' = F P Fᵀ + G Gᵀ, with a random acceleration that is constant for all of it.
+
+        The acceleration's standard deviation is one for all axes, or one for each: (3,).
+        """
+        transition = _NO_TIME.copy()
+        transition[:3, 3:] = interval_s * _AXES
+        disturbance = acceleration_std_mps2 * np.concatenate([interval_s**2 / 2 * _AXES, interval_s * _AXES])
+        covariance = transition @ self.covariance @ transition.T + disturbance @ disturbance.T
+        return MotionEstimate(transition @ self.state, covariance)
+
+    def updated(self, position_m: Array, noise_m2: Array) -> "tuple[MotionEstimate, float]":
+        """Take in a measured position (3,) with noise covariance (3, 3).
+
+        Returns:
+            The new estimate, and the normalised innovation squared: the squared Mahalanobis distance of the measurement
+            from the predicted position, chi-squared with three degrees of freedom where all is as modelled.
+        """
+        precision = np.linalg.inv(self.covariance[:3, :3] + noise_m2)
+        innovation_m = position_m - self.position_m
+        gain = self.covariance[:, :3] @ precision
+        covariance = self.covariance - gain @ self.covariance[:3, :]
+        state = self.state + gain @ innovation_m
+        return MotionEstimate(state, (covariance + covariance.T) / 2), float(innovation_m @ precision @ innovation_m)
+
+
+def _gain(cutoff_hz: Array | float, interval_s: float) -> Array:
+    """Return the gain of a first-order low-pass over one interval, 1 / (1 + 1 / (2π f Δt))."""
+    return np.asarray(1 / (1 + 1 / (2 * np.pi * cutoff_hz * interval_s)))
