@@ -100,4 +100,4 @@ wheel: $(STAMP)  ## source distribution and wheel, in dist
 	$(BIN)/python -m build
 
 clean:
-	rm -rf $(VENV)
+	rm -rf $(VENV) site

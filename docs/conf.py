@@ -47,7 +47,9 @@ exclude_patterns = [".*", "site", "build", "dist", "shared", "services", "tests"
 
 default_role = "literal"  # docstrings write `name`
 autodoc_member_order = "bysource"
-autodoc_typehints = "description"
+autodoc_typehints = "none"  # docstrings say shapes; spelt out, array-likes are long
+autodoc_preserve_defaults = True
+napoleon_use_ivar = True
 myst_heading_anchors = 3
 myst_enable_extensions = ["colon_fence"]
 suppress_warnings = ["myst.header"]  # pages of results print theirs as they come

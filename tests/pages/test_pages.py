@@ -9,6 +9,7 @@ from urllib.parse import urlsplit
 import pytest
 from typer.main import get_command
 
+import actum.som
 from actum_command.__main__ import app
 
 ROOT = Path(__file__).parents[2]
@@ -90,6 +91,11 @@ def test_the_examples_of_the_page_on_maps_run(tmp_path: Path, monkeypatch: pytes
     examples = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "som.md").read_text(encoding="utf-8"), re.S)
     assert len(examples) > 1
     exec("\n".join(examples), {})
+
+
+def test_the_page_on_maps_has_all_that_the_library_offers() -> None:
+    page = (ROOT / "docs" / "som.md").read_text(encoding="utf-8")
+    assert [name for name in actum.som.__all__ if not re.search(rf"\b{name}\b", page)] == []
 
 
 def exists(name: str) -> bool:
