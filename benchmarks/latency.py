@@ -31,7 +31,7 @@ from actum.recording import Recording
 from actum.runtime import Client
 from actum.settings import ServiceSettings
 from actum_command import processes
-from actum_command.scene import write_examples
+from actum_command.scene_marks import write_examples
 from actum_command.supervising import Supervisor
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train

@@ -16,7 +16,7 @@ from benchmarks.chain import Chain
 from actum.geometry import BONES
 from actum.messages import Event, Image, Message, Objects, Skeleton, Truth
 from actum.recording import Recording
-from actum_command.scene import mark_of, write_examples
+from actum_command.scene_marks import mark_of, write_examples
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train
 from scene_simulator.programme import balanced_programme

@@ -1,8 +1,8 @@
 """`actum`, whose demo learns little in little time: for tests of what comes after."""
 
-from actum_command import __main__, demo
+from actum_command import __main__, simulated_experiment
 from models import QUICK
 
 if __name__ == "__main__":
-    demo.DEFAULT, demo.TRAINING_REPETITIONS = QUICK, 2
+    simulated_experiment.DEFAULT, simulated_experiment.TRAINING_REPETITIONS = QUICK, 2
     __main__.main()

@@ -10,7 +10,7 @@ from benchmarks.recognition.splits import TEST_SHARE, leave_one_person_out, odd_
 from numpy.typing import NDArray
 
 from actum.recording import Recording
-from actum_command.scene import write_examples
+from actum_command.scene_marks import write_examples
 from actum_model_trainer.samples import SegmentSample, samples_from, select
 
 from .set1 import import_set1

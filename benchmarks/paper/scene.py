@@ -8,8 +8,8 @@ from benchmarks.recognition.scores import table
 
 from action_fusion.settings import Settings as FusionSettings
 from actum.messages import Event, Truth
-from actum_command.paper import TABLE_2
-from actum_command.scene import mark_of
+from actum_command.demo_score import TABLE_2
+from actum_command.scene_marks import mark_of
 from actum_model_trainer.training import train
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator

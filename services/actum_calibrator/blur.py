@@ -1,20 +1,20 @@
-"""How blurred a picture is: at the edges of the board's squares, or without a board at its sharpest edges."""
+"""How blurred an image is: at the edges of the board's squares, or without a board at its sharpest edges."""
 
 import math
 
 import cv2
 import numpy as np
 
-from actum_calibrator.board import Array, Board
-from actum_calibrator.pictures import Pixels
+from actum.arrays import Array
+from actum_calibrator.board import Board
+from actum_calibrator.grey_images import Pixels
 
-ALONG = np.linspace(0.3, 0.7, 9)
-STEPS = 41
-FAINTEST = 10.0
-"""Grey levels between black and white below which an edge tells nothing."""
-SMOOTHING_PX = 1.0
-EXTREMES = (0.5, 99.5)
-STEEPEST = 99.9
+ALONG = np.linspace(0.3, 0.7, 9)  # where an edge is measured, in parts of its length: clear of other edges
+STEPS = 41  # samples across an edge: several a pixel, as markers are printed and seen
+FAINTEST = 10.0  # grey levels between black and white: a weaker edge tells nothing beside noise
+SMOOTHING_PX = 1.0  # takes the noise away that would pass for a sharp edge; its own blur is subtracted
+EXTREMES = (0.5, 99.5)  # percentiles of the grey levels that stand for black and white
+STEEPEST = 99.9  # percentile of the slopes that stands for the sharpest edges
 
 
 def blur_px(pixels: Pixels, board: Board, ids: list[int], corners_px: Array) -> float:
@@ -43,8 +43,8 @@ def image_from_plane(board: Board, ids: list[int], corners_px: Array) -> Array:
     return np.asarray(homography, dtype=np.float64)
 
 
-def picture_blur_px(pixels: Pixels) -> float | None:
-    """Estimate the same from the sharpest edges of a whole picture; None where there is nothing to be seen."""
+def image_blur_px(pixels: Pixels) -> float | None:
+    """Estimate the same from the sharpest edges of a whole image; None where there is nothing to be seen."""
     smooth = cv2.GaussianBlur(pixels, (0, 0), SMOOTHING_PX).astype(np.float32)
     dark, bright = np.percentile(smooth, EXTREMES)
     slopes = [float(np.percentile(np.abs(np.diff(smooth, axis=axis)), STEEPEST)) for axis in (0, 1)]
@@ -55,7 +55,7 @@ def picture_blur_px(pixels: Pixels) -> float | None:
 
 
 def _reach_px(image_from_board: Array, board: Board, a: int, b: int, normal: Array) -> Array:
-    """The way in the image from the middle of an edge across the white beside a marker: (2,)."""
+    """Return the way in the image (2,) from the middle of an edge across the white beside a marker."""
     middle = (board.corners_m[a, :2] + board.corners_m[b, :2]) / 2
     ends = np.array([[middle, middle + board.margin_m * normal]])
     start, end = cv2.perspectiveTransform(ends, image_from_board)[0]
@@ -64,7 +64,7 @@ def _reach_px(image_from_board: Array, board: Board, a: int, b: int, normal: Arr
 
 
 def _edge_blur_px(pixels: Pixels, a: Array, b: Array, reach: Array) -> float | None:
-    """Measure one edge from corner a to corner b, `reach` to either side."""
+    """Measure the blur of one edge from corner a to b, `reach` (2,) to either side; None where it is too faint."""
     along, length = b - a, float(np.linalg.norm(b - a))
     offsets = np.linspace(-1.0, 1.0, STEPS)
     points = (a + ALONG[:, None] * along)[:, None, :] + offsets[None, :, None] * reach

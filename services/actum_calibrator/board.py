@@ -1,26 +1,17 @@
 """Printed patterns: single markers and the ChArUco board, by their measures."""
 
 from dataclasses import dataclass
-from enum import StrEnum
 from functools import cached_property
 from typing import Any
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Cells = NDArray[np.bool_]
+from actum.arrays import Array, Mask
 
-FEWEST_SQUARES, MOST_SQUARES = 3, 50
-LARGEST_SQUARE_M = 1.0
-
-
-class Paper(StrEnum):
-    """What can be printed on."""
-
-    A4 = "a4"
-    LETTER = "letter"
+FEWEST_SQUARES = 3  # each way: fewer have no inner corners to speak of
+MOST_SQUARES = 50  # each way: more are too small to be seen
+LARGEST_SQUARE_M = 1.0  # a larger number is one in mm, given by mistake
 
 
 class PatternError(ValueError):
@@ -56,8 +47,8 @@ def dictionary_of(family: str) -> Any:
     return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, canonical(family)))
 
 
-def black_cells(family: str, marker_id: int) -> Cells:
-    """Tell which cells of a marker are black, its black border included: (n, n), row by row from its top left.
+def black_cells(family: str, marker_id: int) -> Mask:
+    """Tell which cells (n, n) of a marker are black, its black border included, row by row from its top left.
 
     Raises:
         PatternError: the family has no such id.
@@ -67,7 +58,7 @@ def black_cells(family: str, marker_id: int) -> Cells:
     if not 0 <= marker_id < count:
         raise PatternError(f"{family} has no id {marker_id}: use 0 to {count - 1}")
     side = dictionary.markerSize + 2
-    black: Cells = np.asarray(cv2.aruco.generateImageMarker(dictionary, marker_id, side)) == 0
+    black: Mask = np.asarray(cv2.aruco.generateImageMarker(dictionary, marker_id, side)) == 0
     return black
 
 
@@ -115,12 +106,12 @@ class Board:
 
     @cached_property
     def corners_m(self) -> Array:
-        """Inner corners by id, z = 0: (n, 3)."""
+        """Inner corners by id (n, 3), m, z = 0."""
         return np.asarray(self.opencv.getChessboardCorners(), dtype=np.float64)
 
     @cached_property
     def outline_m(self) -> Array:
-        """The four outer corners, clockwise from the origin: (4, 2)."""
+        """The four outer corners (4, 2), m, clockwise from the origin."""
         return np.array([[0, 0], [self.width_m, 0], [self.width_m, self.height_m], [0, self.height_m]])
 
     @cached_property

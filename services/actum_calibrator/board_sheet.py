@@ -2,26 +2,26 @@
 
 import numpy as np
 
-from actum_calibrator.board import Board, Paper, PatternError, black_cells
-from actum_calibrator.paper import BOLD, EDGE_MM, SIZES_MM, Sheet, document
+from actum_calibrator.board import Board, PatternError, black_cells
+from actum_calibrator.printed_sheet import BOLD, EDGE_MM, Sheet, document
+from actum_calibrator.sheet_sizes import SheetSize
 
-STRIP_MM = 15.0
-"""Kept free below the board for the ruler."""
+STRIP_MM = 15.0  # kept free below the board for the ruler
+RULER_BOTTOM_MM = 8.5  # leaves room for the ruler's numbers above what printers cannot reach
+BESIDE_RULER_MM = 158.0  # from the ruler's left end to the text at its right: behind the ruler's own advice
 
-RULER_BOTTOM_MM = 8.5
 
-
-def board_sheet(board: Board, paper: Paper) -> bytes:
+def board_sheet(board: Board, sheet_size: SheetSize) -> bytes:
     """Write a PDF of the board in true size, on paper lying sideways.
 
     Raises:
         PatternError: the board does not fit the paper.
     """
-    height, width = SIZES_MM[paper]
+    height, width = sheet_size.portrait_mm
     board_width, board_height = board.width_m * 1000, board.height_m * 1000
     if board_width > width - 2 * EDGE_MM or board_height > height - STRIP_MM - EDGE_MM:
         raise PatternError(
-            f"a board of {board_width:g} x {board_height:g} mm does not fit {paper}: use smaller squares"
+            f"a board of {board_width:g} x {board_height:g} mm does not fit {sheet_size}: use smaller squares"
         )
     left, top = (width - board_width) / 2, height - (height - STRIP_MM - board_height + EDGE_MM) / 2
 
@@ -45,7 +45,7 @@ def _draw_board(sheet: Sheet, board: Board, left: float, top: float) -> None:
 
 def _draw_foot(sheet: Sheet, board: Board, left: float) -> None:
     sheet.ruler(left, RULER_BOTTOM_MM)
-    beside = left + 158
+    beside = left + BESIDE_RULER_MM
     sheet.text(
         f"actum board: {board.columns}x{board.rows} squares of {board.square_m * 1000:g} mm", beside, 10.7, 9, BOLD
     )

@@ -8,18 +8,26 @@ import cv2
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from actum_calibrator.board import Array
-from actum_calibrator.intrinsics import CELLS, Intrinsics
-from actum_calibrator.views import View
+from actum.arrays import Array
+from actum_calibrator.board_views import View
+from actum_calibrator.intrinsics import Intrinsics
+from actum_calibrator.view_set import CELLS
 
-WIDTH, PANEL, EDGE, TOP = 900, 400, 28, 64
-ARROW = 22.0
-"""Length at which a large residual, the 95th percentile, is about drawn."""
-
-FINE = 2
-MOST_ROWS = 24
-INK, FAINT, ARROWS, CORNER = "#1c2833", "#7f8c8d", "#c0392b", "#2471a3"
-COVERED, EMPTY, OUTLINE, BAR = "#dff0e4", "#f7e4e1", "#a9b7c0", "#7fb3d5"
+WIDTH = 900  # px of the image's drawing
+PANEL = 400  # px of the column of figures beside it
+EDGE = 28  # px around both
+TOP = 64  # px kept free for the title
+ARROW = 22.0  # px: the length at which a large residual, the 95th percentile, is about drawn
+FINE = 2  # times as large each way before it is reduced, so that lines come out smooth
+MOST_ROWS = 24  # views listed; the worst stand first
+INK = "#1c2833"
+FAINT = "#7f8c8d"
+ARROWS = "#c0392b"
+CORNER = "#2471a3"
+COVERED = "#dff0e4"
+EMPTY = "#f7e4e1"
+OUTLINE = "#a9b7c0"
+BAR = "#7fb3d5"
 
 
 class Drawing:
@@ -32,7 +40,11 @@ class Drawing:
 
     def line(self, points: Sequence[tuple[float, float]], colour: str, thickness: float = 1.0) -> None:
         """Draw a polyline."""
-        self._draw.line([(x * FINE, y * FINE) for x, y in points], fill=colour, width=max(1, round(thickness * FINE)))
+        self._draw.line(
+            [(x * FINE, y * FINE) for x, y in points],
+            fill=colour,
+            width=max(1, round(thickness * FINE)),
+        )
 
     def box(self, left: float, top: float, right: float, bottom: float, colour: str) -> None:
         """Fill a rectangle."""
@@ -99,7 +111,7 @@ def _draw_residuals(
 
 
 def _magnification(residuals_px: Sequence[Array]) -> float:
-    """Choose 1, 2 or 5 times a power of ten."""
+    """Choose how many times residuals (n, 2) are drawn as long: 1, 2 or 5 times a power of ten."""
     large = float(np.percentile(np.linalg.norm(np.vstack(residuals_px), axis=1), 95))
     wanted = ARROW / max(large, 1e-6)
     power = 10.0 ** math.floor(math.log10(wanted))

@@ -9,18 +9,21 @@ import cv2
 import numpy as np
 
 from actum import geometry
+from actum.arrays import Array
 from actum.calibration import Calibration, ExtrinsicsQuality
-from actum_calibrator.board import Array
-from actum_calibrator.intrinsics import PoorSetError
-from actum_calibrator.joint import Adjuster, Adjustment, Eye, composed, inverted, rms_px
+from actum_calibrator.board_views import View
+from actum_calibrator.bundle_adjustment import BundleAdjuster, BundleAdjustment, CameraModel, compose, invert, rms_px
 from actum_calibrator.pairs import Pair
-from actum_calibrator.views import View
+from actum_calibrator.view_set import PoorSetError
 
-FEWEST_PAIRS = 3
-SCALE_OF_NOISE = 2.0
-FOREIGN, LEAST_FOREIGN_OF_DIAGONAL = 3.0, 2.5e-4
-OUTLYING, LEAST_OUTLYING_OF_DIAGONAL = 3.0, 5e-4
-MOST_POSITION_DEVIATION_MM, MOST_ROTATION_DEVIATION_DEG = 5.0, 0.5
+FEWEST_PAIRS = 3  # each pair alone has two candidate transforms; the third pair decides where two disagree
+ROBUST_SCALE_OF_NOISE = 2.0  # residuals beyond twice the noise of single cameras are taken for a moved board or camera
+MISMATCH = 3.0  # times the RMS error of its own calibration: the calibration is another camera's
+LEAST_MISMATCH_OF_DIAGONAL = 2.5e-4  # 0.2 px in 640x480: so little is the noise of corners
+OUTLIER = 3.0  # times the noise of a pair's single cameras: a camera or the board has moved
+LEAST_OUTLIER_OF_DIAGONAL = 5e-4  # 0.4 px in 640x480: so little is the noise of two calibrations
+MOST_POSITION_DEVIATION_MM = 5.0  # small beside the distances of objects from each other
+MOST_ROTATION_DEVIATION_DEG = 0.5  # 17 mm at a distance of 2 m
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,7 @@ class Extrinsics:
     rotation_deviation_deg: float
 
 
-def find_extrinsics(pairs: Sequence[Pair], markers: Calibration, people: Calibration) -> Extrinsics:
+def estimate_extrinsics(pairs: Sequence[Pair], markers: Calibration, people: Calibration) -> Extrinsics:
     """Fit one transform to all pairs, minimising the reprojection error in both cameras.
 
     Raises:
@@ -48,28 +51,30 @@ def find_extrinsics(pairs: Sequence[Pair], markers: Calibration, people: Calibra
     for pair in pairs:
         markers.check_size(*pair.markers.size, pair.markers.name)
         people.check_size(*pair.people.size, pair.people.name)
-    eyes = Eye.of(markers), Eye.of(people)
-    near_px = [_noise_px(pair.markers, eyes[0]) for pair in pairs]
-    far_px = [_noise_px(pair.people, eyes[1]) for pair in pairs]
-    if reasons := [*_foreign("markers", near_px, markers), *_foreign("people", far_px, people)]:
+    cameras = CameraModel.of(markers), CameraModel.of(people)
+    markers_noise_px = [_noise_px(pair.markers, cameras[0]) for pair in pairs]
+    people_noise_px = [_noise_px(pair.people, cameras[1]) for pair in pairs]
+    if reasons := [*_mismatch("markers", markers_noise_px, markers), *_mismatch("people", people_noise_px, people)]:
         raise PoorSetError(reasons)
-    noise_px = [math.sqrt((near**2 + far**2) / 2) for near, far in zip(near_px, far_px, strict=True)]
-    found = _adjusted(pairs, *eyes, float(np.median(noise_px)))
+    both = zip(markers_noise_px, people_noise_px, strict=True)
+    noise_px = [math.sqrt((one**2 + other**2) / 2) for one, other in both]
+    found = _adjusted(pairs, *cameras, float(np.median(noise_px)))
     if reasons := _contradictions(found, pairs, noise_px) or _undetermined(found):
         raise PoorSetError(reasons)
     return _extrinsics(found)
 
 
-def _noise_px(view: View, eye: Eye) -> float:
-    """How badly corners fit where one camera alone may see the board anywhere."""
-    return min((rms_px(eye.residuals_px(view, pose)) for pose in eye.poses(view)), default=math.inf)
+def _noise_px(view: View, camera: CameraModel) -> float:
+    """Return the RMS reprojection error where one camera alone may see the board anywhere."""
+    candidates = camera.pose_candidates(view)
+    return min((rms_px(camera.reprojection_errors_px(view, pose)) for pose in candidates), default=math.inf)
 
 
-def _foreign(what: str, noise_px: Sequence[float], calibration: Calibration) -> list[str]:
+def _mismatch(what: str, noise_px: Sequence[float], calibration: Calibration) -> list[str]:
     """Say that a calibration is not the camera's: corners fit it worse than those that it was made from."""
-    least_px = LEAST_FOREIGN_OF_DIAGONAL * math.hypot(*calibration.image_size)
-    made_px = calibration.intrinsics.rms_px if calibration.intrinsics else 2 * least_px / FOREIGN
-    limit_px, typical_px = max(FOREIGN * made_px, least_px), float(np.median(noise_px))
+    least_px = LEAST_MISMATCH_OF_DIAGONAL * math.hypot(*calibration.image_size)
+    made_px = calibration.intrinsics.rms_px if calibration.intrinsics else 2 * least_px / MISMATCH
+    limit_px, typical_px = max(MISMATCH * made_px, least_px), float(np.median(noise_px))
     if typical_px <= limit_px:
         return []
     return [
@@ -78,51 +83,63 @@ def _foreign(what: str, noise_px: Sequence[float], calibration: Calibration) -> 
     ]
 
 
-def _adjusted(pairs: Sequence[Pair], markers: Eye, people: Eye, noise_px: float) -> Adjustment:
+def _adjusted(pairs: Sequence[Pair], markers: CameraModel, people: CameraModel, noise_px: float) -> BundleAdjustment:
     """Start from the transform that single pairs propose and that suits most pairs, then adjust to all."""
-    near = [markers.poses(pair.markers) for pair in pairs]
-    far = [people.poses(pair.people) for pair in pairs]
-    proposals = [composed(b, inverted(a)) for nears, fars in zip(near, far, strict=True) for a in nears for b in fars]
+    in_markers = [markers.pose_candidates(pair.markers) for pair in pairs]
+    in_people = [people.pose_candidates(pair.people) for pair in pairs]
+    proposals = [
+        compose(people_pose, invert(markers_pose))
+        for markers_poses, people_poses in zip(in_markers, in_people, strict=True)
+        for markers_pose in markers_poses
+        for people_pose in people_poses
+    ]
 
-    def board(transform: Array, place: int) -> tuple[float, Array]:
-        """The likeliest pose of a pair's board, as either camera has it, with the error in both."""
-        from_people = [composed(inverted(transform), pose) for pose in far[place]]
-        rated = [(_error_px(transform, a, pairs[place], markers, people), a) for a in [*near[place], *from_people]]
+    def likeliest_board(people_from_markers: Array, i: int) -> tuple[float, Array]:
+        """Return the pose of a pair's board in the marker camera, of all candidates, with the least error in both."""
+        from_people = [compose(invert(people_from_markers), pose) for pose in in_people[i]]
+        rated = [
+            (_error_px(people_from_markers, pose, pairs[i], markers, people), pose)
+            for pose in [*in_markers[i], *from_people]
+        ]
         return min(rated, key=lambda one: one[0])
 
-    errors = [np.median([board(transform, place)[0] for place in range(len(pairs))]) for transform in proposals]
-    start = proposals[int(np.argmin(errors))]
-    adjuster = Adjuster(markers, people, pairs, SCALE_OF_NOISE * noise_px)
-    return adjuster.adjust(start, [board(start, place)[1] for place in range(len(pairs))])
+    errors_px = [np.median([likeliest_board(proposal, i)[0] for i in range(len(pairs))]) for proposal in proposals]
+    start = proposals[int(np.argmin(errors_px))]
+    adjuster = BundleAdjuster(markers, people, pairs, ROBUST_SCALE_OF_NOISE * noise_px)
+    return adjuster.adjust(start, [likeliest_board(start, i)[1] for i in range(len(pairs))])
 
 
-def _error_px(transform: Array, board: Array, pair: Pair, markers: Eye, people: Eye) -> float:
-    near = markers.residuals_px(pair.markers, board)
-    far = people.residuals_px(pair.people, composed(transform, board))
-    return rms_px(np.vstack([near, far]))
+def _error_px(
+    people_from_markers: Array, markers_from_board: Array, pair: Pair, markers: CameraModel, people: CameraModel
+) -> float:
+    """Return the RMS reprojection error of a pair in both images."""
+    in_markers = markers.reprojection_errors_px(pair.markers, markers_from_board)
+    in_people = people.reprojection_errors_px(pair.people, compose(people_from_markers, markers_from_board))
+    return rms_px(np.vstack([in_markers, in_people]))
 
 
-def _contradictions(found: Adjustment, pairs: Sequence[Pair], noise_px: Sequence[float]) -> list[str]:
+def _contradictions(found: BundleAdjustment, pairs: Sequence[Pair], noise_px: Sequence[float]) -> list[str]:
     """Name the pairs that the transform of the others does not suit."""
-    least_px = LEAST_OUTLYING_OF_DIAGONAL * _diagonal_px(pairs)
-    limits_px = [max(OUTLYING * noise, least_px) for noise in noise_px]
+    views: list[View] = [view for pair in pairs for view in (pair.markers, pair.people)]
+    least_px = LEAST_OUTLIER_OF_DIAGONAL * max(view.diagonal_px for view in views)
+    limits_px = [max(OUTLIER * noise, least_px) for noise in noise_px]
     rated = zip(pairs, found.rms_px, limits_px, strict=True)
-    outlying = [f"{pair.name} ({error:.1f} px, at most {limit:.1f})" for pair, error, limit in rated if error > limit]
-    if 2 * len(outlying) > len(pairs):
+    outliers = [f"{pair.name} ({error:.1f} px, at most {limit:.1f})" for pair, error, limit in rated if error > limit]
+    if 2 * len(outliers) > len(pairs):
         return [
-            f"the pairs fit no transform: {len(outlying)} of {len(pairs)} contradict each other, RMS "
+            f"the pairs fit no transform: {len(outliers)} of {len(pairs)} contradict each other, RMS "
             f"{_rms_px(found):.2f} px: are the two calibrations these cameras', at this size, zoom and focus, and did "
-            f"nothing move between the two pictures of a pair? {', '.join(outlying)}"
+            f"nothing move between the two pictures of a pair? {', '.join(outliers)}"
         ]
-    if outlying:
+    if outliers:
         return [
-            f"{len(outlying)} of {len(pairs)} pairs contradict the others: {', '.join(outlying)}: a camera moved, or "
+            f"{len(outliers)} of {len(pairs)} pairs contradict the others: {', '.join(outliers)}: a camera moved, or "
             "the board moved between the two pictures. Leave these out; if a camera moved for good, take all pairs anew"
         ]
     return []
 
 
-def _undetermined(found: Adjustment) -> list[str]:
+def _undetermined(found: BundleAdjustment) -> list[str]:
     position_mm, rotation_deg = _deviations(found)
     if position_mm <= MOST_POSITION_DEVIATION_MM and rotation_deg <= MOST_ROTATION_DEVIATION_DEG:
         return []
@@ -133,26 +150,22 @@ def _undetermined(found: Adjustment) -> list[str]:
     ]
 
 
-def _extrinsics(found: Adjustment) -> Extrinsics:
+def _extrinsics(found: BundleAdjustment) -> Extrinsics:
+    """Write the transform as a matrix (4, 4), with its quality."""
     transform = np.eye(4)
     transform[:3, :3], _ = cv2.Rodrigues(found.people_from_markers[:3])
     transform[:3, 3] = found.people_from_markers[3:]
     return Extrinsics(transform, _rms_px(found), found.rms_px, *_deviations(found))
 
 
-def _deviations(found: Adjustment) -> tuple[float, float]:
-    """Standard deviations of the position (mm) and of the rotation (deg), over all three axes."""
+def _deviations(found: BundleAdjustment) -> tuple[float, float]:
+    """Return the standard deviations of the position (mm) and of the rotation (deg), over all three axes."""
     variances = np.diag(found.covariance)
     return 1000 * math.sqrt(float(variances[3:].sum())), math.degrees(math.sqrt(float(variances[:3].sum())))
 
 
-def _rms_px(found: Adjustment) -> float:
+def _rms_px(found: BundleAdjustment) -> float:
     return float(np.sqrt(np.mean(np.square(found.rms_px))))
-
-
-def _diagonal_px(pairs: Sequence[Pair]) -> float:
-    views: list[View] = [view for pair in pairs for view in (pair.markers, pair.people)]
-    return max(view.diagonal_px for view in views)
 
 
 def with_extrinsics(markers: Calibration, found: Extrinsics, date: datetime.date) -> Calibration:

@@ -1,4 +1,4 @@
-"""One camera's intrinsics from views of the board (Zhang 2000), and what speaks against a set of views."""
+"""One camera's intrinsics from views of the board (Zhang 2000), and what speaks against what was found."""
 
 import datetime
 import math
@@ -7,39 +7,35 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array, Mask
 from actum.calibration import Calibration, IntrinsicsQuality
-from actum_calibrator.bending import FLAT, Bend, bend_of, bent_corners_m
-from actum_calibrator.board import Array
-from actum_calibrator.views import View
+from actum_calibrator.board_deformation import FLAT, Deformation, deformed_corners_m, estimate_deformation
+from actum_calibrator.board_views import View
+from actum_calibrator.view_set import PoorSetError, covered_cells, nominal_tilts_deg, shortcomings, tilt_deg, untilted
 
-FEWEST_VIEWS = 8
-TILT_DEG, FEWEST_TILTED = 15.0, 3
-CELLS = (16, 12)
-LEAST_COVERAGE, GOOD_COVERAGE = 0.3, 0.6
-MOST_FOCAL_DEVIATION = 0.005
-MOST_RMS_OF_DIAGONAL = 1e-3
-SURE_DEVIATIONS = 4.0
-MOST_BEND_OF_DIAGONAL = 0.01
-LENS_UNKNOWNS, POSE_UNKNOWNS = 9, 6
-
-
-class PoorSetError(ValueError):
-    """A set of pictures that cannot calibrate: all `reasons`, each with what to do."""
-
-    def __init__(self, reasons: Sequence[str]) -> None:
-        super().__init__("\n".join(reasons))
-        self.reasons = tuple(reasons)
+MOST_FOCAL_DEVIATION = 0.005  # standard deviation of the focal length in parts of it: 10 mm at 2 m
+MOST_RMS_OF_DIAGONAL = 1e-3  # 0.8 px in 640x480; sharp views of a flat board have a quarter of it
+SIGNIFICANT_DEVIATIONS = 4.0  # standard deviations by which a focal length differs for certain
+MOST_BEND_OF_DIAGONAL = 0.01  # of the board's diagonal: beyond it a quadratic surface no longer describes the bend
+CAMERA_UNKNOWNS = 9  # fx, fy, cx, cy, k1, k2, p1, p2, k3
+POSE_UNKNOWNS = 6  # of each view: a rotation and a translation
 
 
 @dataclass(frozen=True)
 class Intrinsics:
     """A camera found from views.
 
-    `deviations_px` are the standard deviations of fx, fy, cx and cy; `residuals_px` holds each view's corners as found
-    minus as projected (n, 2), `tilts_deg` its angle between the board and the image plane. `covered` is by cells of
-    the image, (rows, columns). `bend_mm` is how far the board is from flat, which is allowed for.
+    Attributes:
+        size: the image's width and height.
+        matrix: K (3, 3).
+        distortion: k1, k2, p1, p2, k3.
+        rms_px: the root mean square reprojection error over all views.
+        deviations_px: the standard deviations of fx, fy, cx and cy (4,).
+        residuals_px: each view's corners as found minus as projected (n, 2).
+        tilts_deg: each view's angle between the board and the image plane.
+        covered: the cells of the image in which the board has been (rows, columns).
+        bend_mm: how far the board is from flat, from its lowest to its highest corner; it is allowed for.
     """
 
     size: tuple[int, int]
@@ -49,7 +45,7 @@ class Intrinsics:
     deviations_px: Array
     residuals_px: list[Array]
     tilts_deg: list[float]
-    covered: NDArray[np.bool_]
+    covered: Mask
     bend_mm: float = 0.0
 
     @property
@@ -58,89 +54,45 @@ class Intrinsics:
         return float(self.covered.mean())
 
     def rms_of_views_px(self) -> list[float]:
-        """Each view's root mean square reprojection error."""
+        """Return each view's root mean square reprojection error."""
         return [rms(residuals) for residuals in self.residuals_px]
 
 
 def rms(residuals_px: Array) -> float:
-    """Root mean square length of residuals (n, 2)."""
+    """Return the root mean square length of residuals (n, 2)."""
     return math.sqrt(float((residuals_px**2).sum(axis=1).mean()))
 
 
-def find_intrinsics(views: Sequence[View]) -> Intrinsics:
-    """Calibrate one camera.
+def estimate_intrinsics(views: Sequence[View]) -> Intrinsics:
+    """Calibrate one camera (Zhang 2000), allowing for the board's deformation where the views tell one.
 
     Raises:
         PoorSetError: the views do not determine it.
     """
     if reasons := shortcomings(views):
-        raise PoorSetError([*reasons, *_untilted(nominal_tilts_deg(views))])
-    found = _solved(views)
-    if reasons := [*_untilted(found.tilts_deg), *_inexact(found, views)] or _contradiction(found, views):
+        raise PoorSetError([*reasons, *untilted(nominal_tilts_deg(views))])
+    found = _calibrated(views)
+    if reasons := [*untilted(found.tilts_deg), *_ill_fitting(found, views)] or _contradiction(found, views):
         raise PoorSetError(reasons)
-    found = _unbent(found, views)
+    found = _with_deformation(found, views)
     if reasons := _bent(found, views) or _undetermined(found):
         raise PoorSetError(reasons)
     return found
 
 
-def shortcomings(views: Sequence[View]) -> list[str]:
-    """Say what a set lacks before any camera is known: views, one size, coverage."""
-    sizes = sorted({view.size for view in views})
-    if len(sizes) > 1:
-        listed = ", ".join(f"{width}x{height}" for width, height in sizes)
-        return [f"pictures of several sizes ({listed}): calibrate each size by itself"]
-    reasons = []
-    if len(views) < FEWEST_VIEWS:
-        reasons.append(
-            f"too few views: {len(views)} usable, at least {FEWEST_VIEWS} are needed; 15 to 20 are good: take more"
-        )
-    if views and (share := float(covered_cells(views).mean())) < LEAST_COVERAGE:
-        reasons.append(
-            f"too little coverage: the board was in {share:.0%} of the image, at least {LEAST_COVERAGE:.0%} are "
-            "needed: show it near every edge and corner of the image, and closer"
-        )
-    return reasons
+def _with_deformation(flat: Intrinsics, views: Sequence[View]) -> Intrinsics:
+    """Calibrate anew with the board's deformation, where the views tell one."""
+
+    def residuals_of(deformation: Deformation) -> Array:
+        return np.concatenate(_calibrated(views, deformation, flat).residuals_px).ravel()
+
+    deformation = estimate_deformation(residuals_of, CAMERA_UNKNOWNS + POSE_UNKNOWNS * len(views))
+    return flat if deformation is FLAT else _calibrated(views, deformation, flat)
 
 
-def covered_cells(views: Sequence[View]) -> NDArray[np.bool_]:
-    """Tell which cells of the image some view's corners enclose: (rows, columns)."""
-    columns, rows = CELLS
-    cells = np.zeros((rows, columns), dtype=bool)
-    for view in views:
-        width, height = view.size
-        hull = cv2.convexHull(view.corners_px.astype(np.float32))
-        for row, column in np.argwhere(~cells):
-            middle = (float((column + 0.5) * width / columns), float((row + 0.5) * height / rows))
-            cells[row, column] = cv2.pointPolygonTest(hull, middle, False) >= 0
-    return cells
-
-
-def nominal_tilts_deg(views: Sequence[View]) -> list[float]:
-    """Estimate each view's tilt with an ordinary lens, as wide as its distance: foreshortening hardly depends on it."""
-    tilts = []
-    for view in views:
-        width, height = view.size
-        focal = float(max(width, height))
-        matrix = np.array([[focal, 0, width / 2], [0, focal, height / 2], [0, 0, 1]])
-        _, rotation, _ = cv2.solvePnP(view.corners_m, view.corners_px, matrix, None, flags=cv2.SOLVEPNP_IPPE)
-        tilts.append(_tilt_deg(np.asarray(rotation)))
-    return tilts
-
-
-def _unbent(flat: Intrinsics, views: Sequence[View]) -> Intrinsics:
-    """Allow for the bend of the board, where the views tell one."""
-
-    def fit(bend: Bend) -> Array:
-        return np.concatenate(_solved(views, bend, flat).residuals_px).ravel()
-
-    bend = bend_of(fit, LENS_UNKNOWNS + POSE_UNKNOWNS * len(views))
-    return flat if bend is FLAT else _solved(views, bend, flat)
-
-
-def _solved(views: Sequence[View], bend: Bend = FLAT, start: Intrinsics | None = None) -> Intrinsics:
-    """Calibrate with a board bent in some way; only a flat one needs no camera to start from."""
-    board_m = bent_corners_m(views[0].board, bend)
+def _calibrated(views: Sequence[View], deformation: Deformation = FLAT, start: Intrinsics | None = None) -> Intrinsics:
+    """Calibrate with a board of some deformation (3,); only a flat one needs no camera to start from."""
+    board_m = deformed_corners_m(views[0].board, deformation)
     objects = [board_m[view.ids].astype(np.float32) for view in views]
     images = [view.corners_px.astype(np.float32) for view in views]
     guess = (np.eye(3), np.zeros(5)) if start is None else (start.matrix.copy(), start.distortion.copy())
@@ -161,35 +113,20 @@ def _solved(views: Sequence[View], bend: Bend = FLAT, start: Intrinsics | None =
         rms_px=float(error),
         deviations_px=np.ravel(deviations)[:4].astype(np.float64),
         residuals_px=residuals,
-        tilts_deg=[_tilt_deg(np.asarray(rotation)) for rotation in rotations],
+        tilts_deg=[tilt_deg(np.asarray(rotation)) for rotation in rotations],
         covered=covered_cells(views),
         bend_mm=1000 * float(np.ptp(board_m[:, 2])),
     )
 
 
-def _tilt_deg(rotation: Array) -> float:
-    return math.degrees(math.acos(min(1.0, abs(float(cv2.Rodrigues(rotation)[0][2, 2])))))
-
-
-def _untilted(tilts_deg: Sequence[float]) -> list[str]:
-    tilted = sum(tilt >= TILT_DEG for tilt in tilts_deg)
-    if tilted >= FEWEST_TILTED or not tilts_deg:
-        return []
-    return [
-        f"too little tilt: {tilted} of {len(tilts_deg)} views are tilted by {TILT_DEG:g} deg or more, at least "
-        f"{FEWEST_TILTED} are needed; frontal views do not determine the focal length: turn the board by about 30 deg, "
-        "left, right, up and down"
-    ]
-
-
 def _contradiction(found: Intrinsics, views: Sequence[View]) -> list[str]:
-    """Name the view that fits worst where the others alone tell another focal length, or one where all tell none."""
+    """Name the view that fits worst, where without it the focal length is another, or is determined only then."""
     worst = int(np.argmax(found.rms_of_views_px()))
-    without = _solved([view for place, view in enumerate(views) if place != worst])
+    without = _calibrated([view for i, view in enumerate(views) if i != worst])
     focal, others, deviations = np.diag(found.matrix)[:2], np.diag(without.matrix)[:2], without.deviations_px[:2]
-    limits = np.maximum(SURE_DEVIATIONS * deviations, MOST_FOCAL_DEVIATION * others)
-    told = _focal_deviation(without) <= MOST_FOCAL_DEVIATION < _focal_deviation(found)
-    if not told and (np.abs(focal - others) <= limits).all():
+    limits = np.maximum(SIGNIFICANT_DEVIATIONS * deviations, MOST_FOCAL_DEVIATION * others)
+    only_without = _focal_deviation(without) <= MOST_FOCAL_DEVIATION < _focal_deviation(found)
+    if not only_without and (np.abs(focal - others) <= limits).all():
         return []
     return [
         f"one picture contradicts the others: {views[worst].name}; with it the focal length is "
@@ -199,7 +136,7 @@ def _contradiction(found: Intrinsics, views: Sequence[View]) -> list[str]:
 
 
 def _focal_deviation(found: Intrinsics) -> float:
-    """Standard deviation of the focal length, in parts of it, along the axis in which it is worse."""
+    """Return the standard deviation of the focal length, in parts of it, along the axis in which it is worse."""
     return max(
         float(found.deviations_px[axis] / found.matrix[axis, axis]) if found.matrix[axis, axis] > 0 else math.inf
         for axis in (0, 1)
@@ -228,7 +165,7 @@ def _undetermined(found: Intrinsics) -> list[str]:
     ]
 
 
-def _inexact(found: Intrinsics, views: Sequence[View]) -> list[str]:
+def _ill_fitting(found: Intrinsics, views: Sequence[View]) -> list[str]:
     limit_px = MOST_RMS_OF_DIAGONAL * views[0].diagonal_px
     if found.rms_px <= limit_px:
         return []

@@ -4,14 +4,21 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from actum_calibrator.board import Cells, Paper, PatternError, black_cells, canonical
-from actum_calibrator.paper import BOLD, EDGE_MM, REGULAR, SIZES_MM, Sheet, document, points_that_fit
+from actum.arrays import Mask
+from actum_calibrator.board import PatternError, black_cells, canonical
+from actum_calibrator.printed_sheet import BOLD, EDGE_MM, REGULAR, Sheet, document, points_that_fit
+from actum_calibrator.sheet_sizes import SheetSize
 
-SMALLEST_MM = 10.0
-WHITE_SHARE, LEAST_WHITE_MM = 1 / 8, 3.0
-LABEL_MM = 8.0
-HEAD_MM, FOOT_MM, RULER_BOTTOM_MM, LEFT_MM = 13.0, 22.0, 12.0, 10.0
-CUT_MM, CUT_LINE_MM = 2.5, 0.15
+SMALLEST_MM = 10.0  # side of a marker: smaller ones are found at arm's length at best
+WHITE_SHARE = 1 / 8  # of a marker's side, white around it: a cell or so, without which it is not found
+LEAST_WHITE_MM = 3.0  # the same of a small marker: what scissors need
+LABEL_MM = 8.0  # height of the two lines below a marker
+HEAD_MM = 13.0  # kept free above the markers for the heading
+FOOT_MM = 22.0  # kept free below them for the ruler
+RULER_BOTTOM_MM = 12.0  # leaves room for the ruler's numbers above what printers cannot reach
+LEFT_MM = 10.0  # where heading and ruler begin
+CUT_MM = 2.5  # length of a cut mark
+CUT_LINE_MM = 0.15  # its thickness: a hair line
 
 
 @dataclass(frozen=True)
@@ -35,7 +42,7 @@ class Tile:
         """Whole height."""
         return self.width_mm + LABEL_MM
 
-    def draw(self, sheet: Sheet, black: Cells, left: float, top: float, label: tuple[str, str]) -> None:
+    def draw(self, sheet: Sheet, black: Mask, left: float, top: float, label: tuple[str, str]) -> None:
         """Draw marker, label and cut marks."""
         sheet.cells(black, left + self.white_mm, top - self.white_mm, self.size_mm / len(black))
         bottom, start = top - self.height_mm, left + self.white_mm
@@ -51,7 +58,7 @@ class Tile:
                 sheet.line((x, y), (x, y + inwards_y), CUT_LINE_MM)
 
 
-def marker_sheet(family: str, ids: Sequence[int], size_mm: float, paper: Paper) -> bytes:
+def marker_sheet(family: str, ids: Sequence[int], size_mm: float, sheet_size: SheetSize) -> bytes:
     """Write a PDF of markers in true size; `size_mm` is the side of the black square.
 
     Raises:
@@ -61,15 +68,8 @@ def marker_sheet(family: str, ids: Sequence[int], size_mm: float, paper: Paper) 
     cells = {number: black_cells(family, number) for number in ids}
     if not cells:
         raise PatternError("no ids: name at least one")
-    tile, (width, height) = Tile(size_mm), SIZES_MM[paper]
-    is_printable = math.isfinite(size_mm) and size_mm >= SMALLEST_MM
-    columns = int((width - 2 * EDGE_MM) // tile.width_mm) if is_printable else 0
-    rows = int((height - HEAD_MM - FOOT_MM) // tile.height_mm) if is_printable else 0
-    if columns * rows == 0:
-        largest = int((width - 2 * EDGE_MM) / (1 + 2 * WHITE_SHARE))
-        raise PatternError(
-            f"markers of {size_mm:g} mm on {paper}: use {SMALLEST_MM:g} to {largest} mm (white is needed around them)"
-        )
+    tile = Tile(size_mm)
+    columns, rows = _grid(tile, sheet_size)
     numbers, each = list(cells), columns * rows
     pages = [numbers[start : start + each] for start in range(0, len(numbers), each)]
 
@@ -82,7 +82,26 @@ def marker_sheet(family: str, ids: Sequence[int], size_mm: float, paper: Paper) 
             tile.draw(sheet, cells[number], left, top, (f"id {number}", f"{family}, {size_mm:g} mm"))
 
     drawers = [lambda sheet, page=page: draw_page(sheet, page) for page in range(len(pages))]
-    return document((width, height), f"actum markers {family} {size_mm:g} mm", drawers)
+    return document(sheet_size.portrait_mm, f"actum markers {family} {size_mm:g} mm", drawers)
+
+
+def _grid(tile: Tile, sheet_size: SheetSize) -> tuple[int, int]:
+    """Return how many columns and rows of tiles a sheet has.
+
+    Raises:
+        PatternError: it has none of this size, or the markers would be too small to be found.
+    """
+    width, height = sheet_size.portrait_mm
+    is_printable = math.isfinite(tile.size_mm) and tile.size_mm >= SMALLEST_MM
+    columns = int((width - 2 * EDGE_MM) // tile.width_mm) if is_printable else 0
+    rows = int((height - HEAD_MM - FOOT_MM) // tile.height_mm) if is_printable else 0
+    if columns * rows == 0:
+        largest = int((width - 2 * EDGE_MM) / (1 + 2 * WHITE_SHARE))
+        raise PatternError(
+            f"markers of {tile.size_mm:g} mm on {sheet_size}: use {SMALLEST_MM:g} to {largest} mm "
+            "(white is needed around them)"
+        )
+    return columns, rows
 
 
 def _head_and_foot(sheet: Sheet, what: str, page: str) -> None:

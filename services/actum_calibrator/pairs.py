@@ -4,10 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from actum_calibrator.views import View
+from actum_calibrator.board_views import View
 
 SUFFIXES = ("_a", "_b")
+"""How the names of a pair's pictures end: of the camera that sees markers, and of the one that sees people."""
+
 PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff")
+"""Endings of the files in a folder that are taken for pictures."""
 
 
 class PairingError(ValueError):

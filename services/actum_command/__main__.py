@@ -1,6 +1,5 @@
 """`actum`, or `python -m actum_command`."""
 
-import os
 from typing import Annotated
 
 from actum import __version__
@@ -9,26 +8,25 @@ from actum.runtime import end_with_parent, needs_extra
 with needs_extra("actum-command"):
     import typer
 
-    from actum_command import (
-        calibrating,
-        demo,
-        doctor,
-        drawing,
+    from actum_command.commands import (
+        calibrate_commands,
+        demo_command,
+        doctor_command,
+        draw_command,
         import_commands,
-        inspecting,
-        learning,
-        marker_sheets,
-        marks,
-        models,
-        scene,
-        streaming,
-        system,
+        inspect_command,
+        markers_command,
+        pose_model_commands,
+        recording_commands,
+        scene_commands,
+        segment_commands,
+        system_commands,
         takes_commands,
-        watching,
+        training_commands,
+        watch_command,
     )
-    from actum_command.context import connect, console, say
-    from actum_command.misspelt import misspelt
-    from actum_command.plain_help import PlainTyper
+    from actum_command.commands.plain_help import PlainTyper
+    from actum_command.commands.terminal import say
 
 app = PlainTyper(
     no_args_is_help=True,
@@ -54,38 +52,25 @@ def _actum(
     """Take what goes before every command."""
 
 
-app.command("demo")(demo.demo)
-app.command("up")(system.up)
-app.command("router")(system.router)
-app.add_typer(marks.app, name="segment")
-app.command("record")(streaming.record)
-app.command("play")(streaming.play)
+app.command("demo")(demo_command.demo)
+app.command("up")(system_commands.up)
+app.command("router")(system_commands.router)
+app.add_typer(segment_commands.app, name="segment")
+app.command("record")(recording_commands.record)
+app.command("play")(recording_commands.play)
 app.add_typer(takes_commands.app, name="takes")
 app.add_typer(import_commands.app, name="import")
-app.add_typer(models.app, name="models")
-app.command("draw")(drawing.draw_command)
-app.command("markers")(marker_sheets.markers)
-app.add_typer(calibrating.app, name="calibrate")
-app.command("train")(learning.train_command)
-app.command("evaluate")(learning.evaluate_command)
-app.command("inspect")(inspecting.inspect_command)
-app.command("simulate")(scene.simulate)
-app.command("scene")(scene.scene)
-app.command("watch")(watching.watch)
-
-
-@app.command("doctor")
-def diagnose() -> None:
-    """Check router, services, rates, versions and the names of settings; exit 1 if anything is wrong."""
-    with connect() as client:
-        findings = doctor.examine(client)
-    doctor.show(findings, console)
-    problems = [*misspelt(os.environ), *(problem for finding in findings for problem in finding.problems)]
-    for problem in problems:
-        say(problem, style="red")
-    if problems:
-        raise typer.Exit(1)
-    console.print("[green]all services are there, alive and of one version[/green]")
+app.add_typer(pose_model_commands.app, name="models")
+app.command("draw")(draw_command.draw)
+app.command("markers")(markers_command.markers)
+app.add_typer(calibrate_commands.app, name="calibrate")
+app.command("train")(training_commands.train_command)
+app.command("evaluate")(training_commands.evaluate_command)
+app.command("inspect")(inspect_command.inspect)
+app.command("simulate")(scene_commands.simulate)
+app.command("scene")(scene_commands.scene)
+app.command("watch")(watch_command.watch)
+app.command("doctor")(doctor_command.doctor)
 
 
 def main() -> None:

@@ -1,54 +1,57 @@
-"""What segments are answered with, said as it comes."""
+"""What marked segments are answered with, in words, as the answers come."""
 
 import time
 from collections.abc import Callable, Iterator
 
+from rich.markup import escape
+
 from actum import keys
 from actum.messages import Action, Event, Message
 from actum.runtime import Client, Listening
-from actum_command.context import console, say
 from actum_command.describing import describe
 
-ANSWER_S = 6.0
-"""Two seconds at the most for the classifier's late frames, two for the fusion's objects, and some to be sure."""
-POLL_S = 0.02
+ANSWER_S = 6.0  # 2 s at the most for the classifier's late frames, 2 s for the fusion's objects, and some to be sure
+POLL_S = 0.02  # less than a frame's interval
 
 
 class Answers:
-    """Says the answers to segments that were asked for; those to earlier ones that were not waited for come, too."""
+    """Waits for the answers to segments; those to earlier segments that were not waited for come, too."""
 
     def __init__(self, client: Client) -> None:
         self._events = client.listen(keys.pattern(keys.EVENT, client.sensor))
         self._actions = client.listen(keys.pattern(keys.ACTION, client.sensor))
         self._asked: dict[str, Action | None] = {}
 
-    def say(self, segment_id: str, interrupted: Callable[[], bool]) -> None:
-        """Wait until a segment's event has come, for `ANSWER_S`, or until interrupted."""
+    def until(self, segment_id: str, interrupted: Callable[[], bool]) -> Iterator[str]:
+        """Yield lines of console markup until a segment's event has come, for `ANSWER_S`, or until interrupted."""
         self._asked[segment_id] = None
         deadline_s = time.monotonic() + ANSWER_S
-        while not self._said(segment_id) and time.monotonic() < deadline_s:
+        while True:
+            yield from self._events_come()
+            if segment_id not in self._asked:
+                return
+            if time.monotonic() >= deadline_s:
+                break
             if interrupted():
                 return
             time.sleep(POLL_S)
-        if segment_id in self._asked:
-            self._tell_lack(segment_id, self._asked.pop(segment_id))
+        yield _lack(segment_id, self._asked.pop(segment_id))
 
-    def _said(self, segment_id: str) -> bool:
-        """Say the events that have come; True once the segment's own is among them."""
+    def _events_come(self) -> Iterator[str]:
+        """Describe the events of segments asked for that have come, and remember their final actions."""
         for message in _messages(self._actions):
             if isinstance(message, Action) and message.final and message.segment_id in self._asked:
                 self._asked[message.segment_id] = message
         for message in _messages(self._events):
             if isinstance(message, Event) and message.segment_id in self._asked:
                 del self._asked[message.segment_id]
-                console.print(describe(message), soft_wrap=True)
-        return segment_id not in self._asked
+                yield describe(message)
 
-    def _tell_lack(self, segment_id: str, action: Action | None) -> None:
-        if action is None:
-            say(f"{segment_id}: no answer within {ANSWER_S:g} s; see actum doctor", style="yellow")
-        else:
-            console.print(f"{describe(action)}; no event: does action_fusion run?", soft_wrap=True)
+
+def _lack(segment_id: str, action: Action | None) -> str:
+    if action is None:
+        return f"[yellow]{escape(segment_id)}: no answer within {ANSWER_S:g} s; see actum doctor[/yellow]"
+    return f"{describe(action)}; no event: does action_fusion run?"
 
 
 def _messages(listening: Listening) -> Iterator[Message]:

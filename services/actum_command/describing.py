@@ -23,8 +23,7 @@ from actum.messages import (
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 
-EPOCH_NS = 10**18
-"""Stamps from here on, September 2001, count from 1970; smaller ones from when the sensor's clock was started."""
+EPOCH_NS = 10**18  # September 2001: later stamps count from 1970, smaller ones from the start of the sensor's clock
 
 
 def time_of(message: Message) -> str:

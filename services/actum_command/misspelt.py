@@ -5,13 +5,15 @@ from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 
-from actum_command.service_flags import DECLARED
+from actum_command.service_settings import DECLARED
 
 PREFIX = "ACTUM_"
 FILE = PREFIX + "CONFIG"
 OTHERS = ("camera_device", "config", "data", "log", "models", "parent", "videos")
 """What the runtime, the compose files and the tests are told in the environment."""
+
 KNOWN = sorted({name for settings in DECLARED.values() for name in settings.model_fields})
+"""The settings of all services."""
 
 
 def misspelt(environment: Mapping[str, str]) -> Iterator[str]:
@@ -23,13 +25,13 @@ def misspelt(environment: Mapping[str, str]) -> Iterator[str]:
     file = environment.get(FILE)
     for name in tomllib.loads(Path(file).read_text(encoding="utf-8")) if file else ():
         if name not in KNOWN:
-            yield f"{file}: {name} is no setting{_meant(name)}"
+            yield f"{file}: {name} is no setting{_suggestion(name)}"
     for name in environment:
         setting = name.removeprefix(PREFIX).lower()
         if name.startswith(PREFIX) and setting not in (*KNOWN, *OTHERS):
-            yield f"{name} is no setting{_meant(setting, PREFIX)}"
+            yield f"{name} is no setting{_suggestion(setting, PREFIX)}"
 
 
-def _meant(name: str, prefix: str = "") -> str:
+def _suggestion(name: str, prefix: str = "") -> str:
     near = get_close_matches(name, KNOWN, n=1)
     return "".join(f": is {prefix + (one.upper() if prefix else one)} meant?" for one in near)

@@ -1,4 +1,4 @@
-"""A published file fetched, checked against its digest, and only then given its name."""
+"""A published file, such as the pose model: fetched, checked against its digest, and only then given its name."""
 
 import hashlib
 import urllib.error
@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from http.client import HTTPException
 from pathlib import Path
 
-CHUNK_BYTES = 64 * 1024
-TIMEOUT_S = 30.0
+CHUNK_BYTES = 64 * 1024  # small enough that progress moves on a slow line, large enough that it costs nothing
+TIMEOUT_S = 30.0  # of silence: after so long a server is given up
 Progress = Callable[[int, int], None]
 """Told after each piece: how many bytes are there, of how many."""
 
@@ -29,6 +29,15 @@ class Published:
     def is_at(self, path: Path) -> bool:
         """Tell whether a file is this one."""
         return path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() == self.sha256
+
+
+POSE_MODEL = Published(
+    url="https://storage.googleapis.com/mediapipe-models/pose_landmarker/pose_landmarker_full/float16/1/"
+    "pose_landmarker_full.task",
+    size=9_398_198,
+    sha256="5134a3aad27a58b93da0088d431f366da362b44e3ccfbe3462b3827a839011b1",
+)
+"""MediaPipe's full pose landmarker, revision 1, Apache-2.0."""
 
 
 def fetch(published: Published, path: Path, progress: Progress) -> None:

@@ -9,6 +9,7 @@ from actum.messages import REPLAY, Message, Segment
 from actum.recording import Recording
 
 IMAGES = frozenset({keys.COLOR, keys.DEPTH})
+"""Captured streams that objects are derived from."""
 
 
 def schedule(
@@ -58,6 +59,7 @@ class _Names:
         self._segments: dict[str, str] = {}
 
     def renamed(self, message: Message) -> Message:
+        """Return a message under its new names."""
         update: dict[str, Any] = {} if self._sensor is None else {"sensor": self._sensor}
         if isinstance(message, Segment):
             update |= {

@@ -6,26 +6,43 @@ from pathlib import Path
 from types import MappingProxyType
 
 from actum.settings import ServiceSettings
-from actum_command.service_flags import Given, arguments_of
+from actum_command.service_settings import Given, arguments_of
 from actum_command.supervising import Program
 from scene_simulator.parameters import load_parameters
 
 SERVICES = ("pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
+"""The services behind the sensor, in the order of the stream."""
+
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+"""One BLAS thread a process: the processes share the cores, and products as small as theirs gain nothing from more."""
+
+
+def system(
+    settings: ServiceSettings, source: str, path: Path | None, model: Path | None, given: Given
+) -> list[Program]:
+    """All programs of a system but its router: the four services, and the sensor that the source names."""
+    if source == "simulator":
+        sensor = [simulator(settings, arguments_of("scene_simulator", given)), scene(settings)]
+        return [*services(settings, model, simulated_objects(), given), *sensor]
+    programs = services(settings, model, {}, given)
+    if source != "none":
+        play = ["--path", str(path)] if path else []
+        programs.append(gateway(settings, ["--source", source, *play, *arguments_of("sensor_gateway", given)]))
+    return programs
 
 
 def common(settings: ServiceSettings) -> dict[str, str]:
-    """The environment that every process of one system shares."""
+    """Return the environment that every process of one system shares."""
     return {"ACTUM_CONNECT": settings.connect, "ACTUM_SENSOR": settings.sensor, **ONE_THREAD}
 
 
 def router(settings: ServiceSettings) -> Program:
-    """The embedded router, listening where the others connect."""
+    """Run the embedded router, listening where the others connect."""
     return Program("router", "actum_command", ["router", "--listen", settings.connect], common(settings))
 
 
 def simulated_objects() -> dict[str, str]:
-    """The environment that tells the tracker what carries which marker in the simulated scene."""
+    """Return the environment that tells the tracker which object carries which marker in the simulated scene."""
     objects = load_parameters().objects
     specs = {item.id: {"name": item.name, "size_m": objects.marker_size_m} for item in objects.items}
     return {"ACTUM_OBJECTS": json.dumps(specs)}
@@ -34,7 +51,7 @@ def simulated_objects() -> dict[str, str]:
 def services(
     settings: ServiceSettings, model: Path | None, objects: Mapping[str, str], given: Given = MappingProxyType({})
 ) -> list[Program]:
-    """The four services behind the sensor, told what is given of their settings.
+    """Run the four services behind the sensor, told what is given of their settings.
 
     `objects` is environment that tells the tracker what it may see.
     """
@@ -45,15 +62,15 @@ def services(
 
 
 def gateway(settings: ServiceSettings, arguments: Sequence[str]) -> Program:
-    """The sensor gateway with its own arguments."""
+    """Run the sensor gateway with its own arguments."""
     return Program("sensor_gateway", "sensor_gateway", arguments, common(settings))
 
 
 def simulator(settings: ServiceSettings, arguments: Sequence[str]) -> Program:
-    """The simulated scene, in the gateway's place."""
+    """Run the simulated scene, in the sensor gateway's place."""
     return Program("scene_simulator", "scene_simulator", arguments, common(settings))
 
 
 def scene(settings: ServiceSettings) -> Program:
-    """The client that puts the simulated scene's marks."""
+    """Run the client that puts the simulated scene's marks."""
     return Program("scene", "actum_command", ["scene"], common(settings))

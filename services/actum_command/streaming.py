@@ -1,146 +1,59 @@
-"""`actum record` and `actum play`: streams to files and back."""
+"""A sensor's streams to a file and back, live."""
 
 import threading
 import time
-from collections import Counter
-from pathlib import Path
-from typing import Annotated
+from collections.abc import Sequence
 
-import typer
-
-from actum import keys
-from actum.messages import MANUAL, Message, Skeleton
+from actum.messages import Skeleton
 from actum.node import SECOND_NS
-from actum.recording import Recorder, Recording, RecordingError
-from actum.runtime import Client, Listening, Pace, stop_on_signals
-from actum_command.context import connect, fail, refuse_ending, refuse_unwritable, say
-from actum_command.learning import AllOption, PersonOption, chosen, tell_unread
+from actum.recording import Recording
+from actum.runtime import Client, Listening, Pace
 from actum_command.playing import schedule
-from actum_command.recorder import IMAGES, STREAMS, StreamRecorder
+from actum_command.stream_recorder import StreamRecorder
 
-LEAD_IN_S = 0.3
-WAIT_S = 5.0
-POLL_S = 0.005
-ALL = "all"
-"""Marks of every origin."""
-ON_ITS_WAY_S = 0.3
-"""How long a message may take to come that was put before the recording was stopped."""
+LEAD_IN_S = 0.3  # services that start anew at a new session have done so by then
+POLL_S = 0.005  # a sixth of a frame's interval
+ON_ITS_WAY_S = 0.3  # how long a message may take to come that was put before the recording was stopped
 
 
-def record(
-    output: Annotated[Path, typer.Argument(help="the file to write")],
-    person: Annotated[str, typer.Option(help="who acts; kept in the file, used to split training from test")] = "",
-    label: Annotated[str | None, typer.Option(help="what is done in the segments marked while recording")] = None,
-    marks: Annotated[
-        str, typer.Option(help="whose marks are stored: manual (yours and your programs'), simulator, replay; or all")
-    ] = MANUAL,
-    images: Annotated[bool, typer.Option(help="also store images (faces are personal data)")] = False,
-    seconds: Annotated[float | None, typer.Option(min=0, help="stop by itself; default: at Ctrl-C")] = None,
-) -> None:
-    """Record a sensor's streams and your marks to a file."""
-    refuse_unwritable(output)
-    refuse_ending(output, ".mcap")
-    if output.exists():
-        fail(f"{output} is there already: name another file, or remove it")
-    stop = stop_on_signals()
-    deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
-    try:
-        with connect() as client, Recorder(output, person=person, source=client.sensor) as recorder:
-            stream = StreamRecorder(recorder, STREAMS | IMAGES if images else STREAMS, label, _origins(marks))
-            _store_all(client, stream, output, stop, deadline_s)
-    except OSError as error:
-        fail(f"{output} cannot be written ({error.strerror}); what there is lies in {output}.part")
-    _report(stream, output, label)
-
-
-def _store_all(client: Client, stream: StreamRecorder, output: Path, stop: threading.Event, deadline_s: float) -> None:
+def store_all(listening: Listening, recorder: StreamRecorder, stop: threading.Event, deadline_s: float) -> None:
     """Store what comes until stopped or until the deadline (monotonic), and what was on its way then."""
-    listening = client.listen(keys.everything(client.sensor))
-    say(f"recording actum/{client.sensor}/** to {output}; Ctrl-C ends")
     while not stop.is_set() and time.monotonic() < deadline_s:
-        if not _store(listening, stream):
+        if not _store(listening, recorder):
             stop.wait(POLL_S)
     time.sleep(ON_ITS_WAY_S)
-    while _store(listening, stream):
+    while _store(listening, recorder):
         pass
-    stream.close()
+    recorder.close()
 
 
-def _store(listening: Listening, stream: StreamRecorder) -> bool:
+def _store(listening: Listening, recorder: StreamRecorder) -> bool:
     """Store one message, if one has come."""
     received = listening.take()
     if received is None:
         return False
     if received.message is not None:
-        stream.take(received.message, time.time_ns())
+        recorder.take(received.message, time.time_ns())
     elif received.error is not None:
-        stream.reject(received.error)
+        recorder.reject(received.error)
     return True
 
 
-def _origins(marks: str) -> list[str] | None:
-    """Read which origins are meant, None for all."""
-    return None if marks == ALL else [origin.strip() for origin in marks.split(",")]
+def put_all(client: Client, recordings: Sequence[Recording], speed: float, stop: threading.Event) -> int:
+    """Put recordings at a multiple of their pace, after an empty frame of the new session; count their messages.
 
+    Everything downstream starts anew at that frame, before the first mark comes.
 
-def _report(stream: StreamRecorder, output: Path, label: str | None) -> None:
-    """Say what the file holds and what it lacks."""
-    say(f"{stream.stored} messages, {stream.actions.total()} marked actions, written to {output}")
-    for (origin, named), count in stream.actions.items():
-        say(f"  {count} marked by {origin}, {'without a label' if named is None else f'labelled {named!r}'}")
-    if stream.unended:
-        say(f"  without an end, so nothing is learnt from them: {', '.join(sorted(stream.unended))}", style="yellow")
-    for origin, count in (+stream.left_out).items():
-        say(f"  {count} marked by {origin} left out: --marks {origin} or --marks {ALL} takes such")
-    if stream.counters.rejects:
-        say(f"not stored: {_listed(stream.counters.rejects)} (the last: {stream.counters.last_error})", style="yellow")
-    if stream.undecodable:
-        say(f"not decodable: {stream.undecodable.total()} ({_listed(stream.undecodable)})", style="yellow")
-    if not stream.stored:
-        say("nothing was stored: does the sensor's gateway run, on this sensor? See actum doctor", style="yellow")
-    elif label is not None and not stream.actions:
-        say(f"nothing of it is labelled {label!r}: mark starts and ends with actum segment toggle", style="yellow")
-
-
-def _listed(counts: Counter[str]) -> str:
-    return ", ".join(f"{kind} {count}" for kind, count in sorted(counts.items()))
-
-
-def play(
-    files: Annotated[list[Path], typer.Argument(help="recordings, or folders of them, played one after another")],
-    speed: Annotated[float, typer.Option(min=0.01, help="1 is the pace at which it was captured")] = 1.0,
-    person: PersonOption = None,
-    with_excluded: AllOption = False,
-) -> None:
-    """Put recordings on their keys as a live sensor would, with their marks but without their labels."""
-    recordings = chosen(files, person, with_excluded)
-    stop = stop_on_signals()
-    with connect() as client:
-        if not client.wait_for_subscriber(keys.SKELETON, WAIT_S):
-            fail(f"nobody listens on {keys.key(keys.SKELETON, client.sensor)}: is the preprocessor running?")
-        try:
-            counts = put_all(client, recordings, speed, stop)
-        except RecordingError as error:
-            fail(str(error))
-    tell_unread(recordings)
-    say(f"played {len(recordings)} recordings: {counts} messages")
-
-
-def put_all(client: Client, recordings: list[Recording], speed: float, stop: threading.Event) -> int:
-    """Put recordings at a multiple of their pace; return the number of messages."""
-    session_id = f"play-{client.run}"
-    start_ns = time.time_ns()
-    client.put(_lead_in(client.sensor, session_id, start_ns - SECOND_NS))
+    Raises:
+        RecordingError: a recording is damaged.
+    """
+    session_id, start_ns = f"play-{client.run}", time.time_ns()
+    client.put(Skeleton(stamp_ns=start_ns - SECOND_NS, sensor=client.sensor, agents=[], session_id=session_id))
     stop.wait(LEAD_IN_S)
-    pace, counts = Pace(speed), 0
+    pace, count = Pace(speed), 0
     for message in schedule(recordings, session_id, start_ns, client.sensor):
         if not pace.wait(message.stamp_ns, stop):
             break
         client.put(message)
-        counts += 1
-    return counts
-
-
-def _lead_in(sensor: str, session_id: str, stamp_ns: int) -> Message:
-    """An empty frame of the new session: everything downstream starts anew before the first mark comes."""
-    return Skeleton(stamp_ns=stamp_ns, sensor=sensor, agents=[], session_id=session_id)
+        count += 1
+    return count

@@ -15,10 +15,16 @@ from actum.runtime.parent import PARENT
 from actum.runtime.serving import TAKEN, UNUSABLE
 
 RESTART_S = (0.5, 1.0, 2.0, 4.0, 8.0)
+"""The back-off: how long a program that has ended waits for its first, second … restart."""
+
 ELSEWHERE_S = 30.0
 """How often it is tried whether what runs elsewhere has ended there."""
+
 STEADY_S = 30.0
+"""A program that has run for this long starts again with the shortest back-off."""
+
 TERM_S = 5.0
+"""How long a program may take to end when it is asked to, before it is killed."""
 
 
 class UnusableError(RuntimeError):
@@ -65,8 +71,8 @@ class Supervisor:
         """Start one program."""
         self._children.append(_Child(program, self._spawn(program), time.monotonic()))
 
-    def check(self) -> list[str]:
-        """Restart what has ended, with back-off; return a line for each program that did.
+    def restart_ended(self) -> list[str]:
+        """Restart what has ended, with back-off; return a line for each program that has ended since the last call.
 
         Raises:
             UnusableError: a program's settings or arguments cannot be used.

@@ -12,7 +12,7 @@ from marker_tracker.occlusion.occluder_tracker import OccluderTracker
 from marker_tracker.occlusion.partial_occlusion import PartialOcclusionTracker
 from marker_tracker.pose.camera_model import camera_model
 from marker_tracker.pose.catalogue import MarkerAssignment
-from marker_tracker.pose.object_tracks import Tracks
+from marker_tracker.pose.pose_tracks import Tracks
 from marker_tracker.pose.poses import measure
 from marker_tracker.scene_file import catalogue
 from marker_tracker.settings import Settings

@@ -5,8 +5,8 @@ import pytest
 from numpy.typing import NDArray
 
 from actum_calibrator.board import Board
+from actum_calibrator.board_views import BoardFinder, View
 from actum_calibrator.pairs import Pair
-from actum_calibrator.views import BoardFinder, View
 from boards import Lens, facing, good_poses, photograph
 
 MARKERS_LENS = Lens()

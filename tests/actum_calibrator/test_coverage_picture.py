@@ -1,9 +1,10 @@
 import cv2
 import numpy as np
 
+from actum_calibrator.board_views import View
 from actum_calibrator.coverage_picture import COVERED, EDGE, EMPTY, TOP, WIDTH, coverage_picture
-from actum_calibrator.intrinsics import CELLS, find_intrinsics
-from actum_calibrator.views import View
+from actum_calibrator.intrinsics import estimate_intrinsics
+from actum_calibrator.view_set import CELLS
 
 
 def colour(code: str) -> list[int]:
@@ -11,7 +12,7 @@ def colour(code: str) -> list[int]:
 
 
 def test_the_picture_shows_where_the_board_was_and_where_never(good_views: list[View]) -> None:
-    found = find_intrinsics(good_views)
+    found = estimate_intrinsics(good_views)
     picture = cv2.imdecode(np.frombuffer(coverage_picture(found, good_views), dtype=np.uint8), cv2.IMREAD_COLOR)
     assert picture is not None
     height = WIDTH * found.size[1] / found.size[0]

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from actum.calibration import Calibration, CalibrationError, IntrinsicsQuality
-from actum_calibrator.extrinsics import find_extrinsics, with_extrinsics
-from actum_calibrator.intrinsics import PoorSetError
-from actum_calibrator.joint import composed, composed_with_jacobians, inverted
+from actum_calibrator.bundle_adjustment import compose, compose_with_jacobians, invert
+from actum_calibrator.extrinsics import estimate_extrinsics, with_extrinsics
 from actum_calibrator.pairs import Pair, PairingError, pair_files
+from actum_calibrator.view_set import PoorSetError
 from boards import Lens
 
 
@@ -48,7 +48,7 @@ def errors_of(found: np.ndarray) -> tuple[float, float]:
 
 @pytest.mark.parametrize("count", [3, 5])
 def test_the_true_transform_is_found(pairs: list[Pair], count: int) -> None:
-    found = find_extrinsics(pairs[:count], MARKERS, PEOPLE)
+    found = estimate_extrinsics(pairs[:count], MARKERS, PEOPLE)
     position_mm, rotation_deg = errors_of(found.skeleton_from_image)
     assert position_mm < 3
     assert rotation_deg < 0.3
@@ -57,21 +57,21 @@ def test_the_true_transform_is_found(pairs: list[Pair], count: int) -> None:
 
 
 def test_the_cameras_exchanged_give_the_inverse(pairs: list[Pair]) -> None:
-    there = find_extrinsics(pairs, MARKERS, PEOPLE).skeleton_from_image
+    there = estimate_extrinsics(pairs, MARKERS, PEOPLE).skeleton_from_image
     exchanged = [Pair(pair.name, pair.people, pair.markers) for pair in pairs]
-    back = find_extrinsics(exchanged, PEOPLE, MARKERS).skeleton_from_image
+    back = estimate_extrinsics(exchanged, PEOPLE, MARKERS).skeleton_from_image
     assert back @ there == pytest.approx(np.eye(4), abs=1e-4)
 
 
 def test_the_order_of_pairs_does_not_matter(pairs: list[Pair]) -> None:
-    forwards = find_extrinsics(pairs, MARKERS, PEOPLE).skeleton_from_image
-    backwards = find_extrinsics(pairs[::-1], MARKERS, PEOPLE).skeleton_from_image
+    forwards = estimate_extrinsics(pairs, MARKERS, PEOPLE).skeleton_from_image
+    backwards = estimate_extrinsics(pairs[::-1], MARKERS, PEOPLE).skeleton_from_image
     assert backwards == pytest.approx(forwards, abs=1e-5)
 
 
 def test_pairs_after_a_camera_moved_by_a_centimetre_are_named(pairs: list[Pair], moved_pairs: list[Pair]) -> None:
     with pytest.raises(PoorSetError) as refused:
-        find_extrinsics([*moved_pairs, *pairs[2:]], MARKERS, PEOPLE)
+        estimate_extrinsics([*moved_pairs, *pairs[2:]], MARKERS, PEOPLE)
     (reason,) = refused.value.reasons
     assert reason.startswith("2 of 5 pairs contradict the others: pair 0 (")
     assert ", pair 1 (" in reason
@@ -81,7 +81,7 @@ def test_pairs_after_a_camera_moved_by_a_centimetre_are_named(pairs: list[Pair],
 
 def test_too_few_pairs_are_refused(pairs: list[Pair]) -> None:
     with pytest.raises(PoorSetError, match="too few pairs: 2 usable, at least 3"):
-        find_extrinsics(pairs[:2], MARKERS, PEOPLE)
+        estimate_extrinsics(pairs[:2], MARKERS, PEOPLE)
 
 
 def test_another_camera_s_calibration_is_refused(pairs: list[Pair]) -> None:
@@ -92,19 +92,19 @@ def test_another_camera_s_calibration_is_refused(pairs: list[Pair]) -> None:
         image_size=(640, 480), K=[700, 0, 327, 0, 696, 236, 0, 0, 1], distortion=[], intrinsics=quality
     )
     with pytest.raises(PoorSetError, match="calibration of the camera that sees markers does not fit its pictures"):
-        find_extrinsics(pairs, longer, PEOPLE)
+        estimate_extrinsics(pairs, longer, PEOPLE)
     with pytest.raises(PoorSetError, match="calibration of the camera that sees people does not fit its pictures"):
-        find_extrinsics([Pair(pair.name, pair.people, pair.markers) for pair in pairs], PEOPLE, longer)
+        estimate_extrinsics([Pair(pair.name, pair.people, pair.markers) for pair in pairs], PEOPLE, longer)
 
 
 def test_a_calibration_of_another_size_is_refused(pairs: list[Pair]) -> None:
     larger = PEOPLE.model_copy(update={"image_size": (1280, 720)})
     with pytest.raises(CalibrationError, match="0_b is 640x480, the calibration is for 1280x720"):
-        find_extrinsics(pairs, MARKERS, larger)
+        estimate_extrinsics(pairs, MARKERS, larger)
 
 
 def test_the_result_is_the_marker_camera_s_calibration_with_the_transform(pairs: list[Pair]) -> None:
-    found = find_extrinsics(pairs, MARKERS, PEOPLE)
+    found = estimate_extrinsics(pairs, MARKERS, PEOPLE)
     made = with_extrinsics(MARKERS, found, datetime.date(2026, 3, 1))
     assert made.K == MARKERS.K
     assert np.reshape(made.image_fields()["skeleton_from_image"], (4, 4)) == pytest.approx(found.skeleton_from_image)
@@ -116,11 +116,11 @@ def test_poses_chain_as_matrices_do() -> None:
     rng = np.random.default_rng(3)
     for _ in range(20):
         second, first = rng.normal(size=(2, 6))
-        there, by_second, by_first = composed_with_jacobians(second, first)
+        there, by_second, by_first = compose_with_jacobians(second, first)
         step = 1e-6 * rng.normal(size=(2, 6))
-        moved = composed(second + step[0], first + step[1]) - there
+        moved = compose(second + step[0], first + step[1]) - there
         assert moved == pytest.approx(by_second @ step[0] + by_first @ step[1], abs=1e-9)
-        assert composed(inverted(second), there)[3:] == pytest.approx(first[3:], abs=1e-9)
+        assert compose(invert(second), there)[3:] == pytest.approx(first[3:], abs=1e-9)
 
 
 def touch(folder, *names: str) -> None:

@@ -8,16 +8,17 @@ import numpy as np
 import pytest
 
 from actum_calibrator.board import Board
-from actum_calibrator.intrinsics import PoorSetError, calibration_of, find_intrinsics
-from actum_calibrator.pictures import BlurredError, UnusablePictureError, complaints
-from actum_calibrator.views import BoardFinder, View
+from actum_calibrator.board_views import BoardFinder, View
+from actum_calibrator.grey_images import BlurredError, UnusablePictureError, complaints
+from actum_calibrator.intrinsics import calibration_of, estimate_intrinsics
+from actum_calibrator.view_set import PoorSetError
 from boards import PLACES, Lens, facing, good_poses, photograph
 
 LENS = Lens()
 
 
 def test_the_true_camera_is_found(good_views: list[View]) -> None:
-    found = find_intrinsics(good_views)
+    found = estimate_intrinsics(good_views)
     truth = LENS.intrinsics
     assert found.matrix[0, 0] == pytest.approx(truth[0, 0], rel=0.003)
     assert found.matrix[1, 1] == pytest.approx(truth[1, 1], rel=0.003)
@@ -26,7 +27,7 @@ def test_the_true_camera_is_found(good_views: list[View]) -> None:
 
 
 def test_pixels_where_the_board_was_see_in_the_true_direction(good_views: list[View]) -> None:
-    found = find_intrinsics(good_views)
+    found = estimate_intrinsics(good_views)
     corners = np.vstack([view.corners_px for view in good_views])
     seen = cv2.undistortPoints(corners, found.matrix, found.distortion).reshape(-1, 2)
     true = cv2.undistortPoints(corners, LENS.intrinsics, np.array(LENS.distortion)).reshape(-1, 2)
@@ -35,14 +36,14 @@ def test_pixels_where_the_board_was_see_in_the_true_direction(good_views: list[V
 
 
 def test_the_true_focal_length_lies_within_its_standard_deviations(good_views: list[View]) -> None:
-    found = find_intrinsics(good_views)
+    found = estimate_intrinsics(good_views)
     errors = np.abs(np.diag(found.matrix)[:2] - np.diag(LENS.intrinsics)[:2])
     assert (errors < 4 * found.deviations_px[:2]).all()
     assert (found.deviations_px[:2] < 2).all()
 
 
 def test_the_calibration_says_how_it_was_made(good_views: list[View]) -> None:
-    found = find_intrinsics(good_views)
+    found = estimate_intrinsics(good_views)
     made = calibration_of(found, datetime.date(2026, 3, 1))
     assert made.image_size == LENS.size
     assert made.matrix == pytest.approx(found.matrix, abs=1e-3)
@@ -53,7 +54,7 @@ def test_the_calibration_says_how_it_was_made(good_views: list[View]) -> None:
 
 def reasons(views: list[View]) -> str:
     with pytest.raises(PoorSetError) as refused:
-        find_intrinsics(views)
+        estimate_intrinsics(views)
     return "\n".join(refused.value.reasons)
 
 
@@ -97,7 +98,7 @@ def test_one_picture_at_another_zoom_is_refused_and_named(good_views: list[View]
     zoomed = replace(view, corners_px=centre_px + zoom * (view.corners_px - centre_px))
     views = [*good_views[:place], zoomed, *good_views[place + 1 :]]
     with pytest.raises(PoorSetError, match=f"one picture contradicts the others: view {place};"):
-        find_intrinsics(views)
+        estimate_intrinsics(views)
 
 
 def test_pictures_of_several_sizes_are_refused(good_views: list[View]) -> None:

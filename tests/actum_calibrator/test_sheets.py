@@ -5,9 +5,10 @@ import numpy as np
 import pypdfium2
 import pytest
 
-from actum_calibrator.board import Board, Paper, PatternError, dictionary_of
+from actum_calibrator.board import Board, PatternError, dictionary_of
 from actum_calibrator.board_sheet import board_sheet
 from actum_calibrator.marker_sheet import marker_sheet
+from actum_calibrator.sheet_sizes import SheetSize
 
 DOTS_PER_INCH = 300
 MM_PER_PX = 25.4 / DOTS_PER_INCH
@@ -35,11 +36,11 @@ def sides_mm(page: np.ndarray, family: str) -> dict[int, float]:
 
 
 CASES = [
-    ("DICT_4X4_50", [1, 2, 3], 80.0, Paper.A4, 1),
-    ("DICT_4X4_50", range(6), 80.0, Paper.LETTER, 2),
-    ("DICT_APRILTAG_36h11", [0, 17, 586], 40.0, Paper.A4, 1),
-    ("DICT_6X6_250", range(12), 20.0, Paper.LETTER, 1),
-    ("DICT_5X5_100", [99], 150.0, Paper.A4, 1),
+    ("DICT_4X4_50", [1, 2, 3], 80.0, SheetSize.A4, 1),
+    ("DICT_4X4_50", range(6), 80.0, SheetSize.LETTER, 2),
+    ("DICT_APRILTAG_36h11", [0, 17, 586], 40.0, SheetSize.A4, 1),
+    ("DICT_6X6_250", range(12), 20.0, SheetSize.LETTER, 1),
+    ("DICT_5X5_100", [99], 150.0, SheetSize.A4, 1),
 ]
 
 
@@ -53,21 +54,23 @@ def test_every_marker_is_found_in_true_size(family, ids, size_mm, paper, count) 
 
 
 def test_every_marker_says_its_id_family_and_size() -> None:
-    (text,) = texts(marker_sheet("DICT_4X4_50", [7, 23], 60.0, Paper.A4))
+    (text,) = texts(marker_sheet("DICT_4X4_50", [7, 23], 60.0, SheetSize.A4))
     assert {"id 7", "id 23"} <= set(text.splitlines())
     assert text.splitlines().count("DICT_4X4_50, 60 mm") == 2
 
 
-@pytest.mark.parametrize("paper", list(Paper))
-def test_pages_have_the_paper_s_size_and_ask_not_to_be_scaled(paper: Paper) -> None:
+@pytest.mark.parametrize("paper", list(SheetSize))
+def test_pages_have_the_paper_s_size_and_ask_not_to_be_scaled(paper: SheetSize) -> None:
     pdf = marker_sheet("DICT_4X4_50", [1], 80.0, paper)
     with pypdfium2.PdfDocument(pdf) as document:
         size_mm = [points * 25.4 / 72 for points in document[0].get_size()]
-    assert size_mm == pytest.approx({Paper.A4: (210, 297), Paper.LETTER: (215.9, 279.4)}[paper], abs=0.1)
+    assert size_mm == pytest.approx({SheetSize.A4: (210, 297), SheetSize.LETTER: (215.9, 279.4)}[paper], abs=0.1)
     assert b"/PrintScaling /None" in pdf
 
 
-@pytest.mark.parametrize("pdf", [marker_sheet("DICT_4X4_50", range(9), 80.0, Paper.A4), board_sheet(Board(), Paper.A4)])
+@pytest.mark.parametrize(
+    "pdf", [marker_sheet("DICT_4X4_50", range(9), 80.0, SheetSize.A4), board_sheet(Board(), SheetSize.A4)]
+)
 def test_every_page_has_a_ruler_of_100_mm_and_the_advice(pdf: bytes) -> None:
     for page, text in zip(pages(pdf), texts(pdf), strict=True):
         assert "Measure this: 100 mm" in text
@@ -81,8 +84,8 @@ def longest_run(row: np.ndarray) -> int:
     return int((edges[1::2] - edges[::2]).max(initial=0))
 
 
-@pytest.mark.parametrize("paper", list(Paper))
-def test_the_board_is_found_whole_in_true_size(paper: Paper) -> None:
+@pytest.mark.parametrize("paper", list(SheetSize))
+def test_the_board_is_found_whole_in_true_size(paper: SheetSize) -> None:
     board = Board()
     (page,) = pages(board_sheet(board, paper))
     corners, ids, _, _ = cv2.aruco.CharucoDetector(board.opencv).detectBoard(page)
@@ -93,12 +96,12 @@ def test_the_board_is_found_whole_in_true_size(paper: Paper) -> None:
 
 
 def test_a_family_may_be_named_for_short() -> None:
-    short, whole = (marker_sheet(name, [5], 50.0, Paper.A4) for name in ("apriltag_36h11", "DICT_APRILTAG_36h11"))
+    short, whole = (marker_sheet(name, [5], 50.0, SheetSize.A4) for name in ("apriltag_36h11", "DICT_APRILTAG_36h11"))
     assert short == whole
 
 
 def test_the_same_sheet_is_the_same_file() -> None:
-    assert marker_sheet("DICT_4X4_50", [1], 80.0, Paper.A4) == marker_sheet("DICT_4X4_50", [1], 80.0, Paper.A4)
+    assert marker_sheet("DICT_4X4_50", [1], 80.0, SheetSize.A4) == marker_sheet("DICT_4X4_50", [1], 80.0, SheetSize.A4)
 
 
 REFUSED = [
@@ -115,12 +118,12 @@ REFUSED = [
 @pytest.mark.parametrize(("family", "ids", "size_mm", "reason"), REFUSED)
 def test_what_cannot_be_printed_is_refused_with_what_can(family, ids, size_mm, reason) -> None:
     with pytest.raises(PatternError, match=reason):
-        marker_sheet(family, ids, size_mm, Paper.A4)
+        marker_sheet(family, ids, size_mm, SheetSize.A4)
 
 
 def test_a_board_too_large_for_the_paper_is_refused() -> None:
     with pytest.raises(PatternError, match="does not fit a4"):
-        board_sheet(Board(square_m=0.045), Paper.A4)
+        board_sheet(Board(square_m=0.045), SheetSize.A4)
 
 
 @pytest.mark.parametrize(

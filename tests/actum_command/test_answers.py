@@ -3,13 +3,15 @@
 from collections.abc import Iterator
 
 import pytest
+from rich.text import Text
 from typer.testing import CliRunner
 
 from actum import keys
 from actum.messages import Action, Event, Message, Segment
 from actum.runtime import Received
-from actum_command import answers, marks
+from actum_command import answers
 from actum_command.__main__ import app
+from actum_command.commands import segment_commands
 from empty_messages import action
 from events import event
 
@@ -64,7 +66,7 @@ class Live:
 @pytest.fixture
 def live(monkeypatch: pytest.MonkeyPatch) -> Iterator[Live]:
     client = Live()
-    monkeypatch.setattr(marks, "connect", lambda: client)
+    monkeypatch.setattr(segment_commands, "connect", lambda: client)
     monkeypatch.setattr(answers, "ANSWER_S", 0.1)
     return client
 
@@ -102,14 +104,13 @@ def test_where_no_answer_comes_it_is_said_and_the_switch_goes_on(live: Live) -> 
     assert "toggle-now-2: push cup" in said
 
 
-def test_who_does_not_wait_is_told_with_the_next_answer(live: Live, capsys: pytest.CaptureFixture[str]) -> None:
+def test_who_does_not_wait_is_told_with_the_next_answer(live: Live) -> None:
     switch = answers.Answers(live)  # type: ignore[arg-type]
-    switch.say("a", interrupted=lambda: True)
-    assert capsys.readouterr().out == ""
+    assert list(switch.until("a", interrupted=lambda: True)) == []
     live.answer("a", Event)
     live.answer("b", Event)
-    switch.say("b", interrupted=lambda: False)
-    assert capsys.readouterr().out == "a: push cup\nb: push cup\n"
+    told = switch.until("b", interrupted=lambda: False)
+    assert [Text.from_markup(line).plain for line in told] == ["a: push cup", "b: push cup"]
 
 
 def test_an_action_that_is_left_open_is_ended_and_answered(live: Live) -> None:

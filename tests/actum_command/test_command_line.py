@@ -14,9 +14,17 @@ from actum import __version__
 from actum.recording import Recorder
 from actum.runtime import RouterUnreachableError
 from actum.settings import ServiceSettings
-from actum_command import context, demo, learning, marks, processes, system
+from actum_command import processes
 from actum_command.__main__ import app
-from actum_command.learning import preset_named
+from actum_command.commands import (
+    demo_command,
+    recording_options,
+    segment_commands,
+    system_commands,
+    terminal,
+    training_commands,
+)
+from actum_command.preset_settings import preset_named
 from people import FRAME_NS
 from performers import mark, performance
 from som_classifier.attention import PostureInput
@@ -120,7 +128,7 @@ def test_a_model_alone_is_nothing_to_evaluate() -> None:
 def test_a_file_is_not_passed_over_by_a_source_that_plays_none(
     source: str, remedy: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(system, "refuse_taken", lambda _: None)
+    monkeypatch.setattr(system_commands, "refuse_taken", lambda _: None)
     assert remedy in refusal("up", "--source", source, "--path", "a.mcap")
 
 
@@ -201,8 +209,8 @@ def test_where_nothing_can_be_written_nothing_is_trained_or_evaluated(
 ) -> None:
     (tmp_path / "folder").mkdir()
     (tmp_path / "file").touch()
-    monkeypatch.setattr(learning, "load_model", lambda _: pytest.fail("the model was loaded"))
-    monkeypatch.setattr(learning, "select", lambda *_: pytest.fail("the recordings were opened"))
+    monkeypatch.setattr(training_commands, "load_model", lambda _: pytest.fail("the model was loaded"))
+    monkeypatch.setattr(recording_options, "select", lambda *_: pytest.fail("the recordings were opened"))
     assert place in refusal("evaluate", "m.npz", "a.mcap", "--json", str(tmp_path / place))
     assert place in refusal("train", "a.mcap", "-o", str(tmp_path / place))
 
@@ -232,8 +240,8 @@ def test_settings_that_cannot_be_used_end_a_command_with_one_line(
 def served(monkeypatch: pytest.MonkeyPatch) -> list[str | None]:
     """The endpoints that a router was to listen on, without any router."""
     endpoints: list[str | None] = []
-    monkeypatch.setattr(system, "serve_router", lambda endpoint, *_: endpoints.append(endpoint))
-    monkeypatch.setattr(system, "stop_on_signals", lambda: None)
+    monkeypatch.setattr(system_commands, "serve_router", lambda endpoint, *_: endpoints.append(endpoint))
+    monkeypatch.setattr(system_commands, "stop_on_signals", lambda: None)
     return endpoints
 
 
@@ -273,11 +281,11 @@ def test_a_mark_that_is_none_is_refused_without_a_router(arguments: list[str], c
 def supervised(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The programs that would run beside the router, by name, where none does."""
     names: list[str] = []
-    monkeypatch.setattr(system, "refuse_taken", lambda _: None)
-    monkeypatch.setattr(system, "stop_on_signals", lambda: None)
-    monkeypatch.setattr(system, "_wait_for_router", lambda *_: None)
-    monkeypatch.setattr(system, "supervise", lambda _, programs, __: names.extend(p.name for p in programs))
-    monkeypatch.setattr(system.Supervisor, "start", lambda *_: None)
+    monkeypatch.setattr(system_commands, "refuse_taken", lambda _: None)
+    monkeypatch.setattr(system_commands, "stop_on_signals", lambda: None)
+    monkeypatch.setattr(system_commands, "wait_for_router", lambda *_: None)
+    monkeypatch.setattr(system_commands, "supervise", lambda _, programs, __: names.extend(p.name for p in programs))
+    monkeypatch.setattr(system_commands.Supervisor, "start", lambda *_: None)
     return names
 
 
@@ -311,8 +319,8 @@ def test_a_system_that_has_no_model_says_so_when_it_starts(tmp_path: Path) -> No
 
 
 def test_a_switch_that_is_left_leaves_the_line_to_the_shell(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(marks, "connect", lambda: nullcontext(None))
-    monkeypatch.setattr(marks, "Answers", lambda _: None)
+    monkeypatch.setattr(segment_commands, "connect", lambda: nullcontext(None))
+    monkeypatch.setattr(segment_commands, "Answers", lambda _: None)
     left = CliRunner().invoke(app, ["segment", "toggle"], input="")
     assert left.exit_code == 0
     assert left.stdout == "Enter starts action 1, Ctrl-D leaves \n"
@@ -328,8 +336,8 @@ def test_who_waits_for_a_router_says_so_once(
         if len(tried) == 1:
             raise RouterUnreachableError(here.connect)
 
-    monkeypatch.setattr(context, "Client", opened)
-    context.connect_whenever()
+    monkeypatch.setattr(terminal, "Client", opened)
+    terminal.connect_whenever()
     assert tried == [0, float("inf")]
     assert capsys.readouterr().out == f"no router at {ServiceSettings().connect} yet: waiting for it\n"
 
@@ -349,9 +357,9 @@ def test_a_demo_ends_where_it_is_while_it_learns_and_leaves_no_files(
     number: signal.Signals, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setattr(demo, "refuse_taken", lambda _: None)
-    monkeypatch.setattr(demo, "_train", lambda *_: signal.raise_signal(number))
-    monkeypatch.setattr(demo, "_baseline", lambda *_: pytest.fail("it went on"))
+    monkeypatch.setattr(demo_command, "refuse_taken", lambda _: None)
+    monkeypatch.setattr(demo_command, "_train", lambda *_: signal.raise_signal(number))
+    monkeypatch.setattr(demo_command, "nearest_neighbour_baseline", lambda *_: pytest.fail("it went on"))
     interrupted = CliRunner().invoke(app, ["demo"])
     assert isinstance(interrupted.exception, SystemExit), interrupted.exception
     assert interrupted.exit_code == 128 + number

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from actum_command import models
 from actum_command.__main__ import app
+from actum_command.commands import pose_model_commands
 from actum_command.model_download import FetchError, Published, fetch
 from live import free_endpoint
 
@@ -105,7 +105,7 @@ def test_the_command_writes_where_the_gateway_looks_and_fetches_nothing_twice(
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     monkeypatch.setattr("sys.platform", "linux")
     with serving(CONTENT) as url:
-        monkeypatch.setattr(models, "POSE", published(url))
+        monkeypatch.setattr(pose_model_commands, "POSE_MODEL", published(url))
         first = CliRunner().invoke(app, ["models", "fetch", "--url", url])
     assert first.exit_code == 0, first.output
     assert (tmp_path / "actum" / "pose_landmarker_full.task").read_bytes() == CONTENT

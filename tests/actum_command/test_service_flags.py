@@ -5,9 +5,10 @@ from typer.testing import CliRunner
 
 from actum.command_line import from_command_line
 from actum.settings import ServiceSettings
-from actum_command import processes, system
+from actum_command import processes
 from actum_command.__main__ import app
-from actum_command.service_flags import DECLARED
+from actum_command.commands import system_commands
+from actum_command.service_settings import DECLARED
 from actum_command.supervising import Program
 
 BY_NAME = dict[str, list[str]]
@@ -21,11 +22,11 @@ def started(monkeypatch: pytest.MonkeyPatch) -> BY_NAME:
     def supervise(_: object, programs: list[Program], __: object) -> None:
         arguments.update({program.name: list(program.arguments) for program in programs})
 
-    monkeypatch.setattr(system, "refuse_taken", lambda _: None)
-    monkeypatch.setattr(system, "stop_on_signals", lambda: None)
-    monkeypatch.setattr(system, "_wait_for_router", lambda *_: None)
-    monkeypatch.setattr(system, "supervise", supervise)
-    monkeypatch.setattr(system.Supervisor, "start", lambda *_: None)
+    monkeypatch.setattr(system_commands, "refuse_taken", lambda _: None)
+    monkeypatch.setattr(system_commands, "stop_on_signals", lambda: None)
+    monkeypatch.setattr(system_commands, "wait_for_router", lambda *_: None)
+    monkeypatch.setattr(system_commands, "supervise", supervise)
+    monkeypatch.setattr(system_commands.Supervisor, "start", lambda *_: None)
     return arguments
 
 
@@ -73,6 +74,11 @@ def test_a_service_understands_what_it_is_told(started: BY_NAME, monkeypatch: py
             ("--source", "none", "--people", "2"),
             "--people is a setting of sensor_gateway, which --source none does not",
         ),
+        (
+            ("--people", "3"),
+            "scene_simulator takes no --people: it is a setting of sensor_gateway, which --source simulator does not",
+        ),
+        (("--camera", "0", "--actor", "3"), "--actor is a setting of scene_simulator, which --source camera does not"),
         (("--source", "simulator", "--camera", "1"), "source simulator takes no --camera"),
     ],
 )
@@ -85,6 +91,11 @@ def test_without_any_the_simulated_scene_is_started(started: BY_NAME) -> None:
     up()
     assert set(started) == {"scene_simulator", *processes.SERVICES, "scene"}
     assert started["scene_simulator"] == []
+
+
+def test_the_simulated_scene_is_told_its_settings(started: BY_NAME) -> None:
+    up("--actor", "3", "--seed", "2", "--repetitions", "1", "--image-hz", "0")
+    assert started["scene_simulator"] == ["--actor=3", "--seed=2", "--repetitions=1", "--image-hz=0"]
 
 
 def test_every_setting_of_every_service_stands_in_the_help() -> None:

@@ -13,8 +13,8 @@ import pytest
 import typer
 
 from actum.runtime.serving import TAKEN, UNUSABLE
+from actum_command.commands.system_commands import supervise
 from actum_command.supervising import ELSEWHERE_S, Program, Supervisor, UnusableError
-from actum_command.system import supervise
 from live import free_endpoint, wait_until
 
 
@@ -27,7 +27,7 @@ def ending(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[type[Pro
 
 def outcome(supervisor: Supervisor) -> list[str]:
     lines: list[str] = []
-    wait_until(lambda: bool(lines) or bool(lines.extend(supervisor.check())), "the supervisor notices")
+    wait_until(lambda: bool(lines) or bool(lines.extend(supervisor.restart_ended())), "the supervisor notices")
     return lines
 
 
@@ -45,10 +45,10 @@ def test_what_runs_elsewhere_is_tried_again_now_and_then(
         assert outcome(supervisor) == ["worker runs elsewhere, and here again once it has ended there"]
         now_s = time.monotonic()
         monkeypatch.setattr(time, "monotonic", lambda: now_s + ELSEWHERE_S - 5)
-        assert supervisor.check() == []
+        assert supervisor.restart_ended() == []
         assert (tmp_path / "log").read_text().count("\n") == 1
         monkeypatch.setattr(time, "monotonic", lambda: now_s + ELSEWHERE_S + 5)
-        assert supervisor.check() == []
+        assert supervisor.restart_ended() == []
         monkeypatch.undo()
         wait_until(lambda: (tmp_path / "log").read_text().count("\n") == 2, "it was started again")
 

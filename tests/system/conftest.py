@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from actum.recording import Recording
-from actum_command.scene import write_examples
+from actum_command.scene_marks import write_examples
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train
 from live import System, system

@@ -154,7 +154,7 @@ def _read_in_place(pixels: Pixels, markers: Sequence[Marker], family: Family) ->
     wrong = (_binarised(levels) != patterns).sum(axis=(1, 2))
     shows_code = (wrong <= family.corrected) & (_correlation(levels, patterns) >= MIN_CORRELATION)
     (index,) = np.nonzero(shows_code & found.converged & (found.covered <= MAX_COVERED_CLEAR))
-    return [_moved(*before[at], found, at, int(wrong[at])) for at in index.tolist()]
+    return [_moved(before[at][0], before[at][1], found, at, int(wrong[at])) for at in index.tolist()]
 
 
 def _moved(marker: Marker, start: AlignmentStart, found: Alignment, at: int, wrong: int) -> Marker:

@@ -44,8 +44,8 @@ LOG_SCALE_NOISE = 0.02
 """How far the logarithm of the scale may be from the expected one: what seems to be further off is hidden in part."""
 LOG_SCALE_PER_S2 = 5.0
 """How that grows with time, as an acceleration: arms reach that towards the camera."""
-SAME_PLACE_SIDES = 0.5
-"""Distance, in sides, within which another marker lies on a marker's place."""
+OVERLAP_SIDES = 0.5
+"""Distance of centres, in sides, below which another marker lies on a marker's place."""
 
 
 @dataclass(frozen=True)
@@ -122,9 +122,7 @@ class OccluderTracker:
 
 def _lies_under(last: LastDetection, visible: Sequence[Marker]) -> bool:
     """Tell whether another marker covers a marker's place: an object lies on it, and no hand."""
-    return any(
-        abs(complex(*each.centre_px) - last.centre_px) < SAME_PLACE_SIDES * last.marker.side_px for each in visible
-    )
+    return any(abs(complex(*each.centre_px) - last.centre_px) < OVERLAP_SIDES * last.marker.side_px for each in visible)
 
 
 def _tracked(stamp_ns: int, pixels: Pixels, last: LastDetection, occluder: Occluder | None) -> Occluder | None:

@@ -1,0 +1,191 @@
+"""Bundle adjustment of two cameras: their transform and the board's pose in every pair, to the corners in all images.
+
+A pose (6) is a rotation vector (rad) and a translation (m); `b_from_a` maps points of frame a to frame b.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from actum.arrays import Array
+from actum.calibration import Calibration
+from actum_calibrator.board_views import View
+from actum_calibrator.pairs import Pair
+
+ITERATIONS = 60  # far more than it takes from a good start: ten or so
+SMALLEST_STEP = 1e-9  # rad and m: below what any board determines
+DAMPING = 1e-3  # of the first step, relative to the diagonal of the normal equations, as Marquardt has it
+LEAST_DAMPING = 1e-12  # from here on a step is Gauss and Newton's
+MOST_DAMPING = 1e9  # where even so short a step does not lower the cost, it is at its minimum
+
+
+@dataclass(frozen=True)
+class CameraModel:
+    """A camera's K (3, 3) and distortion, as OpenCV takes them."""
+
+    matrix: Array
+    distortion: Array
+
+    @classmethod
+    def of(cls, calibration: Calibration) -> "CameraModel":
+        """Take them from a calibration."""
+        return cls(calibration.matrix, np.array(calibration.distortion, dtype=np.float64))
+
+    def reprojection_errors_px(self, view: View, camera_from_board: Array) -> Array:
+        """Return corners as projected minus as seen (n, 2), with the board at a pose (6)."""
+        projected, _ = self._project(view, camera_from_board)
+        errors: Array = projected - view.corners_px
+        return errors
+
+    def linearised(self, view: View, camera_from_board: Array) -> tuple[Array, Array]:
+        """Return the same errors, flat (2n), and their Jacobian by the pose (2n, 6)."""
+        projected, jacobian = self._project(view, camera_from_board)
+        return (projected - view.corners_px).ravel(), jacobian[:, :6]
+
+    def pose_candidates(self, view: View) -> list[Array]:
+        """Return the one or two poses (6) that a plane can have here, by IPPE (Collins and Bartoli 2014), refined."""
+        _, rotations, positions, _ = cv2.solvePnPGeneric(
+            view.corners_m, view.corners_px, self.matrix, self.distortion, flags=cv2.SOLVEPNP_IPPE
+        )
+        found = [
+            self._refined(view, np.asarray(rotation), np.asarray(position))
+            for rotation, position in zip(rotations, positions, strict=True)
+        ]
+        return [pose for pose in found if np.isfinite(pose).all()]
+
+    def _refined(self, view: View, rotation: Array, position: Array) -> Array:
+        refined = cv2.solvePnPRefineLM(
+            view.corners_m, view.corners_px, self.matrix, self.distortion, rotation, position
+        )
+        return np.concatenate([np.ravel(part) for part in refined])
+
+    def _project(self, view: View, camera_from_board: Array) -> tuple[Array, Array]:
+        """Return projected corners (n, 2) and OpenCV's Jacobian, by the pose and then by the camera's parameters."""
+        rotation, position = camera_from_board[:3], camera_from_board[3:]
+        projected, jacobian = cv2.projectPoints(view.corners_m, rotation, position, self.matrix, self.distortion)
+        return np.asarray(projected, dtype=np.float64).reshape(-1, 2), np.asarray(jacobian, dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class BundleAdjustment:
+    """The outcome: poses (6), each pair's RMS reprojection error, and the covariance (6, 6) of the transform."""
+
+    people_from_markers: Array
+    markers_from_boards: list[Array]
+    rms_px: list[float]
+    covariance: Array
+
+
+class BundleAdjuster:
+    """Levenberg-Marquardt over the transform between the cameras and the board's pose in every pair.
+
+    Each pair's errors count by the weight w = 1 / (1 + (rms / `scale_px`)^2), Cauchy's, so that a pair that
+    contradicts the others does not draw them along. The parameters (6 + 6 pairs) are the transform from the marker
+    camera to the people camera, then the pose of each pair's board in the marker camera.
+    """
+
+    def __init__(self, markers: CameraModel, people: CameraModel, pairs: Sequence[Pair], scale_px: float) -> None:
+        self._markers, self._people, self._pairs = markers, people, pairs
+        self._scale_px = scale_px
+
+    def adjust(self, people_from_markers: Array, markers_from_boards: Sequence[Array]) -> BundleAdjustment:
+        """Adjust from a first guess, poses (6)."""
+        parameters, damping = np.concatenate([people_from_markers, *markers_from_boards]), DAMPING
+        cost = self._cost(parameters)
+        for _ in range(ITERATIONS):
+            normal, gradient = self._normal_equations(parameters)
+            step = np.linalg.solve(normal + damping * np.diag(np.diag(normal)), -gradient)
+            if (tried := self._cost(parameters + step)) < cost:
+                parameters, cost, damping = parameters + step, tried, max(damping / 10, LEAST_DAMPING)
+            else:
+                damping *= 10
+            if np.abs(step).max() < SMALLEST_STEP or damping > MOST_DAMPING:
+                break
+        return self._outcome(parameters)
+
+    def _outcome(self, parameters: Array) -> BundleAdjustment:
+        normal, _ = self._normal_equations(parameters)
+        rms = [math.sqrt(_mean_square(errors)) for errors in self._errors(parameters)]
+        count = 2 * sum(len(pair.markers.ids) + len(pair.people.ids) for pair in self._pairs)
+        weighted = zip(self._weights(parameters), self._errors(parameters), strict=True)
+        variance = sum(weight * errors.dot(errors) for weight, errors in weighted) / max(1, count - len(parameters))
+        covariance = np.linalg.inv(normal)[:6, :6] * variance
+        return BundleAdjustment(parameters[:6], list(parameters[6:].reshape(-1, 6)), rms, covariance)
+
+    def _weights(self, parameters: Array) -> list[float]:
+        return [1 / (1 + _mean_square(errors) / self._scale_px**2) for errors in self._errors(parameters)]
+
+    def _cost(self, parameters: Array) -> float:
+        """Return Cauchy's loss: the sum of n s^2 log(1 + rms^2 / s^2) over the pairs."""
+        scale = self._scale_px**2
+        return float(
+            sum(len(errors) / 2 * scale * np.log1p(_mean_square(errors) / scale) for errors in self._errors(parameters))
+        )
+
+    def _errors(self, parameters: Array) -> list[Array]:
+        """Return each pair's reprojection errors in both images, flat."""
+        people_from_markers, boards = parameters[:6], parameters[6:].reshape(-1, 6)
+        return [
+            np.concatenate(
+                [
+                    self._markers.reprojection_errors_px(pair.markers, board),
+                    self._people.reprojection_errors_px(pair.people, compose(people_from_markers, board)),
+                ]
+            ).ravel()
+            for pair, board in zip(self._pairs, boards, strict=True)
+        ]
+
+    def _normal_equations(self, parameters: Array) -> tuple[Array, Array]:
+        """Return the weighted J^T J (p, p) and J^T e (p) of all p parameters; a pair involves its own board alone."""
+        normal, gradient = np.zeros((len(parameters), len(parameters))), np.zeros(len(parameters))
+        for i, weight in enumerate(self._weights(parameters)):
+            involved = np.r_[0:6, 6 + 6 * i : 12 + 6 * i]
+            errors, jacobian = self._linearised(parameters[:6], parameters[involved[6:]], self._pairs[i])
+            normal[np.ix_(involved, involved)] += weight * jacobian.T @ jacobian
+            gradient[involved] += weight * jacobian.T @ errors
+        return normal, gradient
+
+    def _linearised(self, people_from_markers: Array, markers_from_board: Array, pair: Pair) -> tuple[Array, Array]:
+        """Return one pair's errors (m), and their Jacobian (m, 12) by the transform and by the board's pose."""
+        people_from_board, by_transform, by_board = compose_with_jacobians(people_from_markers, markers_from_board)
+        in_markers, markers_jacobian = self._markers.linearised(pair.markers, markers_from_board)
+        in_people, people_jacobian = self._people.linearised(pair.people, people_from_board)
+        jacobian = np.block(
+            [
+                [np.zeros((len(in_markers), 6)), markers_jacobian],
+                [people_jacobian @ by_transform, people_jacobian @ by_board],
+            ]
+        )
+        return np.concatenate([in_markers, in_people]), jacobian
+
+
+def compose(b_from_a: Array, a_from_board: Array) -> Array:
+    """Chain two poses (6): b_from_board (6)."""
+    return compose_with_jacobians(b_from_a, a_from_board)[0]
+
+
+def compose_with_jacobians(b_from_a: Array, a_from_board: Array) -> tuple[Array, Array, Array]:
+    """Chain two poses (6), with the Jacobians (6, 6) by the first and by the second argument."""
+    second, first = b_from_a, a_from_board
+    r, t, r_r1, r_t1, r_r2, r_t2, t_r1, t_t1, t_r2, t_t2 = cv2.composeRT(first[:3], first[3:], second[:3], second[3:])
+    by_second, by_first = np.block([[r_r2, r_t2], [t_r2, t_t2]]), np.block([[r_r1, r_t1], [t_r1, t_t1]])
+    return np.concatenate([np.ravel(r), np.ravel(t)]), by_second, by_first
+
+
+def invert(pose: Array) -> Array:
+    """Return the inverse (6) of a pose (6)."""
+    rotation, _ = cv2.Rodrigues(pose[:3])
+    return np.concatenate([-pose[:3], -rotation.T @ pose[3:]])
+
+
+def rms_px(errors_px: Array) -> float:
+    """Return the root mean square length of errors (n, 2)."""
+    return math.sqrt(_mean_square(errors_px.ravel()))
+
+
+def _mean_square(errors: Array) -> float:
+    """Return the mean squared length of flat errors (2n)."""
+    return float(errors.dot(errors)) / (len(errors) / 2)

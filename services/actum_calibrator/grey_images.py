@@ -1,0 +1,107 @@
+"""Grey levels from image files and messages; what is huge or broken is refused before it costs anything."""
+
+import io
+import struct
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import cv2
+import imagesize
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.messages import Image
+
+Pixels = NDArray[np.uint8]
+"""Grey levels (height, width)."""
+
+LARGEST_PIXELS = 10_000 * 10_000  # 100 MB of grey levels; no camera has more
+
+
+class UnusablePictureError(ValueError):
+    """A picture that shows no board to calibrate with: `name` tells which, the message why."""
+
+    def __init__(self, name: str, problem: str) -> None:
+        super().__init__(f"{name}: {problem}")
+        self.name = name
+
+
+class BlurredError(UnusablePictureError):
+    """A picture too blurred to calibrate with."""
+
+
+def read_grey(path: Path) -> Pixels:
+    """Read an image file as grey levels of shape (height, width).
+
+    Raises:
+        UnusablePictureError: it cannot be read, is no image or a huge one.
+    """
+    try:
+        return decode_grey(path.read_bytes(), path.name)
+    except OSError as error:
+        raise UnusablePictureError(path.name, f"cannot be read: {error.strerror}") from None
+
+
+def grey_from_message(image: Image, name: str) -> Pixels:
+    """Decode a colour image message to grey levels (height, width).
+
+    Raises:
+        UnusablePictureError: it is a depth image, broken, huge, or not of the size it names.
+    """
+    if image.format == "jpeg":
+        pixels = decode_grey(image.data, name)
+        if pixels.shape != (image.height, image.width):
+            raise UnusablePictureError(name, "has another size than its message says")
+        return pixels
+    if image.format != "bgr8" or len(image.data) != image.width * image.height * 3:
+        raise UnusablePictureError(name, f"is no complete colour image of {image.width}x{image.height}")
+    colours = np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
+    return cv2.cvtColor(colours, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
+
+
+def decode_grey(data: bytes, name: str) -> Pixels:
+    """Decode an image, its header first, to grey levels (height, width); `name` is for the complaint.
+
+    Raises:
+        UnusablePictureError: it is no image, broken or huge.
+    """
+    try:
+        width, height = imagesize.get(io.BytesIO(data), exif_rotation=False)
+    except (ValueError, struct.error):
+        width, height = -1, -1
+    if width <= 0 or height <= 0:
+        raise UnusablePictureError(name, "is no image")
+    if width * height > LARGEST_PIXELS:
+        raise UnusablePictureError(name, f"is too large ({width}x{height})")
+    pixels = _decoded(data)
+    if pixels is None:
+        raise UnusablePictureError(name, "is damaged")
+    return pixels.astype(np.uint8, copy=False)
+
+
+def _decoded(data: bytes) -> NDArray[Any] | None:
+    flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION
+    try:
+        return cv2.imdecode(np.frombuffer(data, dtype=np.uint8), flags)
+    except cv2.error:  # a header of measures that OpenCV takes for impossible
+        return None
+
+
+def complaints(unusable: Sequence[UnusablePictureError]) -> list[str]:
+    """Sum up what is wrong with pictures, and what to do."""
+    blurred = sum(isinstance(error, BlurredError) for error in unusable)
+    others = len(unusable) - blurred
+    said = []
+    if blurred:
+        said.append(f"{_pictures(blurred)} blurred: hold the board still, give it more light, focus the lens")
+    if others:
+        said.append(
+            f"{_pictures(others)} without a usable board: is it the board that --board, --square-mm, --marker-mm and "
+            "--family describe, near enough, whole and without glare?"
+        )
+    return said
+
+
+def _pictures(count: int) -> str:
+    return "1 picture is" if count == 1 else f"{count} pictures are"

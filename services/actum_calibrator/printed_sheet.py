@@ -1,0 +1,94 @@
+"""What every printed sheet shares: text, a ruler to measure, cells as vector rectangles. Lengths are in mm."""
+
+import io
+from collections.abc import Callable, Iterable, Sequence
+
+from reportlab.lib.units import mm
+from reportlab.pdfbase.pdfmetrics import stringWidth
+from reportlab.pdfgen.canvas import Canvas
+
+from actum.arrays import Mask
+
+EDGE_MM = 5.0  # what common printers cannot reach
+RULER_MM = 100  # long enough that half a millimetre, which the eye can tell, is half a per cent
+ADVICE = ("Print at 100 % (“actual size”),", "without “fit to page”.")
+REGULAR = "Helvetica"  # of the fonts that every PDF viewer has
+BOLD = "Helvetica-Bold"
+TICK_MM = 0.1  # thickness of the ruler's lines
+
+
+class Sheet:
+    """One page to draw on; y counts from the paper's lower edge."""
+
+    def __init__(self, canvas: Canvas, width_mm: float, height_mm: float) -> None:
+        self._canvas = canvas
+        self.width_mm = width_mm
+        self.height_mm = height_mm
+
+    def line(self, start: tuple[float, float], end: tuple[float, float], thickness: float) -> None:
+        """Draw a straight line."""
+        self._canvas.setLineWidth(thickness * mm)
+        self._canvas.line(start[0] * mm, start[1] * mm, end[0] * mm, end[1] * mm)
+
+    def text(self, text: str, left: float, bottom: float, points: float, font: str = REGULAR) -> None:
+        """Write one line."""
+        self._canvas.setFont(font, points)
+        self._canvas.drawString(left * mm, bottom * mm, text)
+
+    def centred(self, text: str, middle: float, bottom: float, points: float) -> None:
+        """Write one line around a middle."""
+        self._canvas.setFont(REGULAR, points)
+        self._canvas.drawCentredString(middle * mm, bottom * mm, text)
+
+    def cells(self, black: Mask, left: float, top: float, cell: float) -> None:
+        """Fill the black cells (rows, columns) as one path, so that no renderer leaves hair lines between them."""
+        path = self._canvas.beginPath()
+        for row, blacks in enumerate(black.tolist()):
+            for start, end in _runs(blacks):
+                bottom = (top - (row + 1) * cell) * mm
+                path.rect((left + start * cell) * mm, bottom, (end - start) * cell * mm, cell * mm)
+        self._canvas.drawPath(path, stroke=0, fill=1)
+
+    def ruler(self, left: float, bottom: float) -> None:
+        """Draw 100 mm to measure, numbered below, with the advice to the right of it."""
+        for tick in range(RULER_MM + 1):
+            height = 4.0 if tick % 10 == 0 else 2.8 if tick % 5 == 0 else 1.8
+            self.line((left + tick, bottom), (left + tick, bottom + height), TICK_MM)
+            if tick % 10 == 0:
+                self.centred(str(tick), left + tick, bottom - 2.6, 6)
+        ends = TICK_MM / 2
+        self.line((left - ends, bottom), (left + RULER_MM + ends, bottom), 2 * TICK_MM)
+        beside = left + RULER_MM + 7
+        self.text("Measure this: 100 mm", beside, bottom + 2.2, 9, BOLD)
+        for row, advice in enumerate(ADVICE):
+            self.text(advice, beside, bottom - 1.6 - 3.4 * row, 8)
+
+
+def document(size_mm: tuple[float, float], title: str, drawers: Sequence[Callable[[Sheet], None]]) -> bytes:
+    """Write a PDF, one page for each drawer; viewers are told not to scale it. The same pages give the same bytes."""
+    file = io.BytesIO()
+    canvas = Canvas(file, pagesize=(size_mm[0] * mm, size_mm[1] * mm), invariant=1)
+    canvas.setTitle(title)
+    canvas.setAuthor("actum")
+    canvas.setViewerPreference("PrintScaling", "None")
+    for draw in drawers:
+        draw(Sheet(canvas, *size_mm))
+        canvas.showPage()
+    canvas.save()
+    return file.getvalue()
+
+
+def points_that_fit(text: str, width_mm: float, font: str, largest: float) -> float:
+    """Return the type size, at most the largest, at which a text is no wider than this."""
+    return float(min(largest, largest * width_mm * mm / stringWidth(text, font, largest)))
+
+
+def _runs(cells: list[bool]) -> Iterable[tuple[int, int]]:
+    """Yield where runs of True start and end."""
+    start = None
+    for place, black in enumerate([*cells, False]):
+        if black and start is None:
+            start = place
+        elif not black and start is not None:
+            yield start, place
+            start = None

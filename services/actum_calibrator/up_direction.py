@@ -1,0 +1,124 @@
+"""Which way is up for a camera, from one person who stands upright before it."""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from actum.arrays import Array
+from actum.messages import Joint, Skeleton
+from actum.node import SECOND_NS
+from actum.skeletons import INDEX
+
+SPAN_S = 2  # how long one stands: longer than a slow sway of the body
+SPAN_NS = SPAN_S * SECOND_NS
+FEWEST_FRAMES = 10  # in these two seconds: from fewer the sway cannot be told
+LONGEST_GAP_NS = SECOND_NS // 2  # without a frame: after it one may have moved
+MOST_SWAY_DEG = 1.5  # root mean square; who stands still sways by less, who shifts their weight by more
+MOST_BEND_DEG = 20.0  # between shins, thighs and trunk; a straight body with the noise of joints has less
+STAY = f"stay like that for {SPAN_S} seconds"
+_LEGS = ("left_hip", "right_hip", "left_knee", "right_knee", "left_foot", "right_foot")
+
+
+@dataclass(frozen=True)
+class UpDirection:
+    """Up as a unit vector (3) in the camera's frame, and by how much the body swayed about it (RMS)."""
+
+    in_camera: tuple[float, float, float]
+    sway_deg: float
+
+    @property
+    def pitch_deg(self) -> float:
+        """By how much the camera looks up; negative is down."""
+        return math.degrees(math.asin(self.in_camera[2]))
+
+    @property
+    def roll_deg(self) -> float:
+        """By how much the camera is turned clockwise about its line of sight."""
+        return math.degrees(math.atan2(-self.in_camera[0], -self.in_camera[1]))
+
+
+class UpDirectionEstimator:
+    """Takes skeletons until one person has stood straight and still for `SPAN_S`, by their stamps, without a gap.
+
+    Attributes:
+        instruction: what is still to be done, until then.
+        found: which way is up, then.
+    """
+
+    def __init__(self) -> None:
+        self.instruction = "stand upright, arms down, the whole body in view"
+        self.found: UpDirection | None = None
+        self._axes: deque[tuple[int, Array]] = deque()
+        self._who: tuple[str, int] | None = None
+
+    def offer(self, frame: Skeleton) -> None:
+        """Take the next frame."""
+        problem, axis = _axis(frame)
+        if axis is None:
+            self.instruction = problem
+            self._axes.clear()
+            return
+        self._keep(frame.stamp_ns, (frame.session_id, frame.agents[0].agent), axis)
+        self.instruction = STAY
+        if len(self._axes) >= FEWEST_FRAMES and self._axes[-1][0] - self._axes[0][0] >= SPAN_NS:
+            self._judge()
+
+    def _keep(self, stamp_ns: int, who: tuple[str, int], axis: Array) -> None:
+        """Add a body's axis (3,), after a gap or of somebody else as the first; drop those older than the span."""
+        if self._axes and not (who == self._who and 0 < stamp_ns - self._axes[-1][0] <= LONGEST_GAP_NS):
+            self._axes.clear()
+        self._who = who
+        self._axes.append((stamp_ns, axis))
+        while len(self._axes) > FEWEST_FRAMES and stamp_ns - self._axes[1][0] >= SPAN_NS:
+            self._axes.popleft()
+
+    def _judge(self) -> None:
+        """Average the axes, where the body was still."""
+        axes = np.array([axis for _, axis in self._axes])
+        mean = axes.mean(axis=0)
+        up = mean / np.linalg.norm(mean)
+        sway_deg = math.degrees(float(np.sqrt(np.square(axes - up).sum(axis=1).mean())))
+        if sway_deg > MOST_SWAY_DEG:
+            self.instruction = f"stand still: the body sways by more than {MOST_SWAY_DEG:g} degrees"
+        else:
+            self.found = UpDirection((float(up[0]), float(up[1]), float(up[2])), sway_deg)
+
+
+def _axis(frame: Skeleton) -> tuple[str, Array | None]:
+    """Return the direction from the feet to the neck (3,), or why there is none."""
+    if not frame.valid or not frame.agents:
+        return f"nobody is seen{f': {frame.reason}' if frame.reason else ''}", None
+    if len(frame.agents) > 1:
+        return f"{len(frame.agents)} people are seen: one must be alone", None
+    joints = frame.agents[0].joints
+    known = {name: _point(joints[INDEX[name]]) for name in ("neck", *_LEGS)}
+    unseen = [name for name, point in known.items() if point is None]
+    if unseen:
+        return f"not seen: {', '.join(unseen)}; step back, or tilt the camera", None
+    return _straight({name: point for name, point in known.items() if point is not None})
+
+
+def _straight(points: dict[str, Array]) -> tuple[str, Array | None]:
+    """Return the direction from the feet to the neck (3,), or why it is not that of a straight body."""
+    hips, knees, feet = ((points[f"left_{name}"] + points[f"right_{name}"]) / 2 for name in ("hip", "knee", "foot"))
+    parts = [_unit(to - start) for start, to in ((feet, knees), (knees, hips), (hips, points["neck"]))]
+    bend_deg = max(_angle_deg(parts[0], parts[1]), _angle_deg(parts[1], parts[2]))
+    if not bend_deg <= MOST_BEND_DEG:
+        return f"stand straight: the body is bent by more than {MOST_BEND_DEG:g} degrees", None
+    return "", _unit(points["neck"] - feet)
+
+
+def _point(joint: Joint) -> Array | None:
+    return None if joint is None or not all(map(math.isfinite, joint)) else np.array(joint)
+
+
+def _unit(vector: Array) -> Array:
+    """Return the direction (3,) of a vector (3,), NaN where it has no length."""
+    length = float(np.linalg.norm(vector))
+    return vector / length if length else np.full(3, math.nan)
+
+
+def _angle_deg(one: Array, other: Array) -> float:
+    return math.degrees(math.acos(float(np.clip(one @ other, -1.0, 1.0))))

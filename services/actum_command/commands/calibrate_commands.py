@@ -1,0 +1,228 @@
+"""`actum calibrate`: a camera's intrinsics, where one camera is seen from another, and how one is tilted."""
+
+import datetime
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+
+from actum.calibration import Calibration, CalibrationError
+from actum.keys import CHUNK
+from actum.runtime import stop_on_signals
+from actum_calibrator.board import Board, PatternError
+from actum_calibrator.board_views import BoardFinder, View
+from actum_calibrator.coverage_picture import coverage_picture
+from actum_calibrator.extrinsics import Extrinsics, estimate_extrinsics, with_extrinsics
+from actum_calibrator.grey_images import UnusablePictureError, complaints, read_grey
+from actum_calibrator.intrinsics import Intrinsics, calibration_of, estimate_intrinsics
+from actum_calibrator.pairs import Pair, PairingError, pair_files, pictures_in
+from actum_calibrator.view_set import GOOD_COVERAGE, PoorSetError
+from actum_command.commands.calibrate_up_command import up
+from actum_command.commands.plain_help import PlainTyper
+from actum_command.commands.terminal import connect, console, fail, refuse_ending, say
+from actum_command.live_calibration import SilentStreamError, collect_pairs, collect_views
+
+app = PlainTyper(no_args_is_help=True, help="Calibrate cameras; most need the board of actum markers --board.")
+app.command("up")(up)
+
+Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration to write (YAML)")]
+Squares = Annotated[str, typer.Option("--board", help="the board's squares, across x down")]
+SquareMm = Annotated[float, typer.Option(help="side of a square, as measured on the print")]
+MarkerMm = Annotated[float, typer.Option(help="side of a marker on the board")]
+Family = Annotated[str, typer.Option(help="the board's marker dictionary, by OpenCV's name")]
+Existing = typer.Option(exists=True, dir_okay=False)
+
+
+@app.command("intrinsics")
+def intrinsics(
+    output: Output,
+    images: Annotated[list[Path] | None, typer.Argument(help="pictures of the board, or folders of them")] = None,
+    live: Annotated[bool, typer.Option("--live", help="from the sensor's colour stream instead")] = False,
+    board: Squares = "7x5",
+    square_mm: SquareMm = 35.0,
+    marker_mm: MarkerMm = 26.0,
+    family: Family = "DICT_5X5_100",
+) -> None:
+    """Find a camera's focal lengths, centre and distortion from 15 to 20 pictures of the board."""
+    if live == bool(images):
+        fail("name pictures of the board, or use --live")
+    files = _files(images or [])
+    picture = _coverage_picture_of(output, files)
+    finder = BoardFinder(_board(board, square_mm, marker_mm, family))
+    views, unusable = (_live_views(finder), []) if live else _views(finder, files)
+    try:
+        found = estimate_intrinsics(views)
+    except PoorSetError as error:
+        _refuse([*error.reasons, *complaints(unusable)], output)
+    calibration = calibration_of(found, _today())
+    try:
+        calibration.save(output)
+        picture.write_bytes(coverage_picture(found, views))
+    except OSError as error:
+        fail(str(error))
+    _report_intrinsics(found)
+    say(f"written to {output} (calibration {calibration.id}); look at {picture}")
+
+
+@app.command("extrinsics")
+def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
+    markers_camera: Annotated[Path, Existing],
+    people_camera: Annotated[Path, Existing],
+    output: Output,
+    pairs: Annotated[
+        list[Path] | None,
+        typer.Argument(help="NAME_a.png (sees markers) and NAME_b.png (sees people) …, or two folders"),
+    ] = None,
+    live: Annotated[str | None, typer.Option(help="two sensors instead: MARKERS,PEOPLE")] = None,
+    board: Squares = "7x5",
+    square_mm: SquareMm = 35.0,
+    marker_mm: MarkerMm = 26.0,
+    family: Family = "DICT_5X5_100",
+) -> None:
+    """Find where the camera that sees people sees the one that sees markers, from 6 to 10 pairs of pictures.
+
+    Writes the marker camera's calibration with skeleton_from_image in it.
+    """
+    if (live is not None) == bool(pairs):
+        fail("name pairs of pictures, or use --live MARKERS,PEOPLE")
+    refuse_ending(output, ".yaml", ".yml")
+    finder = BoardFinder(_board(board, square_mm, marker_mm, family))
+    try:
+        cameras = Calibration.load(markers_camera), Calibration.load(people_camera)
+        seen, unusable = (_live_pairs(_sensors(live), finder), []) if live else _pairs(finder, pairs or [])
+        found = _extrinsics(seen, unusable, cameras, output)
+        calibration = with_extrinsics(cameras[0], found, _today())
+        calibration.save(output)
+    except (CalibrationError, PairingError, OSError) as error:
+        fail(str(error))
+    _report_extrinsics(found, seen)
+    say(f"written to {output} (calibration {calibration.id})")
+
+
+def _extrinsics(
+    pairs: Sequence[Pair],
+    unusable: Sequence[UnusablePictureError],
+    cameras: tuple[Calibration, Calibration],
+    output: Path,
+) -> Extrinsics:
+    try:
+        return estimate_extrinsics(pairs, *cameras)
+    except PoorSetError as error:
+        _refuse([*error.reasons, *complaints(unusable)], output)
+
+
+def _board(squares: str, square_mm: float, marker_mm: float, family: str) -> Board:
+    columns, _, rows = squares.partition("x")
+    if not (columns.isdecimal() and rows.isdecimal()):
+        fail(f"--board is {squares!r}: say the squares across x down, as 7x5")
+    try:
+        return Board(int(columns), int(rows), square_mm / 1000, marker_mm / 1000, family)
+    except PatternError as error:
+        fail(str(error))
+
+
+def _files(paths: Sequence[Path]) -> list[Path]:
+    return [file for path in paths for file in (pictures_in(path) if path.is_dir() else [path])]
+
+
+def _coverage_picture_of(output: Path, pictures: Sequence[Path]) -> Path:
+    """Name the picture of the coverage that is written beside the calibration, over none of those it is made from."""
+    refuse_ending(output, ".yaml", ".yml")
+    picture = output.with_name(f"{output.stem}-coverage.png")
+    inputs = {file.resolve() for file in pictures}
+    for written in (output, picture):
+        if written.resolve() in inputs:
+            fail(f"{written} is among the pictures and would be overwritten: write to another place or name with -o")
+    return picture
+
+
+def _sensors(text: str) -> tuple[str, str]:
+    markers, _, people = text.partition(",")
+    if not CHUNK.fullmatch(markers) or not CHUNK.fullmatch(people) or markers == people:
+        fail(f"--live is {text!r}: name two sensors, the one that sees markers first, as kinect0,kinect1")
+    return markers, people
+
+
+def _views(finder: BoardFinder, files: Sequence[Path]) -> tuple[list[View], list[UnusablePictureError]]:
+    """Look for the board in every picture; name those that cannot be used."""
+    views: list[View] = []
+    unusable: list[UnusablePictureError] = []
+    for file in files:
+        try:
+            views.append(finder.find(read_grey(file), file.name))
+        except UnusablePictureError as error:
+            unusable.append(error)
+            say(str(error), style="yellow")
+    return views, unusable
+
+
+def _live_views(finder: BoardFinder) -> list[View]:
+    with connect() as client:
+        try:
+            return collect_views(client, finder, stop_on_signals(), console.print)
+        except SilentStreamError as error:
+            fail(str(error))
+
+
+def _live_pairs(sensors: tuple[str, str], finder: BoardFinder) -> list[Pair]:
+    console.print("hold the board still where both cameras see it, each time elsewhere and tilted otherwise")
+    with connect() as client:
+        try:
+            return collect_pairs(client, sensors, finder, stop_on_signals(), console.print)
+        except SilentStreamError as error:
+            fail(str(error))
+
+
+def _pairs(finder: BoardFinder, paths: Sequence[Path]) -> tuple[list[Pair], list[UnusablePictureError]]:
+    """Look for the board in both pictures of every pair."""
+    found: list[Pair] = []
+    unusable: list[UnusablePictureError] = []
+    for name, markers, people in pair_files(paths):
+        views, problems = _views(finder, [markers, people])
+        unusable += problems
+        if not problems:
+            found.append(Pair(name, *views))
+    return found, unusable
+
+
+def _report_intrinsics(found: Intrinsics) -> None:
+    fx, fy = found.matrix[0, 0], found.matrix[1, 1]
+    console.print(f"RMS {found.rms_px:.3f} px over {len(found.residuals_px)} views of {found.size[0]}x{found.size[1]}")
+    console.print(
+        f"focal length {fx:.1f} ± {found.deviations_px[0]:.1f} px across, "
+        f"{fy:.1f} ± {found.deviations_px[1]:.1f} px down"
+    )
+    console.print(f"coverage {found.coverage:.0%} of the image")
+    if found.bend_mm:
+        console.print(
+            f"[yellow]the board is bent by {found.bend_mm:.1f} mm: allowed for here, but not in extrinsics; glue it "
+            "to something flat[/yellow]",
+            soft_wrap=True,
+        )
+    if found.coverage < GOOD_COVERAGE:
+        console.print(
+            "[yellow]towards the edges of the image the distortion is extrapolated: "
+            "add views with the board there, if objects will be[/yellow]",
+            soft_wrap=True,
+        )
+
+
+def _report_extrinsics(found: Extrinsics, pairs: Sequence[Pair]) -> None:
+    x, y, z = found.skeleton_from_image[:3, 3]
+    console.print(f"RMS {found.rms_px:.3f} px over {len(pairs)} pairs")
+    for pair, error in zip(pairs, found.rms_of_pairs_px, strict=True):
+        say(f"  {pair.name}: {error:.3f} px")
+    console.print(
+        f"the camera that sees markers is at x {x:+.3f}, y {y:+.3f}, z {z:+.3f} m of the one that sees people "
+        f"(right, down, forward), ± {found.position_deviation_mm:.1f} mm and ± {found.rotation_deviation_deg:.2f} deg",
+        soft_wrap=True,
+    )
+
+
+def _refuse(reasons: Sequence[str], output: Path) -> NoReturn:
+    fail("\n  ".join([f"not calibrated, {output} is not written:", *reasons]))
+
+
+def _today() -> datetime.date:
+    return datetime.datetime.now().astimezone().date()

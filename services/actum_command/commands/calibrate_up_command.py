@@ -1,0 +1,70 @@
+"""`actum calibrate up`: how a camera is tilted, from a person who stands upright before it."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum import keys
+from actum.messages import Skeleton
+from actum.node import SECOND_NS
+from actum.recording import Recording, RecordingError
+from actum.runtime import stop_on_signals
+from actum_calibrator.up_direction import UpDirection, UpDirectionEstimator
+from actum_command.commands.terminal import connect, fail, say
+from actum_command.live_calibration import SilentStreamError, live_skeletons
+
+PAUSE_NS = SECOND_NS // 2  # how long one instruction is left to be read before the next
+
+
+def up(
+    recording: Annotated[
+        Path | None, typer.Argument(exists=True, dir_okay=False, help="a recording instead of the live stream")
+    ] = None,
+) -> None:
+    """Find how a tilted camera is tilted: one person stands upright and still before it, arms down, for two seconds."""
+    frames = _live() if recording is None else _recorded(recording)
+    estimator, told, told_ns = UpDirectionEstimator(), "", -PAUSE_NS
+    for frame in frames:
+        estimator.offer(frame)
+        if estimator.found is not None:
+            _report(estimator.found)
+            return
+        is_new = estimator.instruction != told and abs(frame.stamp_ns - told_ns) >= PAUSE_NS
+        if recording is None and is_new:
+            told, told_ns = estimator.instruction, frame.stamp_ns
+            say(f"  {told}")
+    fail(f"nobody stood upright and still for long enough: {estimator.instruction}")
+
+
+def _report(found: UpDirection) -> None:
+    say(
+        f"the camera looks {_signed(found.pitch_deg, 'up', 'down')} and is turned "
+        f"{_signed(found.roll_deg, 'clockwise', 'counterclockwise')} (the body swayed by {found.sway_deg:.1f} degrees)"
+    )
+    numbers = ", ".join(f"{component:.3f}" for component in found.in_camera)
+    say(f"tell its sensor gateway: ACTUM_UP_IN_CAMERA='[{numbers}]'")
+
+
+def _signed(angle_deg: float, positive: str, negative: str) -> str:
+    """Say an angle by the word for its sign."""
+    return f"{positive if angle_deg >= 0 else negative} by {abs(angle_deg):.1f} degrees"
+
+
+def _recorded(path: Path) -> Iterator[Skeleton]:
+    try:
+        for message in Recording(path).messages((keys.SKELETON,)):
+            if isinstance(message, Skeleton):
+                yield message
+    except RecordingError as error:
+        fail(str(error))
+
+
+def _live() -> Iterator[Skeleton]:
+    stop = stop_on_signals()
+    with connect() as client:
+        try:
+            yield from live_skeletons(client, stop, say)
+        except SilentStreamError as error:
+            fail(str(error))

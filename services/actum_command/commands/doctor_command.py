@@ -1,0 +1,82 @@
+"""`actum doctor`: is everything there, alive, and of one version?"""
+
+import os
+from collections.abc import Callable, Iterator
+from operator import attrgetter
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Column, Table
+
+from actum_command.commands.terminal import connect, console, say
+from actum_command.diagnosis import Finding, examine
+from actum_command.misspelt import misspelt
+
+TABLE_WIDTH = 100  # the characters that a table needs in which no word is broken
+SOURCES = {"sensor_gateway": "sensor", "marker_camera": "marker camera"}
+"""What a service's source is called."""
+
+
+def doctor() -> None:
+    """Check router, services, rates, versions and the names of settings; exit 1 if anything is wrong."""
+    with connect() as client:
+        findings = examine(client)
+    show(findings, console)
+    problems = [*misspelt(os.environ), *(problem for finding in findings for problem in finding.problems)]
+    for problem in problems:
+        say(problem, style="red")
+    if problems:
+        raise typer.Exit(1)
+    console.print("[green]all services are there, alive and of one version[/green]")
+
+
+def show(findings: list[Finding], console: Console) -> None:
+    """Print what was found, as wide as the console allows, and what the sensor is."""
+    if console.width >= TABLE_WIDTH:
+        console.print(table(findings))
+    else:
+        console.print("\n".join(paragraphs(findings)))
+    for finding in findings:
+        if finding.source:
+            label = SOURCES.get(finding.service, finding.service)
+            console.print(f"{label}: {finding.source}", markup=False, soft_wrap=True)
+
+
+def table(findings: list[Finding]) -> Table:
+    """Lay the findings out, one service a row."""
+    columns = _columns(findings)
+    result = Table(Column("service", no_wrap=True), "alive", *(Column(name, overflow="fold") for name in columns))
+    for finding in findings:
+        cells = (escape(cell(finding)) for cell in columns.values())
+        result.add_row(escape(finding.service), _coloured(finding, f"{finding.instances or 'no'}"), *cells)
+    return result
+
+
+def paragraphs(findings: list[Finding]) -> Iterator[str]:
+    """Say the same in lines, for a console that has no room for a table."""
+    columns = _columns(findings)
+    for finding in findings:
+        yield f"{_coloured(finding, escape(finding.service))}, {finding.instances or 'none'} alive"
+        told = {name: cell(finding) for name, cell in columns.items()}
+        yield from (f"  {name}: {escape(text)}" for name, text in told.items() if text)
+
+
+def _coloured(finding: Finding, text: str) -> str:
+    colour = "red" if finding.problems else "green"
+    return f"[{colour}]{text}[/{colour}]"
+
+
+def _columns(findings: list[Finding]) -> dict[str, Callable[[Finding], str]]:
+    """Return what is told of each service, by its heading; drops where there are any."""
+    columns: dict[str, Callable[[Finding], str]] = {
+        "version": attrgetter("version"),
+        "state": attrgetter("state"),
+        "rates (Hz)": attrgetter("rates"),
+        "rejected": attrgetter("rejects"),
+        "dropped": attrgetter("drops"),
+        "latency p50/p99 (ms)": attrgetter("latency"),
+    }
+    if not any(finding.drops for finding in findings):
+        del columns["dropped"]
+    return columns

@@ -1,0 +1,40 @@
+"""`actum draw`: the joints found in a video, drawn into its pictures."""
+
+from pathlib import Path
+from typing import Annotated
+
+import cv2
+import typer
+
+from actum_command.commands.terminal import fail, refuse_unwritable, say
+from actum_command.skeleton_overlay import sheet
+from actum_command.video_joints import joint_pictures
+from sensor_gateway.cameras import optics_of
+from sensor_gateway.settings import Settings
+
+COLUMNS = 3  # pictures side by side: two rows for the six that are drawn by default
+
+
+def draw(
+    video: Annotated[Path, typer.Argument(help="a video file", exists=True, dir_okay=False)],
+    output: Annotated[Path, typer.Option("-o", "--output", help="the image to write, .png or .jpg")],
+    count: Annotated[int, typer.Option("--pictures", min=1, max=30, help="how many, evenly over the video")] = 6,
+    people: Annotated[int, typer.Option(min=1, max=4, help="how many people are looked for")] = 2,
+) -> None:
+    """Draw the fifteen joints of everybody in a video: is the person found, is left their left, does the lens fit?
+
+    The camera is described as for the gateway: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION,
+    ACTUM_MIRRORED.
+    """
+    if not cv2.haveImageWriter(str(output)):
+        fail(f"{output}: no kind of picture that can be written; name a .png or .jpg")
+    refuse_unwritable(output)
+    try:
+        settings = Settings(people=people)
+        chosen, frames = joint_pictures(video, settings, optics_of(settings), count)
+        output.parent.mkdir(parents=True, exist_ok=True)
+        if not cv2.imwrite(str(output), sheet(chosen, COLUMNS)):
+            fail(f"{output} cannot be written")
+    except (ValueError, OSError, cv2.error) as error:
+        fail(str(error))
+    say(f"{len(chosen)} of {frames} pictures, the actor's left blue: {output}")

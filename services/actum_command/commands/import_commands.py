@@ -1,0 +1,89 @@
+"""`actum import`: public data sets as recordings."""
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum_command.commands.plain_help import PlainTyper
+from actum_command.commands.progress_bars import bars
+from actum_command.commands.terminal import fail, say
+from actum_dataset_importer.clips import DEFAULT_PATTERN, Naming
+from actum_dataset_importer.importing import (
+    ImportReport,
+    Progress,
+    import_bimacs,
+    import_msr_action3d,
+    import_msrc12,
+    import_utkinect,
+    import_video,
+)
+from actum_dataset_importer.takes import DatasetError
+from sensor_gateway.cameras import estimator_of, optics_of
+from sensor_gateway.settings import Settings
+
+app = PlainTyper(no_args_is_help=True, help="Turn public data sets and video clips into recordings.")
+
+Source = Annotated[Path, typer.Argument(help="the folder of the data set", exists=True)]
+Out = Annotated[Path, typer.Argument(help="the folder to write to")]
+
+
+@app.command("msr-action3d")
+def msr_action3d(source: Source, out: Out) -> None:
+    """Import MSR Action3D: one recording per sequence."""
+    _run(import_msr_action3d, source, out)
+
+
+@app.command("utkinect")
+def utkinect(source: Source, out: Out) -> None:
+    """Import UTKinect-Action3D: one recording per file, with its labelled segments."""
+    _run(import_utkinect, source, out)
+
+
+@app.command("msrc12")
+def msrc12(source: Source, out: Out) -> None:
+    """Import MSRC-12: one recording per stream, with a labelled segment of up to 3 s about each action point."""
+    _run(import_msrc12, source, out)
+
+
+@app.command("bimacs")
+def bimacs(source: Source, out: Out) -> None:
+    """Import OptiTrack takes of two hands and objects: one recording per take, with each hand's labelled segments."""
+    _run(import_bimacs, source, out)
+
+
+@app.command("video")
+def video(
+    source: Annotated[Path, typer.Argument(help="a folder of video clips, each of one action", exists=True)],
+    out: Out,
+    pattern: Annotated[
+        str, typer.Option(help="a regular expression over the file name without its ending: the groups action, person")
+    ] = DEFAULT_PATTERN,
+    names: Annotated[str, typer.Option(help="what the actions are called, e.g. 1=wave,2=drink")] = "",
+    people: Annotated[int, typer.Option(min=1, max=4, help="how many people are looked for in a clip")] = 1,
+) -> None:
+    """Import video clips named with their action (wave_anna_2.mp4): one recording per clip, the whole clip a segment.
+
+    The camera is described as for the gateway: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION,
+    ACTUM_MIRRORED, ACTUM_PERSON_HEIGHT_M. No image is kept.
+    """
+    try:
+        naming, settings = Naming.of(pattern, names), Settings(people=people)
+        opened = partial(estimator_of, settings)
+        with opened():
+            pass
+        _run(partial(import_video, naming=naming, optics=optics_of(settings), opened=opened), source, out)
+    except ValueError as error:
+        fail(str(error))
+
+
+def _run(importer: Callable[[Path, Path, Progress], ImportReport], source: Path, out: Path) -> None:
+    try:
+        with bars() as progress:
+            report = importer(source, out, lambda done, total: progress("importing", done, total))
+    except (DatasetError, OSError) as error:
+        fail(str(error))
+    say(str(report))
+    say(f"written to {out}")

@@ -1,0 +1,58 @@
+"""`actum inspect`: pictures of what a model has learnt and why it answers as it does."""
+
+import time
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum.recording import RecordingError
+from actum_command.commands.progress_bars import bars
+from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
+from actum_command.commands.terminal import fail, say
+from actum_command.inspection_page import NoSegmentError, write_inspection
+from som_classifier.model_loading import ModelError, load_model
+
+FORMATS = ("png", "svg")
+"""Formats that pictures can be written in."""
+
+FILES = (".png", ".svg", ".html", ".pdf")
+"""Endings of what is written into the folder, or what might be looked for."""
+
+
+def inspect(
+    model_file: Annotated[Path, typer.Argument(metavar="MODEL", help="the model file to look into")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="the folder for pictures and index.html; those of an earlier run go")
+    ],
+    files: Annotated[
+        list[Path] | None, typer.Argument(metavar="[REC]...", help="recordings to try it on, or folders of them")
+    ] = None,
+    person: PersonOption = None,
+    picture_format: Annotated[str, typer.Option("--format", help=f"one of {', '.join(FORMATS)}")] = "png",
+    with_excluded: AllOption = False,
+) -> None:
+    """Draw what a model has learnt, and with recordings how and why it recognises what they hold."""
+    began_s = time.monotonic()
+    if picture_format not in FORMATS:
+        fail(f"--format is {picture_format!r}: use one of {', '.join(FORMATS)}")
+    if output.suffix.lower() in FILES:
+        fail(f"{output} is named as a file: name the folder to write pictures and index.html to")
+    if output.exists() and not output.is_dir():
+        fail(f"{output} is no folder: name the one to write pictures to")
+    if find_spec("matplotlib") is None:
+        fail("matplotlib draws the pictures and is not installed: pip install 'actum[model-inspector]'")
+    try:
+        model = load_model(model_file)
+        output.mkdir(parents=True, exist_ok=True)
+        recordings = chosen(files, person, with_excluded) if files else []
+        with bars() as progress:
+            count = write_inspection(model, recordings, output, picture_format, progress)
+    except NoSegmentError as error:
+        tell_unread(recordings)
+        fail(str(error))
+    except (ModelError, RecordingError, OSError) as error:
+        fail(str(error))
+    tell_unread(recordings)
+    say(f"{count} pictures in {time.monotonic() - began_s:.1f} s: open {output / 'index.html'}")

@@ -1,0 +1,54 @@
+"""`actum markers`: sheets to print."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum_calibrator.board import Board, PatternError
+from actum_calibrator.sheet_sizes import SheetSize
+from actum_command.commands.terminal import fail, refuse_ending, say
+
+MOST_IDS = 1000  # as many as the largest family has
+
+
+def markers(
+    output: Annotated[Path, typer.Option("-o", "--output", help="the PDF to write")],
+    family: Annotated[str, typer.Option(help="the markers' dictionary, by OpenCV's name")] = "DICT_4X4_50",
+    ids: Annotated[str, typer.Option(help="which markers: 1,2,3 or 0-9")] = "0-3",
+    size_mm: Annotated[float, typer.Option(help="side of the black square")] = 80.0,
+    paper: Annotated[SheetSize, typer.Option(help="what it is printed on")] = SheetSize.A4,
+    board: Annotated[bool, typer.Option("--board", help="instead of markers, the board for actum calibrate")] = False,
+) -> None:
+    """Write a PDF of markers to put on objects, or of the calibration board, in true size."""
+    from actum_calibrator.board_sheet import board_sheet  # the PDF library is needed here alone
+    from actum_calibrator.marker_sheet import marker_sheet
+
+    refuse_ending(output, ".pdf")
+    try:
+        pdf = board_sheet(Board(), paper) if board else marker_sheet(family, _numbers(ids), size_mm, paper)
+        output.write_bytes(pdf)
+    except (PatternError, OSError) as error:
+        fail(str(error))
+    say(f"written to {output}: print it at 100 % ('actual size'), then measure the ruler: 100 mm")
+    if board:
+        say(f"the board has {Board()}; glue it to something flat and stiff")
+
+
+def _numbers(text: str) -> list[int]:
+    """Read numbers such as `1,2,5-8`.
+
+    Raises:
+        PatternError: it is no such text, or names too many.
+    """
+    numbers: list[int] = []
+    for part in text.split(","):
+        first, _, last = part.partition("-")
+        try:
+            span = range(int(first), int(last or first) + 1)
+        except ValueError:
+            raise PatternError(f"--ids has {part!r}: use numbers like 1,2,3 or 0-9") from None
+        if not span or len(numbers) + len(span) > MOST_IDS:
+            raise PatternError(f"--ids has {part!r}: use at most {MOST_IDS} rising numbers like 1,2,3 or 0-9")
+        numbers += span
+    return numbers

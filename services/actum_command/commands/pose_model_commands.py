@@ -1,0 +1,51 @@
+"""`actum models`: the pose model that the camera needs."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TransferSpeedColumn
+
+from actum_command.commands.plain_help import PlainTyper
+from actum_command.commands.terminal import errors, fail, refuse_ending, say
+from actum_command.model_download import POSE_MODEL, FetchError, Published, fetch
+from sensor_gateway.settings import default_pose_model
+
+app = PlainTyper(no_args_is_help=True, help="Get the model that finds people's poses in a camera's images.")
+
+
+@app.callback()
+def _models() -> None:
+    """Make `fetch` a command of its own, though it is the only one."""
+
+
+@app.command("fetch")
+def fetch_command(
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="the file to write; default: where the gateway looks")
+    ] = None,
+    url: Annotated[str, typer.Option(help="another place that has the same file")] = POSE_MODEL.url,
+) -> None:
+    """Download MediaPipe's pose model (9 MB, Apache-2.0) and check its digest."""
+    if output is not None:
+        refuse_ending(output, ".task")
+    path = output or default_pose_model()
+    published = replace(POSE_MODEL, url=url)
+    if published.is_at(path):
+        say(f"the pose model is already at {path}")
+        return
+    try:
+        _fetch(published, path)
+    except (FetchError, OSError) as error:
+        fail(str(error))
+    say(f"fetched and checked: {path}")
+    if output is not None:
+        say(f"the gateway reads it with ACTUM_POSE_MODEL={path}")
+
+
+def _fetch(published: Published, path: Path) -> None:
+    columns = TextColumn("fetching"), BarColumn(), DownloadColumn(), TransferSpeedColumn()
+    with Progress(*columns, console=errors, transient=True) as progress:
+        task = progress.add_task("fetching", total=published.size)
+        fetch(published, path, lambda done, _total: progress.update(task, completed=done))

@@ -1,0 +1,93 @@
+"""`actum record` and `actum play`: streams to files and back."""
+
+import time
+from collections import Counter
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum import keys
+from actum.messages import MANUAL
+from actum.recording import Recorder, RecordingError
+from actum.runtime import stop_on_signals
+from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
+from actum_command.commands.terminal import connect, fail, refuse_ending, refuse_unwritable, say
+from actum_command.stream_recorder import IMAGES, STREAMS, StreamRecorder
+from actum_command.streaming import put_all, store_all
+
+WAIT_S = 5.0  # a preprocessor that is starting listens within this time
+ALL = "all"
+"""Marks of every origin."""
+
+
+def record(
+    output: Annotated[Path, typer.Argument(help="the file to write")],
+    person: Annotated[str, typer.Option(help="who acts; kept in the file, used to split training from test")] = "",
+    label: Annotated[str | None, typer.Option(help="what is done in the segments marked while recording")] = None,
+    marks: Annotated[
+        str, typer.Option(help="whose marks are stored: manual (yours and your programs'), simulator, replay; or all")
+    ] = MANUAL,
+    images: Annotated[bool, typer.Option(help="also store images (faces are personal data)")] = False,
+    seconds: Annotated[float | None, typer.Option(min=0, help="stop by itself; default: at Ctrl-C")] = None,
+) -> None:
+    """Record a sensor's streams and your marks to a file."""
+    refuse_unwritable(output)
+    refuse_ending(output, ".mcap")
+    if output.exists():
+        fail(f"{output} is there already: name another file, or remove it")
+    origins = None if marks == ALL else [origin.strip() for origin in marks.split(",")]
+    stop = stop_on_signals()
+    deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
+    try:
+        with connect() as client, Recorder(output, person=person, source=client.sensor) as recorder:
+            stream = StreamRecorder(recorder, STREAMS | IMAGES if images else STREAMS, label, origins)
+            listening = client.listen(keys.everything(client.sensor))
+            say(f"recording actum/{client.sensor}/** to {output}; Ctrl-C ends")
+            store_all(listening, stream, stop, deadline_s)
+    except OSError as error:
+        fail(f"{output} cannot be written ({error.strerror}); what there is lies in {output}.part")
+    _report(stream, output, label)
+
+
+def _report(stream: StreamRecorder, output: Path, label: str | None) -> None:
+    """Say what the file holds and what it lacks."""
+    say(f"{stream.stored} messages, {stream.actions.total()} marked actions, written to {output}")
+    for (origin, named), count in stream.actions.items():
+        say(f"  {count} marked by {origin}, {'without a label' if named is None else f'labelled {named!r}'}")
+    if stream.unended:
+        say(f"  without an end, so nothing is learnt from them: {', '.join(sorted(stream.unended))}", style="yellow")
+    for origin, count in (+stream.left_out).items():
+        say(f"  {count} marked by {origin} left out: --marks {origin} or --marks {ALL} takes such")
+    if stream.counters.rejects:
+        say(f"not stored: {_listed(stream.counters.rejects)} (the last: {stream.counters.last_error})", style="yellow")
+    if stream.undecodable:
+        say(f"not decodable: {stream.undecodable.total()} ({_listed(stream.undecodable)})", style="yellow")
+    if not stream.stored:
+        say("nothing was stored: does the sensor's gateway run, on this sensor? See actum doctor", style="yellow")
+    elif label is not None and not stream.actions:
+        say(f"nothing of it is labelled {label!r}: mark starts and ends with actum segment toggle", style="yellow")
+
+
+def _listed(counts: Counter[str]) -> str:
+    return ", ".join(f"{kind} {count}" for kind, count in sorted(counts.items()))
+
+
+def play(
+    files: Annotated[list[Path], typer.Argument(help="recordings, or folders of them, played one after another")],
+    speed: Annotated[float, typer.Option(min=0.01, help="1 is the pace at which it was captured")] = 1.0,
+    person: PersonOption = None,
+    with_excluded: AllOption = False,
+) -> None:
+    """Put recordings on their keys as a live sensor would, with their marks but without their labels."""
+    recordings = chosen(files, person, with_excluded)
+    stop = stop_on_signals()
+    with connect() as client:
+        if not client.wait_for_subscriber(keys.SKELETON, WAIT_S):
+            fail(f"nobody listens on {keys.key(keys.SKELETON, client.sensor)}: is the preprocessor running?")
+        try:
+            count = put_all(client, recordings, speed, stop)
+        except RecordingError as error:
+            fail(str(error))
+    tell_unread(recordings)
+    say(f"played {len(recordings)} recordings: {count} messages")

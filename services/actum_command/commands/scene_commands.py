@@ -1,0 +1,32 @@
+"""`actum simulate` and `actum scene`: the simulated scene's labelled examples, and its marks."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum.runtime import stop_on_signals
+from actum_command.commands.terminal import connect_whenever, fail, refuse_ending, refuse_unwritable, say
+from actum_command.scene_marks import mark_truth, write_examples
+
+
+def simulate(
+    output: Annotated[Path, typer.Argument(help="the recording to write")],
+    repetitions: Annotated[int, typer.Option(min=1, help="how often each of the five actions is done")] = 12,
+    actor: Annotated[int, typer.Option(min=0, help="who acts")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="which repetitions")] = 0,
+) -> None:
+    """Write labelled examples of the simulated scene, without images."""
+    refuse_unwritable(output)
+    refuse_ending(output, ".mcap")
+    try:
+        write_examples(output, repetitions, actor, seed)
+    except OSError as error:
+        fail(f"{output} cannot be written ({error.strerror})")
+    say(f"{repetitions} x 5 actions of simulated actor {actor}, written to {output}")
+
+
+def scene() -> None:
+    """Put the start and end marks of the simulated scene, as an ordinary client."""
+    with connect_whenever() as client:
+        mark_truth(client, stop_on_signals())

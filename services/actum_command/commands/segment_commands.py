@@ -1,0 +1,111 @@
+"""`actum segment`: start and end marks from the command line."""
+
+import select
+import sys
+from typing import Annotated, Literal
+
+import typer
+from pydantic import ValidationError
+
+from actum import keys
+from actum.messages import MANUAL, Segment
+from actum.runtime import Client
+from actum_command.answers import Answers
+from actum_command.commands.plain_help import PlainTyper
+from actum_command.commands.terminal import connect, console, fail, say, settings
+
+WAIT_S = 5.0  # a classifier that is starting listens within this time
+
+app = PlainTyper(no_args_is_help=True, help="Mark the start and the end of an action.")
+
+Id = Annotated[str, typer.Argument(help="any name, new for each action")]
+AgentOption = Annotated[int | None, typer.Option(min=1, help="whose action; default: who is nearest to the camera")]
+HandOption = Annotated[str | None, typer.Option(help="left or right: the hand that acts")]
+LabelOption = Annotated[str | None, typer.Option(help="what it is, for recording examples")]
+StampOption = Annotated[int | None, typer.Option(min=0, help="capture time (ns) on the sensor's clock; default: now")]
+
+
+@app.command()
+def start(
+    segment_id: Id,
+    agent: AgentOption = None,
+    hand: HandOption = None,
+    label: LabelOption = None,
+    stamp_ns: StampOption = None,
+) -> None:
+    """Mark the start of an action."""
+    mark = _mark("start", segment_id, agent, hand, label, stamp_ns)
+    with connect() as client:
+        _put(client, mark)
+
+
+@app.command()
+def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
+    """Mark the end of an action."""
+    mark = _mark("end", segment_id, stamp_ns=stamp_ns)
+    with connect() as client:
+        _put(client, mark)
+
+
+@app.command()
+def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOption = None) -> None:
+    """Switch by keyboard: Enter starts, Enter ends and shows the answer, Ctrl-D leaves."""
+    with connect() as client:
+        answers, number = Answers(client), 0
+        while _waits_for_enter(f"Enter starts action {number + 1}, Ctrl-D leaves "):
+            number += 1
+            segment_id = f"toggle-{client.run}-{number}"
+            _put(client, _mark("start", segment_id, agent, hand, label))
+            ended = _waits_for_enter("Enter ends it ")
+            _put(client, _mark("end", segment_id))
+            for line in answers.until(segment_id, interrupted=_enter_was_pressed):
+                console.print(line, soft_wrap=True)
+            if not ended:
+                return
+
+
+def _mark(
+    kind: Literal["start", "end"],
+    segment_id: str,
+    agent: int | None = None,
+    hand: str | None = None,
+    label: str | None = None,
+    stamp_ns: int | None = None,
+) -> Segment:
+    if hand not in (None, "left", "right"):
+        fail(f"--hand is {hand!r}: use left or right")
+    fields = {
+        "sensor": settings().sensor,
+        "kind": kind,
+        "segment_id": segment_id,
+        "agent": agent,
+        "hand": hand,
+        "label": label,
+        "stamp_ns": stamp_ns,
+        "origin": MANUAL,
+    }
+    try:
+        return Segment.model_validate(fields)
+    except ValidationError as error:
+        fail("; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors(include_url=False)))
+
+
+def _put(client: Client, mark: Segment) -> None:
+    if not client.wait_for_subscriber(keys.SEGMENT, WAIT_S):
+        fail(f"nobody listens on {keys.key_of(mark)} within {WAIT_S:g} s: is the classifier running? See actum doctor")
+    client.put(mark)
+    say(f"{mark.kind} {mark.segment_id}")
+
+
+def _enter_was_pressed() -> bool:
+    """Whether somebody at a terminal wants to go on; a script's lines lie there all the time."""
+    return sys.stdin.isatty() and bool(select.select([sys.stdin], [], [], 0)[0])
+
+
+def _waits_for_enter(prompt: str) -> bool:
+    try:
+        input(prompt)
+    except EOFError:
+        print()
+        return False
+    return True

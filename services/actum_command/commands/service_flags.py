@@ -1,0 +1,45 @@
+"""Options for every setting of the services that a command starts, from where the services declare them."""
+
+import inspect
+from collections.abc import Callable
+from functools import wraps
+from typing import Annotated, Any
+
+import typer
+from pydantic.fields import FieldInfo
+
+from actum.command_line import explained, placeholder
+from actum.settings import ServiceSettings
+from actum_command.service_settings import DECLARED, flag_of, negated_flag_of
+
+
+def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
+    """Let a command take every setting of the services that it has no option for itself; it gets them as `given`."""
+    own = dict(inspect.signature(command, eval_str=True).parameters)
+    del own["given"]
+    flags = {
+        name: _flag(name, field, service)
+        for service, settings in DECLARED.items()
+        for name, field in settings.model_fields.items()
+        if name not in ServiceSettings.model_fields and name not in own
+    }
+
+    @wraps(command)
+    def with_given(**arguments: Any) -> None:
+        given = {name: arguments.pop(name) for name in flags}
+        command(**arguments, given={name: value for name, value in given.items() if value not in (None, [])})
+
+    parameters = [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in own.values()]
+    with_given.__signature__ = inspect.Signature([*parameters, *flags.values()])  # type: ignore[attr-defined]
+    return with_given
+
+
+def _flag(name: str, field: FieldInfo, service: str) -> inspect.Parameter:
+    """Declare an option for Typer; its value is the service's to judge."""
+    words: dict[str, Any] = {"help": explained(field), "rich_help_panel": f"Settings of {service}"}
+    is_switch = not placeholder(field)
+    if is_switch:
+        annotation: Any = Annotated[bool | None, typer.Option(f"{flag_of(name)}/{negated_flag_of(name)}", **words)]
+    else:
+        annotation = Annotated[list[str] | None, typer.Option(flag_of(name), metavar=placeholder(field), **words)]
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=annotation)

@@ -1,0 +1,82 @@
+"""`actum up` and `actum router`: the whole system, or its router alone."""
+
+import logging
+import threading
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum.runtime import serve_router, stop_on_signals
+from actum.settings import DEFAULT_ENDPOINT, SettingsError
+from actum_command import processes
+from actum_command.commands.service_flags import with_service_flags
+from actum_command.commands.terminal import fail, say, settings
+from actum_command.service_settings import Given
+from actum_command.startup import CHECK_S, chosen_source, lack_of_model, refuse_taken, wait_for_router
+from actum_command.supervising import Program, Supervisor, UnusableError
+
+NO_MARKS = "nobody marks actions here: 'actum segment toggle' does, and 'actum play' beside --source none"
+
+
+def router(
+    listen: Annotated[str | None, typer.Option(help=f"endpoint; default {DEFAULT_ENDPOINT} unless --config")] = None,
+    config: Annotated[Path | None, typer.Option(help="a Zenoh JSON5 configuration", exists=True)] = None,
+) -> None:
+    """Run the embedded Zenoh router."""
+    logging.basicConfig(level="INFO", format="router: %(message)s")
+    endpoint = listen or (None if config else settings().connect)
+    try:
+        if endpoint is not None:
+            refuse_taken(endpoint)
+        serve_router(endpoint, config, stop_on_signals())
+    except SettingsError as error:
+        fail(str(error))
+
+
+@with_service_flags
+def up(
+    source: Annotated[
+        str | None,
+        typer.Option(
+            help="simulator, camera, realsense, openni2, recording or none; default: camera "
+            "where --camera names one, else simulator"
+        ),
+    ] = None,
+    path: Annotated[Path | None, typer.Option(help="what a source from files plays")] = None,
+    model: Annotated[
+        Path | None, typer.Option(help="the model; it may come or change later", envvar="ACTUM_MODEL")
+    ] = None,
+    *,
+    given: Given,
+) -> None:
+    """Run router and all services here, restart what ends, until Ctrl-C."""
+    here = settings()
+    try:
+        source = chosen_source(source, given, path)
+        refuse_taken(here.connect)
+        programs = processes.system(here, source, path, model, given)
+        say(f"actum starts on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
+        if source != "simulator":
+            say(NO_MARKS)
+        if (lack := lack_of_model(model)) is not None:
+            say(lack, style="yellow")
+        stop = stop_on_signals()
+        with Supervisor() as supervisor:
+            supervisor.start(processes.router(here))
+            wait_for_router(here, stop)
+            supervise(supervisor, programs, stop)
+    except SettingsError as error:
+        fail(str(error))
+
+
+def supervise(supervisor: Supervisor, programs: list[Program], stop: threading.Event) -> None:
+    """Keep programs running until stopped; fail where one cannot be used as it is set."""
+    for program in programs:
+        supervisor.start(program)
+    try:
+        while not stop.wait(CHECK_S):
+            for line in supervisor.restart_ended():
+                say(line, style="yellow")
+    except UnusableError as error:
+        fail(str(error))

@@ -1,0 +1,75 @@
+"""What every command needs: the console, the settings, a session with the router, and a clear way to fail."""
+
+import sys
+from pathlib import Path
+from tempfile import TemporaryFile
+from typing import NoReturn
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+
+from actum.runtime import Client, RouterUnreachableError
+from actum.settings import ServiceSettings, SettingsError, complaint
+
+UNATTENDED_WIDTH = 110  # characters, where the output goes to no terminal: enough for every table
+
+console = Console(highlight=False, emoji=False, width=None if sys.stdout.isatty() else UNATTENDED_WIDTH)
+errors = Console(stderr=True, highlight=False, emoji=False)
+
+
+def settings() -> ServiceSettings:
+    """Read the connection from the environment or the configuration file, or fail saying what cannot be used."""
+    try:
+        return ServiceSettings()
+    except ValueError as error:
+        fail(complaint(error))
+
+
+def say(message: str, style: str | None = None) -> None:
+    """Print a line as it is: what looks like markup in a path or a label is not."""
+    console.print(message, markup=False, soft_wrap=True, style=style)
+
+
+def fail(message: str) -> NoReturn:
+    """Say what went wrong and end with code 1."""
+    errors.print(f"[red]actum:[/red] {escape(message)}", soft_wrap=True)
+    raise typer.Exit(1)
+
+
+def connect(wait_s: float = 5.0) -> Client:
+    """Open a session with the router, or fail saying how to get one."""
+    try:
+        return Client(settings(), wait_s)
+    except (RouterUnreachableError, SettingsError) as error:
+        fail(str(error))
+
+
+def connect_whenever() -> Client:
+    """Open a session with the router whenever it comes, saying where it is waited for."""
+    here = settings()
+    try:
+        return Client(here, wait_s=0)
+    except RouterUnreachableError:
+        say(f"no router at {here.connect} yet: waiting for it")
+    except SettingsError as error:
+        fail(str(error))
+    return connect(wait_s=float("inf"))
+
+
+def refuse_ending(file: Path, *endings: str) -> None:
+    """Fail where a file's name has none of the endings of what is to be written into it."""
+    if file.suffix.lower() not in endings:
+        name = file.name.removesuffix(file.suffix) + endings[0]
+        fail(f"{file} does not end in {' or '.join(endings)}: name it {file.with_name(name) if file.name else name}")
+
+
+def refuse_unwritable(file: Path) -> None:
+    """Fail now where a file could not be written after long work; folders that are missing will be made."""
+    try:
+        if file.is_dir():
+            fail(f"{file} is a folder: name the file to write")
+        with TemporaryFile(dir=next(folder for folder in file.absolute().parents if folder.exists())):
+            pass
+    except OSError as error:
+        fail(f"{file} cannot be written ({error.strerror}): name another place")

@@ -1,0 +1,126 @@
+"""`actum train` and `actum evaluate`."""
+
+import json
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum.recording import RecordingError
+from actum_command.commands.progress_bars import bars
+from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
+from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say
+from actum_command.preset_settings import SETTINGS, PresetError, preset_named
+from actum_model_trainer.evaluation import Evaluation, evaluate
+from actum_model_trainer.leaving_out import leave_one_person_out
+from actum_model_trainer.report import report
+from actum_model_trainer.samples import samples_from
+from actum_model_trainer.training import TrainingError, train
+from actum_model_trainer.warnings import warnings_of
+from som_classifier.model_loading import ModelError, load_model
+from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
+
+Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of them")]
+PresetOption = Annotated[str, typer.Option(help=f"one of {', '.join(PRESETS)}")]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="NAME=VALUE", help=f"of preset {PAPER.name}, once each: " + SETTINGS),
+]
+SeedOption = Annotated[int, typer.Option(min=0, help="the same seed makes the same model")]
+
+
+def train_command(
+    files: Files,
+    output: Annotated[Path, typer.Option("-o", "--output", help="the model file to write")],
+    preset: PresetOption = DEFAULT.name,
+    settings: SetOption = None,
+    person: PersonOption = None,
+    seed: SeedOption = 0,
+    with_excluded: AllOption = False,
+) -> None:
+    """Train a model on labelled recordings."""
+    began_s = time.monotonic()
+    _refuse_place(output)
+    refuse_ending(output, ".npz")
+    chosen_preset = _preset(preset, settings)
+    recordings = chosen(files, person, with_excluded)
+    try:
+        with bars() as progress:
+            samples = samples_from(recordings, progress)
+        for unusable in samples.unusable:
+            say(f"left out {unusable.segment_id} of {unusable.file}: {unusable.reason}")
+        tell_unread(recordings)
+        with bars() as progress:
+            model = train(samples.usable, chosen_preset, seed, progress)
+        model.save(output)
+    except (RecordingError, TrainingError, OSError) as error:
+        fail(str(error))
+    say(
+        f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
+        f"{time.monotonic() - began_s:.1f} s, written to {output}"
+    )
+    for warning in warnings_of(samples.usable, model.metadata.held_out_answers):
+        say(warning, style="yellow")
+
+
+def evaluate_command(
+    files: Annotated[list[Path], typer.Argument(help="MODEL and recordings, or only recordings")],
+    person: PersonOption = None,
+    json_file: Annotated[Path | None, typer.Option("--json", help="write every prediction here")] = None,
+    by_person: Annotated[
+        bool, typer.Option("--leave-one-person-out", help="train anew without each person, test on them")
+    ] = False,
+    preset: PresetOption = DEFAULT.name,
+    settings: SetOption = None,
+    seed: SeedOption = 0,
+    with_excluded: AllOption = False,
+) -> None:
+    """Test a model on labelled recordings, or a preset on each person with all others as training."""
+    began_s = time.monotonic()
+    if json_file is not None:
+        _refuse_place(json_file)
+        refuse_ending(json_file, ".json")
+    if not by_person and len(files) == 1:
+        fail(f"{files[0]} alone cannot be evaluated: name a model and then recordings, or use --leave-one-person-out")
+    try:
+        model = None if by_person else load_model(files[0])
+        recordings = chosen(files if by_person else files[1:], person, with_excluded)
+        with bars() as progress:
+            if model is None:
+                result = leave_one_person_out(recordings, _preset(preset, settings), seed, progress)
+            else:
+                result = evaluate(model, recordings, progress)
+    except (RecordingError, TrainingError, ModelError) as error:
+        fail(str(error))
+    tell_unread(recordings)
+    _show(result, time.monotonic() - began_s)
+    if json_file is not None:
+        _write_json(result, json_file)
+
+
+def _preset(name: str, settings: list[str] | None) -> Preset:
+    try:
+        return preset_named(name, settings or ())
+    except PresetError as error:
+        fail(str(error))
+
+
+def _show(result: Evaluation, seconds: float) -> None:
+    if result.n == 0:
+        fail("no labelled segment in these recordings: a label stands in a start mark, see actum record --label")
+    console.print(report(result, seconds))
+
+
+def _refuse_place(file: Path) -> None:
+    """Fail now where what takes long to make could not be written."""
+    if not file.parent.is_dir():
+        fail(f"{file} cannot be written: there is no folder {file.parent}")
+    refuse_unwritable(file)
+
+
+def _write_json(result: Evaluation, file: Path) -> None:
+    try:
+        file.write_text(json.dumps(result.as_json(), indent=1), encoding="utf-8")
+    except OSError as error:
+        fail(f"{file} cannot be written ({error.strerror})")

@@ -1,0 +1,149 @@
+"""Whether every service is there, alive and of one version, and what to do where one is not."""
+
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from actum import __version__, keys
+from actum.codec import schema_name
+from actum.messages import MESSAGES, Info, Status
+from actum.runtime import Client
+from scene_simulator.endless_simulator import DESCRIPTION
+
+EXPECTED = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
+"""The services of a whole system; the simulated scene stands in the sensor gateway's place, by its name."""
+
+STATUS_S = 2.5  # a little more than two of the reports that every service sends each second
+POLL_S = 0.02  # short beside a second between reports
+
+ENDED = "source ended"
+"""The state of a sensor whose files or scene are over."""
+
+NO_MODEL = "no model"
+"""How the state of a classifier begins that has had no model yet."""
+
+OLD_MODEL = "model not renewed"
+"""How the state of a classifier begins whose model file was replaced by one that cannot be used."""
+
+
+PROGRAMS = {"sensor_gateway": "'python -m sensor_gateway', for the simulated scene 'python -m scene_simulator',"}
+"""How a service is started, where there is more than one program of its name."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One service as it was found: what it tells of itself, in words, and what is wrong."""
+
+    service: str
+    instances: int
+    version: str
+    state: str
+    rates: str
+    rejects: str
+    drops: str
+    latency: str
+    problems: tuple[str, ...]
+    source: str = ""
+
+
+def examine(client: Client) -> list[Finding]:
+    """Look at every service that is expected or found alive."""
+    statuses = _statuses(client)
+    tokens: dict[str, list[str]] = {}
+    for key in client.alive():
+        service, instance = key.split("/")[-2:]
+        tokens.setdefault(service, []).append(instance)
+    infos = client.infos()
+    names = [*EXPECTED, *sorted(tokens.keys() - set(EXPECTED))]
+    return [
+        _finding(name, tokens.get(name, []), [info for info in infos if info.service == name], statuses.get(name))
+        for name in names
+    ]
+
+
+def _statuses(client: Client) -> dict[str, Status]:
+    """Collect what each service says of itself within a little over two reports."""
+    found: dict[str, Status] = {}
+    listening = client.listen(keys.pattern(keys.STATUS, client.sensor))
+    deadline_s = time.monotonic() + STATUS_S
+    while time.monotonic() < deadline_s:
+        received = listening.take()
+        if received is None:
+            time.sleep(POLL_S)
+        elif isinstance(received.message, Status):
+            found[received.message.service] = received.message
+    return found
+
+
+def _finding(name: str, instances: list[str], infos: list[Info], status: Status | None) -> Finding:
+    return Finding(
+        service=name,
+        instances=max(len(instances), len(infos) if instances else 0),
+        source=", ".join(dict.fromkeys(info.source for info in infos if info.source)),
+        version=", ".join(dict.fromkeys(info.version for info in infos)),
+        state=status.state if status else "",
+        rates=_rates(status) if status else "",
+        rejects=", ".join(f"{kind} {n}" for kind, n in status.rejects.items()) if status else "",
+        drops=", ".join(f"{_short(key, status)} {n}" for key, n in status.drops.items()) if status else "",
+        latency=_latency(status.latency_ms) if status else "",
+        problems=tuple(_problems(name, instances, infos, status)),
+    )
+
+
+def _rates(status: Status) -> str:
+    return ", ".join(f"{_short(key, status)} {rate:g}" for key, rate in status.rates.items())
+
+
+def _short(key: str, status: Status) -> str:
+    return key.removeprefix(f"{keys.BASE}/{status.sensor}/")
+
+
+def _latency(latency_ms: Mapping[str, float]) -> str:
+    """Write both percentiles, a dash for one that a foreign service does not tell."""
+    if not latency_ms:
+        return ""
+    return " / ".join(f"{latency_ms[name]:.2f}" if name in latency_ms else "-" for name in ("p50", "p99"))
+
+
+def _problems(name: str, instances: list[str], infos: list[Info], status: Status | None) -> Iterator[str]:
+    if not instances:
+        program = PROGRAMS.get(name, f"'python -m {name}'")
+        yield f"{name} is not running: start it with {program} or 'actum up'"
+        return
+    if len(instances) > 1 or len(infos) > 1:
+        who = _who(infos, instances)
+        yield f"{name} runs more than once, so everything is answered more than once: stop all but one of {who}"
+    if status is None:
+        yield f"{name} is alive but sent no status in {STATUS_S:g} s"
+    else:
+        yield from _troubles(name, status, next((f" ({info.source})" for info in infos if info.source), ""))
+    if not infos:
+        yield f"{name} does not answer on its info key"
+    yield from dict.fromkeys(line for info in infos for line in _versions(info))
+
+
+def _who(infos: list[Info], instances: list[str]) -> str:
+    """Name each process and, where it tells, the machine it runs on."""
+    silent = sorted(set(instances) - {info.instance for info in infos})
+    return ", ".join([f"{info.instance} on {info.host}" if info.host else info.instance for info in infos] + silent)
+
+
+def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
+    """Say what is wrong by the service's own account; `source` names what it reads, in brackets."""
+    if status.state.startswith("camera lost"):
+        yield f"{name}: {status.state}{source}; it tries again by itself"
+    elif status.state == ENDED:
+        endless = "--repetitions 0" if DESCRIPTION in source else "--loop"
+        yield f"{name}: {status.state}{source}; start it again for more, with {endless} for more and more"
+    elif status.state.startswith(NO_MODEL):
+        yield f"{name}: {status.state}, so every action is rejected; name one in --model or ACTUM_MODEL"
+    elif status.state.startswith(OLD_MODEL):
+        yield f"{name}: {status.state}; it goes on with the model before"
+
+
+def _versions(info: Info) -> list[str]:
+    missing = {schema_name(message) for message in MESSAGES} - set(info.schemas)
+    if info.version == __version__ and not missing:
+        return []
+    lack = f"; it lacks {', '.join(sorted(missing))}" if missing else ""
+    return [f"{info.service} is version {info.version}, this is {__version__}: install the same everywhere{lack}"]

@@ -1,0 +1,43 @@
+"""A folder of pictures of a model, and of why it answers recordings as it does, with a page that shows them."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from actum.recording import Recording
+from actum_model_trainer.progress import Progress
+from som_classifier.model import Model
+
+
+class NoSegmentError(ValueError):
+    """Recordings in which nothing is marked: what to do."""
+
+
+def write_inspection(
+    model: Model, recordings: Sequence[Recording], folder: Path, ending: str, progress: Progress
+) -> int:
+    """Write pictures and page, and return how many pictures there are.
+
+    Raises:
+        NoSegmentError: there are recordings, but no marked segment in them.
+        RecordingError: a recording is damaged.
+        OSError: something cannot be written.
+    """
+    from actum_model_inspector.anatomy import anatomy_of  # Matplotlib takes its time and need not be installed
+    from actum_model_inspector.answered import answered_segments
+    from actum_model_inspector.folder import note
+    from actum_model_inspector.inspection import pictures, write
+    from actum_model_inspector.page import page
+    from actum_model_trainer.evaluation import evaluate
+
+    anatomy = anatomy_of(model)
+    segments = answered_segments(anatomy, recordings, progress)
+    if recordings and not segments:
+        raise NoSegmentError("no segment in these recordings: start and end marks make one, see actum segment --help")
+    labelled = any(segment.label is not None for segment in segments)
+    evaluation = evaluate(model, recordings, progress) if labelled else None
+    planned = list(pictures(anatomy, segments, evaluation))
+    written = write(planned, folder, ending, progress)
+    index = folder / "index.html"
+    index.write_text(page(model, segments, evaluation, planned, written), encoding="utf-8")
+    note(index)
+    return len(planned)

@@ -1,0 +1,128 @@
+"""What calibration takes from live streams: views of the board in colour images, and skeletons."""
+
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+
+from actum import keys
+from actum.messages import Image, Skeleton
+from actum.runtime import Client
+from actum_calibrator.board_views import BoardFinder, View
+from actum_calibrator.grey_images import UnusablePictureError, grey_from_message
+from actum_calibrator.pairs import Pair
+from actum_calibrator.view_collector import PairCollector, ViewCollector
+
+SILENCE_S = 10.0  # a gateway that puts anything has done so by then, however slow its camera starts
+POLL_S = 0.01  # a third of a frame's interval
+REMEDY = "A gateway whose ACTUM_CALIBRATION is for another image size gives none that can be used: start it without"
+
+Tell = Callable[[str], object]
+"""Is told what happens and what to do next, a line of console markup each time."""
+
+
+class SilentStreamError(RuntimeError):
+    """Nothing that can be used has come for too long: on which key, why, what to do."""
+
+
+def collect_views(client: Client, finder: BoardFinder, stop: threading.Event, tell: Tell) -> list[View]:
+    """Collect views until there are enough or until stopped, telling what to show next.
+
+    Raises:
+        SilentStreamError: no valid image comes.
+    """
+    collector, told = ViewCollector(), None
+    for _, view in _views(client, [client.sensor], finder, stop, tell):
+        if collector.offer(view):
+            tell(f"view {len(collector.views)} taken")
+        if collector.complete:
+            break
+        if collector.instruction != told:
+            told = collector.instruction
+            tell(f"  next: {told}")
+    return collector.views
+
+
+def collect_pairs(
+    client: Client, sensors: tuple[str, str], finder: BoardFinder, stop: threading.Event, tell: Tell
+) -> list[Pair]:
+    """Collect pairs from two sensors (the one that sees markers first) until there are enough or until stopped.
+
+    Raises:
+        SilentStreamError: no valid image comes from one of them.
+    """
+    collector = PairCollector()
+    for camera, view in _views(client, sensors, finder, stop, tell):
+        if collector.offer(camera, view):
+            tell(f"pair {len(collector.pairs)} taken")
+        if collector.complete:
+            break
+    return collector.pairs
+
+
+def live_skeletons(client: Client, stop: threading.Event, tell: Tell) -> Iterator[Skeleton]:
+    """Yield skeletons as they come, until stopped.
+
+    Raises:
+        SilentStreamError: nothing comes.
+    """
+    key = keys.key(keys.SKELETON, client.sensor)
+    stream, heard_s = client.listen(key), time.monotonic()
+    tell(f"watching {key}; Ctrl-C ends")
+    while not stop.wait(POLL_S):
+        while (received := stream.take()) is not None:
+            heard_s = time.monotonic()
+            if isinstance(received.message, Skeleton):
+                yield received.message
+        if time.monotonic() - heard_s > SILENCE_S:
+            raise SilentStreamError(f"no skeleton on {key} for {SILENCE_S:g} s: does its gateway run?")
+
+
+def _views(
+    client: Client, sensors: Sequence[str], finder: BoardFinder, stop: threading.Event, tell: Tell
+) -> Iterator[tuple[int, View | None]]:
+    """Yield which sensor's image came and the board in it, None where it is not found, until stopped."""
+    streams = [_ImageStream(client, keys.key(keys.COLOR, sensor)) for sensor in sensors]
+    tell(f"watching {', '.join(stream.key for stream in streams)}; Ctrl-C ends")
+    while not stop.is_set():
+        for camera, stream in enumerate(streams):
+            image = stream.newest()
+            if image is not None:
+                yield camera, _view(finder, image)
+        stop.wait(POLL_S)
+
+
+class _ImageStream:
+    """One sensor's colour images."""
+
+    def __init__(self, client: Client, key: str) -> None:
+        self.key = key
+        self._listening = client.listen(key, ring=1)
+        self._heard_s = time.monotonic()
+        self._invalid: str | None = None
+
+    def newest(self) -> Image | None:
+        """Return the newest image, if it came since the last and is valid.
+
+        Raises:
+            SilentStreamError: none that is has come for `SILENCE_S`.
+        """
+        received = self._listening.take()
+        image = None if received is None else received.message
+        if isinstance(image, Image) and image.valid:
+            self._heard_s, self._invalid = time.monotonic(), None
+            return image
+        if isinstance(image, Image):
+            self._invalid = image.reason or "it does not say why"
+        if time.monotonic() - self._heard_s <= SILENCE_S:
+            return None
+        if self._invalid is not None:
+            raise SilentStreamError(f"no valid image on {self.key} for {SILENCE_S:g} s: {self._invalid}. {REMEDY}")
+        raise SilentStreamError(f"no image on {self.key} for {SILENCE_S:g} s: does its gateway send any? {REMEDY}")
+
+
+def _view(finder: BoardFinder, image: Image) -> View | None:
+    name = f"image at {image.stamp_ns / 1e9:.3f} s"
+    try:
+        return finder.find(grey_from_message(image, name), name)
+    except UnusablePictureError:
+        return None

@@ -1,0 +1,44 @@
+"""Marks and labelled examples of the simulated scene, made from the truth that it tells."""
+
+import threading
+from pathlib import Path
+
+from actum import keys
+from actum.messages import SIMULATOR, Segment, Truth
+from actum.recording import Recorder
+from actum.runtime import Client
+from scene_simulator.programme import balanced_programme
+from scene_simulator.simulator import Simulator, labelled_stream
+
+POLL_S = 0.005  # a sixth of a frame's interval: marks come well before the next frame
+SUBSCRIBER_POLL_S = 0.5  # how soon a request to stop is heeded while nobody listens to marks
+
+
+def write_examples(output: Path, repetitions: int, actor: int, seed: int) -> None:
+    """Record a balanced programme of the simulated scene with its labels, without images.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    simulator = Simulator(balanced_programme(repetitions, seed, actor), actor, seed, image_hz=0)
+    with Recorder(output, person=f"simulated {actor}", source="simulator", seed=str(seed)) as recorder:
+        for message in labelled_stream(simulator):
+            recorder.write(message)
+
+
+def mark_truth(client: Client, stop: threading.Event) -> None:
+    """Answer each truth with its mark, until stopped."""
+    truths = client.listen(keys.key(keys.TRUTH, client.sensor))
+    while not stop.is_set() and not client.wait_for_subscriber(keys.SEGMENT, SUBSCRIBER_POLL_S):
+        pass
+    while not stop.wait(POLL_S):
+        while (received := truths.take()) is not None:
+            if isinstance(received.message, Truth):
+                client.put(mark_of(received.message))
+
+
+def mark_of(truth: Truth) -> Segment:
+    """Return the mark that a switch would have put: no action, no object, no hand."""
+    return Segment(
+        stamp_ns=truth.stamp_ns, sensor=truth.sensor, kind=truth.kind, segment_id=truth.segment_id, origin=SIMULATOR
+    )

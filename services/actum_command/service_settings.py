@@ -1,0 +1,48 @@
+"""The settings of the services that `actum up` starts, and how they are handed on to them."""
+
+from collections.abc import Mapping
+
+import action_fusion.settings
+import marker_tracker.settings
+import pose_preprocessor.settings
+import scene_simulator.settings
+import sensor_gateway.settings
+import som_classifier.settings
+from actum.settings import ServiceSettings
+
+DECLARED: Mapping[str, type[ServiceSettings]] = {
+    service.__name__: service.settings.Settings
+    for service in (sensor_gateway, scene_simulator, pose_preprocessor, som_classifier, marker_tracker, action_fusion)
+}
+"""What each service can be told."""
+
+Given = Mapping[str, bool | list[str]]
+"""The settings that stood on the command line, by name."""
+
+
+def arguments_of(service: str, given: Given) -> list[str]:
+    """Write those of the given settings that a service has as its flags."""
+    arguments: list[str] = []
+    for name, value in given.items():
+        if name not in DECLARED[service].model_fields:
+            continue
+        if isinstance(value, bool):
+            arguments.append(flag_of(name) if value else negated_flag_of(name))
+        else:
+            arguments += [f"{flag_of(name)}={text}" for text in value]
+    return arguments
+
+
+def flag_of(name: str) -> str:
+    """Write a setting's name as a flag: `--camera-size`."""
+    return f"--{name.replace('_', '-')}"
+
+
+def negated_flag_of(name: str) -> str:
+    """Write the flag that switches a setting off: `--no-images`."""
+    return f"--no-{name.replace('_', '-')}"
+
+
+def service_of(name: str) -> str:
+    """Name the first service that has a setting."""
+    return next(service for service, settings in DECLARED.items() if name in settings.model_fields)

@@ -1,0 +1,117 @@
+"""What is settled before a whole system starts: its source, its endpoint, its model."""
+
+import socket
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+from actum.runtime import Client, RouterUnreachableError
+from actum.settings import ServiceSettings, SettingsError, host_and_port
+from actum_command.processes import SERVICES
+from actum_command.service_settings import DECLARED, Given, flag_of, service_of
+from som_classifier.model_loading import ModelError, load_model
+
+CHECK_S = 0.2  # how often the router is asked for: soon enough that nobody notices the wait
+ROUTER_S = 5.0  # a router is up within a second; services wait for it by themselves where it takes longer
+
+FILES_ELSEWHERE = {
+    "simulator": "--source recording",
+    "none": "--source recording",
+    "camera": "a video file in ACTUM_CAMERA",
+}
+"""The sources that play no file, each with how a file is named instead."""
+
+WITHOUT_CAMERA = ("simulator", "recording")
+"""The sources that have no camera to choose."""
+
+SENSORS = {"none": None, "simulator": "scene_simulator"}
+"""The service that is the sensor, where it is not the sensor gateway."""
+
+NO_MODEL = (
+    "no --model: every action is answered with 'no model'. For the simulated scene: "
+    "actum simulate examples.mcap; actum train examples.mcap -o model.npz; actum up --model model.npz"
+)
+
+
+def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
+    """Return the source that is meant.
+
+    Raises:
+        SettingsError: it does not start the service that a given setting is for, or plays no file though one is named.
+    """
+    source = named or ("camera" if "camera" in given else "simulator")
+    if "camera" in given and source in WITHOUT_CAMERA:
+        raise SettingsError(f"source {source} takes no --camera: leave --source out, or name camera")
+    sensor = SENSORS.get(source, "sensor_gateway")
+    started = SERVICES if sensor is None else (*SERVICES, sensor)
+    told = {name for service in started for name in DECLARED[service].model_fields}
+    for name in (name for name in given if name not in told):
+        subject = f"{sensor} takes no {flag_of(name)}: it" if source == "simulator" else flag_of(name)
+        remedy = "" if named else "; name another source"
+        raise SettingsError(
+            f"{subject} is a setting of {service_of(name)}, which --source {source} does not start{remedy}"
+        )
+    if path is not None and source in FILES_ELSEWHERE:
+        raise SettingsError(f"source {source} takes no --path: to have {path} played, name {FILES_ELSEWHERE[source]}")
+    return source
+
+
+def refuse_taken(endpoint: str) -> None:
+    """Check that the router can listen at an endpoint.
+
+    Raises:
+        SettingsError: it is no endpoint, or something listens there already.
+    """
+    address = host_and_port(endpoint)
+    if address is None or not endpoint.startswith("tcp/"):
+        return
+    try:
+        _bind(*address)
+    except OSError as error:
+        raise SettingsError(
+            f"{endpoint} cannot be listened on ({error.strerror}): stop what runs there or set ACTUM_CONNECT"
+        ) from None
+
+
+def _bind(host: str, port: int) -> None:
+    """Take an address for a moment, of whichever family it is."""
+    family, kind, protocol, _, address = socket.getaddrinfo(
+        host or "0.0.0.0", port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+    )[0]
+    with socket.socket(family, kind, protocol) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        probe.bind(address)
+
+
+def wait_for_router(here: ServiceSettings, stop: threading.Event) -> None:
+    """Give the router time to come up, so that the services find it at once; if it does not, they wait for it.
+
+    Raises:
+        SettingsError: no session can be opened with these settings.
+    """
+    deadline_s = time.monotonic() + ROUTER_S
+    while time.monotonic() < deadline_s and not stop.wait(CHECK_S):
+        try:
+            with Client(here, wait_s=0):
+                return
+        except RouterUnreachableError:
+            continue
+
+
+def lack_of_model(model: Path | None) -> str | None:
+    """Say why there is no model that can be used yet; None where there is one."""
+    if model is None:
+        return NO_MODEL
+    if not model.exists():
+        return f"no {model} yet: every action is answered with 'no model' until it is there"
+    try:
+        load_model(model)
+    except ModelError as error:
+        return str(error)
+    return None
+
+
+def log_file(name: str, here: ServiceSettings) -> Path:
+    """Return where the output of background processes goes."""
+    return Path(tempfile.gettempdir()) / f"actum-{name}-{here.instance}.log"

@@ -1,0 +1,159 @@
+"""What `actum record` does with each message: store it, and give every mark the stamp it was resolved to."""
+
+from collections import Counter
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from actum import keys
+from actum.codec import DecodeError
+from actum.messages import MANUAL, Action, Message, Posture, Segment, Skeleton
+from actum.node import SECOND_NS, Counters
+from actum.recording import Recorder
+
+STREAMS = frozenset(
+    {keys.SKELETON, keys.POSTURE, keys.OBJECTS, keys.SEGMENT, keys.ACTION, keys.EVENT, keys.TRUTH},
+)
+"""What is stored of every sensor."""
+
+IMAGES = frozenset({keys.COLOR, keys.DEPTH})
+"""What is stored where it is asked for: faces are personal data."""
+
+SKEW_NS = 2 * SECOND_NS  # how much later than a segment's final action its mark may still arrive
+
+
+def origin_of(mark: Segment) -> str:
+    """Tell who put a mark; one that does not say so is the user's."""
+    return mark.origin or MANUAL
+
+
+@dataclass(frozen=True)
+class _Held:
+    """A mark without a stamp, with the newest frame's stamp and the time when it came."""
+
+    mark: Segment
+    newest_ns: int | None
+    received_ns: int
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """A segment's bounds, as its final action told them, and when it did."""
+
+    start_ns: int
+    end_ns: int | None
+    received_ns: int
+
+
+class StreamRecorder:
+    """Stores the messages of the given topics, of the marks only those of the given origins.
+
+    A mark without a stamp waits for its segment's final action, which says where the classifier put it; at the end
+    those left get the stamp of the frame that was newest when they came. `label` is given to start marks without one.
+
+    Attributes:
+        stored: how many messages are in the file.
+        actions: how many of them mark the start of an action, by origin and label.
+        unended: the segments that have a start and no end so far.
+        left_out: how many actions were marked by others, by origin.
+        undecodable: payloads that are no message, by kind.
+        counters: marks that were thrown away.
+    """
+
+    def __init__(
+        self,
+        recorder: Recorder,
+        topics: Collection[keys.Topic] = STREAMS,
+        label: str | None = None,
+        origins: Collection[str] | None = (MANUAL,),
+    ) -> None:
+        self.stored = 0
+        self.actions: Counter[tuple[str, str | None]] = Counter()
+        self.unended: set[str] = set()
+        self.left_out: Counter[str] = Counter()
+        self.undecodable: Counter[str] = Counter()
+        self.counters = Counters()
+        self._recorder = recorder
+        self._topics = topics
+        self._label = label
+        self._origins = origins
+        self._newest_ns: int | None = None
+        self._held: list[_Held] = []
+        self._answers: dict[str, _Answer] = {}
+
+    def take(self, message: Message, received_ns: int) -> None:
+        """Take one message and the time it was received at (ns)."""
+        if isinstance(message, Skeleton | Posture):
+            self._newest_ns = message.stamp_ns
+        if isinstance(message, Action) and message.final:
+            self._answer(message, received_ns)
+        if keys.address_of(message).topic not in self._topics:
+            return
+        if isinstance(message, Segment):
+            self._mark(message, received_ns)
+        else:
+            self._store(message, received_ns)
+
+    def reject(self, error: DecodeError) -> None:
+        """Count a payload that is no message."""
+        self.undecodable[error.kind] += 1
+
+    def close(self) -> None:
+        """Store the marks that no final action has resolved; one that came before any frame is counted and lost."""
+        for held in self._held:
+            self._place(held, held.newest_ns)
+        self._held = []
+
+    def _mark(self, mark: Segment, received_ns: int) -> None:
+        origin = origin_of(mark)
+        if self._origins is not None and origin not in self._origins:
+            self.left_out[origin] += mark.kind == "start"
+            return
+        if mark.kind == "start" and mark.label is None:
+            mark = mark.model_copy(update={"label": self._label})
+        if mark.stamp_ns is not None:
+            self._store(mark, received_ns)
+            return
+        self._held.append(_Held(mark, self._newest_ns, received_ns))
+        self._forget(received_ns)
+        self._resolve(mark.segment_id)
+
+    def _answer(self, final: Action, received_ns: int) -> None:
+        self._forget(received_ns)
+        self._answers[final.segment_id] = _Answer(final.start_ns, final.end_ns, received_ns)
+        self._resolve(final.segment_id)
+
+    def _forget(self, now_ns: int) -> None:
+        """Drop the answers that no mark can be waiting for any more: segments without end may be recorded."""
+        self._answers = {
+            name: answer for name, answer in self._answers.items() if now_ns - answer.received_ns <= SKEW_NS
+        }
+
+    def _resolve(self, segment_id: str) -> None:
+        """Store the waiting marks of a segment if it is answered."""
+        answer = self._answers.get(segment_id)
+        if answer is None:
+            return
+        answered = [held for held in self._held if held.mark.segment_id == segment_id]
+        self._held = [held for held in self._held if held.mark.segment_id != segment_id]
+        for held in answered:
+            resolved_ns = answer.start_ns if held.mark.kind == "start" else answer.end_ns
+            self._place(held, held.newest_ns if resolved_ns is None else resolved_ns)
+
+    def _place(self, held: _Held, stamp_ns: int | None) -> None:
+        if stamp_ns is None:
+            self.counters.reject("mark_without_stamp", f"{held.mark.segment_id}: it came before any frame")
+            return
+        self._store(held.mark.model_copy(update={"stamp_ns": stamp_ns}), held.received_ns)
+
+    def _store(self, message: Message, received_ns: int) -> None:
+        self._recorder.write(message, received_ns)
+        self.stored += 1
+        if isinstance(message, Segment):
+            self._count(message)
+
+    def _count(self, mark: Segment) -> None:
+        if mark.kind == "start":
+            self.actions[origin_of(mark), mark.label] += 1
+            self.unended.add(mark.segment_id)
+        else:
+            self.unended.discard(mark.segment_id)

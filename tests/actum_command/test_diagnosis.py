@@ -1,0 +1,202 @@
+"""What `actum doctor` takes for wrong, and that it shows what services say whatever they say."""
+
+from typing import Any
+
+import pytest
+from rich.console import Console
+from scene_simulator.endless_simulator import DESCRIPTION
+from typer.testing import CliRunner
+
+from actum import __version__
+from actum.codec import schema_name
+from actum.messages import MESSAGES, Info, Message, Status
+from actum.runtime import Received
+from actum_command import __main__, diagnosis
+from actum_command.commands import doctor_command
+from actum_command.commands.doctor_command import show
+from actum_command.diagnosis import EXPECTED, Finding, examine
+
+
+def status(service: str, **fields: Any) -> Status:
+    said: dict[str, Any] = {
+        "rates": {},
+        "handled": {},
+        "drops": {},
+        "rejects": {},
+        "latency_ms": {"p50": 1.0, "p99": 2.0},
+        "state": "running",
+        "last_error": None,
+    }
+    return Status(stamp_ns=1, sensor="kinect0", service=service, instance="a", uptime_s=1.0, **(said | fields))
+
+
+def info(service: str, version: str = __version__, instance: str = "a", source: str | None = None) -> Info:
+    return Info(
+        stamp_ns=1,
+        sensor="kinect0",
+        service=service,
+        instance=instance,
+        host="lab",
+        source=source,
+        version=version,
+        schemas=[schema_name(message) for message in MESSAGES],
+        joint_names=[],
+    )
+
+
+class Listened:
+    def __init__(self, messages: list[Message]) -> None:
+        self._messages = messages
+
+    def take(self) -> Received | None:
+        return Received("", self._messages.pop(0), None, 0) if self._messages else None
+
+
+class System:
+    """All services, alive and well but for what a test changes about one."""
+
+    sensor = "kinect0"
+
+    def __init__(self, changed: Status, version: str = __version__, source: str | None = None) -> None:
+        self.also: tuple[str, str] | None = None
+        self._sources = {changed.service: source}
+        self._statuses: list[Message] = [status(name) for name in EXPECTED if name != changed.service]
+        self._statuses.append(changed)
+        self._versions = dict.fromkeys(EXPECTED, __version__) | {changed.service: version}
+
+    def __enter__(self) -> "System":
+        return self
+
+    def __exit__(self, *_: object) -> None: ...
+
+    def listen(self, _pattern: str) -> Listened:
+        return Listened(self._statuses)
+
+    def alive(self) -> list[str]:
+        names = [(name, "a") for name in EXPECTED] + ([self.also] if self.also else [])
+        return sorted({f"actum/kinect0/alive/{name}/{instance}" for name, instance in names})
+
+    def infos(self) -> list[Info]:
+        found = [info(name, version, source=self._sources.get(name)) for name, version in self._versions.items()]
+        return found + ([info(self.also[0], instance=self.also[1])] if self.also else [])
+
+
+@pytest.fixture(autouse=True)
+def _brief(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(diagnosis, "STATUS_S", 0.05)
+
+
+def examined(**fields: Any) -> Finding:
+    [found] = [f for f in examine(System(status("som_classifier", **fields))) if f.service == "som_classifier"]  # type: ignore[arg-type]
+    return found
+
+
+def diagnosed(monkeypatch: pytest.MonkeyPatch, system: System) -> tuple[int, str]:
+    monkeypatch.setattr(doctor_command, "connect", lambda: system)
+    ended = CliRunner().invoke(__main__.app, ["doctor"])
+    return ended.exit_code, ended.output
+
+
+def test_a_system_that_is_well_is_said_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    code, output = diagnosed(monkeypatch, System(status("som_classifier")))
+    assert code == 0
+    assert "all services are there, alive and of one version" in output
+    assert "dropped" not in output
+
+
+def test_another_version_is_a_problem_though_it_has_the_same_schemas(monkeypatch: pytest.MonkeyPatch) -> None:
+    code, output = diagnosed(monkeypatch, System(status("som_classifier"), version="0.0.1"))
+    assert code == 1
+    assert f"som_classifier is version 0.0.1, this is {__version__}" in output
+    assert "of one version" not in output
+
+
+@pytest.mark.parametrize("state", ["source ended", "camera lost: it does not answer"])
+def test_a_source_that_gives_nothing_is_a_problem(state: str) -> None:
+    assert any(state in problem for problem in examined(state=state).problems)
+
+
+@pytest.mark.parametrize(
+    ("latency_ms", "shown"),
+    [({}, ""), ({"p50": 1.5}, "1.50 / -"), ({"mean": 3.0}, "- / -"), ({"p50": 1.5, "p99": 2.0}, "1.50 / 2.00")],
+)
+def test_a_latency_that_is_not_told_is_a_dash(latency_ms: dict[str, float], shown: str) -> None:
+    assert examined(latency_ms=latency_ms).latency == shown
+
+
+def test_a_classifier_without_a_model_is_a_problem_that_names_the_file() -> None:
+    [problem] = examined(state="no model: there is no m.npz yet").problems
+    assert problem.startswith("som_classifier: no model: there is no m.npz yet, so every action is rejected; name one")
+
+
+def test_a_model_that_could_not_be_renewed_is_a_problem() -> None:
+    [problem] = examined(state="model not renewed: m.npz: damaged").problems
+    assert problem == "som_classifier: model not renewed: m.npz: damaged; it goes on with the model before"
+
+
+@pytest.mark.parametrize("state", ["source ended", "camera lost: it cannot be opened"])
+def test_a_gateway_that_gives_nothing_is_told_with_what_it_reads(state: str) -> None:
+    gateway = System(status("sensor_gateway", state=state), source="file wave.mp4 (camera)")
+    [problem] = [p for finding in examine(gateway) for p in finding.problems]  # type: ignore[arg-type]
+    assert problem.startswith(f"sensor_gateway: {state} (file wave.mp4 (camera)); ")
+
+
+def test_a_simulated_scene_that_is_over_is_told_how_it_goes_on_for_ever() -> None:
+    scene = System(status("sensor_gateway", state="source ended"), source=DESCRIPTION)
+    [problem] = [p for finding in examine(scene) for p in finding.problems]  # type: ignore[arg-type]
+    assert problem.endswith("start it again for more, with --repetitions 0 for more and more")
+    recording = System(status("sensor_gateway", state="source ended"), source="recording a.mcap")
+    [problem] = [p for finding in examine(recording) for p in finding.problems]  # type: ignore[arg-type]
+    assert problem.endswith("start it again for more, with --loop for more and more")
+
+
+class Sensorless(System):
+    def alive(self) -> list[str]:
+        return [key for key in super().alive() if "sensor_gateway" not in key]
+
+
+def test_where_there_is_no_sensor_both_programs_that_can_be_one_are_named() -> None:
+    [problem] = [p for finding in examine(Sensorless(status("som_classifier"))) for p in finding.problems]  # type: ignore[arg-type]
+    assert problem.startswith("sensor_gateway is not running: start it with 'python -m sensor_gateway'")
+    assert "for the simulated scene 'python -m scene_simulator'" in problem
+
+
+def test_a_simulated_sensor_is_said_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    code, output = diagnosed(monkeypatch, System(status("sensor_gateway"), source="simulated scene [a]"))
+    assert code == 0
+    assert "sensor: simulated scene [a]" in output
+
+
+@pytest.mark.parametrize("second", ["b", "a"])
+def test_two_of_one_identity_are_a_problem_that_names_both(monkeypatch: pytest.MonkeyPatch, second: str) -> None:
+    """Two of the same name share a token, but each describes itself."""
+    system = System(status("pose_preprocessor"))
+    system.also = ("pose_preprocessor", second)
+    code, output = diagnosed(monkeypatch, system)
+    assert code == 1
+    assert "pose_preprocessor runs more than once, so everything is answered more than once" in output
+    assert f"stop all but one of a on lab, {second} on lab" in output
+
+
+def test_where_there_is_no_room_for_a_table_there_are_lines_of_whole_words() -> None:
+    console = Console(width=60)
+    with console.capture() as capture:
+        show(examine(System(status("som_classifier", drops={"actum/kinect0/skeleton": 3}))), console)  # type: ignore[arg-type]
+    lines = capture.get().splitlines()
+    assert "som_classifier, 1 alive" in lines
+    assert "  dropped: skeleton 3" in lines
+    assert "  latency p50/p99 (ms): 1.00 / 2.00" in lines
+    assert "pose_preprocessor, 1 alive" in lines
+
+
+def test_drops_are_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    drops = {"actum/kinect0/skeleton": 3}
+    assert examined(drops=drops).drops == "skeleton 3"
+    _, output = diagnosed(monkeypatch, System(status("som_classifier", drops=drops)))
+    assert "dropped" in output
+
+
+def test_a_state_that_looks_like_markup_is_shown_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    code, output = diagnosed(monkeypatch, System(status("som_classifier", state="camera lost [/x]")))
+    assert code == 1
+    assert "som_classifier: camera lost [/x]" in output

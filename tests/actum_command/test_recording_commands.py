@@ -1,0 +1,200 @@
+"""`actum record` and `actum play` tell what they did, and what they could not."""
+
+import threading
+from pathlib import Path
+
+import msgpack
+import pytest
+from click.testing import Result
+from mcap.writer import Writer
+from typer.testing import CliRunner
+
+from actum import codec, keys
+from actum.messages import MANUAL, SIMULATOR, Message
+from actum.recording import Recorder, Recording
+from actum.runtime import Received
+from actum_command import streaming
+from actum_command.__main__ import app
+from actum_command.commands import recording_commands
+from empty_messages import image, mark, skeleton, status
+
+
+class Live:
+    """A client that hears what it is given, then that the recording is to stop, and keeps what is put."""
+
+    sensor, run = "kinect0", "now"
+
+    def __init__(self, stop: threading.Event) -> None:
+        self._stop = stop
+        self._coming: list[Received] = []
+        self.heard: list[Message] = []
+
+    def __enter__(self) -> "Live":
+        return self
+
+    def __exit__(self, *_: object) -> None: ...
+
+    def listen(self, _pattern: str) -> "Live":
+        return self
+
+    def wait_for_subscriber(self, _topic: keys.Topic, _wait_s: float) -> bool:
+        return True
+
+    def comes(self, *messages: Message) -> None:
+        self._coming += [Received(keys.key_of(message), message, None, 0) for message in messages]
+
+    def comes_garbage(self) -> None:
+        self._coming.append(Received("actum/kinect0/skeleton", None, codec.DecodeError("not_msgpack", "no"), 1))
+
+    def stop_at_once(self) -> None:
+        self._stop.set()
+
+    def put(self, message: Message) -> None:
+        self.heard.append(message)
+
+    def take(self) -> Received | None:
+        if self._coming:
+            return self._coming.pop(0)
+        self._stop.set()
+        return None
+
+
+@pytest.fixture
+def live(monkeypatch: pytest.MonkeyPatch) -> Live:
+    stop = threading.Event()
+    client = Live(stop)
+    monkeypatch.setattr(recording_commands, "connect", lambda: client)
+    monkeypatch.setattr(recording_commands, "stop_on_signals", lambda: stop)
+    monkeypatch.setattr(streaming, "LEAD_IN_S", 0.0)
+    monkeypatch.setattr(streaming, "ON_ITS_WAY_S", 0.0)
+    return client
+
+
+def actum(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def refused(*arguments: object) -> str:
+    ended = actum(*arguments)
+    assert ended.exit_code == 1, ended.output
+    assert isinstance(ended.exception, SystemExit)
+    assert ended.stderr.count("\n") == 1
+    return ended.stderr
+
+
+def test_only_what_is_stored_is_counted(live: Live, tmp_path: Path) -> None:
+    live.comes(status(), skeleton(1), image(1), skeleton(2), mark("start", 2))
+    recorded = actum("record", tmp_path / "a.mcap")
+    assert f"3 messages, 1 marked actions, written to {tmp_path / 'a.mcap'}" in recorded.stdout
+    assert len(list(Recording(tmp_path / "a.mcap").messages())) == 3
+    assert "not stored" not in recorded.stdout
+    assert "not decodable" not in recorded.stdout
+
+
+def test_whose_actions_are_stored_and_whose_are_not_is_told(live: Live, tmp_path: Path) -> None:
+    scene = [mark("start", 2, "s1", origin=SIMULATOR), mark("end", 3, "s1", origin=SIMULATOR)]
+    own = [mark("start", 4, "mine", origin=MANUAL), mark("end", 5, "mine", origin=MANUAL), mark("start", 6, "robot")]
+    live.comes(skeleton(1), *scene, *own)
+    told = actum("record", tmp_path / "a.mcap", "--label", "push").stdout
+    assert "2 marked by manual, labelled 'push'" in told
+    assert "1 marked by simulator left out: --marks simulator or --marks all takes such" in told
+    assert "without an end, so nothing is learnt from them: robot" in told
+    live.comes(skeleton(1), *scene, *own)
+    told = actum("record", tmp_path / "b.mcap", "--marks", "manual, simulator").stdout
+    assert "3 marked actions" in told
+    assert "1 marked by simulator, without a label" in told
+    assert "left out" not in told
+
+
+def test_what_came_before_the_stop_is_stored(live: Live, tmp_path: Path) -> None:
+    live.comes(skeleton(1), skeleton(2), mark("end", 2))
+    live.stop_at_once()
+    assert "3 messages" in actum("record", tmp_path / "a.mcap").stdout
+
+
+def test_marks_and_payloads_that_are_lost_are_told(live: Live, tmp_path: Path) -> None:
+    live.comes(mark("start"), mark("end"))
+    live.comes_garbage()
+    recorded = actum("record", tmp_path / "a.mcap")
+    assert "0 messages" in recorded.stdout
+    assert "not stored: mark_without_stamp 2" in recorded.stdout
+    assert "not decodable: 1 (not_msgpack 1)" in recorded.stdout
+
+
+def test_a_recording_of_nothing_is_warned_of(live: Live, tmp_path: Path) -> None:
+    live.comes(status())
+    assert "nothing was stored" in actum("record", tmp_path / "a.mcap").stdout
+
+
+def test_a_folder_is_not_recorded_to(live: Live, tmp_path: Path) -> None:
+    (tmp_path / "takes").mkdir()
+    assert "takes is a folder" in refused("record", tmp_path / "takes")
+    assert [path.name for path in tmp_path.iterdir()] == ["takes"]
+
+
+def test_where_nothing_can_be_written_nothing_is_recorded(live: Live, tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    live.comes(skeleton(1))
+    assert "cannot be written" in refused("record", tmp_path / "file" / "a.mcap")
+    assert live.take() is not None, "nobody has listened"
+
+
+def written(path: Path, *messages: Message, person: str = "anna") -> Path:
+    with Recorder(path, person=person, source="test") as recorder:
+        for message in messages:
+            recorder.write(message)
+    return path
+
+
+def cut(path: Path) -> Path:
+    """Break a recording off right behind its last message."""
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) - 1])
+    return path
+
+
+def test_a_recording_is_never_written_over(live: Live, tmp_path: Path) -> None:
+    path = written(tmp_path / "a.mcap", skeleton(1))
+    before = path.read_bytes()
+    live.comes(skeleton(2))
+    assert f"{path} is there already" in refused("record", path)
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize(("marks", "told"), [([], True), ([mark("start", 2), mark("end", 3)], False)])
+def test_a_label_that_nothing_got_is_told(marks: list[Message], told: bool, live: Live, tmp_path: Path) -> None:
+    live.comes(skeleton(1), *marks)
+    recorded = actum("record", tmp_path / "a.mcap", "--label", "push")
+    assert ("nothing of it is labelled 'push'" in recorded.stdout) == told
+
+
+def test_blanks_between_persons_are_none_of_their_names(live: Live, tmp_path: Path) -> None:
+    for person in ("anna", "bert", "cem"):
+        written(tmp_path / f"{person}.mcap", skeleton(1), person=person)
+    assert "played 2 recordings" in actum("play", tmp_path, "--person", "anna, cem", "--speed", 100).stdout
+
+
+def test_a_damaged_recording_ends_a_play_with_one_line(live: Live, tmp_path: Path) -> None:
+    path = written(tmp_path / "a.mcap", *(skeleton(i) for i in range(100)))
+    content = bytearray(path.read_bytes())
+    content[content.index(b"zstd") + 40] ^= 0xFF
+    path.write_bytes(content)
+    assert f"{path}: damaged" in refused("play", path)
+
+
+def test_a_recording_that_breaks_off_is_named(live: Live, tmp_path: Path) -> None:
+    path = cut(written(tmp_path / "a.mcap", skeleton(1), skeleton(2)))
+    played = actum("play", path)
+    assert played.exit_code == 0
+    assert f"{path} breaks off" in played.stdout
+
+
+def test_what_a_play_passes_over_is_counted(live: Live, tmp_path: Path) -> None:
+    path = tmp_path / "foreign.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        for key, payload in (("robot/odometry", b"\x80"), ("actum/kinect0/skeleton", msgpack.packb([1]))):
+            writer.add_message(writer.register_channel(key, "msgpack", 0), log_time=9, data=payload, publish_time=5)
+        writer.finish()
+    assert f"{path}: skipped not_a_map 1, unknown_key 1" in actum("play", path).stdout
