@@ -6,10 +6,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from actum.arrays import Floats
 from actum.skeletons import INDEX
 from actum.som import Som
 from actum_model_inspector.posture_map import draw_ground, drawn_units, map_size, name_sides, which_are_drawn
-from actum_model_inspector.stick_figures import MIDDLE_M, STANDING, Floats, Pen, draw_arrows, draw_figures, standing
+from actum_model_inspector.stick_figures import MIDDLE_M, STANDING, Pen, draw_arrows, draw_figures, standing
 from actum_model_inspector.style import FAINT, figure_with_layout, in_house_style
 from som_classifier.first_layer import VELOCITY_WEIGHT
 from som_classifier.handedness import mirrored

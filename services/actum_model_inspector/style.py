@@ -14,11 +14,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, get_font, get_font_names
 from matplotlib.patheffects import withStroke
-from numpy.typing import NDArray
 
+from actum.arrays import Floats
 from actum_model_inspector.text_layout import on_one_line, wrapped
-
-Floats = NDArray[Any]
 
 INK, FAINT, PAPER = "#222222", "#767676", "#ffffff"
 RIGHT, LEFT = "#d55e00", "#0072b2"

@@ -4,16 +4,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Floats
 from actum.skeletons import INDEX, JOINTS
 from actum.som import Som, Together
 from som_classifier.handedness import ACROSS, OPPOSITE
-
-Floats = NDArray[Any]
 
 VELOCITY_WEIGHT = 3.0
 """Weight of velocities against positions in the arm map's input: both then have about the same variance."""
