@@ -20,7 +20,8 @@ FIGURE_SIZE = 1.45  # units of the map: figures have no legs here and may be lar
 LONGEST_STEP_M = 0.5  # of the fastest arm's arrow on a figure: it stays about within its unit
 ARROW_IN = 0.018  # width of the arrows' shafts
 
-_SHOULDER, _ENDS = INDEX["right_shoulder"], [INDEX["right_elbow"], INDEX["right_hand"]]
+_SHOULDER = INDEX["right_shoulder"]
+_ENDS = [INDEX["right_elbow"], INDEX["right_hand"]]
 _LEGS = [INDEX[f"{side}_{joint}"] for side in ("left", "right") for joint in ("knee", "foot")]
 _BUST = STANDING - STANDING[_SHOULDER] + np.array([-0.1, MIDDLE_M, 0.0])
 _BUST[_LEGS] = np.nan
