@@ -4,7 +4,7 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-latency bench-maps bench-recognition bench-objects bench-paper bench-tracker picture schemas wheel clean
+.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-latency bench-maps bench-recognition bench-objects bench-paper bench-tracker picture pages docs schemas wheel clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -42,7 +42,7 @@ test-live: $(STAMP)  ## all MSR test recordings through live processes
 test-containers: $(STAMP)  ## build and run the compose file; needs a container engine
 	$(BIN)/pytest -m containers -s
 
-check: $(STAMP)  ## format, lint, types, layers
+check: docs  ## format, lint, types, layers, pages
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/ruff check --quiet .
 	$(BIN)/mypy --no-error-summary
@@ -87,6 +87,12 @@ picture: $(STAMP)  ## the README's pictures
 	  && $(BIN)/actum simulate $$folder/seen.mcap --actor 24 --seed 3 --repetitions 2 \
 	  && $(BIN)/actum inspect $$folder/model.npz $$folder/seen.mcap -o $$folder && cp $$folder/time-lift.png docs/time.png && rm -r $$folder
 
+pages: $(STAMP)  ## write what the pages show of the code anew
+	$(BIN)/python -m docs.generate
+
+docs: $(STAMP)  ## the pages as a site, in site/index.html; fails on a broken link
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going --fresh-env --quiet -c docs . site
+
 schemas: $(STAMP)  ## write the JSON Schemas anew
 	$(BIN)/python -m actum.schemas
 
@@ -94,4 +100,4 @@ wheel: $(STAMP)  ## source distribution and wheel, in dist
 	$(BIN)/python -m build
 
 clean:
-	rm -rf $(VENV)
+	rm -rf $(VENV) site

@@ -22,7 +22,8 @@ from minisom import MiniSom  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
 from actum.som import BatchTraining, SequentialTraining, Som, Steps, adapt_in_numpy
-from actum.som.kernel import Kernel, fastest
+from actum.som.kernel import Kernel
+from actum.som.sequential import fastest_kernel
 
 Array = NDArray[Any]
 
@@ -172,7 +173,7 @@ def trainings(start: Array, vectors: Array) -> Iterator[tuple[Row, Callable[[], 
     yield minisom_sequential(start, vectors)
     yield sequential_row("actum, float64, NumPy only", start, vectors, np.float64, adapt_in_numpy)
     for dtype in (np.float64, np.float32):
-        yield sequential_row(f"actum, {np.dtype(dtype).name}", start, vectors, dtype, fastest())
+        yield sequential_row(f"actum, {np.dtype(dtype).name}", start, vectors, dtype, fastest_kernel())
     yield minisom_batch(start, vectors)
     for dtype in (np.float64, np.float32):
         yield batch(f"actum, {np.dtype(dtype).name}", start, vectors, dtype)

@@ -5,9 +5,8 @@ import math
 import cv2
 import numpy as np
 
-from actum.arrays import Array
+from actum.arrays import Array, Pixels
 from actum_calibrator.board import Board
-from actum_calibrator.grey_images import Pixels
 
 ALONG = np.linspace(0.3, 0.7, 9)  # where an edge is measured, in parts of its length: clear of other edges
 STEPS = 41  # samples across an edge: several a pixel, as markers are printed and seen
@@ -44,7 +43,7 @@ def image_from_plane(board: Board, ids: list[int], corners_px: Array) -> Array:
 
 
 def image_blur_px(pixels: Pixels) -> float | None:
-    """Estimate the same from the sharpest edges of a whole image; None where there is nothing to be seen."""
+    """Estimate the blur (standard deviation, px) by the sharpest edges of a whole image; None where there are none."""
     smooth = cv2.GaussianBlur(pixels, (0, 0), SMOOTHING_PX).astype(np.float32)
     dark, bright = np.percentile(smooth, EXTREMES)
     slopes = [float(np.percentile(np.abs(np.diff(smooth, axis=axis)), STEEPEST)) for axis in (0, 1)]

@@ -12,7 +12,14 @@ from actum.arrays import Array, Mask
 from actum.calibration import Calibration, IntrinsicsQuality
 from actum_calibrator.board_deformation import FLAT, Deformation, deformed_corners_m, estimate_deformation
 from actum_calibrator.board_views import View
-from actum_calibrator.view_set import PoorSetError, covered_cells, nominal_tilts_deg, shortcomings, tilt_deg, untilted
+from actum_calibrator.view_set import (
+    PoorSetError,
+    covered_cells,
+    nominal_tilts_deg,
+    shortcomings,
+    tilt_deg,
+    tilt_shortcomings,
+)
 
 MOST_FOCAL_DEVIATION = 0.005  # standard deviation of the focal length in parts of it: 10 mm at 2 m
 MOST_RMS_OF_DIAGONAL = 1e-3  # 0.8 px in 640x480; sharp views of a flat board have a quarter of it
@@ -70,9 +77,9 @@ def estimate_intrinsics(views: Sequence[View]) -> Intrinsics:
         PoorSetError: the views do not determine it.
     """
     if reasons := shortcomings(views):
-        raise PoorSetError([*reasons, *untilted(nominal_tilts_deg(views))])
+        raise PoorSetError([*reasons, *tilt_shortcomings(nominal_tilts_deg(views))])
     found = _calibrated(views)
-    if reasons := [*untilted(found.tilts_deg), *_ill_fitting(found, views)] or _contradiction(found, views):
+    if reasons := [*tilt_shortcomings(found.tilts_deg), *_ill_fitting(found, views)] or _contradiction(found, views):
         raise PoorSetError(reasons)
     found = _with_deformation(found, views)
     if reasons := _bent(found, views) or _undetermined(found):

@@ -77,7 +77,7 @@ def tilt_deg(rotation: Array) -> float:
     return math.degrees(math.acos(min(1.0, abs(float(cv2.Rodrigues(rotation)[0][2, 2])))))
 
 
-def untilted(tilts_deg: Sequence[float]) -> list[str]:
+def tilt_shortcomings(tilts_deg: Sequence[float]) -> list[str]:
     """Say that too few views are tilted for the focal length to be determined."""
     tilted = sum(tilt >= TILT_DEG for tilt in tilts_deg)
     if tilted >= FEWEST_TILTED or not tilts_deg:

@@ -49,8 +49,8 @@ class Score:
         """List the answered segments of an action."""
         return [name for name, truth in self.truths.items() if truth.action == action and name in self.events]
 
-    def guessed(self) -> int:
-        """Count the objects that the truth's action alone would tell: of each action the one it met most often."""
+    def objects_by_majority(self) -> int:
+        """Count the objects that a majority guess by the action gets right: the one it was done to most often."""
         met = [Counter(self.truths[name].object_id for name in self.of(action)) for action in TABLE_2]
         return sum(max(counts.values(), default=0) for counts in met)
 
@@ -90,7 +90,7 @@ def summary(score: Score, learned: Evaluation, baseline: Evaluation, people: int
     return (
         f"training samples learned: {learned.correct} of {learned.n}; "
         f"unseen samples recognised: {right} of {tests} (95 % interval {low:.0%} to {high:.0%})\n"
-        f"objects that the action alone would tell: {score.guessed()} of {tests}\n"
+        f"objects that the action alone would tell: {score.objects_by_majority()} of {tests}\n"
         f"1-NN on the raw path of the hand, same samples: {baseline.correct} of {baseline.n}\n"
         f"Here: learned from one simulated person, tested on {tested}, live processes. "
         "The paper: one person, a Kinect."

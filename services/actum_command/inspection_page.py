@@ -22,20 +22,20 @@ def write_inspection(
         RecordingError: a recording is damaged.
         OSError: something cannot be written.
     """
-    from actum_model_inspector.anatomy import anatomy_of  # Matplotlib takes its time and need not be installed
-    from actum_model_inspector.answered import answered_segments
+    from actum_model_inspector.answered import answered_segments  # Matplotlib takes its time and need not be installed
     from actum_model_inspector.folder import note
+    from actum_model_inspector.html_page import page
     from actum_model_inspector.inspection import pictures, write
-    from actum_model_inspector.page import page
+    from actum_model_inspector.model_maps import maps_of
     from actum_model_trainer.evaluation import evaluate
 
-    anatomy = anatomy_of(model)
-    segments = answered_segments(anatomy, recordings, progress)
+    maps = maps_of(model)
+    segments = answered_segments(maps, recordings, progress)
     if recordings and not segments:
         raise NoSegmentError("no segment in these recordings: start and end marks make one, see actum segment --help")
     labelled = any(segment.label is not None for segment in segments)
     evaluation = evaluate(model, recordings, progress) if labelled else None
-    planned = list(pictures(anatomy, segments, evaluation))
+    planned = list(pictures(maps, segments, evaluation))
     written = write(planned, folder, ending, progress)
     index = folder / "index.html"
     index.write_text(page(model, segments, evaluation, planned, written), encoding="utf-8")

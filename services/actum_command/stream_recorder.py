@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 from actum import keys
 from actum.codec import DecodeError
+from actum.limits import MAX_SKEW_NS
 from actum.messages import MANUAL, Action, Message, Posture, Segment, Skeleton
-from actum.node import SECOND_NS, Counters
+from actum.node import Counters
 from actum.recording import Recorder
 
 STREAMS = frozenset(
@@ -18,8 +19,6 @@ STREAMS = frozenset(
 IMAGES = frozenset({keys.COLOR, keys.DEPTH})
 """What is stored where it is asked for: faces are personal data."""
 
-SKEW_NS = 2 * SECOND_NS  # how much later than a segment's final action its mark may still arrive
-
 
 def origin_of(mark: Segment) -> str:
     """Tell who put a mark; one that does not say so is the user's."""
@@ -27,7 +26,7 @@ def origin_of(mark: Segment) -> str:
 
 
 @dataclass(frozen=True)
-class _Held:
+class _PendingMark:
     """A mark without a stamp, with the newest frame's stamp and the time when it came."""
 
     mark: Segment
@@ -36,7 +35,7 @@ class _Held:
 
 
 @dataclass(frozen=True)
-class _Answer:
+class _SegmentBounds:
     """A segment's bounds, as its final action told them, and when it did."""
 
     start_ns: int
@@ -77,19 +76,19 @@ class StreamRecorder:
         self._label = label
         self._origins = origins
         self._newest_ns: int | None = None
-        self._held: list[_Held] = []
-        self._answers: dict[str, _Answer] = {}
+        self._pending: list[_PendingMark] = []
+        self._bounds: dict[str, _SegmentBounds] = {}
 
     def take(self, message: Message, received_ns: int) -> None:
         """Take one message and the time it was received at (ns)."""
         if isinstance(message, Skeleton | Posture):
             self._newest_ns = message.stamp_ns
         if isinstance(message, Action) and message.final:
-            self._answer(message, received_ns)
+            self._note_bounds(message, received_ns)
         if keys.address_of(message).topic not in self._topics:
             return
         if isinstance(message, Segment):
-            self._mark(message, received_ns)
+            self._take_mark(message, received_ns)
         else:
             self._store(message, received_ns)
 
@@ -99,11 +98,11 @@ class StreamRecorder:
 
     def close(self) -> None:
         """Store the marks that no final action has resolved; one that came before any frame is counted and lost."""
-        for held in self._held:
-            self._place(held, held.newest_ns)
-        self._held = []
+        for pending in self._pending:
+            self._store_at(pending, pending.newest_ns)
+        self._pending = []
 
-    def _mark(self, mark: Segment, received_ns: int) -> None:
+    def _take_mark(self, mark: Segment, received_ns: int) -> None:
         origin = origin_of(mark)
         if self._origins is not None and origin not in self._origins:
             self.left_out[origin] += mark.kind == "start"
@@ -113,37 +112,37 @@ class StreamRecorder:
         if mark.stamp_ns is not None:
             self._store(mark, received_ns)
             return
-        self._held.append(_Held(mark, self._newest_ns, received_ns))
+        self._pending.append(_PendingMark(mark, self._newest_ns, received_ns))
         self._forget(received_ns)
         self._resolve(mark.segment_id)
 
-    def _answer(self, final: Action, received_ns: int) -> None:
+    def _note_bounds(self, final: Action, received_ns: int) -> None:
         self._forget(received_ns)
-        self._answers[final.segment_id] = _Answer(final.start_ns, final.end_ns, received_ns)
+        self._bounds[final.segment_id] = _SegmentBounds(final.start_ns, final.end_ns, received_ns)
         self._resolve(final.segment_id)
 
     def _forget(self, now_ns: int) -> None:
-        """Drop the answers that no mark can be waiting for any more: segments without end may be recorded."""
-        self._answers = {
-            name: answer for name, answer in self._answers.items() if now_ns - answer.received_ns <= SKEW_NS
+        """Drop the bounds that no mark can be waiting for any more: a recording may have segments without end."""
+        self._bounds = {
+            name: bounds for name, bounds in self._bounds.items() if now_ns - bounds.received_ns <= MAX_SKEW_NS
         }
 
     def _resolve(self, segment_id: str) -> None:
-        """Store the waiting marks of a segment if it is answered."""
-        answer = self._answers.get(segment_id)
-        if answer is None:
+        """Store the pending marks of a segment if its bounds are known."""
+        bounds = self._bounds.get(segment_id)
+        if bounds is None:
             return
-        answered = [held for held in self._held if held.mark.segment_id == segment_id]
-        self._held = [held for held in self._held if held.mark.segment_id != segment_id]
-        for held in answered:
-            resolved_ns = answer.start_ns if held.mark.kind == "start" else answer.end_ns
-            self._place(held, held.newest_ns if resolved_ns is None else resolved_ns)
+        resolved = [pending for pending in self._pending if pending.mark.segment_id == segment_id]
+        self._pending = [pending for pending in self._pending if pending.mark.segment_id != segment_id]
+        for pending in resolved:
+            stamp_ns = bounds.start_ns if pending.mark.kind == "start" else bounds.end_ns
+            self._store_at(pending, pending.newest_ns if stamp_ns is None else stamp_ns)
 
-    def _place(self, held: _Held, stamp_ns: int | None) -> None:
+    def _store_at(self, pending: _PendingMark, stamp_ns: int | None) -> None:
         if stamp_ns is None:
-            self.counters.reject("mark_without_stamp", f"{held.mark.segment_id}: it came before any frame")
+            self.counters.reject("mark_without_stamp", f"{pending.mark.segment_id}: it came before any frame")
             return
-        self._store(held.mark.model_copy(update={"stamp_ns": stamp_ns}), held.received_ns)
+        self._store(pending.mark.model_copy(update={"stamp_ns": stamp_ns}), pending.received_ns)
 
     def _store(self, message: Message, received_ns: int) -> None:
         self._recorder.write(message, received_ns)

@@ -16,7 +16,7 @@ from sensor_gateway.people.pose_estimator import Estimator
 from sensor_gateway.perceiver import OTHER_SIZE
 
 SENSOR = "kinect0"
-"""Recordings carry the usual sensor's name, so that they can be played without a flag."""
+"""The services' default sensor: such recordings can be played without a flag."""
 MOST_NAMES = 12
 """Of actions or persons that the report lists: they fit some lines of a terminal."""
 Progress = Callable[[int, int], None]

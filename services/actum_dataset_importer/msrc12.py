@@ -1,8 +1,8 @@
 """MSRC-12: streams of one repeated gesture each, twenty joints, millimetres, x left and y up, with action points.
 
-An action point is the instant at which a gesture can be told (Fothergill, Mentis, Kohli, Nowozin 2012); nobody wrote
-down starts and ends. A segment here lasts from half way to the point before to half way to the next, at most 1.5 s to
-either side. `p01.npz` holds a person's streams, of each three arrays: `NAME.xyz_mm` (frames, 20, 3), all zero where
+An action point is the instant at which a gesture can be recognised (Fothergill, Mentis, Kohli, Nowozin 2012); starts
+and ends are not annotated. A segment lasts from half-way to the previous point to half-way to the next, at most 1.5 s
+to either side. `p01.npz` holds a person's streams, of each three arrays: `NAME.xyz_mm` (frames, 20, 3), all zero where
 nobody was found, `NAME.t_us` (frames,) and `NAME.tags_us` (points,), all integers.
 """
 

@@ -1,13 +1,14 @@
-"""The segments of recordings with what a model says of each."""
+"""The segments of recordings, each with a model's answer."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array
 from actum.recording import Recording
-from actum_model_inspector.anatomy import Anatomy
+from actum_model_inspector.model_maps import ModelMaps
+from actum_model_inspector.text_layout import shortened
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.samples import classifier_input, closed_segments, sensors
 from som_classifier.frames import Frame
@@ -17,14 +18,17 @@ from som_classifier.segments import ClosedSegment
 
 
 @dataclass(frozen=True, eq=False)
-class Answered:
-    """A segment and the model's answer.
+class AnsweredSegment:
+    """A segment and the model's answer to it.
 
     Attributes:
-        label: what was done, None where the recording does not say.
-        frames: its valid frames, not encoded.
-        recognition: None where it was rejected.
-        place: its unit on the second map, None where it was rejected.
+        file: the recording's path.
+        person: who acts, as the recording names them.
+        segment_id: of the segment in the recording.
+        label: the action done, None where the recording does not say.
+        frames: the valid frames, not encoded.
+        recognition: the answer, None where the segment was rejected.
+        action_unit: its winner on the second map, None where it was rejected.
     """
 
     file: str
@@ -33,7 +37,7 @@ class Answered:
     label: str | None
     frames: Sequence[Frame]
     recognition: Recognition | None = None
-    place: int | None = None
+    action_unit: int | None = None
 
     @property
     def correct(self) -> bool:
@@ -41,14 +45,16 @@ class Answered:
         return self.recognition is not None and self.recognition.label == self.label
 
     @property
-    def shares(self) -> NDArray[np.float64]:
-        """How far through the segment's time each frame lies, 0 to 1, shape (n,)."""
-        stamps = np.array([frame.stamp_ns for frame in self.frames], dtype=np.float64)
-        shares: NDArray[np.float64] = (stamps - stamps[0]) / max(stamps[-1] - stamps[0], 1.0)
-        return shares
+    def relative_times(self) -> Array:
+        """The time of each frame, from 0 at the segment's first to 1 at its last, shape (n,)."""
+        stamps_ns = np.array([frame.stamp_ns for frame in self.frames], dtype=np.float64)
+        relative: Array = (stamps_ns - stamps_ns[0]) / max(stamps_ns[-1] - stamps_ns[0], 1.0)
+        return relative
 
 
-def answered_segments(anatomy: Anatomy, recordings: Sequence[Recording], progress: Progress = silent) -> list[Answered]:
+def answered_segments(
+    maps: ModelMaps, recordings: Sequence[Recording], progress: Progress = silent
+) -> list[AnsweredSegment]:
     """Cut every segment out of the recordings, labelled or not, and let the model answer it.
 
     Raises:
@@ -59,22 +65,37 @@ def answered_segments(anatomy: Anatomy, recordings: Sequence[Recording], progres
         progress("recognising segments", done, len(recordings))
         for sensor in sensors(recording):
             closed = closed_segments(classifier_input(recording, sensor))
-            answered += [_answered(anatomy, recording, segment) for segment in closed]
+            answered += [_answered(maps, recording, segment) for segment in closed]
     progress("recognising segments", len(recordings), len(recordings))
     return answered
 
 
 def encoded(model: Model, frames: Sequence[Frame]) -> list[Frame]:
-    """Return valid frames as the model remembers them."""
+    """Return valid frames, each with the activity that the model's encoder gives it."""
     encoder = model.encoder()
     return [replace(frame, activity=encoder.encode(frame)) for frame in frames]
 
 
-def _answered(anatomy: Anatomy, recording: Recording, closed: ClosedSegment) -> Answered:
+def _answered(maps: ModelMaps, recording: Recording, closed: ClosedSegment) -> AnsweredSegment:
     valid = [frame for frame in closed.frames if frame.valid]
-    unanswered = Answered(str(recording.path), recording.person, closed.segment_id, closed.label, valid)
-    if closed.reason or len(valid) < anatomy.model.min_frames:
+    unanswered = AnsweredSegment(str(recording.path), recording.person, closed.segment_id, closed.label, valid)
+    if closed.reason or len(valid) < maps.model.min_frames:
         return unanswered
-    frames = encoded(anatomy.model, valid)
-    recognition = anatomy.model.recognise(frames, complete=True)
-    return replace(unanswered, recognition=recognition, place=anatomy.place(frames))
+    frames = encoded(maps.model, valid)
+    recognition = maps.model.recognise(frames, complete=True)
+    return replace(unanswered, recognition=recognition, action_unit=maps.action_unit(frames))
+
+
+def headline(answered: AnsweredSegment) -> str:
+    """State the action done and the answer: `push: 41 frames, recognised push 0.93`."""
+    done = shortened(answered.label) if answered.label is not None else "an action without a label"
+    return f"{done}: {len(answered.frames)} frames, {_verdict(answered)}"
+
+
+def _verdict(answered: AnsweredSegment) -> str:
+    if answered.recognition is None:
+        return "rejected"
+    found, confidence = answered.recognition.label, answered.recognition.confidence
+    taken = "recognised" if answered.label is None or answered.correct else "taken for"
+    unsure = " (unfamiliar)" if answered.recognition.unknown else ""
+    return f"{taken} {shortened(found)} {confidence:.2f}{unsure}"

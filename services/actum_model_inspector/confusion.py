@@ -1,4 +1,4 @@
-"""Who was taken for whom."""
+"""The picture of the confusion matrix."""
 
 from collections.abc import Sequence
 
@@ -6,37 +6,45 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from actum_model_inspector.lettering import columns, lines_of
-from actum_model_inspector.style import FAINT, INK, PAPER, bare, canvas, explain, in_house_style, tiles
+from actum.arrays import Array, Indices
+from actum_model_inspector.style import (
+    FAINT,
+    INK,
+    PAPER,
+    draw_squares,
+    figure_with_layout,
+    hide_axes,
+    in_house_style,
+    set_caption,
+)
+from actum_model_inspector.text_layout import columns, wrapped
 from actum_model_trainer.evaluation import Evaluation, wilson_interval
 
-CELL_IN = 0.42
-NAME_COLUMNS = 24
-_COLUMN_IN = 0.08
+CELL_IN = 0.42  # side of a cell: room for three digits
+NAME_COLUMNS = 24  # width of a line of an action's name, in small letters
 SHADES = mpl.colormaps["Blues"]
-_DARKEST = 0.85
-_LIGHT_FROM = 0.55
-"""The share from which on a count is written in white."""
+_COLUMN_IN = 0.08  # width of a small letter
+_DARKEST = 0.85  # of the colour map: beyond, black ink could not be told from the ground
+_WHITE_INK_FROM = 0.55  # share of the row from which on a count is written in white
 
 
 @in_house_style
 def confusion_picture(evaluation: Evaluation) -> Figure:
-    """Draw the counts by action done (rows) and answered (columns), shaded by their share of the row."""
+    """Draw counts by action done (rows) and answered (columns), shaded by their share of the row."""
     counts, names = _counts(evaluation)
     rows, cols = counts.shape
     low, high = wilson_interval(evaluation.correct, evaluation.n)
     interval = f"95 % interval {low:.0%}–{high:.0%}"
     title = f"{evaluation.accuracy:.1%} recognised: {evaluation.correct} of {evaluation.n} ({interval})"
     width_in = max(CELL_IN * cols + 3.2, 7.0)
-    figure = canvas(width_in, CELL_IN * rows + 2.6, title)
+    figure = figure_with_layout(width_in, CELL_IN * rows + 2.6, title)
     axes = figure.add_subplot()
     shares = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
-    tiles(axes, SHADES(_DARKEST * shares)[..., :3])
+    draw_squares(axes, SHADES(_DARKEST * shares)[..., :3])
     _write_counts(axes, counts, shares)
     _name_rows_and_columns(axes, evaluation, names)
-    explain(
+    set_caption(
         axes,
         "row: what was done; column: what it was taken for; diagonal: right; shade: share of the row",
         width_in - _widest_in(evaluation.labels) - 0.5,
@@ -44,8 +52,8 @@ def confusion_picture(evaluation: Evaluation) -> Figure:
     return figure
 
 
-def _counts(evaluation: Evaluation) -> tuple[NDArray[np.intp], list[str]]:
-    """Return the confusion with a column for rejections, where there is one, and the columns' names."""
+def _counts(evaluation: Evaluation) -> tuple[Indices, list[str]]:
+    """Return the confusion matrix, with a column for rejections where there are any, and the columns' names."""
     rejected = [score.rejected for score in evaluation.per_class.values()]
     counts = np.array(evaluation.confusion, dtype=np.intp)
     if not any(rejected):
@@ -54,27 +62,28 @@ def _counts(evaluation: Evaluation) -> tuple[NDArray[np.intp], list[str]]:
 
 
 def _widest_in(labels: Sequence[str]) -> float:
-    return _COLUMN_IN * max(columns(line) for label in labels for line in lines_of(label, NAME_COLUMNS).split("\n"))
+    """Return the width of the widest line of the actions' names, inches."""
+    return _COLUMN_IN * max(columns(line) for label in labels for line in wrapped(label, NAME_COLUMNS).split("\n"))
 
 
-def _write_counts(axes: Axes, counts: NDArray[np.intp], shares: NDArray[np.float64]) -> None:
+def _write_counts(axes: Axes, counts: Indices, shares: Array) -> None:
     for (row, col), count in np.ndenumerate(counts):
         if count:
-            colour = PAPER if shares[row, col] > _LIGHT_FROM else INK
+            colour = PAPER if shares[row, col] > _WHITE_INK_FROM else INK
             axes.text(col, row, str(count), ha="center", va="center", color=colour)
 
 
 def _name_rows_and_columns(axes: Axes, evaluation: Evaluation, names: list[str]) -> None:
-    bare(axes)
+    hide_axes(axes)
     rows = range(len(evaluation.labels))
     axes.set_xticks(
         range(len(names)),
-        [lines_of(name, NAME_COLUMNS) for name in names],
+        [wrapped(name, NAME_COLUMNS) for name in names],
         rotation=50,
         ha="right",
         rotation_mode="anchor",
     )
-    axes.set_yticks(rows, [lines_of(label, NAME_COLUMNS) for label in evaluation.labels])
+    axes.set_yticks(rows, [wrapped(label, NAME_COLUMNS) for label in evaluation.labels])
     axes.tick_params(length=0, labelcolor=INK)
     for row, score in zip(rows, evaluation.per_class.values(), strict=True):
         share = f"{score.accuracy:.0%}" if score.n else "not done"

@@ -1,12 +1,16 @@
-"""What pushed one action's score over another's: each temporal cell's and each first map's share of the difference."""
+"""Attribution of the difference between two actions' scores to the pyramid's cells and the first layer's units.
+
+Scores are linear in the pooled vector, so that the difference splits exactly into one contribution per component.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from actum.arrays import Floats
 from actum.messages import Hand
-from actum_model_inspector.anatomy import Floats, complete_weights
+from actum_model_inspector.model_maps import complete_weights
 from som_classifier.first_layer import CHANNELS
 from som_classifier.frames import Frame
 from som_classifier.pyramid_model import PyramidModel
@@ -14,74 +18,72 @@ from som_classifier.pyramid_model import PyramidModel
 
 @dataclass(frozen=True, eq=False)
 class Contributions:
-    """Why one action's score is as much above another's as it is.
+    """What the score of the action answered has over that of another action, and where it comes from.
 
-    score[winner] − score[second] = Σ units + level. What is heard is the maps of postures and of velocities, and that
-    of arms for both arms.
+    score[winner] − score[other] = Σ units + bias.
 
     Attributes:
-        winner: index of the action decided for.
-        second: index of the other one.
+        winner: index of the action answered.
+        other: index of the action it is compared with.
         scores: of these two.
-        units: (cells, heard, units of each), fourth root of the mean activity × (axis of the winner − axis of
-            the second).
-        level: the difference of their offsets, the same for every segment. Training sets it so that a segment as it
-            had them on average leads to neither, or a little to the one that it had more often: then the units add up
-            to about −level.
-        activities: (cells, heard, units of each), their mean activity in each cell.
-        in_mirror: whether the segment was read in a mirror, because the left arm acts.
-        left_moves: whether the left arm is the part that moves most.
+        units: (cells, channels, units of a map), each one's contribution: fourth root of its mean activity × (axis of
+            the winner − axis of the other). The channels are `som_classifier.first_layer.CHANNELS`.
+        bias: the difference of the offsets, the same for every segment. Training sets it so that an average segment
+            gives neither action a lead, or a slight one to the more frequent action: its units sum up to about −bias.
+        activities: (cells, channels, units of a map), mean activities.
+        in_mirror: whether the segment was read as its mirror image, because the left arm acts.
+        left_moves: whether the left arm is the body part that moves most.
     """
 
     winner: int
-    second: int
+    other: int
     scores: tuple[float, float]
     units: Floats
-    level: float
+    bias: float
     activities: Floats
     in_mirror: bool
     left_moves: bool
 
     @property
     def cells(self) -> Floats:
-        """What each cell adds through each map that is heard, shape (cells, heard)."""
+        """The contribution of each cell through each channel, shape (cells, channels)."""
         added: Floats = self.units.sum(axis=2)
         return added
 
     @property
     def difference(self) -> float:
-        """By how much the winner's score is above the second's."""
+        """The winner's score less the other's."""
         return self.scores[0] - self.scores[1]
 
     @property
     def arm(self) -> Hand:
-        """Which arm the map of arms sees."""
+        """The arm that the arm map's acting channel sees."""
         return "left" if self.in_mirror else "right"
 
 
-def contributions(model: PyramidModel, frames: Sequence[Frame], instead: str | None = None) -> Contributions:
-    """Take apart by how much the answer to a complete segment scores above another action.
+def contributions(model: PyramidModel, frames: Sequence[Frame], compared_with: str | None = None) -> Contributions:
+    """Attribute the lead of the answer to a complete segment over another action.
 
     Args:
         model: that answers.
         frames: of the segment, encoded.
-        instead: the other action; the one that answers next where None.
+        compared_with: the other action; where None, the one with the next largest activation.
     """
     recognition = model.recognise(frames, complete=True)
     winner = model.labels.index(recognition.label)
-    others = [label for label in model.labels if label != recognition.label]
-    second = model.labels.index(instead or max(others, key=lambda label: recognition.activations[label]))
-    codes = [frame.activity for frame in frames]
+    rivals = [label for label in model.labels if label != recognition.label]
+    other = model.labels.index(compared_with or max(rivals, key=lambda label: recognition.activations[label]))
+    activities = [frame.activity for frame in frames]
     weights = complete_weights(model, frames)
-    scores = model.scores(codes, weights)
+    scores = model.scores(activities, weights)
     units = np.zeros((model.pyramid.cells, len(CHANNELS), len(model.first.postures.weights)))
     for axes, weight in zip(model.stages.axes, weights, strict=True):
         if weight:
-            units += weight * (axes[:, winner] - axes[:, second]).reshape(units.shape)
-    vector = model.pyramid.vector(model.prefix_sums(codes)).reshape(units.shape)
+            units += weight * (axes[:, winner] - axes[:, other]).reshape(units.shape)
+    vector = model.pyramid.vector(model.prefix_sums(activities)).reshape(units.shape)
     offsets = np.array(weights) @ model.stages.offsets
     return Contributions(
-        winner, second, (float(scores[winner]), float(scores[second])), units * vector,
-        float(offsets[winner] - offsets[second]), vector**4,
-        model.reads_in_mirror(codes), recognition.part == "left_arm",
+        winner, other, (float(scores[winner]), float(scores[other])), units * vector,
+        float(offsets[winner] - offsets[other]), vector**4,
+        model.reads_in_mirror(activities), recognition.part == "left_arm",
     )  # fmt: skip

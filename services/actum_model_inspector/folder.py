@@ -1,16 +1,16 @@
-"""What a run has written to a folder, listed there, so that the next run takes that away and nothing else."""
+"""The list of the files that a run has written to a folder, so that the next run removes those and nothing else."""
 
 import hashlib
 import re
 from pathlib import Path
 
 LIST = "written-by-actum-inspect.sha256"
-"""One line a file, as `sha256sum` writes and checks them."""
+"""Name of the list: one line per file, as `sha256sum` writes and checks them."""
 _LINE = re.compile(r"([0-9a-f]{64})  ([^/\\\\]+)")
 
 
 def note(file: Path) -> None:
-    """Add a file that has just been written to its folder's list.
+    """Add a file that has just been written to the list in its folder.
 
     Raises:
         OSError: the list cannot be written.
@@ -20,7 +20,7 @@ def note(file: Path) -> None:
 
 
 def clear(folder: Path) -> None:
-    """Remove the files on a folder's list that are still as they were written, and the list.
+    """Remove the files on a folder's list that have not changed since they were written, and the list.
 
     Raises:
         OSError: one cannot be removed.

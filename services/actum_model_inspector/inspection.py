@@ -1,4 +1,4 @@
-"""Which pictures are made of a model and some segments, and what is written beneath each."""
+"""The list of pictures of a model and of segments that it answered, each with its caption."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -8,23 +8,22 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from actum_model_inspector.action_map import action_map
-from actum_model_inspector.anatomy import Anatomy, PyramidAnatomy
-from actum_model_inspector.answered import Answered
+from actum_model_inspector.answer_timeline import timeline_picture
+from actum_model_inspector.answered import AnsweredSegment, headline
 from actum_model_inspector.arm_map import arm_map
 from actum_model_inspector.confusion import confusion_picture
-from actum_model_inspector.course import course_picture
-from actum_model_inspector.examples import examples, file_names, mistake_name, mistakes
+from actum_model_inspector.explanation import explanation_picture
 from actum_model_inspector.folder import clear, note
-from actum_model_inspector.movement_map import movement_map
+from actum_model_inspector.model_maps import ModelMaps, PyramidMaps
 from actum_model_inspector.posture_map import posture_map
-from actum_model_inspector.reasons import reasons_picture
-from actum_model_inspector.reliability import judged, reliability_picture
+from actum_model_inspector.reliability_diagram import judged, reliability_picture
+from actum_model_inspector.segment_selection import examples, file_names, mistake_name, mistakes
 from actum_model_inspector.style import save
-from actum_model_inspector.trace import trace_picture
-from actum_model_inspector.wording import headline
+from actum_model_inspector.trace_picture import trace_picture
+from actum_model_inspector.velocity_map import velocity_map
+from actum_model_trainer.calibration_error import MIN_ANSWERS
 from actum_model_trainer.evaluation import Evaluation
 from actum_model_trainer.progress import Progress, silent
-from actum_model_trainer.reliability import FEWEST
 
 
 @dataclass(frozen=True)
@@ -32,9 +31,10 @@ class Picture:
     """A picture that is to be made.
 
     Attributes:
-        section: the heading it stands under.
+        section: the heading of the page under which it stands.
         name: of its file, without the ending.
         caption: how to read it.
+        make: the function that draws it.
     """
 
     section: str
@@ -43,21 +43,21 @@ class Picture:
     make: Callable[[], Figure]
 
 
-def pictures(anatomy: Anatomy, segments: Sequence[Answered], evaluation: Evaluation | None) -> Iterator[Picture]:
-    """Plan the pictures of a model, and of the segments where there are any."""
-    yield from _of_maps(anatomy, segments)
+def pictures(maps: ModelMaps, segments: Sequence[AnsweredSegment], evaluation: Evaluation | None) -> Iterator[Picture]:
+    """Yield the pictures of a model and, where there are any, of segments, in the order of the page."""
+    yield from _of_maps(maps, segments)
     if evaluation is not None and evaluation.n:
         yield from _of_answers(segments, evaluation)
     chosen = examples(segments)
     names = file_names(chosen)
     for action, example in chosen.items():
-        yield from _of_segment(anatomy, f"{action}: an example", names[action], example)
+        yield from _of_segment(maps, f"{action}: an example", names[action], example)
     for number, mistake in enumerate(mistakes(segments), start=1):
-        yield from _of_segment(anatomy, f"Mistake {number}: {headline(mistake)}", mistake_name(number), mistake)
+        yield from _of_segment(maps, f"Mistake {number}: {headline(mistake)}", mistake_name(number), mistake)
 
 
 def write(planned: Sequence[Picture], folder: Path, ending: str, progress: Progress = silent) -> Mapping[str, str]:
-    """Make the pictures, in the place of those of an earlier run, and return the name of each one's file.
+    """Draw the pictures into a folder, in place of an earlier run's, and return each one's file name by its name.
 
     Raises:
         OSError: one cannot be written, or one of an earlier run not be removed.
@@ -72,38 +72,42 @@ def write(planned: Sequence[Picture], folder: Path, ending: str, progress: Progr
     return files
 
 
-def _of_maps(anatomy: Anatomy, segments: Sequence[Answered]) -> Iterator[Picture]:
+def _of_maps(maps: ModelMaps, segments: Sequence[AnsweredSegment]) -> Iterator[Picture]:
     section = "What it has learnt"
     yield Picture(
         section, "posture-map",
         "The first layer. Every unit stands for a posture, drawn as a figure; like postures lie side by side, and a "
         "darker ground means that neighbours differ more. An action is a way across this map.",
-        partial(posture_map, anatomy),
+        partial(posture_map, maps),
     )  # fmt: skip
-    if isinstance(anatomy, PyramidAnatomy):
-        mirrors = anatomy.model.metadata.mirrors
-        yield Picture(
-            section, "movement-map",
-            "The first layer's second map. Every unit stands for a way of moving, drawn as arrows at the joints.",
-            partial(movement_map, anatomy.model.first.velocities),
-        )  # fmt: skip
-        yield Picture(
-            section, "arm-map",
-            "The first layer's third map. Every unit stands for where the right arm is, seen from its shoulder, and "
-            "where it is going."
-            + (" Who acts with the left arm is read in a mirror." if mirrors else " Left arms are not seen by it."),
-            partial(arm_map, anatomy.model.first.arms, mirrors),
-        )  # fmt: skip
+    if isinstance(maps, PyramidMaps):
+        yield from _of_pyramid_maps(maps, section)
     yield Picture(
         section, "action-map",
         "The second layer. Every place belongs to the action whose neuron answers most to what falls there; like "
         "actions are neighbours, and the paler, the closer the decision."
         + (" Each dot is a segment; a ring marks a wrong answer." if segments else ""),
-        partial(action_map, anatomy, segments),
+        partial(action_map, maps, segments),
     )  # fmt: skip
 
 
-def _of_answers(segments: Sequence[Answered], evaluation: Evaluation) -> Iterator[Picture]:
+def _of_pyramid_maps(maps: PyramidMaps, section: str) -> Iterator[Picture]:
+    mirrors = maps.model.metadata.mirrors
+    yield Picture(
+        section, "movement-map",
+        "The first layer's second map. Every unit stands for a way of moving, drawn as arrows at the joints.",
+        partial(velocity_map, maps.model.first.velocities),
+    )  # fmt: skip
+    yield Picture(
+        section, "arm-map",
+        "The first layer's third map. Every unit stands for where the right arm is, seen from its shoulder, and "
+        "where it is going."
+        + (" Who acts with the left arm is read in a mirror." if mirrors else " Left arms are not seen by it."),
+        partial(arm_map, maps.model.first.arms, mirrors),
+    )  # fmt: skip
+
+
+def _of_answers(segments: Sequence[AnsweredSegment], evaluation: Evaluation) -> Iterator[Picture]:
     section = "How often it is right"
     yield Picture(
         section, "confusion",
@@ -111,7 +115,7 @@ def _of_answers(segments: Sequence[Answered], evaluation: Evaluation) -> Iterato
         "elsewhere are pairs of actions that the model mixes up.",
         partial(confusion_picture, evaluation),
     )  # fmt: skip
-    if len(judged(segments)) >= FEWEST:
+    if len(judged(segments)) >= MIN_ANSWERS:
         yield Picture(
             section, "reliability",
             "Whether its confidence can be taken at its word: beneath the dashed line it is surer than it is right.",
@@ -119,25 +123,25 @@ def _of_answers(segments: Sequence[Answered], evaluation: Evaluation) -> Iterato
         )  # fmt: skip
 
 
-def _of_segment(anatomy: Anatomy, section: str, name: str, answered: Answered) -> Iterator[Picture]:
+def _of_segment(maps: ModelMaps, section: str, name: str, answered: AnsweredSegment) -> Iterator[Picture]:
     where = f"Segment {answered.segment_id} of {Path(answered.file).name}"
     yield Picture(
         section, f"trace-{name}",
         f"{where}: its way over the posture map, from postures framed dark at the start to light ones at the end.",
-        partial(trace_picture, anatomy, answered),
+        partial(trace_picture, maps, answered),
     )  # fmt: skip
     yield Picture(
         section, f"time-{name}",
         "How the answer came about while it went on: each action's neuron, the decision with its confidence, and the "
         "actor. Where the thick line is above all others for good, the action was recognised. Until the end more may "
         "come; the last bar and the last points are the answer to the complete action, and may jump.",
-        partial(course_picture, anatomy.model, answered),
+        partial(timeline_picture, maps.model, answered),
     )  # fmt: skip
-    if isinstance(anatomy, PyramidAnatomy):
+    if isinstance(maps, PyramidMaps):
         yield Picture(
             section, f"why-{name}",
             "What decided: each box is a part of the action, from the whole at the top to its shortest parts beneath; "
             "the stronger its colour, the more it tipped the balance. The bars above add the boxes up and take off "
             "what they come to in an average segment of the training.",
-            partial(reasons_picture, anatomy.model, answered),
+            partial(explanation_picture, maps.model, answered),
         )  # fmt: skip

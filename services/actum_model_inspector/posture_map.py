@@ -1,84 +1,91 @@
-"""The first map as a grid of stick figures: which postures the model knows, and which it takes for alike."""
-
-from typing import Any
+"""The picture of the first map: a stick figure per unit, on the U-matrix (the distances between neighbours)."""
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from actum.arrays import Floats, Indices
 from actum.som import Som
-from actum_model_inspector.anatomy import Anatomy
-from actum_model_inspector.bodies import WHOLE, Pen, draw_bodies, rest
-from actum_model_inspector.style import FAINT, LEFT, RIGHT, bare, canvas, in_house_style, tiles
+from actum_model_inspector.model_maps import ModelMaps
+from actum_model_inspector.stick_figures import WHOLE_BODY, Pen, draw_figures, standing
+from actum_model_inspector.style import FAINT, LEFT, RIGHT, draw_squares, figure_with_layout, hide_axes, in_house_style
 
-Floats = NDArray[Any]
-
-MOST_FIGURES = 20
-"""Along a side: more are too small to see."""
-SIDE_IN = 10.5
-FILLED = 0.96
-_DARKEST = 0.35
+MAX_FIGURES = 20  # along a side: more are too small to see
+SIDE_IN = 10.5  # of the longer side: half an inch for each of 20 figures
+FILLED = 0.96  # height of a figure in units of its place: neighbours do not touch
+_DARKEST = 0.35  # grey level taken off white at the largest distance: figures stay visible on it
 
 
 @in_house_style
-def posture_map(anatomy: Anatomy) -> Figure:
+def posture_map(maps: ModelMaps) -> Figure:
     """Draw each unit's weights as a figure, on the U-matrix."""
-    som = anatomy.postures
-    figure = canvas(*map_size(som), f"The posture map: {som.rows} × {som.cols} units, each standing for a posture")
+    som = maps.postures
+    figure = figure_with_layout(
+        *map_size(som), f"The posture map: {som.rows} × {som.cols} units, each standing for a posture"
+    )
     axes = figure.add_subplot()
-    every = draw_postures(axes, anatomy)
-    axes.set_title(f"{which_are_drawn(every)}neighbours are alike; dark ground: a border between unlike postures")
+    spacing = draw_postures(axes, maps)
+    axes.set_title(f"{which_are_drawn(spacing)}neighbours are alike; dark ground: a border between unlike postures")
     name_sides(axes)
     return figure
 
 
-def draw_postures(axes: Axes, anatomy: Anatomy, strength: float = 1.0) -> int:
-    """Draw the map and return how many units there are from one figure to the next."""
-    som = anatomy.postures
+def draw_postures(axes: Axes, maps: ModelMaps, strength: float = 1.0) -> int:
+    """Draw the map and return its figures' spacing in units."""
+    som = maps.postures
     draw_ground(axes, som, strength)
-    units, every = drawn_units(som)
-    draw_units(axes, anatomy, anatomy.unit_points(), units, every, strength)
-    return every
+    units, spacing = drawn_units(som)
+    draw_units(axes, maps, maps.unit_joints(), units, spacing, strength)
+    return spacing
 
 
 def draw_units(
     axes: Axes,
-    anatomy: Anatomy,
+    maps: ModelMaps,
     points: Floats,
-    units: NDArray[np.intp],
+    units: Indices,
     size: float,
     strength: float = 1.0,
     zorder: float = 2.0,
 ) -> None:
-    """Draw some units' figures, given all units' points; where those are three joints, with the body they belong to."""
-    places = anatomy.postures.coordinates[units][:, ::-1]
-    whole = anatomy.figure is WHOLE
+    """Draw the figures of some units; where a figure is only a limb, faintly with somebody who stands.
+
+    Args:
+        axes: whose y goes down.
+        maps: of the model.
+        points: (all units, joints, 3), metres from the torso.
+        units: (n,), which are drawn.
+        size: height of a figure's place, in units of the map.
+        strength: opacity, 0 to 1.
+        zorder: Matplotlib's: the larger is drawn above.
+    """
+    places = maps.postures.coordinates[units][:, ::-1]
+    whole = maps.figure is WHOLE_BODY
     if not whole:
         pen = Pen(0.6, FAINT, 0.5 * strength, zorder)
-        draw_bodies(axes, rest(len(units)), places, FILLED * size, pen=pen)
+        draw_figures(axes, standing(len(units)), places, FILLED * size, pen=pen)
     pen = Pen(1.2 if whole else 1.8, strength=strength, zorder=zorder)
-    draw_bodies(axes, points[units], places, FILLED * size, anatomy.figure, pen)
+    draw_figures(axes, points[units], places, FILLED * size, maps.figure, pen)
 
 
-def drawn_units(som: Som) -> tuple[NDArray[np.intp], int]:
-    """Choose the units to draw, and return how far they lie apart: no more than `MOST_FIGURES` along a side."""
-    every = -(-max(som.rows, som.cols) // MOST_FIGURES)
+def drawn_units(som: Som) -> tuple[Indices, int]:
+    """Return the units to draw, (n,), `MAX_FIGURES` along a side at most, and their spacing in units."""
+    spacing = -(-max(som.rows, som.cols) // MAX_FIGURES)
     row, col = som.coordinates.T.astype(np.intp)
-    return np.flatnonzero((row % every == every // 2) & (col % every == every // 2)), every
+    return np.flatnonzero((row % spacing == spacing // 2) & (col % spacing == spacing // 2)), spacing
 
 
-def which_are_drawn(every: int) -> str:
-    """Say which units are drawn where not all are."""
-    return "" if every == 1 else f"one unit in {every * every} is drawn; "
+def which_are_drawn(spacing: int) -> str:
+    """State which units are drawn, if not all are."""
+    return "" if spacing == 1 else f"one unit in {spacing * spacing} is drawn; "
 
 
 def draw_ground(axes: Axes, som: Som, strength: float = 1.0) -> None:
     """Shade each unit by its mean distance to its neighbours."""
-    apart = som.u_matrix()
-    grey = 1 - strength * _DARKEST * (apart - apart.min()) / max(float(np.ptp(apart)), 1e-9)
-    tiles(axes, np.repeat(grey[..., None], 3, axis=2))
-    bare(axes)
+    distances = som.u_matrix()
+    grey = 1 - strength * _DARKEST * (distances - distances.min()) / max(float(np.ptp(distances)), 1e-9)
+    draw_squares(axes, np.repeat(grey[..., None], 3, axis=2))
+    hide_axes(axes)
 
 
 def map_size(som: Som) -> tuple[float, float]:
@@ -88,6 +95,6 @@ def map_size(som: Som) -> tuple[float, float]:
 
 
 def name_sides(axes: Axes) -> None:
-    """Say which colour is which side of the actor's body."""
+    """Write which colour is which side of the actor's body."""
     axes.text(1.0, 1.008, "actor's left", color=LEFT, ha="right", va="bottom", transform=axes.transAxes)
     axes.text(0.9, 1.008, "actor's right", color=RIGHT, ha="right", va="bottom", transform=axes.transAxes)

@@ -1,15 +1,11 @@
-"""Which action each place of the second map stands for, and where the name of an action goes."""
+"""The regions of the second map: which action each unit stands for, and where a region's name goes."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Floats, Indices, Mask
 from actum.som.grid import Grid
-
-Floats = NDArray[Any]
-Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,45 +13,50 @@ class Regions:
     """The second map divided between the actions.
 
     Attributes:
-        actions: (rows, cols), the action whose neuron answers most.
-        decided: (rows, cols), by how much it does before the next, 1 where that is most, 0 where they are equal.
+        actions: (rows, cols), the index of the action whose neuron has the largest cosine.
+        margins: (rows, cols), that cosine less the next largest, relative to the largest margin: 0 to 1.
     """
 
     actions: Indices
-    decided: Floats
+    margins: Floats
 
 
-def regions(answers: Floats, grid: Grid) -> Regions:
-    """Divide the map by the neurons' cosines at each unit (units, actions), two actions at least."""
-    ordered = np.sort(answers, axis=1)
-    lead = ordered[:, -1] - ordered[:, -2]
+def regions(cosines: Floats, grid: Grid) -> Regions:
+    """Divide the map by the neurons' cosines for each unit, (units, actions), two actions at least."""
+    ordered = np.sort(cosines, axis=1)
+    margins = ordered[:, -1] - ordered[:, -2]
     shape = grid.rows, grid.cols
-    return Regions(answers.argmax(axis=1).reshape(shape), (lead / max(lead.max(), 1e-12)).reshape(shape))
+    return Regions(cosines.argmax(axis=1).reshape(shape), (margins / max(margins.max(), 1e-12)).reshape(shape))
 
 
-def largest_patch(own: NDArray[np.bool_]) -> Indices:
-    """Return row and column of the units of the largest connected patch of a mask, (n, 2), n = 0 where it is empty."""
-    left = {(int(row), int(col)) for row, col in np.argwhere(own)}
+def largest_component(mask: Mask) -> Indices:
+    """Return row and column of the units of a mask's largest connected component, (n, 2); n = 0 where it is empty.
+
+    Args:
+        mask: (rows, cols).
+    """
+    left = {(int(row), int(col)) for row, col in np.argwhere(mask)}
     largest: set[tuple[int, int]] = set()
     while left:
-        patch = _patch_at(next(iter(left)), left)
-        left -= patch
-        largest = max(largest, patch, key=len)
+        component = _component_at(next(iter(left)), left)
+        left -= component
+        largest = max(largest, component, key=len)
     return np.array(sorted(largest), dtype=np.intp).reshape(-1, 2)
 
 
-def centre(patch: Indices) -> tuple[int, int]:
-    """Return the unit of a patch that lies deepest inside it; of equals the one nearest to its mean."""
-    members = {(int(row), int(col)) for row, col in patch}
-    mean = patch.mean(axis=0)
+def innermost_unit(component: Indices) -> tuple[int, int]:
+    """Return row and column of the unit farthest inside a component (n, 2); of equals the one nearest to its mean."""
+    members = {(int(row), int(col)) for row, col in component}
+    mean = component.mean(axis=0)
 
-    def nearness(unit: tuple[int, int]) -> tuple[int, float]:
-        return _depth(unit, members), -float(np.hypot(*(np.array(unit) - mean)))
+    def inwardness(unit: tuple[int, int]) -> tuple[int, float]:
+        return _inner_radius(unit, members), -float(np.hypot(*(np.array(unit) - mean)))
 
-    return max(sorted(members), key=nearness)
+    return max(sorted(members), key=inwardness)
 
 
-def _patch_at(start: tuple[int, int], members: set[tuple[int, int]]) -> set[tuple[int, int]]:
+def _component_at(start: tuple[int, int], members: set[tuple[int, int]]) -> set[tuple[int, int]]:
+    """Return the members that are connected with a start, side to side."""
     found, front = {start}, [start]
     while front:
         row, col = front.pop()
@@ -65,8 +66,8 @@ def _patch_at(start: tuple[int, int], members: set[tuple[int, int]]) -> set[tupl
     return found
 
 
-def _depth(unit: tuple[int, int], members: set[tuple[int, int]]) -> int:
-    """Return the radius of the largest square about a unit that lies within the patch."""
+def _inner_radius(unit: tuple[int, int], members: set[tuple[int, int]]) -> int:
+    """Return half the side, in units, of the largest square about a unit that lies within the component."""
     radius = 0
     while all(
         (unit[0] + down, unit[1] + right) in members

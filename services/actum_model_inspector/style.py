@@ -1,4 +1,4 @@
-"""How all pictures look: type, colours that do not rest on telling red from green, and how they are saved."""
+"""The style of all pictures (fonts, colours for the colour-blind), parts that they share, and how they are saved."""
 
 import textwrap
 import warnings
@@ -14,23 +14,26 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, get_font, get_font_names
 from matplotlib.patheffects import withStroke
-from numpy.typing import NDArray
 
-from actum_model_inspector.lettering import lines_of, on_one_line
+from actum.arrays import Floats
+from actum_model_inspector.text_layout import on_one_line, wrapped
 
-Floats = NDArray[Any]
-
-INK, FAINT, PAPER = "#222222", "#767676", "#ffffff"
-RIGHT, LEFT = "#d55e00", "#0072b2"
-"""The actor's right and left, on every figure."""
+INK = "#222222"  # text and lines
+FAINT = "#767676"  # what is said beside: 4.5:1 on the paper
+PAPER = "#ffffff"
+RIGHT = "#d55e00"  # the actor's right on every figure …
+LEFT = "#0072b2"  # … and left: told apart by the colour-blind
 ACCENT = "#0072b2"
+"""Of what a diagram is about."""
 
 _HUES = (
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9",
     "#882255", "#999933", "#332288", "#44aa99", "#b8705c", "#6f6f6f",
 )  # fmt: skip
-_LIGHTER = 0.45
-_CHARACTERS_PER_IN, _TITLE_CHARACTERS_PER_IN = 14.0, 8.5
+"""Six of the Okabe-Ito palette, four of Tol's muted one, two more: the colour-blind tell most of them apart."""
+_LIGHTER = 0.45  # share of white in a colour that comes a second time
+_CHARACTERS_PER_IN = 14.0  # small letters of a caption, on the safe side
+_TITLE_CHARACTERS_PER_IN = 8.5  # letters of a title
 _WIDER_SCRIPTS = (
     "Noto Sans CJK JP", "Noto Sans CJK SC", "Noto Sans Arabic", "Noto Sans Devanagari", "Noto Sans Thai", "Noto Emoji",
     "WenQuanYi Zen Hei", "Droid Sans Fallback", "Unifont", "Arial Unicode MS", "Hiragino Sans", "Apple SD Gothic Neo",
@@ -64,7 +67,7 @@ Arguments = ParamSpec("Arguments")
 
 
 def in_house_style(make: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
-    """Make pictures with these parameters, whatever others are in force."""
+    """Decorate a function so that it makes its picture with `STYLE`, whatever parameters are in force."""
 
     @wraps(make)
     def made(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Figure:
@@ -75,35 +78,36 @@ def in_house_style(make: Callable[Arguments, Figure]) -> Callable[Arguments, Fig
 
 
 HALO = [withStroke(linewidth=2.5, foreground=PAPER)]
-DOTS_PER_INCH = 130
+"""A white rim, so that letters can be read on any ground."""
+DOTS_PER_INCH = 130  # a map of 10.5 inches is as wide as a usual screen
 
 
-def canvas(width_in: float, height_in: float, title: str) -> Figure:
-    """Begin a picture that lays out its axes by itself."""
+def figure_with_layout(width_in: float, height_in: float, title: str) -> Figure:
+    """Return a new picture on which Matplotlib arranges the axes (constrained layout)."""
     return _titled(Figure(figsize=(width_in, height_in), layout="constrained"), title)
 
 
-def board(width_in: float, height_in: float, title: str) -> Figure:
-    """Begin a picture whose axes are put where they are to be, with `axes_at`."""
+def figure_without_layout(width_in: float, height_in: float, title: str) -> Figure:
+    """Return a new picture whose axes are placed with `axes_at`."""
     return _titled(Figure(figsize=(width_in, height_in)), title)
 
 
 def _titled(figure: Figure, title: str) -> Figure:
-    broken = lines_of(title, figure.get_figwidth() * _TITLE_CHARACTERS_PER_IN, lines=3)
+    broken = wrapped(title, figure.get_figwidth() * _TITLE_CHARACTERS_PER_IN, lines=3)
     figure.suptitle(broken, x=0.005, ha="left")
     return figure
 
 
 def axes_at(figure: Figure, left_in: float, bottom_in: float, width_in: float, height_in: float) -> Axes:
-    """Add axes whose frame lies at these inches of a picture that is not laid out by itself."""
+    """Add axes to a picture without layout, their frame at these inches."""
     width, height = figure.get_size_inches()
     return figure.add_axes((left_in / width, bottom_in / height, width_in / width, height_in / height))
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a picture in the format that the file's name says; the same picture makes the same file.
+    """Write a picture in the format that the file's ending names; the same picture makes the same file.
 
-    Boxes stand for letters that no font has; `unwritable` names those.
+    Letters that no font has are drawn as boxes; `missing_glyphs` names them.
 
     Raises:
         OSError: the file cannot be written.
@@ -114,20 +118,25 @@ def save(figure: Figure, path: Path) -> None:
         figure.savefig(path, dpi=DOTS_PER_INCH, metadata=metadata)
 
 
-def unwritable(text: str) -> str:
-    """Return the letters that no font of this computer has, each once; they are drawn as boxes."""
+def missing_glyphs(text: str) -> str:
+    """Return the letters that no font of this computer has, each once, sorted."""
     fonts = [get_font(findfont(family)) for family in STYLE["font.family"]]
     letters = sorted(set(on_one_line(text)))
     return "".join(letter for letter in letters if not any(font.get_char_index(ord(letter)) for font in fonts))
 
 
-def explain(axes: Axes, text: str, width_in: float) -> None:
-    """Write above the axes how to read them."""
+def set_caption(axes: Axes, text: str, width_in: float) -> None:
+    """Write a caption above axes of this width, broken into lines."""
     axes.set_title("\n".join(textwrap.wrap(text, int(width_in * _CHARACTERS_PER_IN))))
 
 
-def tiles(axes: Axes, colours: Floats) -> None:
-    """Draw a square about each unit (column, row), first row on top, in its colour of (rows, cols, 3)."""
+def draw_squares(axes: Axes, colours: Floats) -> None:
+    """Draw a map's cells as squares, the first row on top.
+
+    Args:
+        axes: afterwards in units of the map, x the column and y, going down, the row.
+        colours: (rows, cols, 3), RGB, 0 to 1.
+    """
     rows, cols = colours.shape[:2]
     axes.pcolormesh(np.arange(cols + 1) - 0.5, np.arange(rows + 1) - 0.5, colours, edgecolors="face", linewidth=0.3)
     axes.set_xlim(-0.5, cols - 0.5)
@@ -135,8 +144,8 @@ def tiles(axes: Axes, colours: Floats) -> None:
     axes.set_aspect("equal")
 
 
-def bare(axes: Axes) -> None:
-    """Take frame and ticks off."""
+def hide_axes(axes: Axes) -> None:
+    """Remove frame and ticks."""
     axes.set_xticks([])
     axes.set_yticks([])
     for spine in axes.spines.values():
@@ -144,16 +153,16 @@ def bare(axes: Axes) -> None:
 
 
 def action_colours(actions: int) -> Floats:
-    """Return one colour per action, shape (actions, 3); after the twelfth they come again, lighter.
+    """Return one colour (RGB, 0 to 1) per action, shape (actions, 3); after the twelfth they repeat, lighter.
 
-    Nobody tells twenty colours apart: names stand beside them wherever they are used.
+    Nobody tells twenty colours apart, so names stand beside them wherever they are used.
     """
     hues = np.array([to_rgb(hue) for hue in _HUES])
     rounds, index = np.divmod(np.arange(actions), len(hues))
-    return paler(hues[index], np.where(rounds % 2, 1 - _LIGHTER, 1.0))
+    return mixed_with_white(hues[index], np.where(rounds % 2, 1 - _LIGHTER, 1.0))
 
 
-def paler(colours: Floats, strength: Floats) -> Floats:
-    """Mix colours (…, 3) with white: at strength 1 as they are, at 0 white."""
+def mixed_with_white(colours: Floats, strength: Floats) -> Floats:
+    """Mix colours (…, 3) with white: strength (…) 1 leaves them, 0 gives white. Shape (…, 3)."""
     mixed: Floats = 1 - np.asarray(strength)[..., None] * (1 - colours)
     return mixed

@@ -1,6 +1,8 @@
-"""A model's answers to samples, through the same code as live, without messages between."""
+"""A model's answers to samples, by the code that also answers live but without messages in between."""
 
 from collections.abc import Sequence
+
+import numpy as np
 
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.frames import Frame
@@ -10,7 +12,7 @@ from som_classifier.recognition import Recognition
 
 
 def encoded(model: Model, sample: SegmentSample) -> list[Frame]:
-    """Return a sample's frames as the model remembers them."""
+    """Return a sample's frames, each with the activity that the model's encoder gives it."""
     encoder = model.encoder()
     frames = [_frame(sample, index) for index in range(len(sample.stamps_ns))]
     for frame in frames:
@@ -19,14 +21,15 @@ def encoded(model: Model, sample: SegmentSample) -> list[Frame]:
 
 
 def answer(model: Model, frames: Sequence[Frame], fraction: float = 1.0) -> Recognition:
-    """Return what the model says after a share of a sample's frames; at 1 it knows that the segment has ended."""
+    """Return the model's answer after a share (0 to 1) of a sample's encoded frames; at 1 to the complete action."""
     count = min(len(frames), max(model.min_frames, round(fraction * len(frames))))
     return model.recognise(frames[:count], complete=fraction >= 1.0)
 
 
 def _frame(sample: SegmentSample, index: int) -> Frame:
-    movement = Kinematics(sample.postures[index], sample.velocities[index])
+    kinematics = Kinematics(sample.postures[index], sample.velocities[index])
+    missing_joints = np.flatnonzero(np.isnan(kinematics.posture[:, 0])).tolist()
     return Frame(
-        int(sample.stamps_ns[index]), None, (), 0, 0.0, sample.joints[index], sample.motion[index], movement,
-        tuple((movement.posture[:, 0] != movement.posture[:, 0]).nonzero()[0].tolist()),
+        int(sample.stamps_ns[index]), None, (), 0, 0.0, sample.joints[index], sample.motion[index], kinematics,
+        tuple(missing_joints),
     )  # fmt: skip

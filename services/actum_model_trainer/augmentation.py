@@ -1,79 +1,91 @@
-"""Each sample seen from other sides, and as people of other proportions and tempos would have done it."""
+"""Data augmentation: variants of each sample, rotated and with the proportions and tempos of other bodies."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array
 from actum.geometry import BONES
 from actum.skeletons import JOINTS
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.handedness import mirrored
 from som_classifier.presets import PyramidPreset
 
-Array = NDArray[np.float64]
-
-_BONE_NAMES = sorted({JOINTS[child].removeprefix("left_").removeprefix("right_") for _, child, _ in BONES})
+_BONE_OF_JOINT = [joint.removeprefix("left_").removeprefix("right_") for joint in JOINTS]
+"""The name of the bone that ends in each joint; both sides of the body have the same."""
+_BONE_NAMES = sorted({_BONE_OF_JOINT[child] for _, child, _ in BONES})
 
 
 @dataclass(frozen=True, eq=False)
-class View:
-    """A sample as it is shown: (n, 15, 3) postures and velocities."""
+class Variant:
+    """A sample as measured, or an augmented version of it.
+
+    Attributes:
+        postures: (n, 15, 3), metres to the left, up and forward from the torso.
+        velocities: (n, 15, 3), of the same joints.
+    """
 
     postures: Array
     velocities: Array
 
     @property
-    def mirrored(self) -> "View":
-        """The same in a mirror."""
-        return View(mirrored(self.postures), mirrored(self.velocities))
-
-    def until(self, frames: int) -> "View":
-        """Return the first frames alone."""
-        return View(self.postures[:frames], self.velocities[:frames])
+    def mirrored(self) -> "Variant":
+        """Its mirror image, left and right exchanged."""
+        return Variant(mirrored(self.postures), mirrored(self.velocities))
 
 
-def views(sample: SegmentSample, preset: PyramidPreset, mirrors: bool, rng: np.random.Generator) -> Iterator[View]:
-    """Yield the sample itself, then turned, then as other people; where `mirrors`, the left arm's in a mirror."""
-    seen = View(sample.postures, sample.velocities)
-    own = seen.mirrored if mirrors and sample.acting_hands[-1] == "left" else seen
+def variants(
+    sample: SegmentSample, preset: PyramidPreset, mirrors: bool, rng: np.random.Generator
+) -> Iterator[Variant]:
+    """Yield the sample as measured, then rotated, then with other bodies' proportions and tempo.
+
+    Args:
+        sample: to vary.
+        preset: with the rotations and the variation of bodies.
+        mirrors: whether a sample of the left arm is mirrored first, as the classifier reads it.
+        rng: that draws the proportions.
+    """
+    measured = Variant(sample.postures, sample.velocities)
+    own = measured.mirrored if mirrors and sample.acting_hands[-1] == "left" else measured
     yield own
-    for turn_deg, lean_deg in zip(preset.turns_deg, preset.leans_deg, strict=True):
-        turn = turned(np.radians(turn_deg)) @ leant(np.radians(lean_deg if sample.depth_inferred else 0.0))
-        yield View(own.postures @ turn, own.velocities @ turn)
+    for yaw_deg, pitch_deg in zip(preset.turns_deg, preset.leans_deg, strict=True):
+        pitch = pitch_rotation(np.radians(pitch_deg if sample.depth_inferred else 0.0))
+        rotation = yaw_rotation(np.radians(yaw_deg)) @ pitch
+        yield Variant(own.postures @ rotation, own.velocities @ rotation)
     for _ in range(preset.others.count):
         factors = np.exp(rng.normal(0.0, preset.others.build_sd, len(_BONE_NAMES)))
-        build = rebuilt(dict(zip(_BONE_NAMES, factors, strict=True)))
-        yield View(_applied(build, own.postures), preset.others.tempo * _applied(build, own.velocities))
+        scaling = bone_scaling(dict(zip(_BONE_NAMES, factors, strict=True)))
+        velocities = preset.others.tempo * _applied(scaling, own.velocities)
+        yield Variant(_applied(scaling, own.postures), velocities)
 
 
-def turned(radians: float) -> Array:
-    """Return what turns row vectors (left, up, forward) about the vertical, shape (3, 3)."""
+def yaw_rotation(radians: float) -> Array:
+    """Return the matrix (3, 3) that rotates row vectors (left, up, forward) about the vertical: vectors @ matrix."""
     cos, sin = np.cos(radians), np.sin(radians)
     return np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
 
 
-def leant(radians: float) -> Array:
-    """Return what tilts row vectors (left, up, forward) back about the line from left to right, shape (3, 3)."""
+def pitch_rotation(radians: float) -> Array:
+    """Return the matrix (3, 3) that tilts row vectors (left, up, forward) back, about the axis to the left."""
     cos, sin = np.cos(radians), np.sin(radians)
     return np.array([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]])
 
 
-def rebuilt(factors: dict[str, float]) -> Array:
-    """Return what lengthens each bone by its factor, shape (15, 15), for joints relative to the torso.
+def bone_scaling(factors: dict[str, float]) -> Array:
+    """Return the matrix (15, 15) that multiplies joints (15, 3) from the torso so that bone lengths scale by factors.
 
-    A bone is named after the joint at its end, without its side: both sides change alike.
+    A bone is named after the joint at its end, without its side: both sides scale alike. Directions stay.
     """
-    build = np.zeros((len(JOINTS), len(JOINTS)))
+    scaling = np.zeros((len(JOINTS), len(JOINTS)))
     for parent, child, _ in BONES:
-        factor = factors[JOINTS[child].removeprefix("left_").removeprefix("right_")]
-        build[child] = build[parent]
-        build[child, child] += factor
-        build[child, parent] -= factor
-    return build
+        factor = factors[_BONE_OF_JOINT[child]]
+        scaling[child] = scaling[parent]
+        scaling[child, child] += factor
+        scaling[child, parent] -= factor
+    return scaling
 
 
-def _applied(build: Array, vectors: Array) -> Array:
-    """Apply a build to (n, 15, 3); a missing joint stays missing and is nobody else's concern."""
-    return np.where(np.isnan(vectors), np.nan, build @ np.nan_to_num(vectors))
+def _applied(scaling: Array, vectors: Array) -> Array:
+    """Scale vectors (n, 15, 3); a missing joint stays missing and affects no other."""
+    return np.where(np.isnan(vectors), np.nan, scaling @ np.nan_to_num(vectors))

@@ -1,9 +1,9 @@
-"""The yardstick: one nearest neighbour on the raw path of the hand.
+"""The baseline: one nearest neighbour on the raw path of the hand.
 
-A path is the acting hand's position relative to the torso in camera axes and metres, as measured: no scaling, no
-egocentric frame, no map. Of the two hands it is the one with the longer path. Frames within the segment in which
-torso and both hands are finite are resampled, linearly in time, to 32 instants at equal intervals. The answer is the
-label of the training path at the smallest Euclidean distance over the 96 numbers.
+A path is the position of the hand relative to the torso, in camera axes and metres as measured: without scaling,
+egocentric frame or map. Of the two hands, the one with the longer path is taken. The frames of a segment that have
+torso and both hands are resampled, linearly in time, to 32 instants at equal intervals. The answer is the label of
+the training path with the smallest Euclidean distance over these 96 numbers.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum import keys
+from actum.arrays import Array
 from actum.messages import Agent, Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
@@ -20,15 +21,17 @@ from actum_model_trainer.evaluation import Evaluation, Prediction
 from actum_model_trainer.samples import classifier_input, closed_segments, sensors
 from som_classifier.segments import ClosedSegment
 
-Array = NDArray[np.float64]
-
-POINTS = 32
+POINTS = 32  # per path: about one a frame for an action of a second
 _JOINTS = [INDEX["left_hand"], INDEX["right_hand"], INDEX["torso"]]
 
 
 @dataclass(frozen=True, eq=False)
 class HandPath:
-    """A labelled segment's path, shape (32, 3); None where fewer than two frames show it."""
+    """The hand path of a labelled segment.
+
+    Attributes:
+        points_m: (32, 3), relative to the torso in camera axes; None where fewer than two frames show it.
+    """
 
     file: str
     segment_id: str
@@ -40,7 +43,7 @@ def nearest_neighbour(training: Sequence[Recording], test: Sequence[Recording]) 
     """Answer each labelled segment of the test with the label of the nearest training path.
 
     Raises:
-        ValueError: no training path.
+        ValueError: the training recordings hold no path.
     """
     known = [(path.label, path.points_m) for path in hand_paths(training) if path.points_m is not None]
     if not known:
@@ -67,10 +70,11 @@ def hand_paths(recordings: Sequence[Recording]) -> Iterator[HandPath]:
 
 
 def hand_path(hands_and_torso_m: Array, stamps_ns: NDArray[np.int64]) -> Array:
-    """Return the longer hand path about the torso at 32 instants, shape (32, 3).
+    """Return the longer of the two hands' paths relative to the torso, at 32 instants, shape (32, 3), metres.
 
     Args:
-        hands_and_torso_m: (n, 3, 3), per frame the left hand, the right hand and the torso, any one frame.
+        hands_and_torso_m: (n, 3, 3), in each frame of the segment the left hand, the right hand and the torso, all in
+            one and the same coordinate frame.
         stamps_ns: (n,), rising.
     """
     hands_m = hands_and_torso_m[:, :2] - hands_and_torso_m[:, 2:]

@@ -1,79 +1,93 @@
-"""How sure a new model's answers may be, and from when on an action counts as unknown.
+"""What a model's confidence and its open-set decision are set to: inverse temperatures and a familiarity threshold.
 
-Both follow from people held out of training. Of few people that says little, of one alone nothing, so what was usual
-for models of other people's actions counts as well, as though it had been seen in `Prior.people` more people.
+Both are estimated on cross-validated scores, which say how the model fares on people it was not trained on. A few
+people say little about that, a single one nothing. Therefore each estimate is averaged with what was found for models
+of other people's actions (`som_classifier.presets.Prior`), which counts as much as `Prior.people` further people.
 """
 
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from actum_model_trainer.calibration import matched_gain
+from actum.arrays import Floats, Indices
+from actum_model_trainer.discriminants import FittedStage
 from actum_model_trainer.samples import SegmentSample
-from actum_model_trainer.upper_layers import Scored, UpperLayers
+from actum_model_trainer.temperature_scaling import matched_inverse_temperature
+from actum_model_trainer.upper_layers import UpperLayers
 from som_classifier.first_layer import FirstMaps
 from som_classifier.presets import Prior, PyramidPreset
 
-Floats = NDArray[Any]
-Indices = NDArray[np.intp]
 
-
-def calibrated_gains(
-    stages: Sequence[Scored], upper: UpperLayers, prior: Prior, people: int, depth_inferred: bool
+def inverse_temperatures(
+    stages: Sequence[FittedStage], upper: UpperLayers, prior: Prior, people: int, depth_inferred: bool
 ) -> list[float]:
-    """Return what makes cosines logits at each stage: between the usual gain and the matched one, at most that.
+    """Return the inverse temperature of each stage: the matched one averaged with the prior's, at most the matched one.
 
-    People held out of training differ less from the others than strangers do, so the matched gain is rather too large.
-
-    Args:
-        people: how many were learnt from; the first of them says nothing of how people differ.
-        depth_inferred: whether some distances follow from a picture and a body's usual size, which are less exact.
-    """
-    usual = prior.gain_where_inferred if depth_inferred else prior.gain
-    matched = np.array([held_out_gain(stage, upper) for stage in stages])
-    drawn = np.exp(_drawn(np.log(usual), np.log(matched), prior, people))
-    return [float(gain) for gain in np.minimum(matched, drawn)]
-
-
-def held_out_gain(stage: Scored, upper: UpperLayers) -> float:
-    """Return the gain that makes the answers to held-out scores as sure as the largest of these scores is right.
-
-    Whether the cosines are right would say less: the upper layers have learnt these very scores. That all n are right
-    does not make the next one sure: as after Laplace, one right and one wrong answer are added.
-    """
-    right = int((stage.axes.held_out.argmax(axis=1) == stage.targets).sum())
-    return matched_gain(upper.cosines(stage.axes.held_out), (right + 1) / (len(stage.targets) + 2))
-
-
-def familiar(held_out: Floats, samples: Sequence[SegmentSample], preset: PyramidPreset) -> float:
-    """Return the familiarity that most segments of known actions exceed.
+    People within a training set differ less from one another than strangers do, so that the matched inverse
+    temperature is rather too large and never too small.
 
     Args:
-        held_out: (n, actions), scores on axes that were trained without the person.
-        samples: what was learnt from.
+        stages: with their cross-validated scores.
+        upper: the layers that turn scores into cosines.
+        prior: of models of other people's actions.
+        people: number of people in the training.
+        depth_inferred: whether some distances were inferred from an image and a standard body's size: less exact.
+    """
+    expected = prior.gain_where_inferred if depth_inferred else prior.gain
+    matched = np.array([cross_validated_inverse_temperature(stage, upper) for stage in stages])
+    averaged = np.exp(_averaged_with_prior(np.log(matched), np.log(expected), prior, people))
+    return [float(inverse_temperature) for inverse_temperature in np.minimum(matched, averaged)]
+
+
+def cross_validated_inverse_temperature(stage: FittedStage, upper: UpperLayers) -> float:
+    """Return the inverse temperature that makes the mean confidence equal the accuracy of the cross-validated scores.
+
+    An answer counts as right where the largest score is that of the action done. The cosines are not asked: the upper
+    layers were trained on these very scores. Laplace's rule (one right and one wrong answer more) keeps n right
+    answers of n from making the next one certain.
+    """
+    scores = stage.discriminants.cross_validated_scores
+    right = int((scores.argmax(axis=1) == stage.targets).sum())
+    return matched_inverse_temperature(upper.cosines(scores), (right + 1) / (len(stage.targets) + 2))
+
+
+def familiarity_threshold(scores: Floats, samples: Sequence[SegmentSample], preset: PyramidPreset) -> float:
+    """Return the open-set threshold: segments whose familiarity is below may be none of the trained actions.
+
+    Familiarity is an open-set score: a segment's largest score, lowered where its postures are unlike those of the
+    action (`familiarity_of` in som_classifier). The threshold is the quantile that a share `preset.known_share` of the
+    known actions exceeds.
+
+    Args:
+        scores: (n, actions), cross-validated.
+        samples: of the training.
+        preset: with the share and the prior.
     """
     prior, people = preset.prior, len({sample.person for sample in samples})
-    once = len({(sample.person, sample.label) for sample in samples}) == len(samples)
-    exceeded = np.quantile(held_out.max(axis=1), 1 - preset.known_share)
-    return float(_drawn(prior.familiar_from_one if once else prior.familiar, exceeded, prior, people))
+    nobody_twice = len({(sample.person, sample.label) for sample in samples}) == len(samples)
+    exceeded = np.quantile(scores.max(axis=1), 1 - preset.known_share)
+    expected = prior.familiar_from_one if nobody_twice else prior.familiar
+    return float(_averaged_with_prior(exceeded, expected, prior, people))
 
 
-def usual_log_errors(first: FirstMaps, postures: Sequence[Floats], targets: Indices, prior: Prior) -> list[float]:
-    """Return to what mean log(d²) from the map of postures a stranger who does each action may well come.
+def expected_log_errors(first: FirstMaps, postures: Sequence[Floats], targets: Indices, prior: Prior) -> list[float]:
+    """Return for each action the mean log(d²) from the posture map (d in m) to expect of a stranger who does it.
 
-    It is the usual one, higher or lower by as much as the action's own samples are off the map more or less than all
-    are: a map has few units for postures that are seldom taken. As there may be few, their mean counts as one of each.
+    It is the prior's, plus the difference between the action's own mean and that of all samples: a map has few units
+    for rare postures. Each action's mean difference is shrunk towards 0 as by one more sample without any.
 
     Args:
-        postures: (frames, 15, 3) of each sample, as the classifier reads it.
-        targets: (n,), their actions.
+        first: the trained maps of the first layer.
+        postures: of each sample, as the classifier reads it, (frames, 15, 3).
+        targets: (n,), the samples' actions.
+        prior: of models of other people's actions.
     """
     log_errors = np.array([first.log_errors(own, first.winners(own)).mean() for own in postures])
-    above = np.bincount(targets, weights=log_errors - log_errors.mean()) / (np.bincount(targets) + 1)
-    return [float(prior.log_error + own) for own in above]
+    above_mean = np.bincount(targets, weights=log_errors - log_errors.mean()) / (np.bincount(targets) + 1)
+    return [float(prior.log_error + own) for own in above_mean]
 
 
-def _drawn(usual: Any, seen: Any, prior: Prior, people: int) -> Any:
-    return (prior.people * usual + (people - 1) * seen) / (prior.people + people - 1)
+def _averaged_with_prior(estimate: Any, expected: Any, prior: Prior, people: int) -> Any:
+    """Weigh an estimate by the people it is of beyond the first, who says nothing of how people differ."""
+    return (prior.people * expected + (people - 1) * estimate) / (prior.people + people - 1)

@@ -1,4 +1,4 @@
-"""How often a model is right on recordings, judged by the final answers of the live classifier's own node."""
+"""The accuracy of a model on recordings, from the final answers of the node that also classifies live."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -11,24 +11,25 @@ from actum import keys
 from actum.messages import Action, Segment
 from actum.node import replay
 from actum.recording import Recording
+from actum_model_trainer.calibration_error import MIN_ANSWERS, calibration_error, confidence_bins
 from actum_model_trainer.progress import Progress, silent
-from actum_model_trainer.reliability import FEWEST, binned, calibration_error
 from actum_model_trainer.samples import classifier_input, sensors
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.recognition import Recognition
 
-Z_95 = 1.959963984540054
+Z_95 = 1.959963984540054  # standard deviations: the normal distribution holds 95 % within
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """A labelled segment and what it was taken for.
+    """A labelled segment and the answer to it.
 
     Attributes:
-        predicted: None where it was rejected.
-        confidence: None where there is no answer, or what answers tells none.
-        unknown: whether it was told as possibly none of the trained actions; None where the model tells no familiarity.
+        predicted: the action answered; None where the segment was rejected.
+        confidence: of the answer, 0 to 1; None where there is no answer or it comes without confidence.
+        unknown: whether the answer says that it may be none of the trained actions (its familiarity, an open-set
+            score, is below the threshold); None where the model gives no familiarity.
     """
 
     file: str
@@ -46,12 +47,15 @@ class Prediction:
 
 @dataclass(frozen=True)
 class ClassScore:
-    """How one action fared.
+    """The results on the segments of one action.
 
     Attributes:
-        accuracy: the share of its segments that were recognised.
-        confidence: the mean over its answers; None where none tells any.
-        unknown: the share of its answers that were told unknown; None where none tells.
+        n: number of segments.
+        correct: number of right answers.
+        rejected: number of segments without an answer.
+        accuracy: correct / n, 0 where n is 0.
+        confidence: the answers' mean; None where none has any.
+        unknown: the share of answers that say unknown; None where the model gives no familiarity.
     """
 
     n: int
@@ -64,23 +68,23 @@ class ClassScore:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """The predictions of a test, and what follows from them. Rejected segments count as wrong."""
+    """The predictions of a test and the statistics over them. Rejected segments count as wrong."""
 
     predictions: tuple[Prediction, ...]
 
     @property
     def n(self) -> int:
-        """How many labelled segments were answered."""
+        """The number of labelled segments, rejected ones included."""
         return len(self.predictions)
 
     @property
     def correct(self) -> int:
-        """How many of them rightly."""
+        """The number of right answers."""
         return sum(prediction.correct for prediction in self.predictions)
 
     @property
     def accuracy(self) -> float:
-        """The share of right answers, 0 where there was nothing to answer."""
+        """The share of right answers, 0 where there was no segment."""
         return self.correct / self.n if self.n else 0.0
 
     @cached_property
@@ -91,30 +95,34 @@ class Evaluation:
 
     @cached_property
     def confusion(self) -> list[list[int]]:
-        """Counts by label done (rows) and answered (columns), in the order of `labels`; rejections in none."""
+        """The confusion matrix: counts by action done (rows) and answered (columns), in the order of `labels`.
+
+        Rejected segments are not counted.
+        """
         counts = Counter((prediction.label, prediction.predicted) for prediction in self.predictions)
         return [[counts[done, answered] for answered in self.labels] for done in self.labels]
 
     @cached_property
     def per_class(self) -> dict[str, ClassScore]:
-        """Each action's score, of its own segments."""
+        """The score of each action's own segments, by label."""
         return {label: _score([p for p in self.predictions if p.label == label]) for label in self.labels}
 
     @cached_property
     def told_unknown(self) -> list[bool]:
-        """Whether it was told unknown, of each answer whose model can tell."""
+        """Of each answer with a familiarity, whether it says unknown."""
         return [prediction.unknown for prediction in self.predictions if prediction.unknown is not None]
 
     @cached_property
     def calibration_error(self) -> float | None:
-        """How far confidence is from accuracy on average (ECE); None where too few answers tell any."""
-        sure = [(p.confidence, p.correct) for p in self.predictions if p.confidence is not None]
-        if len(sure) < FEWEST:
+        """The expected calibration error (ECE); None where too few answers have a confidence."""
+        answers = [(p.confidence, p.correct) for p in self.predictions if p.confidence is not None]
+        if len(answers) < MIN_ANSWERS:
             return None
-        return calibration_error(binned([confidence for confidence, _ in sure], [correct for _, correct in sure]))
+        confidences, correct = zip(*answers, strict=True)
+        return calibration_error(confidence_bins(confidences, correct))
 
     def as_json(self) -> dict[str, Any]:
-        """Write everything as plain values."""
+        """Return predictions and statistics as plain values for JSON."""
         return {
             "accuracy": self.accuracy,
             "n": self.n,
@@ -144,7 +152,7 @@ def _mean(values: Sequence[float | None]) -> float | None:
 
 
 def wilson_interval(correct: int, n: int) -> tuple[float, float]:
-    """Return Wilson's 95 % interval of a share; (0, 1) where n is 0."""
+    """Return the Wilson score interval (95 %) of correct / n; (0, 1) where n is 0."""
     if n == 0:
         return 0.0, 1.0
     share, z2 = correct / n, Z_95**2
@@ -154,7 +162,7 @@ def wilson_interval(correct: int, n: int) -> tuple[float, float]:
 
 
 def evaluate(model: Model, recordings: Sequence[Recording], progress: Progress = silent) -> Evaluation:
-    """Replay recordings frame by frame through preprocessor and classifier, and compare the final answers.
+    """Replay recordings frame by frame through preprocessor and classifier, and compare final answers with labels.
 
     Raises:
         RecordingError: a file is damaged.
@@ -171,15 +179,15 @@ def evaluate(model: Model, recordings: Sequence[Recording], progress: Progress =
 def prediction(
     recording: Recording, segment_id: str, label: str, predicted: str | None, answer: Action | Recognition | None
 ) -> Prediction:
-    """Set an answer, whichever way it was got, beside the label; `predicted` is the action that it names."""
+    """Make the prediction of a labelled segment from the answer to it; `predicted` is the action that it names."""
     if predicted is None or answer is None:
         return Prediction(str(recording.path), segment_id, label, None)
     unknown = None if answer.familiarity is None else answer.unknown
     return Prediction(str(recording.path), segment_id, label, predicted, answer.confidence, unknown)
 
 
-def labels_of(recording: Recording, sensor: str) -> dict[str, str]:
-    """Return the label of each labelled segment; the first start mark of an id counts."""
+def segment_labels(recording: Recording, sensor: str) -> dict[str, str]:
+    """Return the label of each labelled segment by its id; of several start marks of one id the first counts."""
     labels: dict[str, str] = {}
     for mark in recording.messages((keys.SEGMENT,)):
         if isinstance(mark, Segment) and mark.sensor == sensor and mark.kind == "start" and mark.label is not None:
@@ -192,6 +200,6 @@ def _predictions(model: Model, recording: Recording, sensor: str) -> Iterator[Pr
     for message in replay(SomClassifier(model), classifier_input(recording, sensor)):
         if isinstance(message, Action) and message.final:
             answers.setdefault(message.segment_id, message)
-    for segment_id, label in labels_of(recording, sensor).items():
+    for segment_id, label in segment_labels(recording, sensor).items():
         answer = answers.get(segment_id)
         yield prediction(recording, segment_id, label, answer.action if answer else None, answer)

@@ -1,17 +1,17 @@
-"""The paper's recogniser, trained layer after layer (paper, sections 2.1 and 3)."""
+"""Training of the paper's recogniser, layer after layer (paper, sections 2.1 and 3)."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array
 from actum.som import Som
-from actum_model_trainer.description import labels_of, provenance
+from actum_model_trainer.median_distances import median_neighbour_distance2, median_quantization_error2
 from actum_model_trainer.progress import Progress
+from actum_model_trainer.provenance import actions_of, provenance
 from actum_model_trainer.samples import SegmentSample
-from actum_model_trainer.typical import typical_distance2, typical_error2
 from som_classifier.attention import PostureInput
 from som_classifier.map_activity import MapActivity, map_activity, soft_activity
 from som_classifier.ordered_vector import ordered_vector, trajectory
@@ -19,35 +19,37 @@ from som_classifier.paper_model import PaperMetadata, PaperModel
 from som_classifier.presets import MapTraining, PaperPreset
 from som_classifier.supervised import SupervisedLayer
 
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True, eq=False)
-class _Shown:
-    """A sample as the recogniser looks at it.
+class _AttendedSample:
+    """A sample with the body part that the recogniser attends to.
 
     Attributes:
-        rows: (frames, choices, size), what attention chooses among.
-        attended: which of the choices it goes to.
+        rows: (frames, parts, size), the first map's input for each part.
+        attended: the index of the part attended to.
     """
 
     rows: Array
     attended: int
 
     @classmethod
-    def of(cls, sample: SegmentSample, posture: PostureInput) -> "_Shown":
+    def of(cls, sample: SegmentSample, posture: PostureInput) -> "_AttendedSample":
+        """Choose the part as the preset says, among those that are seen in at least one frame."""
         rows = np.stack([posture.rows(*frame) for frame in zip(sample.joints, sample.postures, strict=True)])
         _, attended = posture.attended(sample.motion, np.any(np.isfinite(rows), axis=(0, 2)))
         return cls(rows, attended)
 
     @property
     def vectors(self) -> Array:
-        """What the first map learns of it, frames in which nothing is there left out, shape (n, size)."""
-        looked_at: Array = self.rows[:, self.attended]
-        return looked_at[~np.isnan(looked_at).all(axis=1)]
+        """The first map's training vectors, shape (n, size), without frames in which the part is wholly missing."""
+        own: Array = self.rows[:, self.attended]
+        return own[~np.isnan(own).all(axis=1)]
 
     def trajectory(self, layer1: Som, contrast: float) -> Array:
-        """Walk the first map frame by frame, through the same products as the recogniser."""
+        """Return the trajectory over the first map, shape (changes, 2).
+
+        Frame by frame through the same matrix products as the recogniser, so that both agree to the bit.
+        """
         frames = [map_activity(layer1, rows, contrast)[self.attended] for rows in self.rows]
         winners, centres = np.array([frame.winners for frame in frames]), np.array([frame.centres for frame in frames])
         return trajectory(MapActivity(winners, centres))
@@ -59,24 +61,24 @@ def train(samples: Sequence[SegmentSample], preset: PaperPreset, seed: int, prog
     Raises:
         TrainingError: fewer than two actions among the samples.
     """
-    labels = labels_of(samples)
+    labels = actions_of(samples)
     rng = np.random.default_rng(seed)
-    shown = [_Shown.of(sample, preset.posture) for sample in samples]
-    postures = np.concatenate([own.vectors for own in shown])
+    attended = [_AttendedSample.of(sample, preset.posture) for sample in samples]
+    postures = np.concatenate([own.vectors for own in attended])
     layer1 = _trained_map(preset.layer1, postures, rng, progress, "layer 1")
-    centre_contrast = preset.centre_contrast * typical_error2(layer1, postures)
-    paths = [own.trajectory(layer1, centre_contrast) for own in shown]
+    centre_contrast = preset.centre_contrast * median_quantization_error2(layer1, postures)
+    paths = [own.trajectory(layer1, centre_contrast) for own in attended]
     points = max(2, *map(len, paths))
     vectors = np.stack([ordered_vector(path, points) for path in paths])
     layer2 = _trained_map(preset.layer2, vectors, rng, progress, "layer 2")
-    contrast = preset.relative_contrast * typical_distance2(vectors)
-    heard = np.stack([soft_activity(layer2.excess2(vector), contrast) for vector in vectors])
+    contrast = preset.relative_contrast * median_neighbour_distance2(vectors)
+    activities = np.stack([soft_activity(layer2.excess2(vector), contrast) for vector in vectors])
     targets = np.array([labels.index(sample.label) for sample in samples])
-    untrained = SupervisedLayer.random(len(labels), heard.shape[1], rng)
-    layer3 = untrained.train(heard, targets, preset.beta, preset.epochs, rng, partial(progress, "layer 3"))
+    untrained = SupervisedLayer.random(len(labels), activities.shape[1], rng)
+    layer3 = untrained.train(activities, targets, preset.beta, preset.epochs, rng, partial(progress, "layer 3"))
     measured = {"centre_contrast": centre_contrast, "points": points, "contrast": contrast}
-    about = provenance(samples, preset, seed) | asdict(preset.posture) | measured
-    return PaperModel(layer1, layer2, layer3, PaperMetadata.model_validate(about))
+    metadata = provenance(samples, preset, seed) | asdict(preset.posture) | measured
+    return PaperModel(layer1, layer2, layer3, PaperMetadata.model_validate(metadata))
 
 
 def _trained_map(plan: MapTraining, vectors: Array, rng: np.random.Generator, progress: Progress, stage: str) -> Som:

@@ -1,9 +1,9 @@
-"""How long work tells how far it is."""
+"""How long-running work reports its progress."""
 
 from collections.abc import Callable
 
 Progress = Callable[[str, int, int], None]
-"""Called with the stage, and how much of it is done out of how much."""
+"""Called with the name of the stage, the steps done and the steps in all."""
 
 
 def silent(stage: str, done: int, total: int) -> None:

@@ -11,12 +11,12 @@ from actum_model_trainer.evaluation import Evaluation, wilson_interval
 
 
 def report(evaluation: Evaluation, seconds: float) -> Group:
-    """Lay out accuracy with its interval, the score of each action, and who was taken for whom."""
+    """Lay out the summary, the table of scores by action and that of confusions, given how long it took (s)."""
     return Group(summary(evaluation, seconds), per_class(evaluation), confusion(evaluation))
 
 
 def summary(evaluation: Evaluation, seconds: float) -> Text:
-    """Say how often the answer was right, how far its confidence was off and how often it was told unknown."""
+    """State accuracy, calibration error and the number of answers that say unknown."""
     low, high = wilson_interval(evaluation.correct, evaluation.n)
     said = [
         f"accuracy {evaluation.accuracy:.1%} ({evaluation.correct} of {evaluation.n}, "
@@ -30,7 +30,7 @@ def summary(evaluation: Evaluation, seconds: float) -> Text:
 
 
 def per_class(evaluation: Evaluation) -> Table:
-    """Tabulate each action's tests, right answers and rejections, mean confidence and share told unknown."""
+    """Tabulate the scores of each action."""
     table = Table(title="per action")
     table.add_column("action", overflow="fold")
     for heading in ("tests", "recognised", "rejected", "accuracy", "confidence", "unknown"):
@@ -38,16 +38,16 @@ def per_class(evaluation: Evaluation) -> Table:
     for label, score in evaluation.per_class.items():
         counts = str(score.n), str(score.correct), str(score.rejected)
         accuracy = score.accuracy if score.n else None
-        table.add_row(Text(label), *counts, *map(_share, (accuracy, score.confidence, score.unknown)))
+        table.add_row(Text(label), *counts, *map(_percent, (accuracy, score.confidence, score.unknown)))
     return table
 
 
-def _share(share: float | None) -> str:
+def _percent(share: float | None) -> str:
     return "-" if share is None else f"{share:.1%}"
 
 
 def confusion(evaluation: Evaluation) -> Table | Text:
-    """Tabulate what was taken for what, the most frequent first."""
+    """Tabulate which action was taken for which other, the most frequent confusion first."""
     mistakes = Counter((wrong.label, wrong.predicted) for wrong in evaluation.predictions if not wrong.correct)
     if not mistakes:
         return Text("confusion: none")

@@ -1,4 +1,4 @@
-"""Labelled segments of recordings become training samples, through the very nodes that run live."""
+"""Training samples: the labelled segments of recordings, cut out by the nodes that also run live."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum import keys
+from actum.arrays import Array
 from actum.messages import Hand, Message, Posture, Segment, Skeleton
 from actum.node import Counters, Numbering, Tick, replay
 from actum.recording import Recording
@@ -17,24 +18,29 @@ from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from som_classifier.handedness import LimbSpreads, limb_moments
 from som_classifier.model import Model
-from som_classifier.segments import ClosedSegment, Segmenter
+from som_classifier.segmenter import Segmenter
+from som_classifier.segments import ClosedSegment
 
-Array = NDArray[np.float64]
 STREAMS = (keys.SKELETON, keys.SEGMENT)
+"""What is read of a recording; everything else follows from it."""
 
 
 @dataclass(frozen=True, eq=False)
 class SegmentSample:
-    """One labelled action: its usable frames as the classifier gets them.
+    """One labelled segment: its n valid frames as the classifier gets them.
 
     Attributes:
+        label: the action done.
         stamps_ns: (n,), rising.
-        joints: (n, 15, 3), scaled, egocentric, NaN where missing.
-        motion: (n, 5), metres since the frame before.
-        postures: (n, 15, 3), scaled, upright, low-passed.
-        velocities: (n, 15, 3), of the same.
-        depth_inferred: whether distances follow from a picture and a body's usual size.
-        sensor: which viewpoint it is of.
+        joints: (n, 15, 3), scaled to the standard body's metres, in the egocentric frame, NaN where missing.
+        motion: (n, 5), how far each body part has moved since the frame before, metres.
+        postures: (n, 15, 3), scaled joints in the upright frame, low-passed, NaN where missing.
+        velocities: (n, 15, 3), of the postures.
+        person: who did it, as the recording names them.
+        file: the recording's path.
+        segment_id: of the segment in the recording.
+        depth_inferred: whether some distances were inferred from an image and a standard body's size.
+        sensor: the one that saw it.
     """
 
     label: str
@@ -51,14 +57,14 @@ class SegmentSample:
 
     @cached_property
     def acting_hands(self) -> list[Hand | None]:
-        """Which arm it is done with, so far after each frame; None for both or another limb."""
+        """For each frame, the arm that has acted up to it; None for both arms or another limb."""
         summed = np.cumsum([limb_moments(posture) for posture in self.postures], axis=0)
         return [LimbSpreads.of(so_far).acting_hand for so_far in summed]
 
 
 @dataclass(frozen=True)
 class Unusable:
-    """A labelled segment that no sample could be made of, and why."""
+    """A labelled segment that no sample can be made of, and the reason."""
 
     file: str
     segment_id: str
@@ -68,33 +74,33 @@ class Unusable:
 
 @dataclass(frozen=True)
 class Samples:
-    """What recordings hold to learn from: their labelled segments, in the order in which they close."""
+    """The labelled segments of recordings, in the order in which they end."""
 
     segments: list[SegmentSample | Unusable]
 
     @cached_property
     def usable(self) -> list[SegmentSample]:
-        """Those that are samples."""
+        """The segments that a model can be trained on."""
         return [segment for segment in self.segments if isinstance(segment, SegmentSample)]
 
     @cached_property
     def unusable(self) -> list[Unusable]:
-        """The others."""
+        """The segments that no sample can be made of."""
         return [segment for segment in self.segments if isinstance(segment, Unusable)]
 
 
 def select(
     paths: Iterable[Path], people: Collection[str] | None = None, with_excluded: bool = False
 ) -> list[Recording]:
-    """Open the recordings of some people, or of all, each once; folders are searched for `*.mcap`.
+    """Open the recordings of some people, or of all (None), each once; folders are searched for `*.mcap`.
 
-    Recordings whose metadata say `excluded: true` are left out unless asked for.
+    Recordings whose metadata say `excluded: true` are left out, unless `with_excluded`.
 
     Raises:
         RecordingError: a file is no recording.
     """
-    files = {file.resolve(): file for path in paths for file in _files(path)}
-    recordings = [Recording(file) for file in files.values()]
+    files = (file for path in paths for file in (sorted(path.rglob("*.mcap")) if path.is_dir() else [path]))
+    recordings = [Recording(file) for file in {file.resolve(): file for file in files}.values()]
     return [
         recording
         for recording in recordings
@@ -104,12 +110,12 @@ def select(
 
 
 def sensors(recording: Recording) -> list[str]:
-    """Name the viewpoints that have marks in a recording."""
+    """Return the sensors whose segments a recording holds, sorted."""
     return sorted({mark.sensor for mark in recording.messages((keys.SEGMENT,))})
 
 
 def classifier_input(recording: Recording, sensor: str) -> Iterator[tuple[int, Message]]:
-    """Yield, with its stamp (ns), each message that the classifier of this sensor would have got."""
+    """Yield each message that the live classifier of this sensor would have received, with its stamp (ns)."""
     preprocessor, numbering = PosePreprocessor(PoseSettings.defaults()), Numbering()
     for message in recording.messages(STREAMS):
         if message.sensor == sensor:
@@ -129,13 +135,13 @@ def samples_from(recordings: Sequence[Recording], progress: Progress = silent) -
         progress("reading recordings", done, len(recordings))
         for sensor in sensors(recording):
             closed = closed_segments(classifier_input(recording, sensor))
-            segments += [_cut(recording, sensor, each, each.label) for each in closed if each.label is not None]
+            segments += [_sample(recording, sensor, each, each.label) for each in closed if each.label is not None]
     progress("reading recordings", len(recordings), len(recordings))
     return Samples(segments)
 
 
 def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[ClosedSegment]:
-    """Return the segments that the classifier's own bookkeeping closes, in that order."""
+    """Return the segments of a stream of stamped (ns) messages as the classifier cuts them, in the order they end."""
     collector = _Collector()
     for _ in replay(collector, messages):
         raise AssertionError("the collector puts nothing")
@@ -143,7 +149,7 @@ def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[ClosedSegme
 
 
 def why_unusable(closed: ClosedSegment) -> str | None:
-    """Say why no sample can be made of a segment's frames; None where one can."""
+    """Return the reason why no sample can be made of a segment; None where one can."""
     usable = sum(frame.valid for frame in closed.frames)
     if closed.reason is None and usable < Model.min_frames:
         return f"{usable} usable frames, at least {Model.min_frames} are needed"
@@ -151,7 +157,7 @@ def why_unusable(closed: ClosedSegment) -> str | None:
 
 
 class _Collector:
-    """A node that keeps what the segmenter closes."""
+    """A node that collects the segments that the classifier's segmenter closes."""
 
     name = "collector"
     inputs: tuple[keys.Topic, ...] = (keys.POSTURE, keys.SEGMENT)
@@ -172,23 +178,19 @@ class _Collector:
         return []
 
 
-def _files(path: Path) -> list[Path]:
-    return sorted(path.rglob("*.mcap")) if path.is_dir() else [path]
-
-
-def _cut(recording: Recording, sensor: str, closed: ClosedSegment, label: str) -> SegmentSample | Unusable:
+def _sample(recording: Recording, sensor: str, closed: ClosedSegment, label: str) -> SegmentSample | Unusable:
     reason = why_unusable(closed)
     if reason is not None:
         return Unusable(str(recording.path), closed.segment_id, reason, sensor)
     frames = [frame for frame in closed.frames if frame.valid]
-    movements = [frame.kinematics for frame in frames if frame.kinematics is not None]
+    kinematics = [frame.kinematics for frame in frames if frame.kinematics is not None]
     return SegmentSample(
         label,
         np.array([frame.stamp_ns for frame in frames]),
         np.array([frame.joints for frame in frames]),
         np.array([frame.motion for frame in frames]),
-        np.array([movement.posture for movement in movements]),
-        np.array([movement.velocity for movement in movements]),
+        np.array([each.posture for each in kinematics]),
+        np.array([each.velocity for each in kinematics]),
         recording.person,
         str(recording.path),
         closed.segment_id,

@@ -1,12 +1,12 @@
-"""Training samples become a model of the kind that the preset names."""
+"""Training of a model of the kind that the preset belongs to."""
 
 from collections.abc import Sequence
 
 from threadpoolctl import threadpool_limits
 
 from actum_model_trainer import paper_training, pyramid_training
-from actum_model_trainer.description import TrainingError
 from actum_model_trainer.progress import Progress, silent
+from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.model import Model
 from som_classifier.presets import PaperPreset, Preset

@@ -1,103 +1,63 @@
-"""The map of actions and the neurons on it, trained on scores; and how sure their answers may be."""
+"""Training of the layers above the discriminants: the action map and the neurons, both on the discriminants' scores."""
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Floats, Indices
 from actum.som import Som
-from actum_model_trainer.description import TrainingError
-from actum_model_trainer.discriminants import Axes
+from actum_model_trainer.discriminants import FittedStage
 from actum_model_trainer.progress import Progress
+from actum_model_trainer.provenance import TrainingError
 from som_classifier.map_activity import soft_activity
 from som_classifier.presets import PyramidPreset
 from som_classifier.second_layer import ActionMap
 from som_classifier.supervised import SupervisedLayer
 
-Floats = NDArray[Any]
-Indices = NDArray[np.intp]
-
-
-@dataclass(frozen=True, eq=False)
-class Scored:
-    """One stage's axes and what they were trained on.
-
-    Attributes:
-        owners: (n,), whose sample each training vector is.
-        targets: (n,), which action it is.
-        folds: (n,), which fold it is in.
-    """
-
-    axes: Axes
-    owners: Indices
-    targets: Indices
-    folds: Indices
+SMALLEST_VARIANCE = 1e-6  # squared scores: a contrast divides by it and must not be 0
 
 
 @dataclass(frozen=True, eq=False)
 class UpperLayers:
-    """What turns scores into an answer."""
+    """The layers that turn scores into cosines.
+
+    Attributes:
+        action_map: the second layer.
+        layer3: one neuron per action.
+    """
 
     action_map: ActionMap
     layer3: SupervisedLayer
 
     def cosines(self, scores: Floats) -> Floats:
-        """Return each neuron's cosine for each row of scores (n, actions)."""
-        heard = self.action_map.centred(
-            soft_activity(self.action_map.som.excess2s(scores.astype(np.float32)), self.action_map.contrast)
+        """Return each neuron's cosine for each row of scores (n, actions), in the same shape."""
+        som = self.action_map.som
+        inputs = self.action_map.centred(
+            soft_activity(som.excess2s(scores.astype(np.float32)), self.action_map.contrast)
         )
-        cosines: Floats = heard @ self.layer3.weights.T / np.sqrt(np.square(heard).sum(axis=1, keepdims=True))
+        cosines: Floats = inputs @ self.layer3.weights.T / np.sqrt(np.square(inputs).sum(axis=1, keepdims=True))
         return cosines
 
 
 def train_upper(
-    stage: Scored, actions: int, preset: PyramidPreset, rng: np.random.Generator, progress: Progress
+    stage: FittedStage, actions: int, preset: PyramidPreset, rng: np.random.Generator, progress: Progress
 ) -> UpperLayers:
-    """Train both on the complete actions, on scores partly of the final axes, partly of axes without the person.
+    """Train both layers on scores of complete actions, each a weighted mean of training and cross-validated score.
 
-    The first alone are too clean, the second too poor: the final axes know more people than any of theirs. Few scores
-    are filled up with mixtures, so that both layers also know what lies between the actions, where other people's are.
+    Training scores alone are better than those of strangers will be; cross-validated scores alone are worse, because
+    their discriminants know fewer people than the final ones. Where there are few scores, mixup adds more, so that
+    both layers also learn the region between the actions, where the scores of strangers lie.
 
     Raises:
         TrainingError: the scores of all samples are the same.
     """
-    share = preset.held_out_share
-    scores = share * stage.axes.held_out + (1 - share) * stage.axes.own
-    scores, targets = mixed(scores, stage.targets, preset.fewest_scores, preset.least_share, rng)
-    return _trained(scores.astype(np.float32), targets, actions, preset, rng, progress)
-
-
-def mixed(
-    scores: Floats, targets: Indices, fewest: int, least_share: float, rng: np.random.Generator
-) -> tuple[Floats, Indices]:
-    """Return the scores (n, actions) and mixtures of two of them, filled up to `fewest` rows, and the targets of all.
-
-    A mixture is m × one + (1 − m) × another, m drawn evenly from `least_share` to 1, and has the target of the one.
-    """
-    missing = max(fewest - len(scores), 0)
-    one, other = rng.integers(len(scores), size=(2, missing))
-    shares = rng.uniform(least_share, 1.0, (missing, 1))
-    mixtures = shares * scores[one] + (1 - shares) * scores[other]
-    return np.concatenate([scores, mixtures]), np.concatenate([targets, targets[one]])
-
-
-def _trained(
-    scores: NDArray[np.float32],
-    targets: Indices,
-    actions: int,
-    preset: PyramidPreset,
-    rng: np.random.Generator,
-    progress: Progress,
-) -> UpperLayers:
-    layout = Som.linear(*preset.concepts, scores).train_batch(
-        scores, preset.concept_epochs, preset.concept_radius, partial(progress, "map of actions")
-    )
-    contrast = preset.relative_concept_contrast * variance_within(scores, targets)
-    activities = soft_activity(layout.excess2s(scores), contrast)
-    unit = activities / np.sqrt(np.square(activities).sum(axis=1, keepdims=True))
-    action_map = ActionMap(layout, contrast, unit.mean(axis=0, dtype=np.float64).astype(np.float32))
+    fitted, share = stage.discriminants, preset.held_out_share
+    blended = share * fitted.cross_validated_scores + (1 - share) * fitted.training_scores
+    mixed, targets = mixup(blended, stage.targets, preset.fewest_scores, preset.least_share, rng)
+    scores = mixed.astype(np.float32)
+    action_map, activities = _trained_action_map(scores, targets, preset, progress)
     inputs = action_map.centred(activities).astype(np.float64)
     if not inputs.any():
         raise TrainingError("all samples move alike: their actions cannot be told apart")
@@ -107,7 +67,46 @@ def _trained(
     return UpperLayers(action_map, SupervisedLayer(layer3.weights.astype(np.float32)))
 
 
-def variance_within(scores: Floats, targets: Indices) -> float:
-    """Return the mean over actions and components of the scores' variance within an action."""
+def mixup(
+    scores: Floats, targets: Indices, fewest: int, least_share: float, rng: np.random.Generator
+) -> tuple[Floats, Indices]:
+    """Return the scores and convex combinations of two of them (mixup), and the targets, of `fewest` rows at least.
+
+    A combination m × one + (1 − m) × other, with m uniform from `least_share` to 1, has the target of the one.
+
+    Args:
+        scores: (n, actions).
+        targets: (n,), the index of each one's action.
+        fewest: rows of the result, (max(n, fewest), actions).
+        least_share: of the one in a combination.
+        rng: that draws pairs and shares.
+    """
+    missing = max(fewest - len(scores), 0)
+    one, other = rng.integers(len(scores), size=(2, missing))
+    shares = rng.uniform(least_share, 1.0, (missing, 1))
+    mixtures = shares * scores[one] + (1 - shares) * scores[other]
+    return np.concatenate([scores, mixtures]), np.concatenate([targets, targets[one]])
+
+
+def _trained_action_map(
+    scores: NDArray[np.float32], targets: Indices, preset: PyramidPreset, progress: Progress
+) -> tuple[ActionMap, Floats]:
+    """Return the map, trained on scores (n, actions), and its soft activities for them, (n, units)."""
+    som = Som.linear(*preset.concepts, scores).train_batch(
+        scores, preset.concept_epochs, preset.concept_radius, partial(progress, "map of actions")
+    )
+    contrast = preset.relative_concept_contrast * within_class_variance(scores, targets)
+    activities = soft_activity(som.excess2s(scores), contrast)
+    unit_length = activities / np.sqrt(np.square(activities).sum(axis=1, keepdims=True))
+    return ActionMap(som, contrast, unit_length.mean(axis=0, dtype=np.float64).astype(np.float32)), activities
+
+
+def within_class_variance(scores: Floats, targets: Indices) -> float:
+    """Return the mean, over actions and components, of the variance of scores (n, actions) within an action.
+
+    Args:
+        scores: (n, actions).
+        targets: (n,), the index of each one's action.
+    """
     variances = [scores[targets == target].var(axis=0).mean() for target in np.unique(targets)]
-    return float(np.mean(variances)) or 1e-6
+    return float(np.mean(variances)) or SMALLEST_VARIANCE

@@ -1,4 +1,4 @@
-"""What training examples cannot teach, in words, and what to record next."""
+"""Warnings about training examples: what a model cannot learn from them, and what to record next."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -6,33 +6,24 @@ from math import ceil
 
 from actum_model_trainer.samples import SegmentSample
 
-FEWEST = 5
-"""Examples of an action: fewer say little of how its performances differ."""
-
-LARGEST_RATIO = 3
-"""Between the numbers of examples of two actions."""
-
-MIXED_SHARE = 0.25
-"""Of two actions' answers that name either of the two, how many name the other: half of what guessing gives."""
-
-MIXED_TIMES = 2
-"""A single mistake is chance."""
-
-BACKGROUND = ("idle", "background")
-"""The labels of segments in which nothing is done."""
+MIN_EXAMPLES = 5  # of an action: fewer say little of how its performances differ
+MAX_RATIO = 3  # between the numbers of examples of two actions: beyond, the rarer one is hardly learnt
+CONFUSED_SHARE = 0.25  # of the answers within a pair of actions, those that name the wrong one: half of guessing
+CONFUSED_TIMES = 2  # wrong answers within a pair: a single one may be chance
+BACKGROUND = ("idle", "background")  # labels of segments in which none of the actions is done
 
 
-def warnings_of(samples: Sequence[SegmentSample], held_out: Sequence[tuple[str, str]]) -> list[str]:
-    """Say, one sentence or two each, what the training will suffer from; nothing where nothing is wrong.
+def warnings_of(samples: Sequence[SegmentSample], answers: Sequence[tuple[str, str]]) -> list[str]:
+    """Return a warning, one sentence or two, for each weakness of the training samples.
 
     Args:
-        samples: what is trained on.
-        held_out: what was done and what was answered, of examples that were left out of a training.
+        samples: of the training.
+        answers: action done and action answered, for each example in a cross-validation.
     """
     counts = Counter(sample.label for sample in samples)
     actions = {label: n for label, n in sorted(counts.items()) if label not in BACKGROUND}
     people = {sample.person for sample in samples}
-    return [*_one_person(people), *_few(counts), *_unbalanced(actions), *_mixed_up(held_out), *_no_background(counts)]
+    return [*_one_person(people), *_few(counts), *_unbalanced(actions), *_confused(answers), *_no_background(counts)]
 
 
 def _one_person(people: set[str]) -> Iterator[str]:
@@ -47,36 +38,36 @@ def _one_person(people: set[str]) -> Iterator[str]:
 
 
 def _few(counts: Mapping[str, int]) -> Iterator[str]:
-    few = {label: n for label, n in sorted(counts.items()) if n < FEWEST}
+    few = {label: n for label, n in sorted(counts.items()) if n < MIN_EXAMPLES}
     if few:
-        named = _listed(f"{label} has {n} ({FEWEST - n} more)" for label, n in few.items())
-        yield f"Few examples: {named}. Record at least {FEWEST} of each action."
+        named = _listed(f"{label} has {n} ({MIN_EXAMPLES - n} more)" for label, n in few.items())
+        yield f"Few examples: {named}. Record at least {MIN_EXAMPLES} of each action."
 
 
 def _unbalanced(actions: Mapping[str, int]) -> Iterator[str]:
     largest = max(actions, key=lambda label: actions[label], default="")
-    rare = {label: n for label, n in actions.items() if LARGEST_RATIO * n < actions[largest]}
+    rare = {label: n for label, n in actions.items() if MAX_RATIO * n < actions[largest]}
     if rare:
         named = _listed(f"{label} ({n})" for label, n in rare.items())
-        needed = ceil(actions[largest] / LARGEST_RATIO)
+        needed = ceil(actions[largest] / MAX_RATIO)
         more = _listed(f"{needed - n} more of {label}" for label, n in rare.items())
         yield (
-            f"Unbalanced examples: {largest} has {actions[largest]}, more than {LARGEST_RATIO} times as many as "
+            f"Unbalanced examples: {largest} has {actions[largest]}, more than {MAX_RATIO} times as many as "
             f"{named}. Record {more}."
         )
 
 
-def _mixed_up(held_out: Sequence[tuple[str, str]]) -> Iterator[str]:
-    """Name the pairs of actions that are taken for one another, the worst first."""
-    times = Counter(held_out)
+def _confused(answers: Sequence[tuple[str, str]]) -> Iterator[str]:
+    """Warn of each pair of actions that are taken for one another, the worst first."""
+    times = Counter(answers)
     pairs = {tuple(sorted(answer)) for answer in times if answer[0] != answer[1]}
     mistaken = {(a, b): times[a, b] + times[b, a] for a, b in pairs}
     for (a, b), wrong in sorted(mistaken.items(), key=lambda item: (-item[1], item[0])):
-        if wrong >= MIXED_TIMES and wrong >= MIXED_SHARE * (wrong + times[a, a] + times[b, b]):
-            yield _told_apart_badly(a, b, times)
+        if wrong >= CONFUSED_TIMES and wrong >= CONFUSED_SHARE * (wrong + times[a, a] + times[b, b]):
+            yield _confused_pair(a, b, times)
 
 
-def _told_apart_badly(a: str, b: str, times: Mapping[tuple[str, str], int]) -> str:
+def _confused_pair(a: str, b: str, times: Mapping[tuple[str, str], int]) -> str:
     mistaken = [(done, answer) for done, answer in ((a, b), (b, a)) if times[done, answer]]
     tested = {label: sum(n for (done, _), n in times.items() if done == label) for label in (a, b)}
     found = _listed(
@@ -85,7 +76,7 @@ def _told_apart_badly(a: str, b: str, times: Mapping[tuple[str, str], int]) -> s
     more = _listed(done for done, _ in mistaken)
     return (
         f"{a} and {b} are not told apart: of examples left out, {found}. "
-        f"Record {FEWEST} more of {more}, also by people who are not in yet; "
+        f"Record {MIN_EXAMPLES} more of {more}, also by people who are not in yet; "
         "if that does not help, do them more differently or give them one name."
     )
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -31,6 +32,20 @@ class _Person:
     bridge: Bridge = field(default_factory=Bridge)
     motion: PartMotionFilter = field(default_factory=PartMotionFilter)
     heading: HeadingFilter = field(default_factory=HeadingFilter)
+
+    def upright(self, stamp_ns: int, metric_and_scaled: Array, up_in_camera: list[float] | None) -> Array:
+        """Advance the heading by the metric joints, and return the scaled ones in the upright frame, (15, 3).
+
+        Args:
+            stamp_ns: of the frame.
+            metric_and_scaled: (2, 15, 3), camera frame.
+            up_in_camera: gravity's opposite; None where the camera is level.
+        """
+        level = metric_and_scaled
+        if up_in_camera is not None:
+            level = level @ geometry.untilted_from_camera(up_in_camera).T
+        metric, scaled = level
+        return geometry.upright(scaled, *self.heading.step(stamp_ns, metric))
 
 
 class PosePreprocessor:
@@ -109,23 +124,15 @@ class PosePreprocessor:
         self._missing.note(frame.stamp_ns, [JOINTS[index] for index in missing])
         metric_ego[[index for index in missing if index not in ALWAYS]] = np.nan
         measured[_TORSO] = bridged[_TORSO]
-        metric_level, scaled_level = _untilted(metric_and_scaled, frame.up_in_camera)
-        left = person.heading.step(frame.stamp_ns, metric_level)
         return Posture(
-            stamp_ns=frame.stamp_ns,
-            sensor=frame.sensor,
-            agent=agent.agent,
+            **self._common_fields(frame, agent.agent, missed, present),
             joints_m=joints_to_list(metric_ego),
             joints=joints_to_list(scaled_ego),
-            upright=joints_to_list(geometry.upright(scaled_level, *left)),
+            upright=joints_to_list(person.upright(frame.stamp_ns, metric_and_scaled, frame.up_in_camera)),
             ego_from_camera=geometry.flat(ego_from_camera[0]),
             motion=person.motion.step(frame.stamp_ns, measured),
             depth_std_m=agent.depth_std_m,
             up_in_camera=frame.up_in_camera,
-            agents=present,
-            previous_ns=self._previous_ns,
-            missed=missed,
-            session_id=frame.session_id,
         )
 
     def _usable(self, stamp_ns: int, agent: Agent, person: _Person, measured: Array, missing: list[int]) -> Array:
@@ -143,23 +150,23 @@ class PosePreprocessor:
 
     def _invalid(self, frame: Skeleton, agent: int, reason: str, missed: int, present: list[int]) -> Posture:
         return Posture(
-            stamp_ns=frame.stamp_ns,
-            sensor=frame.sensor,
+            **self._common_fields(frame, agent, missed, present),
             valid=False,
             reason=reason,
-            agent=agent,
             joints_m=None,
             joints=None,
             upright=None,
             ego_from_camera=None,
             motion=None,
-            agents=present,
-            previous_ns=self._previous_ns,
-            missed=missed,
-            session_id=frame.session_id,
         )
 
-
-def _untilted(joints: Array, up_in_camera: list[float] | None) -> Array:
-    """Express joints (…, 3) of the camera frame as a level camera would see them."""
-    return joints if up_in_camera is None else joints @ geometry.untilted_from_camera(up_in_camera).T
+    def _common_fields(self, frame: Skeleton, agent: int, missed: int, present: list[int]) -> dict[str, Any]:
+        return {
+            "stamp_ns": frame.stamp_ns,
+            "sensor": frame.sensor,
+            "agent": agent,
+            "agents": present,
+            "previous_ns": self._previous_ns,
+            "missed": missed,
+            "session_id": frame.session_id,
+        }

@@ -27,13 +27,13 @@ class Conditions(Section):
     """What is made harder in one scene; by default nothing, and the scene is as its parameters have it.
 
     Attributes:
-        spacing_m: middle to middle of neighbouring objects, which then stand in a row.
+        spacing_m: between the middles of neighbouring objects, which then stand in a row.
         distance_m: how far behind the row, which then is at the table's near edge, the person stands.
         pantomime_m: how near a pantomime comes to the nearest object's middle, or up to 5 cm further from it.
         clutter: how many shapes, edges and false squares are on the wall, and again on the table.
         defocus_sd_px: the width of the camera's blur.
-        exposure_s: how long the shutter is open, at most a frame: what moves is smeared.
-        unread_share: the share of images in which a marker cannot be read, drawn for each marker by itself.
+        exposure_s: how long the shutter is open, at most a frame interval; it blurs what moves.
+        unread_share: the share of images in which a marker cannot be read, drawn independently for each marker.
         covers_marker: whether the hand hides the marker of what it holds.
     """
 

@@ -12,7 +12,7 @@ def _number(text: object) -> object:
 
 
 class Settings(ServiceSettings):
-    """What the simulated scene can be told beside what every service can."""
+    """The simulated scene's settings, beside those of every service."""
 
     actor: int = Field(0, ge=0, description="who acts")
     seed: int = Field(1, ge=0, description="which repetitions")

@@ -18,7 +18,7 @@ PATIENCE_S = 0.1
 """How long one wait for a picture may take, and so how long a stop is delayed."""
 
 REMINDER_NS = SECOND_NS
-"""How often it is said again that the camera is lost."""
+"""How often a lost camera is reported again."""
 
 Seen = Picture | str | None
 """A usable picture, why there is none, or None: it only takes longer."""
@@ -56,7 +56,7 @@ class CameraSource:
         self._reported: tuple[str, int] | None = None
 
     def frames(self) -> Iterator[list[Message]]:
-        """Yield an image, then the skeletons seen in it; nothing now and then, so that the source can be stopped."""
+        """Yield images and their skeletons; empty frames while there are none, so that the source can be stopped."""
         with self._open_estimator() as estimator:
             perceiver = self._perceiver(estimator, self._optics, self._sensor, self._session_id, self.counters)
             for seen in self._seen():

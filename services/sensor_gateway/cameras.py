@@ -33,7 +33,7 @@ class MarkerCamera(CameraSource):
 
 
 def optics_of(settings: Settings) -> Optics:
-    """Say what the settings tell of the camera that sees the people.
+    """Return what the settings say of a camera that sees the people.
 
     Raises:
         CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
@@ -168,13 +168,13 @@ def _depth_source(settings: Settings, session_id: str, live: Callable[[], Captur
 
 
 def _depth_optics(settings: Settings) -> DepthOptics:
-    """As `optics_of`; depth images are never mirrored."""
+    """Return what the settings say of a depth camera; its images are not mirrored."""
     optics = optics_of(settings)
     return DepthOptics(optics.field_of_view_deg, optics.calibration, optics.person_height_m)
 
 
 def _check_pose_model(settings: Settings) -> None:
-    """Open the pose model and close it, so that what is wrong with it is said before anything is served."""
+    """Open the pose model and close it, so that an unusable one stops the service at its start."""
     estimator_of(settings).close()
 
 

@@ -33,7 +33,7 @@ def _text(number: object) -> object:
 
 
 class Settings(ServiceSettings):
-    """What the gateway can be told beside what every service can."""
+    """The gateway's settings, beside those of every service."""
 
     source: SourceName | None = Field(None, description="where the frames come from")
     path: Path | None = Field(

@@ -1,4 +1,4 @@
-"""What of a posture the first map is shown: which joints, along which axes, from where (paper, section 2.1)."""
+"""The first map's input: which joints of a posture, along which axes, from which origin (paper, section 2.1)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,16 +8,18 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Array, Mask
 from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS, PARTS
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 Axes = Literal["posture", "upright"]
 Origin = Literal["torso", "hips"]
 
 PART_NAMES: tuple[str, ...] = tuple(PARTS)
-MOVING, ALL = "moving", "all"
+MOVING = "moving"
+"""Attention goes to the part that moves most over a segment."""
+ALL = "all"
+"""Attention goes to the whole body."""
 ATTENTIONS: tuple[str, ...] = (MOVING, ALL, *PART_NAMES)
 _PART_JOINTS = np.array(list(PARTS.values()))
 CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
@@ -58,7 +60,7 @@ class PostureInput:
         return 3 * len(JOINTS) if self.attention == ALL else 3 * _PART_JOINTS.shape[1]
 
     def rows(self, joints: Array, upright: Array) -> Array:
-        """Return the vectors of one frame among which a segment's attention will choose, shape (choices, size).
+        """Return one frame's input vectors, one for each choice that attention has, shape (choices, size).
 
         Args:
             joints: (15, 3), scaled, along the axes of the posture.
@@ -68,36 +70,37 @@ class PostureInput:
         relative: Array = points - (_hips(points) if self.origin == "hips" else points[_TORSO])
         return relative.reshape(1, -1) if self.attention == ALL else relative[_PART_JOINTS].reshape(len(PARTS), -1)
 
-    def attended(self, motion: Array, there: Flags) -> tuple[int, int]:
-        """Return which part a segment's attention goes to, and which of the rows is looked at.
+    def attended(self, motion: Array, present: Mask) -> tuple[int, int]:
+        """Return the index of the part that a segment's attention goes to, and that of the row to take.
 
         Args:
-            motion: (n, 5), metres since the frame before.
-            there: (choices,), which of the rows have a joint in some frame.
+            motion: (n, 5), each part's displacement (m) since the frame before.
+            present: (choices,), which of the rows have a joint in some frame.
         """
         if self.attention == ALL:
             return attended_part(motion), 0
-        part = attended_part(motion, None if self.attention == MOVING else self.attention, there)
+        part = attended_part(motion, None if self.attention == MOVING else self.attention, present)
         return part, part
 
 
 def _hips(points: Array) -> Array:
+    """Return the middle of the hips (3,) of (15, 3)."""
     hips: Array = points[_HIPS].mean(axis=0)
     return points[_TORSO] - _UP_TO_THE_NECK if np.isnan(hips).any() else hips
 
 
-def attended_part(motion: NDArray[Any], fixed: str | None = None, there: Flags | None = None) -> int:
+def attended_part(motion: NDArray[Any], fixed: str | None = None, present: Mask | None = None) -> int:
     """Return the index of the part that moves most over a segment, or of the fixed one; ties by listed order.
 
-    A part that is never there is not attended to while another is.
+    A part of which no frame has a joint is passed over while another has one.
 
     Args:
         motion: (n, 5), each part's displacement (m) since the frame before. The first row is motion from
             before the segment and does not count.
         fixed: a name of `skeletons.PARTS`, or None to choose.
-        there: (5,), which parts have a joint in some frame; all where None.
+        present: (5,), which parts have a joint in some frame; all where None.
     """
-    if fixed is not None and (there is None or there[PART_NAMES.index(fixed)]):
+    if fixed is not None and (present is None or present[PART_NAMES.index(fixed)]):
         return PART_NAMES.index(fixed)
     moved = motion[1:].sum(axis=0)
-    return int(np.argmax(moved if there is None else np.where(there, moved, -1.0)))
+    return int(np.argmax(moved if present is None else np.where(present, moved, -1.0)))

@@ -1,33 +1,33 @@
-"""The two layers of maps of the default recogniser, each answering with a soft activity."""
+"""The first layer of the default recogniser: maps of postures, velocities and arms, each with a soft activity."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Floats
 from actum.skeletons import INDEX, JOINTS
 from actum.som import Som, Together
 from som_classifier.handedness import ACROSS, OPPOSITE
 
-Floats = NDArray[Any]
-
 VELOCITY_WEIGHT = 3.0
-"""What a joint's velocity counts beside its position in the map of arms: both then spread about alike."""
+"""Weight of velocities against positions in the arm map's input: both then have about the same variance."""
 ARM_INPUTS = 12
+"""Positions and velocities of elbow and hand, three coordinates each."""
 CHANNELS = ("postures", "velocities", "acting arm", "other arm")
-"""Whose activity a frame gives, in this order; the map of arms is asked for both arms."""
+"""The blocks of a frame's activity, in this order; the arm map is looked up for both arms."""
 SMALLEST_ERROR2 = 6e-5
-"""Squared quantization errors (m²) below this, 2 mm a joint on the mean, count as this: a logarithm knows no bottom."""
+"""Smaller squared quantization errors (m²) count as this, 2 mm a joint on average: the logarithm of 0 is infinite."""
 
 _SIZE = 3 * len(JOINTS)
 _ARM = np.arange(3 * INDEX["right_elbow"], 3 * INDEX["right_hand"] + 3)
 _SHOULDER = np.tile(np.arange(3), 2) + 3 * INDEX["right_shoulder"]
-_ENDS, _ROOTS = (np.concatenate([components, components + _SIZE]) for components in (_ARM, _SHOULDER))
-_COUNTS = np.repeat([1.0, VELOCITY_WEIGHT], len(_ARM))
+_ENDS = np.concatenate([_ARM, _ARM + _SIZE])
+_ROOTS = np.concatenate([_SHOULDER, _SHOULDER + _SIZE])
+_WEIGHTS = np.repeat([1.0, VELOCITY_WEIGHT], len(_ARM))
 _MIRROR = np.concatenate([(3 * OPPOSITE[:, None] + np.arange(3)).ravel() + start for start in (0, _SIZE)])
 _SIGNS = np.tile(ACROSS, 2 * len(JOINTS))
 
@@ -38,17 +38,18 @@ def frame_inputs(postures: Floats, velocities: Floats) -> Floats:
 
 
 def mirrored_inputs(rows: Floats) -> Floats:
-    """Return such rows (…, 90) as the actor's mirror image has them."""
-    mirrored_rows: Floats = rows[..., _MIRROR] * _SIGNS
-    return mirrored_rows
+    """Return the `frame_inputs` (…, 90) of the actor's mirror image, same shape."""
+    inputs: Floats = rows[..., _MIRROR] * _SIGNS
+    return inputs
 
 
 def arm_inputs(rows: Floats) -> Floats:
-    """Return the right elbow and hand as seen from the shoulder, where and how fast, shape (n, 12), of (n, 90).
+    """Return positions and velocities of right elbow and hand relative to the shoulder, shape (n, 12).
 
-    In a mirror it is the left arm.
+    Args:
+        rows: (n, 90), `frame_inputs`; of the mirror image for the left arm.
     """
-    inputs: Floats = (rows[:, _ENDS] - rows[:, _ROOTS]) * _COUNTS
+    inputs: Floats = (rows[:, _ENDS] - rows[:, _ROOTS]) * _WEIGHTS
     return inputs
 
 
@@ -57,9 +58,12 @@ class FirstMaps:
     """The first layer: a map of postures, one of velocities, one of arms, each with a soft activity.
 
     Attributes:
-        contrasts: of each map's activity, in its squared distance.
-        arm_shares: what the activity of the map of arms adds up to, for the acting arm and for the other one; that of
-            the others adds up to 1.
+        postures: of dimension 45.
+        velocities: of dimension 45, with as many units.
+        arms: of dimension 12, with as many units.
+        contrasts: of each map's soft activity, in its squared distance.
+        arm_shares: what the arm map's activity adds up to, for the acting arm and for the other one; that of the other
+            maps adds up to 1.
     """
 
     postures: Som
@@ -75,14 +79,21 @@ class FirstMaps:
 
     @property
     def units(self) -> int:
-        """How many activities there are in all, as many of each map, those of the map of arms twice."""
+        """The length of a frame's activity: as many units of each map, those of the arm map twice."""
         return len(CHANNELS) * len(self.postures.weights)
 
     def activities(self, postures: Floats, velocities: Floats) -> Floats:
-        """Return y = share × exp(−(d² − d²_min) / contrast) / Σ of each map for (n, 15, 3) inputs, shape (n, units)."""
+        """Return the activities of many frames, channel after channel, shape (n, units).
+
+        In each channel y = share · exp(−(d² − d²_min) / contrast) / Σ exp(−(d² − d²_min) / contrast).
+
+        Args:
+            postures: (n, 15, 3), upright, scaled, metres.
+            velocities: (n, 15, 3), of the same, as `Kinematics` has them.
+        """
         rows = frame_inputs(postures, velocities)
-        heard = [*zip(self.maps, _of_maps(rows), strict=True), (self.arms, arm_inputs(mirrored_inputs(rows)))]
-        return self._shared(np.concatenate([_excess2s(som, inputs) for som, inputs in heard], axis=1))
+        channels = [*zip(self.maps, _inputs_of_maps(rows), strict=True), (self.arms, arm_inputs(mirrored_inputs(rows)))]
+        return self._normalised(np.concatenate([_excess2s(som, inputs) for som, inputs in channels], axis=1))
 
     def winners(self, postures: Floats) -> NDArray[np.intp]:
         """Return the map of postures' winner for each of (n, 15, 3), shape (n,); the first where nothing is known."""
@@ -90,24 +101,28 @@ class FirstMaps:
         return winners
 
     def log_errors(self, postures: Floats, winners: Sequence[int] | NDArray[np.intp]) -> Floats:
-        """Return log(d²) to the winners on the map of postures, the squared quantization error in m², shape (n,).
+        """Return log(d²), d² the squared quantization error on the posture map in m², shape (n,).
 
-        Scaled up for the joints that are missing; that of no error at all where all are.
+        It is scaled up for missing joints; where all are missing it is log(`SMALLEST_ERROR2`).
 
         Args:
             postures: (n, 15, 3).
-            winners: (n,), the unit nearest to each.
+            winners: (n,), the posture map's winner for each.
         """
-        off = postures.reshape(-1, _SIZE) - self.postures.weights[winners]
-        known = ~np.isnan(off)
-        mean2 = np.square(np.where(known, off, 0.0)).sum(axis=1) / np.maximum(known.sum(axis=1), 1)
+        error = postures.reshape(-1, _SIZE) - self.postures.weights[winners]
+        known = ~np.isnan(error)
+        mean2 = np.square(np.where(known, error, 0.0)).sum(axis=1) / np.maximum(known.sum(axis=1), 1)
         errors: Floats = np.log(np.maximum(mean2 * _SIZE, SMALLEST_ERROR2))
         return errors
 
     def frame_activities(self, posture: Floats, velocity: Floats) -> Floats:
-        """Return the same for one frame (15, 3) as seen and in a mirror, shape (2, units).
+        """Return the activities of one frame, as seen and of its mirror image, shape (2, units).
 
-        By a product of always the same shape, so that it never depends on other frames.
+        One matrix product of always the same shape, so that the result never depends on other frames.
+
+        Args:
+            posture: (15, 3), NaN where a joint is missing.
+            velocity: (15, 3).
         """
         row = np.concatenate([posture, velocity]).ravel()
         rows = np.array([row, mirrored_inputs(row)])
@@ -116,15 +131,16 @@ class FirstMaps:
         else:
             excess2s = self._together.excess2s(np.concatenate([rows, arm_inputs(rows)], axis=1))
         other_arm = excess2s[::-1, -1:]
-        return self._shared(np.concatenate([excess2s, other_arm], axis=1).reshape(2, -1))
+        return self._normalised(np.concatenate([excess2s, other_arm], axis=1).reshape(2, -1))
 
     def _partly_known(self, rows: Floats) -> Floats:
-        inputs = _of_maps(rows)
+        """Return d² − d²_min of each map for rows (2, 90) with missing components, shape (2, maps, units)."""
+        inputs = _inputs_of_maps(rows)
         excess2s = [_excess2(som, own[side]) for side in (0, 1) for som, own in zip(self.maps, inputs, strict=True)]
         return np.concatenate(excess2s).reshape(2, len(self.maps), -1)
 
-    def _shared(self, excess2s: Floats) -> Floats:
-        """Make activities of d² − d²_min (n, units)."""
+    def _normalised(self, excess2s: Floats) -> Floats:
+        """Return the activities for d² − d²_min (n, units), same shape; overwrites its argument."""
         activities = excess2s.reshape(len(excess2s), len(CHANNELS), -1)
         activities *= self._slopes
         np.exp(activities, out=activities)
@@ -144,16 +160,18 @@ class FirstMaps:
         return np.array([1.0, 1.0, *self.arm_shares], np.float32)[:, None]
 
 
-def _of_maps(rows: Floats) -> tuple[Floats, Floats, Floats]:
+def _inputs_of_maps(rows: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return the inputs of each map, (n, 45), (n, 45) and (n, 12), for rows (n, 90)."""
     return rows[:, :_SIZE], rows[:, _SIZE:], arm_inputs(rows)
 
 
 def _excess2(som: Som, x: Floats) -> Floats:
-    """Return d² − d²_min of each unit; where nothing is known of x they are all as near."""
+    """Return d² − d²_min of each unit for x (dim,), shape (units,); 0 for all where nothing is known of x."""
     return np.zeros(len(som.weights), som.dtype) if np.isnan(x).all() else som.excess2(x)
 
 
 def _excess2s(som: Som, rows: Floats) -> Floats:
+    """Return d² − d²_min of each unit for rows (n, dim), shape (n, units); 0 where nothing is known of a row."""
     known = ~np.isnan(rows).all(axis=1)
     excess2s = np.zeros((len(rows), len(som.weights)), som.dtype)
     excess2s[known] = som.excess2s(rows[known])

@@ -1,4 +1,4 @@
-"""Which limb acts, and whether it is the left arm: left-handed actions are read in a mirror."""
+"""Which limb acts, and whether it is the left arm: left-handed actions are read as their mirror image."""
 
 import math
 from collections.abc import Sequence
@@ -12,7 +12,10 @@ from actum.skeletons import INDEX, JOINTS
 
 Integers = NDArray[np.int64]
 
-LIMBS, MOMENTS = 4, 8
+LIMBS = 4
+"""Right arm, left arm, right leg, left leg."""
+MOMENTS = 8
+"""Sums kept of each limb: six coordinates, their squared length, and a count."""
 _LIMBS = np.array(
     [
         [INDEX[f"{side}_{middle}"], INDEX[f"{side}_{end}"]]
@@ -25,29 +28,36 @@ _LIMBS = np.array(
     ]
 )
 _COMPONENTS = (3 * _LIMBS[..., None] + np.arange(3)).reshape(LIMBS, -1)
-_RIGHT_ARM, _LEFT_ARM = 0, 1
+_RIGHT_ARM = 0
+_LEFT_ARM = 1
 _UNITS_PER_M = 1000
-_JITTER = 20.0
+"""Whole millimetres: finer than any tracker, and sums over the longest segment stay far below 2⁶³."""
+_JITTER_MM = 20.0
+"""Added to the spreads of both arms before they are compared, so that noise makes no resting arm the acting one."""
 _FACTOR = 1.65
+"""How many times as much as the other an arm must move to be the acting one; with less, both act."""
 
 OPPOSITE = np.array([INDEX[name.replace("left_", "R_").replace("right_", "left_").replace("R_", "right_")]
                      for name in JOINTS])  # fmt: skip
-"""For each joint the one on the other side of the body."""
+"""(15,), for each joint the one on the other side of the body."""
 ACROSS = np.array([-1.0, 1.0, 1.0])
-"""What mirroring does to the axes left, up, forward."""
+"""(3,), the signs by which mirroring multiplies the axes left, up, forward."""
 
 
 def mirrored(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return (…, 15, 3) positions or velocities as the actor's mirror image has them."""
+    """Return the positions or velocities (…, 15, 3) of the actor's mirror image, same shape."""
     other: NDArray[np.float64] = vectors[..., OPPOSITE, :] * ACROSS
     return other
 
 
 def limb_moments(posture: NDArray[np.float64]) -> Integers:
-    """Return for each limb what its spread is made of, in whole millimetres, shape (4, 8).
+    """Return the first and second moments of each limb, of which its spread over a segment is computed, shape (4, 8).
 
-    Six coordinates of its two joints, the sum of their squares, and 1; all 0 where a joint is missing. Being integers
-    they add up to the same sums in any order.
+    They are the six coordinates of its two joints in whole millimetres, the sum of their squares, and 1; all 0 where a
+    joint is missing. Being integers they add up to the same sums in any order.
+
+    Args:
+        posture: (15, 3), metres, NaN where a joint is missing.
     """
     result = np.empty((LIMBS, MOMENTS))
     limbs = result[:, :6]
@@ -62,22 +72,26 @@ def limb_moments(posture: NDArray[np.float64]) -> Integers:
 
 @dataclass(frozen=True)
 class LimbSpreads:
-    """How much each limb moves about its mean over a segment, in mm."""
+    """How much each limb moves over a segment.
+
+    Attributes:
+        limbs: (4,), the standard deviation of each limb's joints about their mean position, mm.
+    """
 
     limbs: Sequence[float]
 
     @classmethod
     def of(cls, summed: Integers) -> "LimbSpreads":
-        """Work it out from the summed moments of the frames, shape (4, 8)."""
+        """Compute them from the moments summed over the frames, shape (4, 8)."""
         return cls([_spread(limb) for limb in summed.tolist()])
 
     @property
     def acting_hand(self) -> Hand | None:
-        """Whose arm is the limb that moves most, and clearly more than the other arm."""
+        """The side of the arm that moves most of all limbs, and clearly more than the other arm; else None."""
         sides: tuple[tuple[Hand, int, int], ...] = (("left", _LEFT_ARM, _RIGHT_ARM), ("right", _RIGHT_ARM, _LEFT_ARM))
         most = max(self.limbs)
         for hand, own, other in sides:
-            if most == self.limbs[own] and most + _JITTER > _FACTOR * (self.limbs[other] + _JITTER):
+            if most == self.limbs[own] and most + _JITTER_MM > _FACTOR * (self.limbs[other] + _JITTER_MM):
                 return hand
         return None
 

@@ -1,28 +1,32 @@
-"""Posture and velocity of one agent, jitter taken off, frame by frame."""
+"""Smoothed positions and velocities of one agent's joints, frame by frame."""
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
 
-Array = NDArray[np.float64]
-
 GAP_NS = SECOND_NS // 2
+"""After a longer pause (ns) the filter begins anew: a joint may have gone anywhere in between."""
 STILL_TIME_CONSTANT_S = 0.3
+"""Of the low-pass of a joint at rest: long enough for tracking noise to average out."""
 STILL_SPEED_MPS = 0.3
+"""At this speed (m/s) the time constant has fallen to half of that at rest, and falls on with the speed."""
 SPEED_TIME_CONSTANT_S = 0.1
+"""Of the low-pass of the velocity that the speed is taken of: a movement's start is noticed within a few frames."""
 LAG_TIME_CONSTANT_S = 0.125
+"""Of the second low-pass: at a steady velocity it lags behind by velocity times this."""
 
 
 @dataclass(frozen=True, eq=False)
 class Kinematics:
-    """Where each joint is and where it is going; NaN where a joint is missing.
+    """Position and velocity of each joint in the upright frame; NaN where a joint is missing.
 
     Attributes:
-        posture: (15, 3), low-passed the more the slower the joint moves.
-        velocity: (15, 3), how far each joint is ahead of its own low-pass: m/s times 0.125 s at steady speed.
+        posture: (15, 3), metres, low-passed the more the slower the joint moves.
+        velocity: (15, 3), metres by which each joint is ahead of its own low-pass: at a steady velocity, that in m/s
+            times 0.125 s.
     """
 
     posture: Array
@@ -32,7 +36,8 @@ class Kinematics:
 class KinematicsFilter:
     """A low-pass per joint whose time constant falls with its speed (after Casiez, 2012), then a second for velocity.
 
-    Resting joints are steadied, fast ones hardly delayed. A joint that was away begins anew, and so does everything
+    Noise of resting joints is suppressed, fast ones are hardly delayed. With s the low-passed speed of a joint,
+    x += (1 - exp(-dt (1 + s / 0.3 m/s) / 0.3 s)) (measured - x). A joint that was missing begins anew, and so do all
     after a gap or where the stamps go back.
     """
 
@@ -42,7 +47,12 @@ class KinematicsFilter:
         self._before = self._speed = self._smooth = self._lagging = np.zeros((0, 3))
 
     def step(self, stamp_ns: int, joints: Array) -> Kinematics:
-        """Take the next frame's joints (15, 3), upright, NaN where missing."""
+        """Take the next frame's joints and return their kinematics.
+
+        Args:
+            stamp_ns: of the frame.
+            joints: (15, 3), upright, metres, NaN where missing.
+        """
         last_ns, self._stamp_ns = self._stamp_ns, stamp_ns
         known = ~np.isnan(joints[:, 0])
         if last_ns is None or not 0 < stamp_ns - last_ns <= GAP_NS:
@@ -53,7 +63,7 @@ class KinematicsFilter:
             return Kinematics(self._smooth, self._smooth - self._lagging)
         return self._advance_known(joints, known, (stamp_ns - last_ns) / SECOND_NS)
 
-    def _begin(self, joints: Array, known: NDArray[np.bool_]) -> None:
+    def _begin(self, joints: Array, known: Mask) -> None:
         self._known = known
         self._before = self._smooth = self._lagging = np.nan_to_num(joints)
         self._speed = np.zeros(joints.shape)
@@ -68,14 +78,14 @@ class KinematicsFilter:
         self._lagging = _lagged(self._lagging, self._smooth, step, elapsed_s)
         self._smooth = self._smooth + step
 
-    def _advance_known(self, joints: Array, known: NDArray[np.bool_], elapsed_s: float) -> Kinematics:
-        """Advance while joints are missing: their state waits, and those that come back begin where they are."""
-        come = (known & ~self._known)[:, None]
+    def _advance_known(self, joints: Array, known: Mask, elapsed_s: float) -> Kinematics:
+        """Advance while joints are missing: their state is kept, and those that come back begin anew."""
+        returned = (known & ~self._known)[:, None]
         present = np.where(known[:, None], joints, self._before)
-        self._before = np.where(come, present, self._before)
-        self._smooth = np.where(come, present, self._smooth)
-        self._lagging = np.where(come, present, self._lagging)
-        self._speed = np.where(known[:, None] & ~come, self._speed, 0.0)
+        self._before = np.where(returned, present, self._before)
+        self._smooth = np.where(returned, present, self._smooth)
+        self._lagging = np.where(returned, present, self._lagging)
+        self._speed = np.where(known[:, None] & ~returned, self._speed, 0.0)
         self._known = known
         self._advance(present, elapsed_s)
         missing = np.where(known, 0.0, np.nan)[:, None]
@@ -83,7 +93,7 @@ class KinematicsFilter:
 
 
 def _lagged(lagging: Array, start: Array, step: Array, elapsed_s: float) -> Array:
-    """Advance a low-pass whose input goes straight from `start` by `step`: exact, whatever the frame rate."""
+    """Advance a low-pass (15, 3) whose input moves linearly from `start` by `step`: exact at any frame rate."""
     behind = LAG_TIME_CONSTANT_S / elapsed_s * step
     lagged: Array = start + step - behind + (lagging - start + behind) * np.exp(-elapsed_s / LAG_TIME_CONSTANT_S)
     return lagged

@@ -1,4 +1,4 @@
-"""Model files: read whatever recogniser one holds, or say what is wrong with it."""
+"""Loads a model file, whichever recogniser it holds, or says what is wrong with it."""
 
 import json
 import zipfile
@@ -17,14 +17,14 @@ KINDS: dict[str, type[Model]] = {"paper": PaperModel, "pyramid": PyramidModel}
 
 
 class ModelError(ValueError):
-    """A file that is no sound model of ours."""
+    """A file that no model can be loaded from; the text names the file, the problem and what to do."""
 
     def __init__(self, path: Path, problem: str) -> None:
         super().__init__(f"{path}: {problem}; train a model with: actum train REC… -o MODEL")
 
 
 def load_model(path: Path) -> Model:
-    """Read a file that `Model.save` wrote.
+    """Load the model from a file that `Model.save` wrote.
 
     Raises:
         ModelError: the file is missing, foreign, damaged, or made for another joint order.
@@ -49,6 +49,7 @@ def load_model(path: Path) -> Model:
 
 
 def _parts(path: Path, stored: IO[bytes]) -> tuple[str, Arrays]:
+    """Return the metadata as JSON, and the arrays by name."""
     if not zipfile.is_zipfile(stored):  # which NumPy would advise to read as a pickle
         raise ModelError(path, "no actum model, or a damaged one")
     stored.seek(0)

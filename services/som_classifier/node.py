@@ -1,4 +1,4 @@
-"""The classifier's pure step: postures and marks become partial and final actions."""
+"""The classifier's pure step: postures and segment marks become partial and final actions."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any, Protocol
@@ -13,11 +13,13 @@ from actum.skeletons import JOINTS
 from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.recognition import Recognition
-from som_classifier.segments import ClosedSegment, OpenSegment, Segmenter
+from som_classifier.segmenter import Segmenter
+from som_classifier.segments import ClosedSegment, OpenSegment
 from som_classifier.settings import Settings
 from som_classifier.watched_model import WatchedModel
 
 POLL_TICKS = 5
+"""Ticks between two looks at the model file, half a second: a new model seems to be used at once."""
 
 
 class ModelSource(Protocol):
@@ -64,7 +66,7 @@ class SomClassifier:
             case Posture():
                 return list(self._posture(message))
             case Segment():
-                return [self._answer(closed) for closed in self._segmenter.mark(message)]
+                return [self._final(closed) for closed in self._segmenter.mark(message)]
             case Tick():
                 return self._tick(message)
             case _:
@@ -74,7 +76,7 @@ class SomClassifier:
         self._ticks += 1
         if self._ticks % POLL_TICKS == 0:
             self._reload()
-        return [self._answer(closed) for closed in self._segmenter.tick(tick)]
+        return [self._final(closed) for closed in self._segmenter.tick(tick)]
 
     def _reload(self) -> None:
         model = self._source.poll(self.counters) if self._source else None
@@ -92,7 +94,7 @@ class SomClassifier:
             for segment in self._segmenter.open_at(posture.agent, posture.stamp_ns):
                 yield from self._partial(segment, posture)
         for answer in closed:
-            yield self._answer(answer)
+            yield self._final(answer)
 
     def _partial(self, segment: OpenSegment, posture: Posture) -> Iterator[Action]:
         frames = self._segmenter.frames_of(segment)
@@ -106,10 +108,7 @@ class SomClassifier:
                 start_ns=segment.start_ns,
                 end_ns=None,
                 final=False,
-                action=recognition.label,
-                confidence=recognition.confidence,
-                activations=recognition.activations,
-                part=recognition.part,
+                **_recognised_fields(recognition),
                 frames=sum(frame.valid for frame in frames),
                 missed=sum(frame.missed for frame in frames),
                 hand=segment.hand,
@@ -122,7 +121,7 @@ class SomClassifier:
             return None
         return self._model.recognise(usable, complete)
 
-    def _answer(self, closed: ClosedSegment) -> Action:
+    def _final(self, closed: ClosedSegment) -> Action:
         recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
         reason = closed.reason or (None if recognition else self._why_not(closed))
         if reason:
@@ -137,21 +136,18 @@ class SomClassifier:
             start_ns=closed.start_ns,
             end_ns=closed.end_ns,
             final=True,
-            action=recognition.label if recognition else None,
-            confidence=recognition.confidence if recognition else 0.0,
-            activations=recognition.activations if recognition else {},
-            part=recognition.part if recognition else None,
+            **_recognised_fields(recognition),
             frames=sum(frame.valid for frame in closed.frames),
             missed=closed.missed,
             hand=closed.hand,
             unknown=recognition.unknown if recognition else False,
             familiarity=recognition.familiarity if recognition else None,
             missing_joints=_missing(closed.frames),
-            **(self._pictures(closed.frames) if recognition and self._publish_maps else {}),
+            **(self._map_fields(closed.frames) if recognition and self._publish_maps else {}),
         )
 
-    def _pictures(self, frames: list[Frame]) -> dict[str, Any]:
-        """Return the fields that show why: each map's activity, and the way over the first."""
+    def _map_fields(self, frames: list[Frame]) -> dict[str, Any]:
+        """Return the fields that explain an answer: each map's activity, and the trajectory over the first."""
         assert self._model is not None
         usable = [frame for frame in frames if frame.valid]
         maps = {name: _tensor(activity) for name, activity in self._model.maps(usable).items()}
@@ -164,8 +160,19 @@ class SomClassifier:
         return f"too few frames: {frames}, at least {self._model.min_frames} are needed"
 
 
+def _recognised_fields(recognition: Recognition | None) -> dict[str, Any]:
+    if recognition is None:
+        return {"action": None, "confidence": 0.0, "activations": {}, "part": None}
+    return {
+        "action": recognition.label,
+        "confidence": recognition.confidence,
+        "activations": recognition.activations,
+        "part": recognition.part,
+    }
+
+
 def _missing(frames: list[Frame]) -> list[str]:
-    """Name the joints that some frame lacked, in the usual order."""
+    """Name the joints that some frame lacked, in the order of `JOINTS`."""
     return [JOINTS[joint] for joint in sorted({joint for frame in frames for joint in frame.missing})]
 
 

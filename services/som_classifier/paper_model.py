@@ -167,6 +167,7 @@ class _FrameEncoder:
         self._model = model
 
     def encode(self, frame: Frame) -> MapActivity:
+        """Return the first map's activity for a valid frame."""
         assert frame.joints is not None and frame.kinematics is not None
         return self._model.first_activity(frame.joints, frame.kinematics.posture)
 

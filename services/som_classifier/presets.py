@@ -1,4 +1,4 @@
-"""The recogniser's parameters, in named sets."""
+"""The parameters of training, in named sets. Names of fields are stored with each model and do not change."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,7 +10,14 @@ from som_classifier.attention import MOVING, PostureInput
 
 @dataclass(frozen=True)
 class MapTraining:
-    """A map's size and how it is trained."""
+    """A map's size and its sequential training.
+
+    Attributes:
+        rows: of the grid.
+        cols: of the grid.
+        steps: adaptations to one input each.
+        schedule: of adaptation strength and neighbourhood radius.
+    """
 
     rows: int
     cols: int
@@ -20,12 +27,12 @@ class MapTraining:
 
 @dataclass(frozen=True)
 class BodyVariation:
-    """As what other people each sample is also shown.
+    """Augmentation by other bodies: each sample is also shown as people of other proportions would have acted.
 
     Attributes:
-        count: how many.
-        build_sd: by how much (log) their bones differ.
-        tempo: how fast they move, in units of the person seen.
+        count: copies of each sample.
+        build_sd: standard deviation of the logarithm of their bones' lengths.
+        tempo: the factor by which their velocities differ from the sample's.
     """
 
     count: int
@@ -35,16 +42,16 @@ class BodyVariation:
 
 @dataclass(frozen=True)
 class Prior:
-    """What is usual for models of other people's actions; it counts the more the fewer people are learnt from.
+    """Prior for calibration, from models of other people's actions; its weight is largest with the fewest people.
 
     Attributes:
-        people: as though it had been seen in so many people beyond the first.
-        gain: what makes cosines logits.
-        gain_where_inferred: the same where distances follow from a picture and a body's usual size.
+        people: its weight, as a number of people beyond the first of those trained on.
+        gain: inverse temperature of the softmax of cosines.
+        gain_where_inferred: the same where distances were inferred from a picture and a body's usual size.
         familiar: the familiarity that most segments of known actions exceed.
         familiar_from_one: the same where nobody showed an action more than once: scores are lower then.
-        log_error: to what mean log(d²) of postures from the map of postures a stranger who does what was trained may
-            well come, d in metres over all joints of a standard body.
+        log_error: the mean log(d²) of postures from the posture map that a person not trained on may well reach with a
+            trained action, d in metres over all joints of a standard body.
     """
 
     people: float
@@ -60,7 +67,10 @@ class PaperPreset:
     """Everything that a training of the paper's recogniser depends on beside its samples and its seed.
 
     Attributes:
-        posture: what the first map is shown.
+        name: that it is chosen by.
+        posture: the first map's input.
+        layer1: the first map.
+        layer2: the second map.
         centre_contrast: the first map's contrast in units of the training postures' median squared distance to their
             winners.
         relative_contrast: the second map's contrast in units of the training vectors' median squared distance
@@ -84,30 +94,35 @@ class PyramidPreset:
     """Everything that a training of the default recogniser depends on beside its samples and its seed.
 
     Attributes:
-        units: rows and columns of the maps of posture, velocity and arm, trained for `unit_epochs` over `unit_radius`.
-        relative_contrast: of their activity, in units of the median squared distance to the winner.
-        arm_shares: what the activity of the map of arms adds up to, for the acting arm and for the other one, that of
-            the other maps adding up to 1.
+        name: that it is chosen by.
+        units: rows and columns of each map of the first layer.
+        unit_epochs: epochs of its batch training.
+        unit_radius: the first and the last neighbourhood radius of that, grid units.
+        relative_contrast: of its soft activity, in units of the median squared distance to the winner.
+        arm_shares: what the arm map's activity adds up to, for the acting arm and for the other one; that of the other
+            maps adds up to 1.
         levels: the pyramid's cells on each level.
-        overlap: how far each reaches over its borders, in parts of its length.
-        turns_deg: the turns about the vertical in which each sample is also shown.
-        leans_deg: by how much it is also tilted back with each, where depth was inferred from a picture: there how far
-            a body leans is guesswork.
-        others: the other people as whom each sample is also shown.
-        others_of_few: those where samples are of `few_people` at most, from whom it can hardly be learnt how people
-            differ.
+        overlap: how far each reaches over its borders, as a fraction of its length.
+        turns_deg: augmentation: rotations of each sample about the vertical.
+        leans_deg: augmentation: tilts backwards that go with these, where depth was inferred from a picture: there a
+            body's tilt is uncertain.
+        others: augmentation by other bodies.
+        others_of_few: the same where samples are of `few_people` at most, which hardly show how people differ.
+        few_people: see `others_of_few`.
         stages: the shares of an action that each set of discriminant axes is trained on; the last is the whole.
-        shrinkage: of the discriminant axes, in units of the mean squared length of the pooled vectors.
-        held_out_share: of the scores that the map of actions learns, how much comes from axes that were trained
+        shrinkage: of the discriminants' covariance, in units of the mean squared length of the pooled vectors.
+        held_out_share: the weight, in the scores that the action map learns, of those from axes that were trained
             without the person scored; the rest comes from the final axes.
-        fewest_scores: how many rows of scores the upper layers learn at least, fewer being filled up with mixtures.
-        least_share: what the one whose action it is has in a mixture at least.
-        concepts: rows and columns of the map of actions, trained for `concept_epochs` over `concept_radius`.
-        relative_concept_contrast: of its activity, in units of the scores' mean variance within an action.
+        fewest_scores: score vectors that the upper layers learn at least; fewer are filled up with mixtures.
+        least_share: the smallest weight that the sample whose action it is has in a mixture.
+        concepts: rows and columns of the action map.
+        concept_epochs: epochs of its batch training.
+        concept_radius: the first and the last neighbourhood radius of that, grid units.
+        relative_concept_contrast: of its soft activity, in units of the scores' mean variance within an action.
         beta: adaptation strength of the third layer.
         epochs: how often the third layer is shown every training vector.
         known_share: the share of held-out samples that are to count as known actions.
-        prior: what is usual for other models.
+        prior: for calibration.
     """
 
     name: str

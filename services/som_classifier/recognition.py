@@ -1,19 +1,19 @@
-"""What a model answers."""
+"""The answer of a model."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Recognition:
-    """What a segment's frames so far are taken to be.
+    """The action recognised in a segment's frames so far.
 
     Attributes:
-        label: the action whose neuron answers most.
-        confidence: how sure that is, within [0, 1]; what it means is the model's to say.
+        label: the action whose neuron is most active.
+        confidence: of that, within [0, 1]; its definition is the model's.
         activations: every neuron's cosine by action.
         part: the body part that moves most.
-        familiarity: how much the segment is like what was trained; None where the model cannot tell.
-        unknown: whether it is so unfamiliar that the action may be none of those trained.
+        familiarity: how similar the segment is to what was trained; None where the model cannot tell.
+        unknown: whether its familiarity is so low that the action may be none of those trained.
     """
 
     label: str

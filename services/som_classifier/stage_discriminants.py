@@ -1,29 +1,29 @@
-"""Discriminant axes, one set for each stage of an action: early on other things tell actions apart than at the end."""
+"""Linear discriminants for each stage of an action: at its start other features tell actions apart than at its end."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.som.blas import row_product
-
-Floats = NDArray[Any]
+from actum.arrays import Floats
+from actum.som.blas import row_matmul
 
 NEGLIGIBLE = 0.02
+"""Stages that are less probable than this are left out: each costs a matrix product per frame."""
 SHORTEST_S = 1e-3
+"""Shorter segments count as this long (s): the logarithm of 0 is infinite."""
 LOG_ERROR_COST = 0.2
-"""What postures whose d² from the map of postures is e times as large as usual take off the familiarity."""
+"""By how much familiarity falls where the posture map's squared quantization error is e times the usual one."""
 
 
 @dataclass(frozen=True, eq=False)
 class StageDiscriminants:
-    """Linear scores of the actions from a pyramid vector; the last stage is the complete action.
+    """Linear scores of the actions, vᵀ axes + offsets of a pyramid vector v; the last stage is the complete action.
 
     Attributes:
-        axes: (stages, inputs, actions), float32.
+        axes: (stages, inputs, actions), float32, the discriminant axes.
         offsets: (stages, actions), float32.
         fractions: (stages,), the share of an action that each stage has seen; the last is 1.
         log_duration_mean: mean of the logarithm of the training segments' durations (s).
@@ -37,9 +37,14 @@ class StageDiscriminants:
     log_duration_sd: float
 
     def weights(self, elapsed_s: float, complete: bool) -> Sequence[float]:
-        """Say how likely each stage is: the last where the segment is complete, else by the time since its start.
+        """Return the probability of each stage: 1 for the last where the segment is complete, else by elapsed time.
 
-        The fraction seen is elapsed / duration, and durations are log-normal as in training.
+        The fraction seen is elapsed / duration, durations being log-normally distributed as in training:
+        p ∝ exp(−z² / 2), z = (log(elapsed / fraction) − mean) / sd, and 0 below `NEGLIGIBLE`.
+
+        Args:
+            elapsed_s: since the segment's start.
+            complete: whether the segment has ended.
         """
         if complete:
             return [0.0] * (len(self.fractions) - 1) + [1.0]
@@ -50,21 +55,28 @@ class StageDiscriminants:
         return [weight / sum(kept) for weight in kept]
 
     def scores(self, vector: NDArray[np.float32], weights: Sequence[float]) -> NDArray[np.float32]:
-        """Return the actions' scores, about 1 for the one done and 0 for the others, shape (actions,)."""
+        """Return the scores averaged over stages, about 1 for the action done and 0 for the others, shape (actions,).
+
+        Args:
+            vector: (inputs,), of the pyramid.
+            weights: (stages,), as `weights` returns them.
+        """
         total = np.zeros(self.offsets.shape[1], np.float32)
         for axes, offsets, weight in zip(self.axes, self.offsets, weights, strict=True):
             if weight:
-                total += np.float32(weight) * (row_product(vector, axes) + offsets)
+                total += np.float32(weight) * (row_matmul(vector, axes) + offsets)
         return total
 
 
 def familiarity_of(scores: Floats, log_error: float, usual_log_errors: Sequence[float]) -> float:
-    """Return how much a segment is like a trained action: its largest score, less how strange its postures are for it.
+    """Return the familiarity of a segment: its largest score, less a penalty for postures far from the posture map.
+
+    score − `LOG_ERROR_COST` · max(log_error − usual log_error of the action of that score, 0)
 
     Args:
         scores: (actions,).
         log_error: the mean logarithm of the posture map's squared quantization error (m²).
-        usual_log_errors: (actions,), what a stranger who does that action may well come to.
+        usual_log_errors: (actions,), what a person not trained on may well reach with each action.
     """
     likeliest = int(scores.argmax())
     return float(scores[likeliest]) - LOG_ERROR_COST * max(log_error - usual_log_errors[likeliest], 0.0)

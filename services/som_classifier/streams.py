@@ -132,7 +132,7 @@ class Streams:
         stamp_ns, _, agent = min(valid, default=(None, None, 0))
         return None if stamp_ns is None else (stamp_ns, agent)
 
-    def why_not(self, start_ns: int, end_ns: int) -> str | None:
+    def first_reason(self, start_ns: int, end_ns: int) -> str | None:
         """Return the reason of the first frame that the preprocessor could not use; None where there is none."""
         reasons = (
             (frame.stamp_ns, agent, frame.reason)

@@ -2,13 +2,10 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Floats = NDArray[Any]
+from actum.arrays import Array, Floats, Indices
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,6 +14,9 @@ class SupervisedLayer:
 
     Attributes:
         weights: (actions, inputs), rows of unit length in single or double precision, read-only.
+
+    Raises:
+        ValueError: the weights are of another shape or not of unit length.
     """
 
     weights: Floats
@@ -35,21 +35,27 @@ class SupervisedLayer:
         return cls(weights / np.linalg.norm(weights, axis=1, keepdims=True))
 
     @classmethod
-    def of_means(cls, inputs: Array, targets: NDArray[np.intp], actions: int) -> "SupervisedLayer":
-        """Make a layer whose neurons point at the mean of their own inputs (n, dim), evenly where they have none."""
+    def of_means(cls, inputs: Array, targets: Indices, actions: int) -> "SupervisedLayer":
+        """Make a layer whose weights are the mean of the inputs of each action, all equal where it has none.
+
+        Args:
+            inputs: (n, inputs).
+            targets: (n,), the action of each input.
+            actions: how many there are.
+        """
         sums: Array = np.eye(actions)[targets].T @ inputs
         sums[~sums.any(axis=1)] = 1.0
         return cls(sums / np.linalg.norm(sums, axis=1, keepdims=True))
 
     def cosines(self, x: Floats) -> Floats:
-        """Return each neuron's activity x·w / ‖x‖‖w‖, shape (actions,)."""
+        """Return each neuron's activity x·w / ‖x‖‖w‖ for x (inputs,), shape (actions,)."""
         cosines: Floats = self.weights @ x / np.sqrt(x @ x)
         return cosines
 
     def train(
         self,
         inputs: Array,
-        targets: NDArray[np.intp],
+        targets: Indices,
         beta: float,
         epochs: int,
         rng: np.random.Generator,
@@ -58,7 +64,12 @@ class SupervisedLayer:
         """Return the layer after showing it every row of (n, inputs) once per epoch, in random order.
 
         Args:
+            inputs: (n, inputs).
             targets: (n,), the index of the neuron that is to answer 1; the others are to answer 0.
+            beta: adaptation strength.
+            epochs: how often every row is shown.
+            rng: draws the order.
+            report: called with the epochs done and those in all.
         """
         weights = self.weights.astype(np.float64)
         unit_inputs = inputs / np.linalg.norm(inputs, axis=1, keepdims=True)
@@ -78,7 +89,8 @@ def adapt(weights: Array, x: Array, desired: Array, beta: float) -> None:
     Args:
         weights: (actions, inputs), rows of unit length.
         x: (inputs,), of unit length.
-        desired: (actions,).
+        desired: (actions,), d.
+        beta: adaptation strength.
     """
     error = desired - weights @ x
     weights += np.multiply.outer(beta * error, x)

@@ -1,4 +1,4 @@
-"""A model file that may appear, change or be damaged while the classifier runs."""
+"""A model file that may appear, change or be damaged while the classifier runs, loaded whenever it changes."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from som_classifier.model_loading import ModelError, load_model
 
 
 class WatchedModel:
-    """Loads the file whenever it has changed."""
+    """Loads the file whenever its time or size has changed."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -16,9 +16,9 @@ class WatchedModel:
         self._loaded = False
 
     def poll(self, counters: Counters) -> Model | None:
-        """Return the model if the file is new or changed and sound.
+        """Return the model if the file is new or changed and can be loaded, else None.
 
-        Where it is not, `bad_model` is counted, and the state says so, as where there has been none yet.
+        A file that cannot be loaded is counted as `bad_model`; the state says so, and also that there is no file yet.
         """
         try:
             stat = self._path.stat()

@@ -20,10 +20,10 @@ FRAMES = 62
 
 def asked(*people: Array, frames: int = FRAMES, noise_m: float = 0.0) -> UpDirectionEstimator:
     """Offer the same people again and again."""
-    finder, rng = UpDirectionEstimator(), np.random.default_rng(0)
+    estimator, rng = UpDirectionEstimator(), np.random.default_rng(0)
     for k in range(frames):
-        finder.offer(skeleton(k * FRAME_NS, *(joints + rng.normal(0, noise_m, (15, 3)) for joints in people)))
-    return finder
+        estimator.offer(skeleton(k * FRAME_NS, *(joints + rng.normal(0, noise_m, (15, 3)) for joints in people)))
+    return estimator
 
 
 def rotation(axis: int, degrees: float) -> Array:
@@ -74,11 +74,11 @@ def test_a_trackers_noise_averages_out() -> None:
 
 def seconds_until_found(rate_hz: float, joints: Array, longest_s: float = 20.0) -> float | None:
     """Offer the same person at a rate; return when it is found."""
-    finder = UpDirectionEstimator()
+    estimator = UpDirectionEstimator()
     for k in range(round(longest_s * rate_hz)):
         stamp_ns = round(k * SECOND_NS / rate_hz)
-        finder.offer(skeleton(stamp_ns, joints))
-        if finder.found is not None:
+        estimator.offer(skeleton(stamp_ns, joints))
+        if estimator.found is not None:
             return stamp_ns / SECOND_NS
     return None
 
@@ -100,41 +100,41 @@ def test_frames_with_gaps_between_them_are_nobody_who_stands_still() -> None:
 
 
 def test_who_comes_to_rest_is_judged_by_the_last_two_seconds_alone() -> None:
-    finder = UpDirectionEstimator()
+    estimator = UpDirectionEstimator()
     for k in range(1000):
         moving = k < 900
-        finder.offer(skeleton(k * FRAME_NS, plumb() @ rotation(2, 20 * np.sin(k / 5) if moving else 0).T))
-        if finder.found is not None:
+        estimator.offer(skeleton(k * FRAME_NS, plumb() @ rotation(2, 20 * np.sin(k / 5) if moving else 0).T))
+        if estimator.found is not None:
             break
-    assert finder.found is not None
+    assert estimator.found is not None
     assert 900 + 45 < k <= 900 + FRAMES
-    assert finder.found.in_camera == pytest.approx([0, -1, 0], abs=0.03)
+    assert estimator.found.in_camera == pytest.approx([0, -1, 0], abs=0.03)
 
 
 @pytest.mark.parametrize("change", ["session_id", "agent", "gap", "clock set back"])
 def test_what_went_before_a_change_does_not_count(change: str) -> None:
-    finder = asked(plumb(), frames=FRAMES - 1)
+    estimator = asked(plumb(), frames=FRAMES - 1)
     first_ns = {"gap": FRAMES * FRAME_NS + SECOND_NS // 2, "clock set back": 0}.get(change, FRAMES * FRAME_NS)
     for k in range(FRAMES):
-        assert finder.found is None
+        assert estimator.found is None
         frame = skeleton(first_ns + k * FRAME_NS, plumb(), session_id="other" if change == "session_id" else "test")
         agents = [agent.model_copy(update={"agent": 2}) for agent in frame.agents]
-        finder.offer(frame.model_copy(update={"agents": agents}) if change == "agent" else frame)
-    assert finder.found is not None
+        estimator.offer(frame.model_copy(update={"agents": agents}) if change == "agent" else frame)
+    assert estimator.found is not None
 
 
 def test_it_takes_its_time() -> None:
-    finder = asked(plumb(), frames=FRAMES - 1)
-    assert finder.found is None
-    finder.offer(skeleton(FRAMES * FRAME_NS, plumb()))
-    assert finder.found is not None
+    estimator = asked(plumb(), frames=FRAMES - 1)
+    assert estimator.found is None
+    estimator.offer(skeleton(FRAMES * FRAME_NS, plumb()))
+    assert estimator.found is not None
 
 
 def test_who_stands_right_is_told_to_stay_whatever_was_wrong_before() -> None:
-    finder = asked(bent(MOST_BEND_DEG + 20), frames=3)
-    assert "stand straight" in finder.instruction
-    finder.offer(skeleton(3 * FRAME_NS, plumb()))
-    assert finder.instruction.startswith("stay like that")
+    estimator = asked(bent(MOST_BEND_DEG + 20), frames=3)
+    assert "stand straight" in estimator.instruction
+    estimator.offer(skeleton(3 * FRAME_NS, plumb()))
+    assert estimator.instruction.startswith("stay like that")
 
 
 def bent(degrees: float) -> Array:
@@ -158,22 +158,24 @@ def bent(degrees: float) -> Array:
     ],
 )
 def test_what_is_wrong_is_said(people: tuple[Array, ...], instruction: str) -> None:
-    finder = asked(*people)
-    assert finder.found is None
-    assert instruction in finder.instruction
+    estimator = asked(*people)
+    assert estimator.found is None
+    assert instruction in estimator.instruction
 
 
 def test_who_moves_is_asked_to_stand_still() -> None:
-    finder = UpDirectionEstimator()
+    estimator = UpDirectionEstimator()
     for k in range(2 * FRAMES):
-        finder.offer(skeleton(k * FRAME_NS, plumb() @ rotation(2, 5 * np.sin(k / 5)).T))
-    assert finder.found is None
-    assert "the body sways by more than 1.5 degrees" in finder.instruction
+        estimator.offer(skeleton(k * FRAME_NS, plumb() @ rotation(2, 5 * np.sin(k / 5)).T))
+    assert estimator.found is None
+    assert "the body sways by more than 1.5 degrees" in estimator.instruction
 
 
 def test_an_interruption_begins_it_anew() -> None:
-    finder = asked(plumb(), frames=FRAMES - 1)
-    finder.offer(Skeleton(stamp_ns=FRAMES * FRAME_NS, sensor="kinect0", agents=[], valid=False, reason="camera lost"))
-    assert finder.instruction == "nobody is seen: camera lost"
-    finder.offer(skeleton((FRAMES + 1) * FRAME_NS, plumb()))
-    assert finder.found is None
+    estimator = asked(plumb(), frames=FRAMES - 1)
+    estimator.offer(
+        Skeleton(stamp_ns=FRAMES * FRAME_NS, sensor="kinect0", agents=[], valid=False, reason="camera lost")
+    )
+    assert estimator.instruction == "nobody is seen: camera lost"
+    estimator.offer(skeleton((FRAMES + 1) * FRAME_NS, plumb()))
+    assert estimator.found is None

@@ -47,11 +47,11 @@ def test_of_the_demos_people_the_action_alone_tells_a_third_of_the_objects() -> 
     samples = [s for person in people for s in balanced_programme(1, TEST_SEED, person)]
     score = scored(*((s.action, s.object_id) for s in samples))
 
-    assert (len(samples), score.guessed()) == (45, 15)
+    assert (len(samples), score.objects_by_majority()) == (45, 15)
 
 
 def test_where_each_action_is_always_done_to_one_object_the_action_tells_all() -> None:
-    assert scored(("push", 1), ("push", 1), ("lift", 2)).guessed() == 3
+    assert scored(("push", 1), ("push", 1), ("lift", 2)).objects_by_majority() == 3
 
 
 def test_the_summary_says_what_the_action_alone_would_tell() -> None:

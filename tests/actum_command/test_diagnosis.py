@@ -4,7 +4,6 @@ from typing import Any
 
 import pytest
 from rich.console import Console
-from scene_simulator.endless import DESCRIPTION
 from typer.testing import CliRunner
 
 from actum import __version__
@@ -15,6 +14,7 @@ from actum_command import __main__, diagnosis
 from actum_command.commands import doctor_command
 from actum_command.commands.doctor_command import show
 from actum_command.diagnosis import EXPECTED, Finding, examine
+from scene_simulator.endless_simulator import DESCRIPTION
 
 
 def status(service: str, **fields: Any) -> Status:

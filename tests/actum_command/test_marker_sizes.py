@@ -13,7 +13,7 @@ from scene_simulator.parameters import load_parameters
 
 ROOT = Path(__file__).parents[2]
 USUAL_M = Settings.model_fields["marker_size_m"].default
-README = (ROOT / "README.md").read_text()
+PAGES = [(ROOT / page).read_text() for page in ("README.md", "docs/objects.md")]
 EXAMPLE = (ROOT / "deploy" / "objects.example.yaml").read_text()
 
 
@@ -33,10 +33,12 @@ def test_the_simulated_objects_carry_the_usual_size() -> None:
     assert load_parameters().objects.marker_size_m == USUAL_M
 
 
-def test_the_readme_prints_what_the_example_of_a_scene_file_expects() -> None:
-    (printed_mm,) = re.findall(r"actum markers -o markers.pdf .*--size-mm (\d+)", README)
-    (told_m,) = re.findall(r"# family, size \(([\d.]+) m here\)", README)
-    assert float(printed_mm) / 1000 == float(told_m) == yaml.safe_load(EXAMPLE)["size_m"] == USUAL_M
+def test_the_pages_print_what_the_example_of_a_scene_file_expects() -> None:
+    for page in PAGES:
+        (printed_mm,) = re.findall(r"actum markers -o markers.pdf .*--size-mm (\d+)", page)
+        assert float(printed_mm) / 1000 == yaml.safe_load(EXAMPLE)["size_m"] == USUAL_M
+    (told_m,) = re.findall(r"# family, size \(([\d.]+) m here\)", "".join(PAGES))
+    assert float(told_m) == USUAL_M
 
 
 def test_the_example_of_a_scene_file_says_how_its_own_markers_are_printed() -> None:

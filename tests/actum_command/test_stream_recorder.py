@@ -123,7 +123,7 @@ def test_answers_are_kept_only_as_long_as_a_mark_may_be_late(tmp_path: Path) -> 
         stream = StreamRecorder(recorder)
         for i in range(100):
             stream.take(action(i, i + 1, f"segment{i}"), received_ns=i * SECOND_NS)
-        assert len(stream._answers) == 1 + SKEW_NS // SECOND_NS
+        assert len(stream._bounds) == 1 + SKEW_NS // SECOND_NS
     assert stream.stored == 100
 
 

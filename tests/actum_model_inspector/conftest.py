@@ -7,8 +7,8 @@ import pytest
 
 from actum.messages import Segment, Skeleton
 from actum.recording import Recorder, Recording
-from actum_model_inspector.anatomy import Anatomy, anatomy_of
-from actum_model_inspector.answered import Answered, answered_segments
+from actum_model_inspector.answered import AnsweredSegment, answered_segments
+from actum_model_inspector.model_maps import ModelMaps, maps_of
 from performers import HAND_PATHS, TINY_OF_EACH_KIND, performance
 from recognisers import tiny_model
 from som_classifier.pyramid_model import PyramidModel
@@ -31,8 +31,8 @@ def record(tmp_path: Path) -> Record:
 
 
 @pytest.fixture(params=TINY_OF_EACH_KIND, ids=lambda preset: preset.name)
-def anatomy(request: pytest.FixtureRequest) -> Anatomy:
-    return anatomy_of(tiny_model(request.param))
+def maps(request: pytest.FixtureRequest) -> ModelMaps:
+    return maps_of(tiny_model(request.param))
 
 
 @pytest.fixture
@@ -49,5 +49,5 @@ def recording(record: Record) -> Recording:
 
 
 @pytest.fixture
-def segments(anatomy: Anatomy, recording: Recording) -> list[Answered]:
-    return answered_segments(anatomy, [recording])
+def segments(maps: ModelMaps, recording: Recording) -> list[AnsweredSegment]:
+    return answered_segments(maps, [recording])

@@ -6,7 +6,7 @@ import pytest
 from actum.skeletons import INDEX
 from actum.som import Som
 from actum_model_inspector.arm_map import ArmsOnBodies, arm_map, fastest_m
-from actum_model_inspector.bodies import STANDING
+from actum_model_inspector.stick_figures import STANDING
 from recognisers import tiny_samples
 from som_classifier.first_layer import VELOCITY_WEIGHT, arm_inputs, frame_inputs
 from som_classifier.handedness import mirrored
@@ -27,7 +27,7 @@ def test_a_body_s_own_arm_stays_where_it_is() -> None:
 
 def test_every_joint_is_drawn_once_and_the_shoulder_with_both() -> None:
     drawn = ArmsOnBodies.of(UNITS, POSTURES)
-    of_body, of_arm = (~np.isnan(joints).any(axis=(0, 2)) for joints in (drawn.others, drawn.arms))
+    of_body, of_arm = (~np.isnan(joints).any(axis=(0, 2)) for joints in (drawn.bodies, drawn.arms))
     assert np.flatnonzero(of_body & of_arm).tolist() == [SHOULDER]
     assert (of_body | of_arm).all()
 
@@ -38,10 +38,10 @@ def test_an_arm_hangs_from_the_shoulder_of_whatever_body_it_is_put_on() -> None:
 
 
 def test_in_a_mirror_it_is_the_left_arm() -> None:
-    drawn = ArmsOnBodies.of(UNITS, POSTURES).in_a_mirror()
+    drawn = ArmsOnBodies.of(UNITS, POSTURES).mirrored()
     left = [INDEX[f"left_{name}"] for name in ("shoulder", "elbow", "hand")]
     np.testing.assert_allclose(drawn.arms[:, left], mirrored(POSTURES)[:, left])
-    assert np.isnan(drawn.others[:, left[1:]]).all()
+    assert np.isnan(drawn.bodies[:, left[1:]]).all()
 
 
 def test_the_fastest_unit_is_named_by_its_speed() -> None:

@@ -15,12 +15,12 @@ from actum.messages import Segment
 from actum.recording import Recording
 from actum.som import Som
 from actum_model_inspector.action_map import action_map
-from actum_model_inspector.anatomy import Anatomy, PaperAnatomy, PyramidAnatomy
-from actum_model_inspector.answered import Answered, answered_segments
+from actum_model_inspector.answer_timeline import timeline_picture
+from actum_model_inspector.answered import AnsweredSegment, answered_segments
 from actum_model_inspector.confusion import confusion_picture
-from actum_model_inspector.course import course_picture
 from actum_model_inspector.inspection import Picture, pictures, write
-from actum_model_inspector.posture_map import MOST_FIGURES, drawn_units
+from actum_model_inspector.model_maps import ModelMaps, PaperMaps, PyramidMaps
+from actum_model_inspector.posture_map import MAX_FIGURES, drawn_units
 from actum_model_inspector.style import action_colours
 from actum_model_trainer.evaluation import Evaluation, Prediction, evaluate
 from handmade import paper_model, pyramid_model
@@ -52,24 +52,24 @@ def drawn(planned: list[Picture], folder: Path, ending: str = "png") -> list[Pat
 
 
 def test_every_picture_of_a_model_and_a_recording_is_a_sound_png(
-    anatomy: Anatomy, recording: Recording, segments: list[Answered], tmp_path: Path
+    maps: ModelMaps, recording: Recording, segments: list[AnsweredSegment], tmp_path: Path
 ) -> None:
-    planned = list(pictures(anatomy, segments, evaluate(anatomy.model, [recording])))
+    planned = list(pictures(maps, segments, evaluate(maps.model, [recording])))
     names = {picture.name for picture in planned}
     assert {"posture-map", "action-map", "confusion", "trace-push", "time-lift"} <= names
-    assert ("why-push" in names) == ({"movement-map", "arm-map"} <= names) == isinstance(anatomy, PyramidAnatomy)
+    assert ("why-push" in names) == ({"movement-map", "arm-map"} <= names) == isinstance(maps, PyramidMaps)
     of_lifting = [picture for picture in planned if not picture.name.endswith(("push", "swing", "1", "2", "3"))]
     for file in drawn(of_lifting, tmp_path):
         assert min(imread(file).shape[:2]) > SMALLEST_PX
 
 
-def test_pictures_of_a_model_alone_are_its_maps(anatomy: Anatomy) -> None:
-    names = [picture.name for picture in pictures(anatomy, [], None)]
-    assert names == ["posture-map", *["movement-map", "arm-map"] * isinstance(anatomy, PyramidAnatomy), "action-map"]
+def test_pictures_of_a_model_alone_are_its_maps(maps: ModelMaps) -> None:
+    names = [picture.name for picture in pictures(maps, [], None)]
+    assert names == ["posture-map", *["movement-map", "arm-map"] * isinstance(maps, PyramidMaps), "action-map"]
 
 
-def test_svg_files_parse_and_the_same_picture_makes_the_same_file(anatomy: Anatomy, tmp_path: Path) -> None:
-    planned = [picture for picture in pictures(anatomy, [], None) if picture.name == "action-map"]
+def test_svg_files_parse_and_the_same_picture_makes_the_same_file(maps: ModelMaps, tmp_path: Path) -> None:
+    planned = [picture for picture in pictures(maps, [], None) if picture.name == "action-map"]
     (file,) = drawn(planned, tmp_path, "svg")
     first = file.read_bytes()
     assert ElementTree.fromstring(first).tag.endswith("svg")
@@ -77,30 +77,30 @@ def test_svg_files_parse_and_the_same_picture_makes_the_same_file(anatomy: Anato
     assert file.read_bytes() == first
 
 
-def test_pictures_leave_other_people_s_parameters_alone(anatomy: Anatomy, tmp_path: Path) -> None:
+def test_pictures_leave_other_people_s_parameters_alone(maps: ModelMaps, tmp_path: Path) -> None:
     before = dict(mpl.rcParams)
-    drawn(list(pictures(anatomy, [], None))[-1:], tmp_path)
+    drawn(list(pictures(maps, [], None))[-1:], tmp_path)
     assert dict(mpl.rcParams) == before
 
 
 def test_names_stand_where_their_actions_are() -> None:
-    written = texts(action_map(PaperAnatomy(paper_model())))
+    written = texts(action_map(PaperMaps(paper_model())))
     assert written["pull"][0] < 0.5 < written["push"][0]
 
 
 def test_an_action_without_a_place_is_named_beneath_the_map() -> None:
     model = paper_model()
     deaf = PaperModel(model.layer1, model.layer2, SupervisedLayer(np.array([[1, 0], [1, 0]])), model.metadata)
-    axes = action_map(PaperAnatomy(deaf)).axes[0]
+    axes = action_map(PaperMaps(deaf)).axes[0]
     assert axes.get_xlabel() == "without a place of their own: push"
 
 
-def many_actions(labels: list[str]) -> PaperAnatomy:
+def many_actions(labels: list[str]) -> PaperMaps:
     about = paper_model().metadata.model_dump() | {"labels": labels}
     rng = np.random.default_rng(1)
     layer2 = Som.random(6, 7, 6, rng)
     layer3 = SupervisedLayer.random(len(labels), 42, rng)
-    return PaperAnatomy(PaperModel(paper_model().layer1, layer2, layer3, PaperMetadata.model_validate(about)))
+    return PaperMaps(PaperModel(paper_model().layer1, layer2, layer3, PaperMetadata.model_validate(about)))
 
 
 @pytest.mark.parametrize(
@@ -114,11 +114,11 @@ def many_actions(labels: list[str]) -> PaperAnatomy:
     ids=["many", "long", "odd", "undrawable"],
 )
 def test_many_long_and_odd_names_are_drawn(labels: list[str], record: Record, tmp_path: Path) -> None:
-    anatomy = many_actions(labels)
+    maps = many_actions(labels)
     skeletons, marks = performance(["push"])
     recording = record(skeletons, [marks[0].model_copy(update={"label": labels[0]}), marks[1]])
-    segments = answered_segments(anatomy, [recording])
-    planned = list(pictures(anatomy, segments, evaluate(anatomy.model, [recording])))
+    segments = answered_segments(maps, [recording])
+    planned = list(pictures(maps, segments, evaluate(maps.model, [recording])))
     chosen = [picture for picture in planned if not picture.name.startswith(("posture", "trace"))]
     assert all(imread(file).size for file in drawn(chosen, tmp_path))
 
@@ -127,12 +127,12 @@ def test_many_long_and_odd_names_are_drawn(labels: list[str], record: Record, tm
     "label", ["pick_up_the_cup_and_then_put_it_back", "put down what was taken up", "PICK UP CUP NOW"]
 )
 def test_no_name_leaves_the_page(label: str, record: Record) -> None:
-    anatomy = many_actions([label, f"{label} again"])
+    maps = many_actions([label, f"{label} again"])
     skeletons, marks = performance(["push"])
     recording = record(skeletons, [marks[0].model_copy(update={"label": label}), marks[1]])
-    (answered,) = answered_segments(anatomy, [recording])
-    confusion = confusion_picture(evaluate(anatomy.model, [recording]))
-    for figure in (course_picture(anatomy.model, answered), action_map(anatomy), confusion):
+    (answered,) = answered_segments(maps, [recording])
+    confusion = confusion_picture(evaluate(maps.model, [recording]))
+    for figure in (timeline_picture(maps.model, answered), action_map(maps), confusion):
         assert beyond_the_page(figure) == []
 
 
@@ -145,20 +145,18 @@ def beyond_the_page(figure: Figure) -> list[str]:
     return [name for name, box in boxes if not (page.contains(*box.min) and page.contains(*box.max))]
 
 
-def test_the_one_instant_of_the_shortest_segment_is_a_dot(anatomy: Anatomy, record: Record) -> None:
+def test_the_one_instant_of_the_shortest_segment_is_a_dot(maps: ModelMaps, record: Record) -> None:
     skeletons, _ = performance(["push"])
-    recording = record(skeletons, still(anatomy.model.min_frames))
-    (answered,) = answered_segments(anatomy, [recording])
-    axes = course_picture(anatomy.model, answered).axes[0]
+    recording = record(skeletons, still(maps.model.min_frames))
+    (answered,) = answered_segments(maps, [recording])
+    axes = timeline_picture(maps.model, answered).axes[0]
     assert {line.get_marker() for line in axes.lines} == {"o"}
 
 
-def test_segments_without_labels_get_pictures_but_no_confusion(
-    anatomy: Anatomy, record: Record, tmp_path: Path
-) -> None:
+def test_segments_without_labels_get_pictures_but_no_confusion(maps: ModelMaps, record: Record, tmp_path: Path) -> None:
     skeletons, _ = performance(["push"])
     recording = record(skeletons, [mark("start", 0, "a"), mark("end", 19 * FRAME_NS, "a")])
-    planned = list(pictures(anatomy, answered_segments(anatomy, [recording]), None))
+    planned = list(pictures(maps, answered_segments(maps, [recording]), None))
     assert not any(picture.name == "confusion" for picture in planned)
     assert len(drawn([picture for picture in planned if picture.name.startswith(("time", "action"))], tmp_path)) == 2
 
@@ -169,22 +167,22 @@ def still(stamps: int) -> list[Segment]:
 
 @pytest.mark.parametrize("missing", [(), ("head", "left_hand", "right_foot")], ids=["none", "three"])
 def test_a_still_actor_with_joints_missing_is_drawn(
-    anatomy: Anatomy, record: Record, tmp_path: Path, missing: tuple[str, ...]
+    maps: ModelMaps, record: Record, tmp_path: Path, missing: tuple[str, ...]
 ) -> None:
     trembling_m = np.random.default_rng(0).normal(0, 1e-5, (30, 15, 3))
     skeletons = [
         skeleton(number * FRAME_NS, lacking(STANDING + moved, *missing)) for number, moved in enumerate(trembling_m)
     ]
-    segments = answered_segments(anatomy, [record(skeletons, still(20))])
+    segments = answered_segments(maps, [record(skeletons, still(20))])
     assert segments[0].recognition is not None
-    planned = [picture for picture in pictures(anatomy, segments, None) if picture.section.startswith("push")]
-    assert len(drawn(planned, tmp_path)) == (3 if isinstance(anatomy, PyramidAnatomy) else 2)
+    planned = [picture for picture in pictures(maps, segments, None) if picture.section.startswith("push")]
+    assert len(drawn(planned, tmp_path)) == (3 if isinstance(maps, PyramidMaps) else 2)
 
 
 def test_a_handmade_model_of_two_levels_is_explained(record: Record, tmp_path: Path) -> None:
-    anatomy = PyramidAnatomy(pyramid_model())
-    segments = answered_segments(anatomy, [record(*performance(["push"]))])
-    planned = [picture for picture in pictures(anatomy, segments, None) if picture.name == "why-push"]
+    maps = PyramidMaps(pyramid_model())
+    segments = answered_segments(maps, [record(*performance(["push"]))])
+    planned = [picture for picture in pictures(maps, segments, None) if picture.name == "why-push"]
     assert drawn(planned, tmp_path)[0].exists()
 
 
@@ -200,7 +198,7 @@ def test_a_confusion_with_rejections_has_a_column_for_them() -> None:
 def test_no_more_figures_are_drawn_than_can_be_seen(side: int, every: int) -> None:
     units, distance = drawn_units(Som(side, 2, np.zeros((side * 2, 9))))
     assert distance == every
-    assert len({int(unit) // 2 for unit in units}) <= MOST_FIGURES
+    assert len({int(unit) // 2 for unit in units}) <= MAX_FIGURES
 
 
 def test_each_of_two_dozen_actions_has_a_colour_of_its_own() -> None:

@@ -1,4 +1,4 @@
-"""Answers are as sure as held-out people let them be, and as is usual where few people are known."""
+"""Confidence follows from cross-validated scores, and from the prior where few people are known."""
 
 from dataclasses import replace
 
@@ -8,11 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from actum.som import Som
-from actum_model_trainer.confidence import calibrated_gains, familiar, held_out_gain, usual_log_errors
-from actum_model_trainer.discriminants import Axes
+from actum_model_trainer.confidence import (
+    cross_validated_inverse_temperature,
+    expected_log_errors,
+    familiarity_threshold,
+    inverse_temperatures,
+)
+from actum_model_trainer.discriminants import Discriminants, FittedStage
 from actum_model_trainer.progress import silent
 from actum_model_trainer.samples import SegmentSample
-from actum_model_trainer.upper_layers import Scored, UpperLayers, train_upper
+from actum_model_trainer.upper_layers import UpperLayers, train_upper
 from performers import TINY
 from recognisers import tiny_samples
 from som_classifier.first_layer import FirstMaps
@@ -21,55 +26,55 @@ ACTIONS, EACH = 3, 30
 TARGETS = np.repeat(np.arange(ACTIONS), EACH)
 NOBODY = np.zeros((0, ACTIONS), np.float32)
 PRIOR = replace(TINY.prior, gain=1.0, gain_where_inferred=0.8)
-"""Less sure than the held-out examples below."""
+"""Less sure than the cross-validated examples below."""
 
 
-def scored(noise: float) -> Scored:
+def scored(noise: float) -> FittedStage:
     """Scores of about 1 for the action done and 0 for the others."""
     rows = np.eye(ACTIONS)[TARGETS] + np.random.default_rng(1).normal(0, noise, (len(TARGETS), ACTIONS))
-    return Scored(Axes(NOBODY, NOBODY, rows, rows), np.arange(len(TARGETS)), TARGETS, TARGETS)
+    return FittedStage(Discriminants(NOBODY, NOBODY, rows, rows), np.arange(len(TARGETS)), TARGETS)
 
 
 UPPER: UpperLayers = train_upper(scored(0.1), ACTIONS, TINY, np.random.default_rng(0), silent)
 
 
-def gain(noise: float, people: int, depth_inferred: bool = False) -> float:
-    (found,) = calibrated_gains([scored(noise)], UPPER, PRIOR, people, depth_inferred)
+def inverse_temperature(noise: float, people: int, depth_inferred: bool = False) -> float:
+    (found,) = inverse_temperatures([scored(noise)], UPPER, PRIOR, people, depth_inferred)
     return found
 
 
 def matched(noise: float) -> float:
-    return held_out_gain(scored(noise), UPPER)
+    return cross_validated_inverse_temperature(scored(noise), UPPER)
 
 
-def test_from_one_person_it_is_the_usual_gain_however_well_its_own_examples_are_told() -> None:
+def test_from_one_person_it_is_the_prior_however_well_their_own_examples_are_told_apart() -> None:
     assert matched(0.05) > PRIOR.gain
-    assert gain(0.05, people=1) == pytest.approx(PRIOR.gain)
-    assert gain(0.05, people=1, depth_inferred=True) == pytest.approx(PRIOR.gain_where_inferred)
+    assert inverse_temperature(0.05, people=1) == pytest.approx(PRIOR.gain)
+    assert inverse_temperature(0.05, people=1, depth_inferred=True) == pytest.approx(PRIOR.gain_where_inferred)
 
 
 def test_as_many_people_as_the_prior_is_worth_count_as_much() -> None:
-    half = gain(0.05, people=1 + round(PRIOR.people))
+    half = inverse_temperature(0.05, people=1 + round(PRIOR.people))
     assert half == pytest.approx(np.sqrt(PRIOR.gain * matched(0.05)))
 
 
-def test_the_more_people_the_more_the_matched_gain_counts() -> None:
-    gains = [gain(0.05, people) for people in (1, 2, 5, 20, 10_000)]
-    assert gains == sorted(gains)
-    assert gains[-1] == pytest.approx(matched(0.05), rel=0.01)
+def test_the_more_people_the_more_the_matched_inverse_temperature_counts() -> None:
+    found = [inverse_temperature(0.05, people) for people in (1, 2, 5, 20, 10_000)]
+    assert found == sorted(found)
+    assert found[-1] == pytest.approx(matched(0.05), rel=0.01)
 
 
 @pytest.mark.parametrize("people", [1, 2, 50])
-def test_what_held_out_examples_disprove_is_not_believed(people: int) -> None:
-    assert gain(3.0, people) == matched(3.0) < PRIOR.gain
+def test_it_is_never_larger_than_the_matched_one(people: int) -> None:
+    assert inverse_temperature(3.0, people) == matched(3.0) < PRIOR.gain
 
 
-def test_each_stage_has_its_own_gain() -> None:
-    early, late = calibrated_gains([scored(3.0), scored(0.1)], UPPER, PRIOR, 5, False)
+def test_each_stage_has_its_own_inverse_temperature() -> None:
+    early, late = inverse_temperatures([scored(3.0), scored(0.1)], UPPER, PRIOR, 5, False)
     assert early < 0.5 * late
 
 
-def taught(people: int, times: int) -> list[SegmentSample]:
+def samples_of(people: int, times: int) -> list[SegmentSample]:
     """Every action by each person so many times."""
     one = tiny_samples()[0]
     return [
@@ -81,42 +86,42 @@ def taught(people: int, times: int) -> list[SegmentSample]:
 
 
 @given(st.integers(1, 40))
-def test_familiar_lies_between_what_is_usual_and_what_most_held_out_people_exceed(people: int) -> None:
-    held_out = scored(0.1).axes.held_out
-    exceeded = float(np.quantile(held_out.max(axis=1), 0.05))
-    found = familiar(held_out, taught(people, 2), TINY)
+def test_the_threshold_lies_between_the_prior_and_what_most_cross_validated_scores_exceed(people: int) -> None:
+    scores = scored(0.1).discriminants.cross_validated_scores
+    exceeded = float(np.quantile(scores.max(axis=1), 0.05))
+    found = familiarity_threshold(scores, samples_of(people, 2), TINY)
     assert PRIOR.familiar <= found <= exceeded
     assert people > 1 or found == PRIOR.familiar
 
 
-def test_who_was_shown_each_action_once_expects_lower_scores() -> None:
-    held_out = scored(0.1).axes.held_out
-    assert familiar(held_out, taught(1, 1), TINY) == PRIOR.familiar_from_one < PRIOR.familiar
-    assert familiar(held_out, taught(3, 1), TINY) < familiar(held_out, taught(3, 2), TINY)
+def test_where_each_action_was_shown_once_lower_scores_are_expected() -> None:
+    scores = scored(0.1).discriminants.cross_validated_scores
+    assert familiarity_threshold(scores, samples_of(1, 1), TINY) == PRIOR.familiar_from_one < PRIOR.familiar
+    assert familiarity_threshold(scores, samples_of(3, 1), TINY) < familiarity_threshold(scores, samples_of(3, 2), TINY)
 
 
 def test_without_a_prior_it_is_what_the_known_share_exceeds() -> None:
-    held_out = scored(0.1).axes.held_out
+    scores = scored(0.1).discriminants.cross_validated_scores
     preset = replace(TINY, prior=replace(PRIOR, people=0.0), known_share=0.9)
-    found = familiar(held_out, taught(2, 2), preset)
-    assert (held_out.max(axis=1) > found).mean() == pytest.approx(0.9, abs=0.02)
+    found = familiarity_threshold(scores, samples_of(2, 2), preset)
+    assert (scores.max(axis=1) > found).mean() == pytest.approx(0.9, abs=0.02)
 
 
-def test_what_is_usual_for_an_action_by_hand() -> None:
+def test_expected_log_errors_by_hand() -> None:
     """A map of one unit: three samples of one action are off it by d² = 1 m², one of another by e² m²."""
     off_m = np.zeros((1, 15, 3))
     off_m[0, 7, 1] = 1.0
     still = [Som(1, 1, np.zeros((1, size), np.float32)) for size in (45, 45, 12)]
     first = FirstMaps(still[0], still[1], still[2], (1.0, 1.0, 1.0), (0.4, 0.1))
-    usual = usual_log_errors(first, [off_m, off_m, np.e * off_m, off_m], np.array([0, 0, 1, 0]), PRIOR)
+    found = expected_log_errors(first, [off_m, off_m, np.e * off_m, off_m], np.array([0, 0, 1, 0]), PRIOR)
     mean = (0 + 0 + 2 + 0) / 4
     once_more = [(3 * 0 + mean) / 4, (2 + mean) / 2]
-    assert usual == pytest.approx([PRIOR.log_error + own - mean for own in once_more])
+    assert found == pytest.approx([PRIOR.log_error + own - mean for own in once_more])
 
 
-def test_a_frame_of_nothing_is_no_reason_to_fail() -> None:
+def test_frames_without_any_joint_do_not_fail() -> None:
     """It counts as no error at all, as it does live."""
     still = [Som(1, 1, np.zeros((1, size), np.float32)) for size in (45, 45, 12)]
     first = FirstMaps(still[0], still[1], still[2], (1.0, 1.0, 1.0), (0.4, 0.1))
     nothing, still_m = np.full((2, 15, 3), np.nan), np.zeros((2, 15, 3))
-    assert usual_log_errors(first, [nothing, still_m], np.array([0, 1]), PRIOR) == [PRIOR.log_error] * 2
+    assert expected_log_errors(first, [nothing, still_m], np.array([0, 1]), PRIOR) == [PRIOR.log_error] * 2

@@ -1,4 +1,4 @@
-"""Axes are ridge regression as in the textbook, and a person's held-out scores know nothing of that person."""
+"""Discriminants are ridge regression as in the textbook; cross-validated scores know nothing of the person scored."""
 
 from dataclasses import replace
 
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum_model_trainer.discriminants import FOLDS_WITHOUT_PEOPLE, MOST_FOLDS, discriminant_axes, folds_of
+from actum_model_trainer.discriminants import FOLDS_WITHIN_AN_ACTION, MAX_PERSON_FOLDS, fit_discriminants, folds_of
 from recognisers import tiny_samples
 
 SHRINKAGE = 0.2
@@ -16,82 +16,91 @@ FOLDS = np.repeat(np.arange(PEOPLE), 6)
 
 
 def training(inputs: int = 40, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """Six vectors of each person, two of each action; what is wanted of them."""
+    """Six vectors of each person, two of each action, and the indicators of their actions."""
     rng = np.random.default_rng(seed)
     actions = np.tile(np.repeat(np.arange(ACTIONS), 2), PEOPLE)
     vectors = rng.normal(size=(ACTIONS, inputs))[actions] + rng.normal(size=(len(actions), inputs)) + 3.0
     return vectors.astype(np.float32), np.eye(ACTIONS)[actions]
 
 
-def ridge(centred: np.ndarray, wanted: np.ndarray, penalty: float) -> tuple[np.ndarray, np.ndarray]:
-    """(XᵀX + penalty)⁻¹ Xᵀ (wanted − level), and the level."""
-    level = wanted.mean(axis=0)
+def ridge(centred: np.ndarray, indicators: np.ndarray, penalty: float) -> tuple[np.ndarray, np.ndarray]:
+    """(XᵀX + penalty)⁻¹ Xᵀ (indicators − intercept), and the intercept."""
+    intercept = indicators.mean(axis=0)
     system = centred.T @ centred + penalty * np.eye(centred.shape[1])
-    return np.linalg.solve(system, centred.T @ (wanted - level)), level
+    return np.linalg.solve(system, centred.T @ (indicators - intercept)), intercept
 
 
 @pytest.mark.parametrize("inputs", [5, 40])
 def test_axes_are_the_ridge_solution(inputs: int) -> None:
-    vectors, wanted = training(inputs)
+    vectors, indicators = training(inputs)
     centred = vectors.astype(np.float64) - vectors.mean(axis=0, dtype=np.float64)
-    expected, level = ridge(centred, wanted, SHRINKAGE * np.square(centred).sum(axis=1).mean())
-    found = discriminant_axes(vectors, wanted, FOLDS, SHRINKAGE)
+    expected, intercept = ridge(centred, indicators, SHRINKAGE * np.square(centred).sum(axis=1).mean())
+    found = fit_discriminants(vectors, indicators, FOLDS, SHRINKAGE)
     np.testing.assert_allclose(found.axes, expected, atol=1e-5)
-    np.testing.assert_allclose(found.own, centred @ expected + level, atol=1e-4)
-    np.testing.assert_allclose(vectors @ found.axes + found.offsets, found.own, atol=1e-4)
+    np.testing.assert_allclose(found.training_scores, centred @ expected + intercept, atol=1e-4)
+    np.testing.assert_allclose(vectors @ found.axes + found.offsets, found.training_scores, atol=1e-4)
     assert found.axes.dtype == found.offsets.dtype == np.float32
 
 
 @pytest.mark.parametrize("fold", range(PEOPLE))
-def test_held_out_scores_are_those_of_axes_fitted_without_the_fold(fold: int) -> None:
+def test_cross_validated_scores_are_those_of_axes_fitted_without_the_fold(fold: int) -> None:
     """About the mean of all vectors; the labels of the fold are not looked at."""
-    vectors, wanted = training()
+    vectors, indicators = training()
     centred = vectors.astype(np.float64) - vectors.mean(axis=0, dtype=np.float64)
     penalty = SHRINKAGE * np.square(centred).sum(axis=1).mean()
-    axes, level = ridge(centred[fold != FOLDS], wanted[fold != FOLDS], penalty)
-    found = discriminant_axes(vectors, wanted, FOLDS, SHRINKAGE)
-    np.testing.assert_allclose(found.held_out[fold == FOLDS], centred[fold == FOLDS] @ axes + level, atol=1e-4)
+    axes, intercept = ridge(centred[fold != FOLDS], indicators[fold != FOLDS], penalty)
+    found = fit_discriminants(vectors, indicators, FOLDS, SHRINKAGE)
+    np.testing.assert_allclose(
+        found.cross_validated_scores[fold == FOLDS], centred[fold == FOLDS] @ axes + intercept, atol=1e-4
+    )
 
 
 @given(st.integers(0, PEOPLE - 1), st.permutations(range(ACTIONS)))
-def test_labels_of_the_held_out_do_not_matter_to_the_bit(fold: int, order: list[int]) -> None:
-    vectors, wanted = training()
-    relabelled = np.where((fold == FOLDS)[:, None], wanted[:, order], wanted)
-    one, other = (discriminant_axes(vectors, each, FOLDS, SHRINKAGE) for each in (wanted, relabelled))
-    np.testing.assert_array_equal(one.held_out[fold == FOLDS], other.held_out[fold == FOLDS])
+def test_labels_of_the_fold_left_out_do_not_matter_to_the_bit(fold: int, order: list[int]) -> None:
+    vectors, indicators = training()
+    relabelled = np.where((fold == FOLDS)[:, None], indicators[:, order], indicators)
+    one, other = (fit_discriminants(vectors, each, FOLDS, SHRINKAGE) for each in (indicators, relabelled))
+    np.testing.assert_array_equal(
+        one.cross_validated_scores[fold == FOLDS], other.cross_validated_scores[fold == FOLDS]
+    )
     if order != sorted(order):
-        assert (one.held_out[fold != FOLDS] != other.held_out[fold != FOLDS]).any()
+        assert (one.cross_validated_scores[fold != FOLDS] != other.cross_validated_scores[fold != FOLDS]).any()
 
 
 def test_where_nobody_else_is_there_scores_are_their_own() -> None:
-    vectors, wanted = training()
-    found = discriminant_axes(vectors, wanted, np.zeros(len(vectors), np.intp), SHRINKAGE)
-    np.testing.assert_array_equal(found.held_out, found.own)
+    vectors, indicators = training()
+    found = fit_discriminants(vectors, indicators, np.zeros(len(vectors), np.intp), SHRINKAGE)
+    np.testing.assert_array_equal(found.cross_validated_scores, found.training_scores)
 
 
 def test_an_action_that_nobody_else_does_is_scored_by_axes_that_know_it() -> None:
-    """Axes without it would take it for another with certainty."""
-    vectors, wanted = training()
-    alone = wanted[:, 2].astype(bool) & (FOLDS != 1)
-    found = discriminant_axes(vectors[~alone], wanted[~alone], FOLDS[~alone], SHRINKAGE)
-    own_action = wanted[~alone][:, 2].astype(bool)
-    np.testing.assert_array_equal(found.held_out[own_action], found.own[own_action])
-    assert (found.held_out[~own_action] != found.own[~own_action]).all()
+    """Discriminants without it would take it for another with certainty."""
+    vectors, indicators = training()
+    alone = indicators[:, 2].astype(bool) & (FOLDS != 1)
+    found = fit_discriminants(vectors[~alone], indicators[~alone], FOLDS[~alone], SHRINKAGE)
+    own_action = indicators[~alone][:, 2].astype(bool)
+    np.testing.assert_array_equal(found.cross_validated_scores[own_action], found.training_scores[own_action])
+    assert (found.cross_validated_scores[~own_action] != found.training_scores[~own_action]).all()
 
 
-def test_the_less_shrinkage_the_nearer_to_what_is_wanted() -> None:
-    vectors, wanted = training()
-    errors = [np.abs(discriminant_axes(vectors, wanted, FOLDS, s).own - wanted).max() for s in (1e-6, 1e-2, 1.0, 1e4)]
+def test_the_less_shrinkage_the_nearer_to_the_indicators() -> None:
+    vectors, indicators = training()
+    errors = [
+        np.abs(fit_discriminants(vectors, indicators, FOLDS, s).training_scores - indicators).max()
+        for s in (1e-6, 1e-2, 1.0, 1e4)
+    ]
     assert errors == sorted(errors)
     assert errors[0] < 1e-3
     assert errors[-1] == pytest.approx(1 - 1 / ACTIONS, abs=1e-3)
 
 
-def test_scores_on_held_out_people_are_worse_than_on_ones_own() -> None:
-    vectors, wanted = training()
-    found = discriminant_axes(vectors, wanted, FOLDS, SHRINKAGE)
-    own, held_out = (np.square(scores - wanted).mean() for scores in (found.own, found.held_out))
-    assert own < held_out
+def test_cross_validated_scores_are_worse_than_training_scores() -> None:
+    vectors, indicators = training()
+    found = fit_discriminants(vectors, indicators, FOLDS, SHRINKAGE)
+    training_error, cross_validated_error = (
+        np.square(scores - indicators).mean() for scores in (found.training_scores, found.cross_validated_scores)
+    )
+    assert training_error < cross_validated_error
 
 
 def test_people_are_folds() -> None:
@@ -100,14 +109,14 @@ def test_people_are_folds() -> None:
 
 
 def test_many_people_share_folds() -> None:
-    samples = [replace(tiny_samples()[0], person=f"{number:02}") for number in range(MOST_FOLDS + 3)]
-    assert folds_of(samples).tolist() == [*range(MOST_FOLDS), 0, 1, 2]
+    samples = [replace(tiny_samples()[0], person=f"{number:02}") for number in range(MAX_PERSON_FOLDS + 3)]
+    assert folds_of(samples).tolist() == [*range(MAX_PERSON_FOLDS), 0, 1, 2]
 
 
 def test_samples_of_one_person_are_divided_within_each_action() -> None:
     samples = [replace(tiny_samples()[0], label=label) for label in "aabaabaab"]
     assert folds_of(samples).tolist() == [0, 1, 0, 2, 3, 1, 4, 0, 2]
-    assert FOLDS_WITHOUT_PEOPLE == 5
+    assert FOLDS_WITHIN_AN_ACTION == 5
 
 
 def test_an_action_that_only_one_person_did_is_divided_within() -> None:

@@ -7,9 +7,9 @@ import pytest
 
 from actum.skeletons import PARTS
 from actum_model_trainer.answering import encoded
+from actum_model_trainer.median_distances import median_neighbour_distance2
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.training import train
-from actum_model_trainer.typical import typical_distance2
 from performers import TINY_PAPER
 from som_classifier.attention import PostureInput
 from som_classifier.paper_model import PaperModel
@@ -76,16 +76,16 @@ def test_progress_names_every_stage_to_its_end(samples: list[SegmentSample]) -> 
     ]
 
 
-def test_typical_distance_by_hand() -> None:
+def test_median_neighbour_distance_by_hand() -> None:
     """Nearest neighbours are 1, 1, 2 and 6 away."""
-    assert typical_distance2(np.array([[0.0], [1.0], [3.0], [9.0]])) == (1 + 4) / 2
+    assert median_neighbour_distance2(np.array([[0.0], [1.0], [3.0], [9.0]])) == (1 + 4) / 2
 
 
-def test_typical_distance_of_many_is_that_of_all_pairs() -> None:
+def test_median_neighbour_distance_of_many_is_that_of_all_pairs() -> None:
     vectors = np.random.default_rng(0).random((200, 4))
     distances2 = ((vectors[:, None] - vectors) ** 2).sum(axis=2) + np.diag(np.full(200, np.inf))
-    assert typical_distance2(vectors) == pytest.approx(np.median(distances2.min(axis=1)))
+    assert median_neighbour_distance2(vectors) == pytest.approx(np.median(distances2.min(axis=1)))
 
 
-def test_typical_distance_of_equals_is_one_grid_step() -> None:
-    assert typical_distance2(np.ones((4, 6))) == 1.0
+def test_median_neighbour_distance_of_equals_is_one_grid_step() -> None:
+    assert median_neighbour_distance2(np.ones((4, 6))) == 1.0

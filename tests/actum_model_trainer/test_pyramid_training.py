@@ -9,13 +9,13 @@ from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from actum.som import Som
 from actum_model_trainer.answering import answer, encoded
-from actum_model_trainer.confidence import familiar
-from actum_model_trainer.description import TrainingError
-from actum_model_trainer.discriminants import discriminant_axes, folds_of
-from actum_model_trainer.hands import keep_to_one_hand
+from actum_model_trainer.confidence import familiarity_threshold
+from actum_model_trainer.discriminants import fit_discriminants, folds_of
+from actum_model_trainer.hand_preference import people_prefer_one_hand
+from actum_model_trainer.median_distances import median_quantization_error2
+from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.training import train
-from actum_model_trainer.typical import typical_error2
 from performers import TINY
 from recognisers import in_a_mirror
 from som_classifier.first_layer import arm_inputs, frame_inputs
@@ -53,9 +53,11 @@ def without_arms(sample: SegmentSample) -> SegmentSample:
 def test_axes_are_fitted_to_what_the_recogniser_pools(samples: list[SegmentSample]) -> None:
     model = trained(samples, PLAIN)
     vectors = np.stack([pooled(model, sample) for sample in samples])
-    axes = discriminant_axes(vectors, wanted(model, samples), folds_of(samples), PLAIN.shrinkage)
-    np.testing.assert_allclose(vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.own, atol=0.02)
-    usual = familiar(axes.held_out, samples, PLAIN)
+    axes = fit_discriminants(vectors, wanted(model, samples), folds_of(samples), PLAIN.shrinkage)
+    np.testing.assert_allclose(
+        vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.training_scores, atol=0.02
+    )
+    usual = familiarity_threshold(axes.cross_validated_scores, samples, PLAIN)
     assert model.metadata.familiar == pytest.approx(usual, abs=0.02)
 
 
@@ -79,7 +81,7 @@ def test_a_model_remembers_what_left_out_samples_were_taken_for(samples: list[Se
     assert not {answered for done, answered in told if done in "ab"} - {"a", "b"}
 
 
-def test_few_peoples_samples_are_shown_as_more_other_people(samples: list[SegmentSample]) -> None:
+def test_samples_of_few_people_are_augmented_more(samples: list[SegmentSample]) -> None:
     several = BodyVariation(3, build_sd=0.2, tempo=0.5)
     of_few = replace(PLAIN, others_of_few=several, few_people=2)
     for names in ("11", "12"):
@@ -97,8 +99,10 @@ def test_each_stage_is_fitted_to_that_share_of_the_action(samples: list[SegmentS
     assert model.metadata.fractions == pytest.approx([0.4, 1.0])
     vectors = np.stack([pooled(model, sample, fraction) for sample in samples for fraction in (0.3, 0.5)])
     twice = [sample for sample in samples for _ in range(2)]
-    axes = discriminant_axes(vectors, wanted(model, twice), folds_of(twice), PLAIN.shrinkage)
-    np.testing.assert_allclose(vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.own, atol=0.05)
+    axes = fit_discriminants(vectors, wanted(model, twice), folds_of(twice), PLAIN.shrinkage)
+    np.testing.assert_allclose(
+        vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.training_scores, atol=0.05
+    )
 
 
 def changing_arms(sample: SegmentSample) -> SegmentSample:
@@ -117,8 +121,10 @@ def test_what_was_seen_so_far_is_read_by_the_arm_that_acts_so_far(samples: list[
     model = trained(changing, replace(PLAIN, stages=((0.2, 0.3), (1.0,))))
     vectors = np.stack([pooled(model, sample, fraction) for sample in changing for fraction in (0.2, 0.3)])
     twice = [sample for sample in changing for _ in range(2)]
-    axes = discriminant_axes(vectors, wanted(model, twice), folds_of(twice), PLAIN.shrinkage)
-    np.testing.assert_allclose(vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.own, atol=0.05)
+    axes = fit_discriminants(vectors, wanted(model, twice), folds_of(twice), PLAIN.shrinkage)
+    np.testing.assert_allclose(
+        vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.training_scores, atol=0.05
+    )
 
 
 def test_durations_are_those_of_the_samples(samples: list[SegmentSample]) -> None:
@@ -141,17 +147,17 @@ def with_a_left_hander(samples: list[SegmentSample]) -> list[SegmentSample]:
 
 def test_where_people_change_hands_the_hand_belongs_to_the_action(samples: list[SegmentSample]) -> None:
     assert {sample.acting_hands[-1] for sample in samples if sample.label == "swing"} == {"left"}
-    assert not keep_to_one_hand(samples)
+    assert not people_prefer_one_hand(samples)
     assert not trained(samples).metadata.mirrors
     for others in (right_handed(samples), with_a_left_hander(samples), [replace(s, person=s.label) for s in samples]):
-        assert keep_to_one_hand(others)
+        assert people_prefer_one_hand(others)
         assert trained(others).metadata.mirrors
 
 
 def test_now_and_then_a_person_may_use_the_other_hand(samples: list[SegmentSample]) -> None:
     first, *others = right_handed(samples)
-    assert keep_to_one_hand([in_a_mirror(first), *others])
-    assert not keep_to_one_hand([in_a_mirror(first), *others[:5]])
+    assert people_prefer_one_hand([in_a_mirror(first), *others])
+    assert not people_prefer_one_hand([in_a_mirror(first), *others[:5]])
 
 
 def test_contrasts_are_relative_to_the_distances_on_the_maps(samples: list[SegmentSample]) -> None:
@@ -241,18 +247,18 @@ def mean_confidence(samples: list[SegmentSample]) -> float:
     return float(np.mean([answer(model, encoded(model, sample)).confidence for sample in samples]))
 
 
-def test_typical_distance_by_hand() -> None:
+def test_median_quantization_error_by_hand() -> None:
     """One unit at 0: squared distances 1, 4 and 9."""
-    assert typical_error2(Som(1, 1, np.zeros((1, 1))), np.array([[1.0], [2.0], [3.0]])) == 4.0
+    assert median_quantization_error2(Som(1, 1, np.zeros((1, 1))), np.array([[1.0], [2.0], [3.0]])) == 4.0
 
 
-def test_typical_distance_scales_up_what_is_missing() -> None:
+def test_median_quantization_error_scales_up_what_is_missing() -> None:
     """Two of three components known: 1 + 1 stands for 3."""
-    assert typical_error2(Som(1, 1, np.zeros((1, 3))), np.array([[1.0, np.nan, 1.0]])) == 3.0
+    assert median_quantization_error2(Som(1, 1, np.zeros((1, 3))), np.array([[1.0, np.nan, 1.0]])) == 3.0
 
 
-def test_a_typical_distance_is_never_zero() -> None:
-    assert typical_error2(Som(1, 1, np.ones((1, 3))), np.ones((4, 3))) > 0
+def test_a_median_quantization_error_is_never_zero() -> None:
+    assert median_quantization_error2(Som(1, 1, np.ones((1, 3))), np.ones((4, 3))) > 0
 
 
 @pytest.mark.parametrize("friends", [1, 2])

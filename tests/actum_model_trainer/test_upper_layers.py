@@ -1,16 +1,15 @@
-"""The map of actions and its neurons learn scores, and are as sure as scores of people left out let them be."""
+"""The action map and the neurons learn scores, training and cross-validated ones."""
 
 import numpy as np
 import pytest
 
-from actum_model_trainer.discriminants import Axes
+from actum_model_trainer.discriminants import Discriminants, FittedStage
 from actum_model_trainer.progress import silent
-from actum_model_trainer.upper_layers import Scored, UpperLayers, mixed, train_upper, variance_within
+from actum_model_trainer.upper_layers import UpperLayers, mixup, train_upper, within_class_variance
 from performers import TINY
 
 ACTIONS, PEOPLE, EACH = 3, 4, 5
 TARGETS = np.tile(np.repeat(np.arange(ACTIONS), EACH), PEOPLE)
-FOLDS = np.repeat(np.arange(PEOPLE), ACTIONS * EACH)
 NOBODY = np.zeros((0, ACTIONS), np.float32)
 
 
@@ -23,12 +22,12 @@ def scores(noise: float, seed: int = 0) -> np.ndarray:
     return np.asarray(np.eye(ACTIONS)[TARGETS] + rng(seed).normal(0, noise, (len(TARGETS), ACTIONS)))
 
 
-def scored(own_noise: float, held_out_noise: float) -> Scored:
-    axes = Axes(NOBODY, NOBODY, scores(own_noise), scores(held_out_noise, 1))
-    return Scored(axes, np.arange(len(TARGETS)), TARGETS, FOLDS)
+def scored(own_noise: float, cross_validated_noise: float) -> FittedStage:
+    axes = Discriminants(NOBODY, NOBODY, scores(own_noise), scores(cross_validated_noise, 1))
+    return FittedStage(axes, np.arange(len(TARGETS)), TARGETS)
 
 
-def upper(stage: Scored) -> UpperLayers:
+def upper(stage: FittedStage) -> UpperLayers:
     return train_upper(stage, ACTIONS, TINY, rng(), silent)
 
 
@@ -43,11 +42,11 @@ def test_cosines_are_those_of_each_row_alone() -> None:
     np.testing.assert_allclose(layers.cosines(rows), np.stack(alone), atol=1e-5)
 
 
-def test_what_the_map_learns_is_partly_the_one_partly_the_other() -> None:
+def test_the_map_learns_training_and_cross_validated_scores_alike() -> None:
     """Half and half: the mean of the map's inputs is what its linear beginning stands about."""
     one, other = scored(0.1, 0.3), scored(0.3, 0.1)
-    swapped = Axes(NOBODY, NOBODY, one.axes.held_out, one.axes.own)
-    mirrored = Scored(swapped, one.owners, one.targets, one.folds)
+    swapped = Discriminants(NOBODY, NOBODY, one.discriminants.cross_validated_scores, one.discriminants.training_scores)
+    mirrored = FittedStage(swapped, one.sample_indices, one.targets)
     assert TINY.held_out_share == 0.5
     np.testing.assert_array_equal(upper(one).action_map.som.weights, upper(mirrored).action_map.som.weights)
     assert (upper(one).action_map.som.weights != upper(other).action_map.som.weights).any()
@@ -58,7 +57,7 @@ def test_one_example_of_each_action_is_enough() -> None:
     targets = np.arange(10)
     perfect = 0.98 * np.eye(10)
     layers = train_upper(
-        Scored(Axes(NOBODY, NOBODY, perfect, perfect), targets, targets, np.zeros(10, np.intp)), 10, TINY, rng(), silent
+        FittedStage(Discriminants(NOBODY, NOBODY, perfect, perfect), targets, targets), 10, TINY, rng(), silent
     )
     asked = rng().integers(10, size=200)
     strangers = 0.35 * np.eye(10)[asked] + rng(1).normal(0.06, 0.04, (200, 10))
@@ -66,8 +65,8 @@ def test_one_example_of_each_action_is_enough() -> None:
     assert (told == strangers.argmax(axis=1)).mean() > 0.95
 
 
-def test_mixtures_fill_up_what_is_few() -> None:
-    rows, targets = mixed(np.eye(3), np.arange(3), 500, 0.55, rng())
+def test_mixup_fills_up_few_scores() -> None:
+    rows, targets = mixup(np.eye(3), np.arange(3), 500, 0.55, rng())
     np.testing.assert_array_equal(rows[:3], np.eye(3))
     np.testing.assert_array_equal(targets[:3], np.arange(3))
     assert rows.shape == (500, 3)
@@ -76,14 +75,14 @@ def test_mixtures_fill_up_what_is_few() -> None:
     assert 0.55 <= rows.max(axis=1).min() < 0.6
 
 
-def test_what_is_enough_stays_as_it_is() -> None:
-    rows, targets = mixed(scores(0.1), TARGETS, len(TARGETS), 0.55, rng())
+def test_enough_scores_stay_as_they_are() -> None:
+    rows, targets = mixup(scores(0.1), TARGETS, len(TARGETS), 0.55, rng())
     np.testing.assert_array_equal(rows, scores(0.1))
     np.testing.assert_array_equal(targets, TARGETS)
 
 
-def test_variance_within_by_hand() -> None:
+def test_within_class_variance_by_hand() -> None:
     """Of the first action 1 and 4, of the second 0 and 0: what lies between actions does not count."""
     rows = np.array([[0.0, 10.0], [2.0, 14.0], [50.0, 50.0], [50.0, 50.0]])
-    assert variance_within(rows, np.array([0, 0, 1, 1])) == pytest.approx((2.5 + 0) / 2)
-    assert variance_within(rows[2:], np.array([0, 1])) > 0
+    assert within_class_variance(rows, np.array([0, 0, 1, 1])) == pytest.approx((2.5 + 0) / 2)
+    assert within_class_variance(rows[2:], np.array([0, 1])) > 0

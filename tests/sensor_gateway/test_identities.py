@@ -1,4 +1,4 @@
-"""Identities keep their numbers: from image to image, unseen for a moment, and passing one another."""
+"""People keep their numbers: from image to image, unseen for a moment, and passing one another."""
 
 from collections.abc import Sequence
 

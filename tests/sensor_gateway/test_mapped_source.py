@@ -64,6 +64,6 @@ def test_a_recording_played_again_begins_anew_for_those_who_listen(recording: Pa
 
 
 def test_the_longest_session_name_still_fits(recording: Path) -> None:
-    amend = with_session_of("f" * 16)
+    mapping = with_session_of("f" * 16)
     longest = reaches(1)[0].model_copy(update={"session_id": "s" * 200})
-    assert Skeleton.model_validate(amend(longest).model_dump()).session_id.endswith(".ffffffffffffffff")
+    assert Skeleton.model_validate(mapping(longest).model_dump()).session_id.endswith(".ffffffffffffffff")

@@ -12,8 +12,8 @@ from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
 from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say
 from actum_command.preset_settings import SETTINGS, PresetError, preset_named
+from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import Evaluation, evaluate
-from actum_model_trainer.leaving_out import leave_one_person_out
 from actum_model_trainer.report import report
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import TrainingError, train

@@ -18,7 +18,7 @@ class Capture(Protocol):
 
     @property
     def live(self) -> bool:
-        """Whether its images come from a colour sensor now, so that noise makes each differ from the last."""
+        """Whether frozen or black pictures mean a failed camera: not in a file, nor where depth alone finds people."""
         ...
 
     def next(self, patience_s: float) -> Picture | None:

@@ -57,7 +57,7 @@ def nite() -> Any | None:
 
 
 class NiteCapture(OpenNi2Capture):
-    """The first camera found, with the people that NiTE tracks; it sees them in the dark as well."""
+    """The first camera found, with the people that NiTE tracks in its depth images, in the dark as well."""
 
     live = False
 
@@ -94,7 +94,7 @@ class NiteCapture(OpenNi2Capture):
 
         streams = super()._opened()
         try:
-            with chdir(self._nite2.loaded_dll_directory):  # its data is looked for from where the process is
+            with chdir(self._nite2.loaded_dll_directory):  # NiTE looks for its data in the working directory
                 self._tracker = self._nite2.UserTracker(streams.device)
         except NiteError as error:
             streams.close()

@@ -16,7 +16,7 @@ from sensor_gateway.people.landmarks import Landmarks
 
 MILLISECOND_NS = 1_000_000
 HALF_PX = 0.5
-"""MediaPipe counts from the image's corner, the intrinsics from the first pixel's centre."""
+"""MediaPipe's origin is the image's corner, that of the intrinsics the first pixel's centre."""
 
 STDERR = 2
 """The file descriptor of the error stream."""
@@ -54,8 +54,8 @@ class Nobody:
 class PoseEstimator:
     """Finds up to `people` persons in each image of a stream; the model follows them from image to image.
 
-    Looking for several costs three times as much as following one, and the model low-passes one person only. So while
-    there is one, the others are looked for once a second.
+    Searching for several costs three times as much as following one, and the model smooths one person only. So while
+    there is one, others are searched for once a second.
 
     Raises:
         PoseModelError: MediaPipe is not installed, or the file is missing or no pose model.
@@ -86,7 +86,7 @@ class PoseEstimator:
     def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
         """Return those seen in an image of shape (height, width, 3), in no lasting order.
 
-        Stamps are to rise; where they do not by a millisecond, the model is told that they do.
+        Stamps rise; the model gets them in whole milliseconds, at least one after the last.
         """
         if self._several is not None and (
             self._sees_several(stamp_ns) or not within(self._searched_ns, stamp_ns, SEARCH_NS)
@@ -109,7 +109,7 @@ def within(past_ns: int | None, stamp_ns: int, span_ns: int) -> bool:
 
 
 class Landmarker:
-    """MediaPipe's own: up to `people` persons in each image of a stream.
+    """MediaPipe's pose landmarker: up to `people` persons in each image of a stream.
 
     Raises:
         PoseModelError: MediaPipe is not installed, or the file is no pose model.
@@ -123,7 +123,7 @@ class Landmarker:
         self._last_ms = 0
 
     def close(self) -> None:
-        """Let go of the model; it cannot do so by itself when the interpreter ends."""
+        """Close the model, which at the interpreter's end would be too late."""
         self._landmarker.close()
 
     def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
@@ -158,7 +158,7 @@ class Landmarker:
 
 @contextmanager
 def native_stderr_dropped() -> Iterator[None]:
-    """Drop what native code writes to the error stream: the model's start is said in lines that no setting stops."""
+    """Drop what native code writes to the error stream: MediaPipe logs the model's start whatever is set."""
     kept = os.dup(STDERR)
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:

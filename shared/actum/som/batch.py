@@ -7,9 +7,10 @@ from typing import Any, Generic
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from actum.som.blas import producted
-from actum.som.codebook import Map, training_vectors
+from actum.som.blas import matmul
+from actum.som.codebook import Map
 from actum.som.grid import Grid
+from actum.som.inputs import training_vectors
 from actum.som.lookup import Lookup
 from actum.som.schedule import checked_radii
 
@@ -17,14 +18,27 @@ Doubles = NDArray[np.float64]
 
 
 class BatchTraining(Generic[Map]):
-    """A map while it learns, all inputs at once per epoch: wⱼ = Σₖ Gⱼₖ Sₖ / Σₖ Gⱼₖ Nₖ.
+    """A map while it learns from all inputs at once, epoch by epoch: wⱼ = Σₖ Gⱼₖ Sₖ / Σₖ Gⱼₖ Nₖ (Kohonen, 2013).
 
-    S and N are the sum and the number of the inputs that unit k won, G = exp(−r² / 2 radius²) with r the distance on
+    Sₖ and Nₖ are the sum and the number of the inputs that unit k won, G = exp(−r² / 2 radius²) with r the distance on
     the grid. Missing components (NaN) count in neither. The same inputs and start make the same map, to the bit.
+
+    >>> from actum.som import Som
+    >>> vectors = np.random.default_rng(0).random((100, 2))
+    >>> training = BatchTraining(Som.linear(4, 4, vectors), vectors, radii=[2.0, 1.0, 0.5])
+    >>> while training.epochs_done < training.epochs:
+    ...     training.run_epoch()
+    >>> training.som.quantization_error(vectors) < 0.2
+    True
     """
 
     def __init__(self, som: Map, vectors: ArrayLike, radii: ArrayLike) -> None:
-        """Prepare one epoch per neighbourhood radius (grid units).
+        """Prepare one epoch per neighbourhood radius.
+
+        Args:
+            som: the map to start from, left as it is.
+            vectors: the inputs, (n, dim).
+            radii: (epochs,), in grid units.
 
         Raises:
             ValueError: the vectors do not fit the map, or a radius is not above 0.
@@ -70,7 +84,10 @@ class BatchTraining(Generic[Map]):
 
 
 def _columns(vectors: NDArray[Any]) -> tuple[Doubles, list[Doubles | None]]:
-    """Return the columns to add up, zero where missing, and those to count by: one for all where none is missing."""
+    """Return the transposed vectors (dim, n), 0 where missing, and weights (n,) that count what is known.
+
+    There is one array of weights per component, or a single None, which counts all, where nothing is missing.
+    """
     columns = np.array(vectors.T, np.float64, order="C")
     missing = np.isnan(columns)
     if not missing.any():
@@ -80,7 +97,10 @@ def _columns(vectors: NDArray[Any]) -> tuple[Doubles, list[Doubles | None]]:
 
 
 def _smoothed(sums: Doubles, grid: Grid, radius: float) -> Doubles:
-    """Return G sums: G is the product of a Gaussian over rows and one over columns, for rows shifted alike."""
+    """Return Σₖ Gⱼₖ sumsₖ, in the shape of the sums, (nodes, width).
+
+    Between rows that are shifted alike G is separable, a Gaussian over rows times one over columns.
+    """
     by_row = sums.reshape(grid.rows, grid.cols, -1)
     smoothed = np.empty_like(by_row)
     shifts = np.unique(grid.shifts)
@@ -92,19 +112,27 @@ def _smoothed(sums: Doubles, grid: Grid, radius: float) -> Doubles:
 
 
 def _spread(by_row: Doubles, grid: Grid, radius: float, shift: int, start: int) -> Doubles:
-    """Return what the rows of one shift get from those of another, shape (rows so shifted, cols, width)."""
+    """Return what rows with shift `shift` receive from rows with shift `start`, shape (receiving rows, cols, width).
+
+    Args:
+        by_row: the sums, (rows, cols, width).
+        grid: whose shifts these are, in substeps.
+        radius: of the neighbourhood, grid units.
+        shift: of the receiving rows.
+        start: of the giving rows.
+    """
     to, origin = np.flatnonzero(grid.shifts == shift), np.flatnonzero(grid.shifts == start)
     cols, width = np.arange(grid.cols), by_row.shape[2]
-    over_rows = producted(
+    over_rows = matmul(
         _gaussians(to * grid.row_spacing, origin * grid.row_spacing, radius), by_row[origin].reshape(len(origin), -1)
     )
     by_cols = over_rows.reshape(len(to), grid.cols, width).swapaxes(0, 1).reshape(grid.cols, -1)
-    over_both = producted(_gaussians(cols + shift / grid.substeps, cols + start / grid.substeps, radius), by_cols)
+    over_both = matmul(_gaussians(cols + shift / grid.substeps, cols + start / grid.substeps, radius), by_cols)
     spread: Doubles = over_both.reshape(grid.cols, len(to), width).swapaxes(0, 1)
     return spread
 
 
-def _gaussians(places: NDArray[Any], others: NDArray[Any], radius: float) -> Doubles:
-    """Return exp(−r² / 2 radius²) between places on a line, shape (n, m)."""
-    gaussians: Doubles = np.exp(-np.square(places[:, None] - others) / (2 * radius**2))
+def _gaussians(positions: NDArray[Any], others: NDArray[Any], radius: float) -> Doubles:
+    """Return exp(−r² / 2 radius²) between positions on a line, (n,) and (m,), shape (n, m)."""
+    gaussians: Doubles = np.exp(-np.square(positions[:, None] - others) / (2 * radius**2))
     return gaussians

@@ -7,29 +7,38 @@ from numpy.typing import NDArray
 
 Floats = TypeVar("Floats", NDArray[np.float32], NDArray[np.float64])
 
-ROWS = 128
-"""Rows worth multiplying at once: what is made of them still lies in the cache when it is looked at."""
+CHUNK_ROWS = 128
+"""Rows worth multiplying at once: their products still lie in the cache when they are read."""
 _INNER = 128
+"""Terms summed in one product; longer sums are added up in parts of as many, so that tiles stay large."""
 _LARGEST = 2**18
 """Multiplications in one product up to which OpenBLAS stays on one thread; a second one rounds differently."""
 _LANES = 16
 """Widths are kept to multiples of this many numbers, which BLAS kernels treat alike."""
 _ALIASING_BYTES = 4096
+"""Rows that lie a multiple of this apart fall into the same lines of the processor's cache."""
 
 
-def rounded_up(count: int) -> int:
+def padded_width(count: int) -> int:
     """Return the next multiple of the kernels' width."""
     return -(-count // _LANES) * _LANES
 
 
 def stride(nodes: int, dtype: np.dtype[np.floating]) -> int:
     """Return how far apart rows of `nodes` numbers are stored, so that they do not contend for the same cache lines."""
-    padded = rounded_up(nodes)
+    padded = padded_width(nodes)
     return padded + _LANES if padded * dtype.itemsize % _ALIASING_BYTES == 0 else padded
 
 
-def product(left: Floats, right: Floats, out: Floats) -> None:
-    """Write left @ right to out, in tiles of one thread's size."""
+def matmul(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return left @ right, (n, m) times (m, k)."""
+    out = np.empty((left.shape[0], right.shape[1]))
+    matmul_into(left, right, out)
+    return out
+
+
+def matmul_into(left: Floats, right: Floats, out: Floats) -> None:
+    """Write left @ right to out, (n, m) times (m, k), in tiles that BLAS multiplies on one thread."""
     inner = left.shape[1]
     _tiles(left[:, :_INNER], right[:_INNER], out)
     for start in range(_INNER, inner, _INNER):
@@ -38,8 +47,8 @@ def product(left: Floats, right: Floats, out: Floats) -> None:
         out += part
 
 
-def row_product(left: Floats, right: Floats) -> Floats:
-    """Return left @ right of a single row, shape (width,)."""
+def row_matmul(left: Floats, right: Floats) -> Floats:
+    """Return left @ right of a single row, (m,) times (m, k)."""
     if right.size <= _LARGEST:
         direct: Floats = left.dot(right)
         return direct
@@ -52,25 +61,18 @@ def row_product(left: Floats, right: Floats) -> Floats:
     return out
 
 
-def rows_product(left: Floats, right: Floats) -> Floats:
-    """Return left @ right of a few rows, (n, m) times (m, width)."""
+def few_rows_matmul(left: Floats, right: Floats) -> Floats:
+    """Return left @ right, (n, m) times (m, k) for a few rows n: at once where that is small, else row by row."""
     if len(left) * right.size <= _LARGEST:
         direct: Floats = left.dot(right)
         return direct
-    return np.stack([row_product(row, right) for row in left])
-
-
-def producted(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return left @ right, (n, m) times (m, k)."""
-    out = np.empty((left.shape[0], right.shape[1]))
-    product(left, right, out)
-    return out
+    return np.stack([row_matmul(row, right) for row in left])
 
 
 def _tiles(left: Floats, right: Floats, out: Floats) -> None:
-    width = max(_LANES, _LARGEST // (ROWS * left.shape[1]) // _LANES * _LANES)
-    for top in range(0, len(left), ROWS):
-        rows = slice(top, top + ROWS)
+    width = max(_LANES, _LARGEST // (CHUNK_ROWS * left.shape[1]) // _LANES * _LANES)
+    for top in range(0, len(left), CHUNK_ROWS):
+        rows = slice(top, top + CHUNK_ROWS)
         for start in range(0, right.shape[1], width):
             cols = slice(start, start + width)
             np.matmul(left[rows], right[:, cols], out=out[rows, cols])

@@ -1,4 +1,4 @@
-"""What a map is when it is not learning: weights on a grid, looked up and measured."""
+"""The codebook of a map: weights on a grid, to be looked up, measured and stored, but not trained."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from actum.som import measures, storage
 from actum.som.grid import Grid, Topology
-from actum.som.lookup import Lookup, check_rows, is_complete
+from actum.som.inputs import check_rows, check_squarable, float_type, is_complete, numbers, some_rows
+from actum.som.lookup import Lookup
 
 Array = NDArray[Any]
 Indices = NDArray[np.intp]
@@ -26,8 +27,20 @@ class Codebook:
     left out of the distance to every unit, and the squared distance is scaled up by dim / known. As distances are
     squared, single precision tells apart only what differs by more than 1e-19.
 
+    >>> codebook = Codebook(1, 3, [[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]])
+    >>> codebook.bmu([0.9, 0.2]), codebook.bmus([[0.0, 1.9], [np.nan, 0.1]]).tolist()
+    (1, [2, 0])
+    >>> codebook.distances2([0.0, 1.0]).tolist()
+    [1.0, 2.0, 1.0]
+
     Attributes:
-        weights: (rows * cols, dim), read-only, float32 or float64 as given.
+        rows: of the grid, at least 1.
+        cols: of the grid, at least 1.
+        weights: (rows * cols, dim), read-only, float32 if given so, else float64.
+        topology: "rectangular" or "hexagonal".
+
+    Raises:
+        ValueError: the weights have another shape, are not finite or too large to be squared, or there is no such grid.
     """
 
     rows: int
@@ -98,6 +111,9 @@ class Codebook:
         """Find the best matching unit of each row of (n, dim). Shape (n,).
 
         The same for any number of BLAS threads. Where two runs must agree on ties to the bit, n must agree too.
+
+        Raises:
+            ValueError: the rows have another length, an infinite component or no known one.
         """
         return self.lookup.winners(numbers(vectors))
 
@@ -105,7 +121,7 @@ class Codebook:
         """Find the best and the second-best matching unit of each row of (n, dim). Shape (n, 2).
 
         Raises:
-            ValueError: the map has one unit only.
+            ValueError: the map has one unit only; or as `bmus`.
         """
         if self.grid.nodes < 2:
             raise ValueError("a map of one unit has no second-best one")
@@ -121,6 +137,9 @@ class Codebook:
         """Return each unit's squared distance to x beyond the winner's, d² − d²_min, shape (rows * cols,).
 
         |x|² cancels, so that the differences stay exact however far x lies from the map.
+
+        Raises:
+            ValueError: x has another length, an infinite component or no known one.
         """
         scores = self.lookup.score(numbers(x))[: len(self.weights)]
         scores -= scores[scores.argmin()]
@@ -128,7 +147,11 @@ class Codebook:
         return scores
 
     def excess2s(self, vectors: ArrayLike) -> Array:
-        """Return d² − d²_min of each row of (n, dim) to each unit, shape (n, rows * cols)."""
+        """Return d² − d²_min of each row of (n, dim) to each unit, shape (n, rows * cols), in the map's precision.
+
+        Raises:
+            ValueError: the rows have another length, an infinite component or no known one.
+        """
         rows = numbers(vectors)
         excess2 = np.empty((len(rows), self.grid.nodes), self.dtype)
         for chunk, scores in self.lookup.scores(rows):
@@ -137,7 +160,11 @@ class Codebook:
         return excess2
 
     def distances2(self, x: ArrayLike) -> NDArray[np.float64]:
-        """Return each unit's squared Euclidean distance to x, shape (rows * cols,)."""
+        """Return each unit's squared Euclidean distance to x (dim,), shape (rows * cols,).
+
+        Raises:
+            ValueError: x has another length, an infinite component or no known one.
+        """
         row = numbers(x)[None]
         check_rows(row, self.dim)
         is_complete(row)
@@ -165,11 +192,22 @@ class Codebook:
         return measures.topographic_error(self.best_two(some_rows(vectors)), self.grid, neighbours)
 
     def u_matrix(self, neighbours: int | None = None) -> NDArray[np.float64]:
-        """Return each unit's mean distance to its grid neighbours' weights, shape (rows, cols)."""
+        """Return each unit's mean distance to its grid neighbours' weights, shape (rows, cols).
+
+        Args:
+            neighbours: 8, the default, or 4; on a hexagonal grid 6.
+
+        Raises:
+            ValueError: units have no such number of neighbours.
+        """
         return measures.u_matrix(self.weights, self.grid, neighbours)
 
     def hits(self, vectors: ArrayLike) -> Indices:
-        """Return how many rows of (n, dim) each unit wins, shape (rows, cols)."""
+        """Return how many rows of (n, dim) each unit wins, shape (rows, cols).
+
+        Raises:
+            ValueError: as `bmus`.
+        """
         return measures.hits(self.bmus(vectors), self.grid)
 
     def save(self, path: Path | str) -> None:
@@ -208,55 +246,3 @@ def stored_map(file: Mapping[str, Array], kind: type[Map]) -> Map:
         ValueError, KeyError: the file holds something else.
     """
     return kind.of_planes(file["weights"], cast(Topology, str(file["topology"])))
-
-
-def some_rows(vectors: ArrayLike) -> Array:
-    """Return the vectors (n, dim) as an array.
-
-    Raises:
-        ValueError: there is none.
-    """
-    rows = numbers(vectors)
-    if not len(rows):
-        raise ValueError("there are no vectors to measure a map with")
-    return rows
-
-
-def float_type(values: ArrayLike) -> np.dtype[np.floating]:
-    """Return float32 for float32 values, float64 for all others."""
-    return np.dtype(np.float32 if np.asarray(values).dtype == np.float32 else np.float64)
-
-
-def numbers(values: ArrayLike) -> Array:
-    """Return values as an array in their own precision, in double where they are no floats; None is NaN."""
-    given = np.asarray(values)
-    return given if given.dtype.kind == "f" else np.asarray(values, np.float64)
-
-
-def check_squarable(values: Array) -> None:
-    """Refuse values (n, dim) whose squared distances their precision cannot hold.
-
-    Raises:
-        ValueError: with the largest.
-    """
-    largest = np.nanmax(np.abs(values))
-    if largest > np.sqrt(np.finfo(values.dtype).max / values.shape[1]) / 4:
-        raise ValueError(f"values up to {largest:.0e} are too large for distances in {values.dtype}: scale them down")
-
-
-def training_vectors(vectors: ArrayLike, dim: int, dtype: np.dtype[np.floating]) -> Array:
-    """Return the rows to learn from, (n, dim) in a map's precision.
-
-    Raises:
-        ValueError: there is none, its length is another, or one is infinite, too large to be squared, or has no
-            known component.
-    """
-    inputs = np.array(vectors, dtype=dtype, order="C")
-    if inputs.ndim != 2 or inputs.shape[1] != dim or not len(inputs):
-        raise ValueError(f"cannot train on shape {inputs.shape}: needs n > 0 rows of {dim}")
-    try:
-        is_complete(inputs)
-        check_squarable(inputs)
-    except ValueError as error:
-        raise ValueError(f"cannot train on these vectors: {error}") from None
-    return inputs

@@ -1,4 +1,4 @@
-"""The kernel of sequential training, compiled.
+"""The kernel of sequential training, compiled; its arguments are those of `actum.som.kernel.adapt_in_numpy`.
 
 The weights are kept as (dim, stride), so that every loop runs along memory and fills vector registers. One pass moves
 the weights towards the input of this step and adds up their distances to that of the next, which halves the traffic
@@ -20,6 +20,7 @@ Indices = NDArray[np.intp]
 Function = TypeVar("Function", bound=Callable[..., object])
 
 LANES = 16
+"""Width of the map that is tried out: that of the vector registers, as real maps are padded to."""
 
 
 def _compiled(function: Function) -> Function:
@@ -28,7 +29,7 @@ def _compiled(function: Function) -> Function:
 
 @cache
 def compiled_kernel() -> Kernel:
-    """Return the kernel; its machine code is cached on disk where a place can be written."""
+    """Return the compiled kernel; its machine code is cached on disk where Numba finds a place to write to."""
     try:
         kernel: Kernel = njit(_adapt, error_model="numpy", nogil=True, cache=True)
         _try_out(kernel)
@@ -38,13 +39,14 @@ def compiled_kernel() -> Kernel:
 
 
 def _try_out(kernel: Kernel) -> None:
-    """Adapt the smallest of maps, so that what cannot be written to disk fails here."""
+    """Compile the kernel for both precisions, so that an error of writing its cache is raised here."""
     for dtype in (np.float32, np.float64):
         one = np.ones((1, 1), dtype)
         kernel(np.zeros((1, LANES), dtype), one, one, one, np.zeros(1, np.intp), 1)
 
 
 def _adapt(weights: Array, inputs: Array, over_rows: Array, over_cols: Array, shifts: Indices, substeps: int) -> None:
+    """Take all steps; between two steps the weights are read once, to adapt them and to measure them."""
     nodes = len(shifts) * (over_cols.shape[1] // substeps)
     distances2, neighbourhood, scratch = np.zeros_like(weights[0]), np.zeros_like(weights[0]), np.zeros_like(weights[0])
     _measure(weights, inputs[0], distances2)
@@ -60,7 +62,7 @@ def _adapt(weights: Array, inputs: Array, over_rows: Array, over_cols: Array, sh
 
 @_compiled
 def _first_least(values: Array, count: int, least: Array) -> int:
-    """Return the first place of the least of `count` values, which is found by halving, many values at a time."""
+    """Return the first index of the least of `count` values; the least is found by halving, many values at a time."""
     left = (count + 1) // 2
     least[count - left : left] = values[count - left : left]
     for j in range(count - left):
@@ -80,7 +82,7 @@ def _first_least(values: Array, count: int, least: Array) -> int:
 def _centre_on(
     winner: int, row_gauss: Array, col_gauss: Array, shifts: Indices, substeps: int, along: Array, out: Array
 ) -> None:
-    """Set out to α G of every unit: the product of a Gaussian over rows and one over columns."""
+    """Set out (stride,) to α G of every unit: the product of a Gaussian over rows and one over columns."""
     cols = len(col_gauss) // substeps
     row, place = winner // cols, substeps * (winner % cols) + shifts[winner // cols]
     for r in range(len(shifts)):
@@ -94,6 +96,7 @@ def _centre_on(
 
 @_compiled
 def _measure(weights: Array, x: Array, distances2: Array) -> None:
+    """Set distances2 (stride,) to the squared distances of x (dim,) to all units."""
     distances2[:] = 0
     for d in range(len(x)):
         if not isnan(x[d]):
@@ -102,6 +105,7 @@ def _measure(weights: Array, x: Array, distances2: Array) -> None:
 
 @_compiled
 def _pull(weights: Array, x: Array, neighbourhood: Array) -> None:
+    """Move the weights towards x by α G, the neighbourhood (stride,)."""
     for d in range(len(x)):
         if not isnan(x[d]):
             _pull_one(weights[d], x[d], neighbourhood)

@@ -13,6 +13,7 @@ Topology = Literal["rectangular", "hexagonal"]
 _REACH2 = {"rectangular": {8: 2.0, 4: 1.0}, "hexagonal": {6: 1.0}}
 """Squared grid distance to the farthest neighbour, by the number of neighbours; the first number is the usual one."""
 _ROUNDING = 1e-9
+"""Slack in squared grid units: positions on hexagonal grids are irrational."""
 
 
 @dataclass(frozen=True)
@@ -21,6 +22,15 @@ class Grid:
 
     On a hexagonal grid every odd row is shifted right by half a unit and rows are √3/2 apart ("odd-r"), so that each
     unit inside has six neighbours at distance 1.
+
+    >>> grid = Grid(2, 2, "hexagonal")
+    >>> grid.nodes, grid.positions.round(2).tolist()
+    (4, [[0.0, 0.0], [0.0, 1.0], [0.87, 0.5], [0.87, 1.5]])
+    >>> grid.are_neighbours(np.array([0, 0]), np.array([2, 3])).tolist()
+    [True, False]
+
+    Raises:
+        ValueError: there is no unit, or no such topology.
     """
 
     rows: int
@@ -41,14 +51,14 @@ class Grid:
     @cached_property
     def coordinates(self) -> NDArray[np.float64]:
         """Row and column of each unit, read-only, shape (nodes, 2)."""
-        return _fixed(np.stack(np.divmod(np.arange(self.nodes), self.cols), axis=1).astype(np.float64))
+        return _read_only(np.stack(np.divmod(np.arange(self.nodes), self.cols), axis=1).astype(np.float64))
 
     @cached_property
     def positions(self) -> NDArray[np.float64]:
         """Centre of each unit as (down, right) in grid units, read-only, shape (nodes, 2)."""
         row, col = self.coordinates.T
         right = col + np.tile(self.shifts[:, None], self.cols).ravel() / 2
-        return _fixed(np.stack([row * self.row_spacing, right], axis=1))
+        return _read_only(np.stack([row * self.row_spacing, right], axis=1))
 
     @property
     def row_spacing(self) -> float:
@@ -66,12 +76,12 @@ class Grid:
         return np.arange(self.rows) % 2 * (self.substeps - 1)
 
     def row_gaussians(self, radii: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return exp(−y² / 2 radius²) for units 0, 1, … rows apart, shape (n, rows)."""
+        """Return exp(−y² / 2 radius²) for units 0, 1, … rows apart and radii (n,), shape (n, rows)."""
         distance2 = np.arange(self.rows, dtype=np.float64) ** 2 * (1.0 if self.topology == "rectangular" else 0.75)
         return np.exp(distance2 * (-0.5 / radii[:, None] ** 2))
 
     def col_gaussians(self, radii: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return exp(−x² / 2 radius²) for units 0, 1, … substeps of a column apart, shape (n, substeps * cols).
+        """Return exp(−x² / 2 radius²) for units 0, 1, … substeps of a column apart, radii (n,): (n, substeps * cols).
 
         The Gaussian of the distance on the grid is the product of one along the rows and one along the columns.
         """
@@ -81,13 +91,26 @@ class Grid:
     def are_neighbours(
         self, first: NDArray[np.intp], second: NDArray[np.intp], neighbours: int | None = None
     ) -> NDArray[np.bool_]:
-        """Tell of each pair of units whether they touch, among 4 or 8 (default) neighbours, 6 on a hexagonal grid."""
+        """Tell of each pair of units whether they are neighbours, shape (n,).
+
+        Args:
+            first: (n,), units by number.
+            second: (n,), the other unit of each pair.
+            neighbours: how many a unit has: 8, the default, or 4; on a hexagonal grid 6.
+
+        Raises:
+            ValueError: units have no such number of neighbours.
+        """
         apart = self.positions[first] - self.positions[second]
         near: NDArray[np.bool_] = np.square(apart).sum(axis=-1) <= self._reach2(neighbours) + _ROUNDING
         return near
 
     def edges(self, neighbours: int | None = None) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Return the units of every ordered pair of neighbours, two arrays of the same length."""
+        """Return the first and the second units of all ordered pairs of neighbours, both of shape (pairs,).
+
+        Raises:
+            ValueError: units have no such number of neighbours.
+        """
         row, col = np.divmod(np.arange(self.nodes), self.cols)
         firsts, seconds = [], []
         for down, right in product((-1, 0, 1), repeat=2):
@@ -110,6 +133,6 @@ class Grid:
         return known[count]
 
 
-def _fixed(places: NDArray[np.float64]) -> NDArray[np.float64]:
-    places.setflags(write=False)
-    return places
+def _read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:
+    array.setflags(write=False)
+    return array

@@ -1,7 +1,6 @@
-"""A run of sequential adaptations: in NumPy, and the same to the bit compiled by Numba where that is installed."""
+"""A run of sequential adaptations, in NumPy; `actum.som.compiled` has the same compiled, equal to the bit."""
 
 from collections.abc import Callable
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -9,28 +8,33 @@ from numpy.typing import NDArray
 
 Array = NDArray[Any]
 Kernel = Callable[[Array, Array, Array, Array, NDArray[np.intp], int], None]
-"""Adapts weights, kept as (dim, stride), to inputs (steps, dim), one after the other: w += α G (x − w).
-
-It further takes α times the Gaussian over rows (steps, rows), the Gaussian over columns (steps, substeps * cols), each
-row's shift in substeps (rows,) and the substeps of a column. Missing components (NaN) are left out and left alone.
-"""
-
-
-@cache
-def fastest() -> Kernel:
-    """Return the compiled kernel where Numba can be imported, else the one in NumPy."""
-    try:
-        from actum.som.compiled import compiled_kernel
-
-        return compiled_kernel()
-    except ImportError:
-        return adapt_in_numpy
+"""Takes sequential steps in place: what `adapt_in_numpy` does, with the same arguments."""
 
 
 def adapt_in_numpy(
     weights: Array, inputs: Array, over_rows: Array, over_cols: Array, shifts: NDArray[np.intp], substeps: int
 ) -> None:
-    """Adapt the weights; see `Kernel`."""
+    """Adapt the weights in place to one input after the other: w += α G (x − w), G centred on the winner of x.
+
+    G of a unit is a Gaussian of its distance from the winner along rows, times one along columns. Missing components
+    (NaN) of an input are left out of its distances, and adapt nothing. It is what `SequentialTraining` falls back on
+    without Numba, and may be given to it as its kernel:
+
+    >>> from actum.som import Schedule, SequentialTraining, Som
+    >>> schedule, inputs = Schedule(alpha=(0.5, 0.1), radius=(1.0, 0.5)), [[0.0], [1.0]]
+    >>> training = SequentialTraining(Som(1, 2, [[0.2], [0.6]]), inputs, [0, 1, 0, 1], schedule, adapt_in_numpy)
+    >>> training.run(4)
+    >>> training.som.weights.round(2).tolist()
+    [[0.19], [0.6]]
+
+    Args:
+        weights: (dim, stride), float32 or float64: unit k is column k, further columns are ignored.
+        inputs: (steps, dim), in the weights' precision.
+        over_rows: (steps, rows), α times the Gaussian for units 0, 1, … rows apart.
+        over_cols: (steps, substeps * cols), the Gaussian for units 0, 1, … substeps of a column apart.
+        shifts: (rows,), how far each row is shifted right, in substeps.
+        substeps: of a column: 2 on a hexagonal grid, else 1.
+    """
     learner = _Learner(weights, shifts, substeps, over_cols.shape[1] // substeps)
     for x, row_gauss, col_gauss in zip(inputs, over_rows, over_cols, strict=True):
         learner.adapt(x, row_gauss, col_gauss)
@@ -52,6 +56,7 @@ class _Learner:
         self._places = substeps * np.arange(cols) + (shifts[:, None] if shifts.any() else shifts[:1, None])
 
     def adapt(self, x: Array, row_gauss: Array, col_gauss: Array) -> None:
+        """Take one step: find the winner of x (dim,), and move the weights towards x."""
         known = ~np.isnan(x)
         if not known.all():
             self._adapt_known(x, known, row_gauss, col_gauss)

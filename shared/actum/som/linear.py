@@ -1,21 +1,23 @@
-"""A deterministic start: a map laid out flat along the two directions in which the inputs spread most."""
+"""Linear initialisation: a map laid out flat along the first two principal components of its inputs (Kohonen)."""
 
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.som.blas import producted
+from actum.som.blas import matmul
 from actum.som.grid import Grid
 
 Doubles = NDArray[np.float64]
 
 _ROUNDS = 100
+"""Orthogonal iterations; in each the error falls by the ratio of the seventh variance to the second."""
 _DIRECTIONS = 6
+"""Kept while iterating: with more than the two that are wanted these converge faster."""
 
 
 def linear_weights(vectors: NDArray[Any], grid: Grid) -> Doubles:
-    """Return weights on the plane of the first two principal components, shape (nodes, dim).
+    """Return weights on the plane of the first two principal components of vectors (n, dim), shape (nodes, dim).
 
     The plane spans ± two standard deviations, with the first component along the longer side of the grid. Missing
     values (NaN) are taken as the mean of the others.
@@ -29,31 +31,31 @@ def linear_weights(vectors: NDArray[Any], grid: Grid) -> Doubles:
     mean = np.nanmean(vectors, axis=0, dtype=np.float64)
     axes = principal_axes(np.where(known, vectors - mean, 0.0))
     down, right = np.ptp(grid.positions, axis=0)
-    return mean + 2 * producted(_spanning(grid.positions), axes if down >= right else axes[::-1])
+    return mean + 2 * matmul(_scaled(grid.positions), axes if down >= right else axes[::-1])
 
 
 def principal_axes(centred: Doubles) -> Doubles:
-    """Return the two main directions of the rows of (n, dim), each as long as its standard deviation. Shape (2, dim).
+    """Return the first two principal components of (n, dim), each as long as its standard deviation. Shape (2, dim).
 
     The largest component of each is positive. LAPACK's eigenvectors of large matrices change with the number of
     threads, so the matrix is first brought down to a few directions by orthogonal iteration.
     """
-    covariance = producted(centred.T, centred) / len(centred)
+    covariance = matmul(centred.T, centred) / len(centred)
     dim = len(covariance)
     basis = np.random.default_rng(0).standard_normal((dim, min(dim, _DIRECTIONS)))
     for _ in range(_ROUNDS):
-        basis = np.linalg.qr(producted(covariance, basis))[0]
-    variances, turns = np.linalg.eigh(producted(basis.T, producted(covariance, basis)))
+        basis = np.linalg.qr(matmul(covariance, basis))[0]
+    variances, turns = np.linalg.eigh(matmul(basis.T, matmul(covariance, basis)))
     axes = np.zeros((2, dim))
-    axes[: len(variances)] = (producted(basis, turns) * np.sqrt(np.maximum(variances, 0))).T[:-3:-1]
+    axes[: len(variances)] = (matmul(basis, turns) * np.sqrt(np.maximum(variances, 0))).T[:-3:-1]
     largest = np.take_along_axis(axes, np.abs(axes).argmax(axis=1)[:, None], axis=1)
     signed: Doubles = axes * np.where(largest < 0, -1.0, 1.0)
     return signed
 
 
-def _spanning(positions: Doubles) -> Doubles:
-    """Stretch each coordinate to [−1, 1]; 0 where all are the same."""
+def _scaled(positions: Doubles) -> Doubles:
+    """Scale each coordinate of (nodes, 2) to [−1, 1]; 0 where all are the same."""
     middle = (positions.max(axis=0) + positions.min(axis=0)) / 2
     half = np.ptp(positions, axis=0) / 2
-    stretched: Doubles = np.divide(positions - middle, half, out=np.zeros_like(positions), where=half > 0)
-    return stretched
+    scaled: Doubles = np.divide(positions - middle, half, out=np.zeros_like(positions), where=half > 0)
+    return scaled

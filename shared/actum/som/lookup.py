@@ -1,4 +1,4 @@
-"""Which unit is nearest, for one vector or many: the squared distances of BLAS, up to what all units share."""
+"""Finds the nearest units of one vector or many, by squared distances less the term that all units share."""
 
 from collections.abc import Iterator
 from math import isfinite
@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.som import blas
+from actum.som.inputs import check_rows, is_complete
 
 Array = NDArray[Any]
 Scores = tuple[slice, Array]
+"""A slice of the rows that were asked for, and their scores, (rows, stride)."""
 
 
 class Lookup:
@@ -40,18 +42,18 @@ class Lookup:
 
     @property
     def slopes(self) -> Array:
-        """What a vector from the centre is multiplied with, shape (dim, nodes)."""
+        """−w relative to the centre, by which an input relative to the centre is multiplied, shape (dim, nodes)."""
         slopes: Array = self._slopes[:, : self.nodes]
         return slopes
 
     @property
     def half_norms2(self) -> Array:
-        """What is added to that, ½|w|² from the centre, shape (nodes,)."""
+        """½|w|² relative to the centre, which is added to that product, shape (nodes,)."""
         half_norms2: Array = self._half_norms2[: self.nodes]
         return half_norms2
 
     def score(self, x: Array) -> Array:
-        """Score one vector against all units, shape (stride,) with large values after the last unit.
+        """Score one vector (dim,) against all units, shape (stride,) with large values after the last unit.
 
         Raises:
             ValueError: the vector has another length, an infinite component, or no known one.
@@ -64,7 +66,7 @@ class Lookup:
         if not isfinite(centred.dot(centred)):
             _, rows = next(self.scores(x[None]))
             return np.ravel(rows)
-        scores: Array = blas.row_product(centred, self._slopes)
+        scores: Array = blas.row_matmul(centred, self._slopes)
         np.add(scores, self._half_norms2, scores)
         return scores
 
@@ -89,7 +91,7 @@ class Lookup:
             inputs[:, -1] = 1
             rows = chunk.stop - chunk.start
             np.subtract(vectors[chunk], self.centre, out=inputs[:rows, :-1], casting="same_kind")
-            blas.product(inputs, self._towards, out)
+            blas.matmul_into(inputs, self._towards, out)
             yield chunk, out[:rows]
 
     def _partial_scores(self, vectors: Array) -> Iterator[Scores]:
@@ -99,50 +101,24 @@ class Lookup:
             known = ~np.isnan(vectors[chunk])
             inputs[:rows, : self.dim] = np.where(known, vectors[chunk] - self.centre, 0)
             inputs[:rows, self.dim :] = known
-            blas.product(inputs, towards, out)
+            blas.matmul_into(inputs, towards, out)
             out[:rows] *= (self.dim / known.sum(axis=1, keepdims=True)).astype(self.dtype)
             out[:, self.nodes :] = self._half_norms2[self.nodes :]
             yield chunk, out[:rows]
 
     def _buffers(self, vectors: Array, width: int) -> Iterator[tuple[slice, Array, Array]]:
         """Give each chunk of rows zeroed space for its inputs and space for its scores, rows padded for BLAS."""
-        inputs = np.zeros((blas.ROWS, width), self.dtype)
-        out = np.empty((blas.ROWS, self._stride), self.dtype)
-        for start in range(0, len(vectors), blas.ROWS):
-            chunk = slice(start, min(start + blas.ROWS, len(vectors)))
-            padded = blas.rounded_up(chunk.stop - start)
+        inputs = np.zeros((blas.CHUNK_ROWS, width), self.dtype)
+        out = np.empty((blas.CHUNK_ROWS, self._stride), self.dtype)
+        for start in range(0, len(vectors), blas.CHUNK_ROWS):
+            chunk = slice(start, min(start + blas.CHUNK_ROWS, len(vectors)))
+            padded = blas.padded_width(chunk.stop - start)
             inputs[chunk.stop - start : padded] = 0
             yield chunk, inputs[:padded], out[:padded]
 
 
-def is_complete(vectors: Array) -> bool:
-    """Tell whether no component of the rows (n, dim) is missing.
-
-    Raises:
-        ValueError: a component is infinite, or every component of a row is missing.
-    """
-    if np.isfinite(vectors).all():
-        return True
-    if np.isinf(vectors).any():
-        raise ValueError(f"row {np.flatnonzero(np.isinf(vectors).any(axis=1))[0]} has an infinite component")
-    empty = np.isnan(vectors).all(axis=1)
-    if empty.any():
-        raise ValueError(f"row {np.flatnonzero(empty)[0]} has no known component, all are NaN")
-    return False
-
-
-def check_rows(vectors: Array, dim: int) -> None:
-    """Refuse what is no matrix of `dim` columns.
-
-    Raises:
-        ValueError: with the shape that was given.
-    """
-    if vectors.ndim != 2 or vectors.shape[1] != dim:
-        raise ValueError(f"vectors of shape {vectors.shape} are no rows of {dim} components")
-
-
 def _round_centre(weights: Array) -> NDArray[np.float64]:
-    """Return the mean weight, rounded to multiples of a power of two about as large as the spread.
+    """Return the mean of weights (nodes, dim), rounded to multiples of a power of two near their spread, (dim,).
 
     Subtracting a round number is exact for round weights, so that equal distances stay equal.
     """

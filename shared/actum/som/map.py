@@ -1,4 +1,4 @@
-"""The self-organising map (Kohonen): a grid of units that orders what it is shown."""
+"""The self-organising map (Kohonen, 1982): a grid of units that learns the order of its inputs."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,21 +8,27 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 from actum.som.batch import BatchTraining
-from actum.som.codebook import Codebook, float_type, training_vectors
+from actum.som.codebook import Codebook
 from actum.som.grid import Grid, Topology
+from actum.som.inputs import float_type, training_vectors
 from actum.som.linear import linear_weights
 from actum.som.schedule import Decay, Report, Steps, falling, silent
 from actum.som.sequential import SequentialTraining
 
 REPORT_STEPS = 1000
+"""Sequential steps between two reports of progress."""
 
 
 @dataclass(frozen=True, eq=False)
 class Som(Codebook):
-    """A map of `rows` × `cols` units that can learn; learning returns a new map.
+    """A map of `rows` × `cols` units that can learn; learning returns a new map. See `Codebook` for its attributes.
 
-    Attributes:
-        weights: (rows * cols, dim), read-only, float32 or float64 as given.
+    >>> vectors = np.random.default_rng(0).random((200, 3))
+    >>> som = Som.linear(5, 6, vectors).train_batch(vectors, epochs=10, radius=(3.0, 0.6))
+    >>> som.planes.shape, som.bmus(vectors).shape
+    ((5, 6, 3), (200,))
+    >>> som.quantization_error(vectors) < 0.2
+    True
     """
 
     @classmethod
@@ -35,7 +41,11 @@ class Som(Codebook):
         dtype: DTypeLike = np.float64,
         topology: Topology = "rectangular",
     ) -> Self:
-        """Make an untrained map, all weights drawn from U(0, 1)."""
+        """Make an untrained map of inputs (dim,), all weights drawn from U(0, 1).
+
+        Raises:
+            ValueError: there is no such grid, or no component.
+        """
         return cls(rows, cols, rng.random((rows * cols, dim)).astype(dtype), topology)
 
     @classmethod
@@ -57,7 +67,14 @@ class Som(Codebook):
         """Return the map after `steps` sequential adaptations to randomly chosen rows of (n, dim).
 
         w += α G (x − w) with the Gaussian neighbourhood G = exp(−r² / 2 radius²), r the distance on the grid
-        to the winner.
+        to the winner (Kohonen, 1982).
+
+        Args:
+            vectors: the inputs, (n, dim).
+            steps: how many.
+            schedule: gives each step its α and its radius.
+            rng: draws the rows, with replacement.
+            report: called with the steps done and those in all, every 1000 steps.
 
         Raises:
             ValueError: the vectors do not fit the map, or α or a radius makes no sense.
@@ -75,7 +92,13 @@ class Som(Codebook):
         """Return the map after `epochs` batch adaptations to all rows of (n, dim).
 
         Each unit moves to the mean of what its neighbourhood won; the radius falls exponentially from the first value
-        to the second. The result is the same for any number of threads.
+        to the second. The result is the same for any number of threads (Kohonen, 2013).
+
+        Args:
+            vectors: the inputs, (n, dim).
+            epochs: how often all of them are shown.
+            radius: of the neighbourhood in the first and in the last epoch, grid units.
+            report: called with the epochs done and those in all.
 
         Raises:
             ValueError: the vectors do not fit the map, or a radius is not above 0.
@@ -89,7 +112,7 @@ class Som(Codebook):
 
     @classmethod
     def resume(cls, path: Path | str, vectors: ArrayLike) -> SequentialTraining[Self]:
-        """Take up a sequential training where `SequentialTraining.save` left it, with the same vectors.
+        """Resume a sequential training that `SequentialTraining.save` wrote, with the same vectors (n, dim).
 
         Raises:
             SomError: the file is missing, foreign or damaged, or was made with other vectors.

@@ -12,7 +12,7 @@ Indices = NDArray[np.intp]
 
 
 def partial_distances2(vectors: Array, weights: Array) -> NDArray[np.float64]:
-    """Return the squared distance of each vector to its weight, along the last axis.
+    """Return the squared distance of each vector (…, dim) to its weight (…, dim), shape (…).
 
     Components missing in the vector (NaN) are left out, and what the others add up to is scaled by dim / known.
     """
@@ -42,5 +42,5 @@ def u_matrix(weights: Array, grid: Grid, neighbours: int | None = None) -> NDArr
 
 
 def hits(winners: Indices, grid: Grid) -> Indices:
-    """Return how often each unit won, shape (rows, cols)."""
+    """Return how often each unit is among the winners (n,), shape (rows, cols)."""
     return np.bincount(winners, minlength=grid.nodes).reshape(grid.rows, grid.cols)

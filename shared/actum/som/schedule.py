@@ -11,8 +11,10 @@ Array = NDArray[np.float64]
 Report = Callable[[int, int], None]
 """Called with the steps (or epochs) done and those in all."""
 
-_SMALLEST_RADIUS, _LARGEST_RADIUS = 1e-150, 1e150
-"""Between these a radius can be squared."""
+_SMALLEST_RADIUS = 1e-150
+"""Between this (grid units) and the largest a radius can be squared in double precision."""
+_LARGEST_RADIUS = 1e150
+"""The other bound (grid units)."""
 
 
 def silent(done: int, total: int) -> None:
@@ -20,7 +22,15 @@ def silent(done: int, total: int) -> None:
 
 
 class Decay(Protocol):
-    """What gives α and the radius of each step."""
+    """What gives α and the radius of each step; `Schedule` and `Steps` do, and anything with this method.
+
+    >>> class Linear:
+    ...     def values(self, steps):
+    ...         return np.linspace(0.5, 0.0, steps), np.linspace(3.0, 1.0, steps)
+    >>> decay: Decay = Linear()
+    >>> decay.values(3)[1].tolist()
+    [3.0, 2.0, 1.0]
+    """
 
     def values(self, steps: int) -> tuple[Array, Array]:
         """Return α and radius of each step, each of shape (steps,)."""
@@ -32,19 +42,40 @@ class Schedule:
     """How adaptation strength and neighbourhood radius (grid units) fall over the steps of a training.
 
     Both fall exponentially from the first value, reached at the first step, to the second, reached at the last.
+
+    >>> alphas, radii = Schedule(alpha=(0.5, 0.02), radius=(4.0, 1.0)).values(3)
+    >>> alphas.round(3).tolist(), radii.round(3).tolist()
+    ([0.5, 0.1, 0.02], [4.0, 2.0, 1.0])
+
+    Attributes:
+        alpha: from 0 to 1, above 0.
+        radius: in grid units, above 0.
     """
 
     alpha: tuple[float, float]
     radius: tuple[float, float]
 
     def values(self, steps: int) -> tuple[Array, Array]:
-        """Return α and radius of each step, each of shape (steps,)."""
+        """Return α and radius of each step, each of shape (steps,).
+
+        Raises:
+            ValueError: a value is not finite and above 0.
+        """
         return falling(*self.alpha, steps), falling(*self.radius, steps)
 
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """Adaptation strength and neighbourhood radius (grid units) of every single step, for any other decay."""
+    """Adaptation strength and neighbourhood radius of every single step, for any other decay.
+
+    >>> alphas, radii = Steps(alphas=[0.5, 0.4], radii=[2, 1]).values(2)
+    >>> alphas.tolist(), radii.tolist()
+    ([0.5, 0.4], [2.0, 1.0])
+
+    Attributes:
+        alphas: (steps,), from 0 to 1.
+        radii: (steps,), in grid units, above 0.
+    """
 
     alphas: ArrayLike
     radii: ArrayLike
@@ -73,7 +104,7 @@ def falling(first: float, last: float, steps: int) -> Array:
 
 
 def checked_radii(radii: ArrayLike) -> Array:
-    """Return the radii as an array (n,).
+    """Return the radii, (n,) or a single one, as an array (n,).
 
     Raises:
         ValueError: one is not finite and above 0.

@@ -2,6 +2,7 @@
 
 import hashlib
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any, Generic
 
@@ -9,22 +10,44 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from actum.som import blas, storage
-from actum.som.codebook import Map, map_arrays, stored_map, training_vectors
-from actum.som.kernel import Kernel, fastest
+from actum.som.codebook import Map, map_arrays, stored_map
+from actum.som.inputs import training_vectors
+from actum.som.kernel import Kernel, adapt_in_numpy
 from actum.som.schedule import Decay, Steps, checked_radii
 from actum.som.storage import SomError
 
 Array = NDArray[Any]
 
 CHUNK_STEPS = 250
-"""Steps whose neighbourhoods are tabulated at once."""
+"""Steps whose neighbourhoods are tabulated at once: enough to make the calls cheap, few enough for the cache."""
+
+
+@cache
+def fastest_kernel() -> Kernel:
+    """Return the compiled kernel where Numba can be imported, else the one in NumPy."""
+    try:
+        from actum.som.compiled import compiled_kernel
+
+        return compiled_kernel()
+    except ImportError:
+        return adapt_in_numpy
 
 
 class SequentialTraining(Generic[Map]):
-    """A map while it learns: w += α G (x − w) for one input after the other.
+    """A map while it learns from one input after the other: w += α G (x − w) (Kohonen, 1982).
 
     G = exp(−r² / 2 radius²), r the distance on the grid to the winner. Missing components (NaN) of an input adapt
     nothing. The state can be saved after any step; a resumed training gives the same map to the bit.
+
+    >>> from actum.som import Som
+    >>> vectors = np.random.default_rng(0).random((100, 2))
+    >>> order, decay = np.arange(300) % 100, Steps(np.full(300, 0.1), np.linspace(2.0, 0.5, 300))
+    >>> training = SequentialTraining(Som.linear(4, 4, vectors), vectors, order, decay)
+    >>> training.run(200)
+    >>> training.steps_done, training.steps
+    (200, 300)
+    >>> training.som.quantization_error(vectors) < 0.2
+    True
     """
 
     def __init__(
@@ -40,7 +63,7 @@ class SequentialTraining(Generic[Map]):
         Args:
             som: the map to start from, left as it is.
             vectors: the inputs, (n, dim).
-            order: the rows of `vectors` to learn from, in turn.
+            order: (steps,), the rows of `vectors` to learn from, in turn.
             decay: gives each step its α and its radius.
             kernel: how steps are computed, by default compiled where Numba is installed; the map is the same.
 
@@ -56,7 +79,7 @@ class SequentialTraining(Generic[Map]):
         self._alphas = _checked_alphas(alphas)
         self._weights = np.zeros((som.dim, blas.stride(som.grid.nodes, som.dtype)), som.dtype)
         self._weights[:, : som.grid.nodes] = som.weights.T
-        self._adapt = kernel or fastest()
+        self._adapt = kernel or fastest_kernel()
 
     @classmethod
     def drawn(
@@ -89,7 +112,7 @@ class SequentialTraining(Generic[Map]):
             self.steps_done = chunk.stop
 
     def _tables(self, chunk: slice) -> tuple[Array, Array, NDArray[np.intp], int]:
-        """Tabulate α times the Gaussian over rows and that over columns: both kernels take exp from here."""
+        """Tabulate what a kernel takes (see `adapt_in_numpy`): both kernels take exp from here, so they agree."""
         grid, dtype = self._start.grid, self._start.dtype
         alphas = self._alphas[chunk, None].astype(dtype)
         over_rows = alphas * grid.row_gaussians(self._radii[chunk]).astype(dtype)
@@ -119,7 +142,13 @@ class SequentialTraining(Generic[Map]):
     def load(
         cls, path: Path | str, vectors: ArrayLike, kind: type[Map], kernel: Kernel | None = None
     ) -> "SequentialTraining[Map]":
-        """Take up a training where `save` left it, with the same vectors, on a map of the given kind.
+        """Resume a training that `save` wrote.
+
+        Args:
+            path: the file.
+            vectors: the same inputs, (n, dim).
+            kind: the class of the map.
+            kernel: how steps are computed, as in the constructor.
 
         Raises:
             SomError: the file is missing, foreign or damaged, or was made with other vectors.

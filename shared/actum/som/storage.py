@@ -23,7 +23,15 @@ UNREADABLE = (
 
 
 class SomError(ValueError):
-    """A file that does not hold what was to be read from it."""
+    """A file that does not hold what was to be read from it; the text names the file and the problem.
+
+    >>> from actum.som import Som
+    >>> try:
+    ...     Som.load("nowhere.npz")
+    ... except SomError as error:
+    ...     print(error)
+    nowhere.npz: there is no such file
+    """
 
     def __init__(self, path: Path, problem: str) -> None:
         super().__init__(f"{path}: {problem}")
@@ -46,7 +54,7 @@ def write(path: Path, file_format: str, arrays: Mapping[str, NDArray[Any]]) -> N
 
 @contextmanager
 def reading(path: Path, file_format: str) -> Iterator[Mapping[str, NDArray[Any]]]:
-    """Give the arrays of a file; whatever does not fit while they are read and used is the file's fault.
+    """Give the arrays of a file; any error while they are read and used in the `with` block is the file's.
 
     Raises:
         SomError: the file is missing, foreign or damaged.

@@ -1,4 +1,4 @@
-"""Maps that are always asked at the same time, looked up by one product instead of one each."""
+"""Several maps of the same number of units, looked up by one matrix product instead of one each."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,12 +13,21 @@ Array = NDArray[Any]
 
 
 class Together:
-    """Maps of as many units each, their weights laid out as blocks of one matrix.
+    """Maps of as many units each, their weights laid out as the blocks of one matrix.
 
-    Scores are those of `Lookup`. All inputs must be known: with NaN one map could not be told from the others.
+    That saves calls where inputs come one by one. The result is that of each map's `Codebook.excess2s`, up to rounding.
+
+    >>> maps = [Codebook(1, 2, [[0.0], [3.0]]), Codebook(1, 2, [[0.0, 0.0], [1.0, 1.0]])]
+    >>> Together(maps).excess2s(np.array([[1.0, 1.0, 0.0]])).round(6).tolist()
+    [[[0.0, 3.0], [0.0, 0.0]]]
     """
 
     def __init__(self, maps: Sequence[Codebook]) -> None:
+        """Lay out the weights.
+
+        Raises:
+            ValueError: the maps differ in their number of units or their precision.
+        """
         if len({(som.grid.nodes, som.dtype) for som in maps}) != 1:
             raise ValueError(f"maps of {[(som.grid.nodes, str(som.dtype)) for som in maps]} units are not alike")
         self._shape = (-1, len(maps), maps[0].grid.nodes)
@@ -29,9 +38,14 @@ class Together:
         self._slopes = _blocks([lookup.slopes for lookup in lookups])
 
     def excess2s(self, rows: Array) -> Array:
-        """Return d² − d²_min of each unit for rows (n, inputs of all maps one after the other), (n, maps, units)."""
+        """Return d² − d²_min of each unit of each map, shape (n, maps, units), in the maps' precision.
+
+        Args:
+            rows: (n, sum of the maps' dims), the inputs of all maps one after the other. None may be missing (NaN):
+                it would spread to all maps.
+        """
         centred = (rows - self._centre).astype(self._dtype, copy=False)
-        scores = blas.rows_product(centred, self._slopes)
+        scores = blas.few_rows_matmul(centred, self._slopes)
         scores += self._half_norms2
         excess2s: Array = scores.reshape(self._shape)
         excess2s -= excess2s.min(axis=2, keepdims=True)
@@ -40,7 +54,7 @@ class Together:
 
 
 def _blocks(parts: Sequence[Array]) -> Array:
-    """Lay matrices out along the diagonal of one, zeros elsewhere."""
+    """Return the block-diagonal matrix of some matrices."""
     heights, widths = zip(*(part.shape for part in parts), strict=True)
     blocks = np.zeros((sum(heights), sum(widths)), parts[0].dtype)
     for part, bottom, right in zip(parts, np.cumsum(heights), np.cumsum(widths), strict=True):

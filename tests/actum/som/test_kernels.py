@@ -67,11 +67,12 @@ def run(program: str) -> str:
 TRAINING = """
 import numpy as np
 from actum.som import Schedule, Som
-from actum.som.kernel import adapt_in_numpy, fastest
+from actum.som.kernel import adapt_in_numpy
+from actum.som.sequential import fastest_kernel
 vectors = np.random.default_rng(0).random((50, 3))
 start = Som.random(4, 4, 3, np.random.default_rng(1), np.float32)
 som = start.train(vectors, 99, Schedule((0.5, 0.1), (2.0, 1.0)), np.random.default_rng(2))
-print(fastest() is adapt_in_numpy, som.weights.tobytes().hex())
+print(fastest_kernel() is adapt_in_numpy, som.weights.tobytes().hex())
 """
 
 

@@ -1,0 +1,139 @@
+"""The same view of every kind of model: its map of postures, its map of actions, and what segments win on them."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+
+import numpy as np
+
+from actum.arrays import Floats, Indices
+from actum.node import SECOND_NS
+from actum.skeletons import INDEX
+from actum.som import Som
+from actum_model_inspector.stick_figures import ONE_LIMB, STANDING, WHOLE_BODY, StickFigure
+from som_classifier.attention import ALL
+from som_classifier.frames import Frame
+from som_classifier.map_activity import soft_activity
+from som_classifier.model import Model
+from som_classifier.paper_model import PaperModel
+from som_classifier.pyramid_model import PyramidModel
+
+TORSO_FROM_HIPS_M = STANDING[INDEX["torso"]] - STANDING[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0)
+"""The torso relative to the hips' middle of somebody who stands, (3,)."""
+
+
+class ModelMaps(ABC):
+    """The maps of one model.
+
+    Attributes:
+        model: whose maps they are.
+        postures: the first map.
+        actions: the second map.
+        figure: how the joints that a unit of the first map stands for are joined.
+    """
+
+    model: Model
+    postures: Som
+    actions: Som
+    figure: StickFigure
+
+    @abstractmethod
+    def unit_joints(self) -> Floats:
+        """Return the joints that each unit of the first map stands for, metres from the torso, (units, joints, 3)."""
+
+    @abstractmethod
+    def winners(self, frames: Sequence[Frame]) -> Indices:
+        """Return the first map's winner at each encoded frame, NO_WINNER where it has none, shape (n,)."""
+
+    def is_mirrored(self, frames: Sequence[Frame]) -> bool:
+        """Tell whether a segment of encoded frames is read as its mirror image."""
+        return False
+
+    @abstractmethod
+    def action_unit(self, frames: Sequence[Frame]) -> int:
+        """Return the second map's winner for a complete segment of encoded frames."""
+
+    @abstractmethod
+    def unit_cosines(self) -> Floats:
+        """Return the neurons' cosines for the weights of each unit of the second map as input, (units, actions)."""
+
+
+class PyramidMaps(ModelMaps):
+    """The maps of the default recogniser."""
+
+    figure = WHOLE_BODY
+
+    def __init__(self, model: PyramidModel) -> None:
+        self.model: PyramidModel = model
+        self.postures, self.actions = model.first.postures, model.action_map.som
+
+    def unit_joints(self) -> Floats:
+        """Return the joints that each unit of the first map stands for, metres from the torso, (units, 15, 3)."""
+        return self.postures.weights.reshape(len(self.postures.weights), -1, 3)
+
+    def winners(self, frames: Sequence[Frame]) -> Indices:
+        """Return the first map's winner at each encoded frame."""
+        return self.model.winners(frames)
+
+    def is_mirrored(self, frames: Sequence[Frame]) -> bool:
+        """Tell whether a segment of encoded frames is read as its mirror image."""
+        return self.model.reads_in_mirror([frame.activity for frame in frames])
+
+    def action_unit(self, frames: Sequence[Frame]) -> int:
+        """Return the second map's winner for a complete segment of encoded frames."""
+        scores = self.model.scores([frame.activity for frame in frames], complete_weights(self.model, frames))
+        return self.actions.bmu(scores)
+
+    def unit_cosines(self) -> Floats:
+        """Return the neurons' cosines for the weights of each unit of the second map as input, (units, actions)."""
+        activities = [self.model.action_map.activity(weights) for weights in self.actions.weights]
+        return np.stack([self.model.layer3.cosines(own) for own in activities])
+
+
+class PaperMaps(ModelMaps):
+    """The maps of the paper's recogniser."""
+
+    def __init__(self, model: PaperModel) -> None:
+        self.model: PaperModel = model
+        self.postures, self.actions = model.layer1, model.layer2
+        self.figure = WHOLE_BODY if model.metadata.posture.attention == ALL else ONE_LIMB
+
+    def unit_joints(self) -> Floats:
+        """Return the joints that each unit of the first map stands for, metres from the torso, (units, 3 or 15, 3)."""
+        points: Floats = self.postures.weights.reshape(len(self.postures.weights), -1, 3)
+        from_hips = self.model.metadata.posture.origin == "hips"
+        return points - TORSO_FROM_HIPS_M if from_hips else points
+
+    def winners(self, frames: Sequence[Frame]) -> Indices:
+        """Return the winner for what is attended to at each encoded frame, NO_WINNER where none of it is there."""
+        _, seen = self.model.attended(frames)
+        return seen.winners
+
+    def action_unit(self, frames: Sequence[Frame]) -> int:
+        """Return the second map's winner for a segment of encoded frames."""
+        return self.model.place(frames)
+
+    def unit_cosines(self) -> Floats:
+        """Return the neurons' cosines for the weights of each unit of the second map as input, (units, actions)."""
+        contrast = self.model.metadata.contrast
+        activities = [soft_activity(self.actions.excess2(weights), contrast) for weights in self.actions.weights]
+        return np.stack([self.model.layer3.cosines(own) for own in activities])
+
+
+def maps_of(model: Model) -> ModelMaps:
+    """Find a model's maps.
+
+    Raises:
+        TypeError: it is of a kind that has no pictures yet.
+    """
+    match model:
+        case PyramidModel():
+            return PyramidMaps(model)
+        case PaperModel():
+            return PaperMaps(model)
+        case _:
+            raise TypeError(f"no pictures of a model of kind {model.metadata.kind!r}")
+
+
+def complete_weights(model: PyramidModel, frames: Sequence[Frame]) -> Sequence[float]:
+    """Return the weights of the discriminant axes' stages at the end of a segment."""
+    return model.stages.weights((frames[-1].stamp_ns - frames[0].stamp_ns) / SECOND_NS, complete=True)

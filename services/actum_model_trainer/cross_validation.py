@@ -1,0 +1,60 @@
+"""Leave-one-person-out cross-validation: how well a model recognises people it was not trained on."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from actum.recording import Recording
+from actum_model_trainer.answering import answer, encoded
+from actum_model_trainer.evaluation import Evaluation, Prediction, prediction, segment_labels
+from actum_model_trainer.progress import Progress, silent
+from actum_model_trainer.samples import SegmentSample, Unusable, samples_from, sensors
+from actum_model_trainer.training import TrainingError, train
+from som_classifier.model import Model
+from som_classifier.presets import Preset
+
+SegmentsById = Mapping[tuple[str, str, str], SegmentSample | Unusable]
+"""The first segment of each file, sensor and segment id."""
+
+
+def leave_one_person_out(
+    recordings: Sequence[Recording], preset: Preset, seed: int = 0, progress: Progress = silent
+) -> Evaluation:
+    """Test each person on a model trained on all others, and pool the predictions.
+
+    The recordings are replayed only once. The answers to the samples cut out of them equal those of the live
+    classifier, to the bit.
+
+    Raises:
+        TrainingError: fewer than two persons, or the others' samples make no model.
+        RecordingError: a file is damaged.
+    """
+    people = sorted({recording.person for recording in recordings})
+    if len(people) < 2:
+        raise TrainingError(f"recordings of at least two persons are needed; these are of {people or 'none'}")
+    samples = samples_from(recordings, progress)
+    segments: dict[tuple[str, str, str], SegmentSample | Unusable] = {}
+    for segment in samples.segments:
+        segments.setdefault((segment.file, segment.sensor, segment.segment_id), segment)
+    predictions: list[Prediction] = []
+    for person in people:
+        others = [sample for sample in samples.usable if sample.person != person]
+        model = train(others, preset, seed, _prefixed(f"without {person or 'unnamed'}: ", progress))
+        own = [recording for recording in recordings if recording.person == person]
+        predictions += _predictions(model, own, segments, _prefixed(f"on {person or 'unnamed'}: ", progress))
+    return Evaluation(tuple(predictions))
+
+
+def _predictions(
+    model: Model, recordings: Sequence[Recording], segments: SegmentsById, progress: Progress
+) -> Iterator[Prediction]:
+    for done, recording in enumerate(recordings):
+        progress("evaluating", done, len(recordings))
+        for sensor in sensors(recording):
+            for segment_id, label in segment_labels(recording, sensor).items():
+                segment = segments.get((str(recording.path), sensor, segment_id))
+                found = answer(model, encoded(model, segment)) if isinstance(segment, SegmentSample) else None
+                yield prediction(recording, segment_id, label, found.label if found else None, found)
+    progress("evaluating", len(recordings), len(recordings))
+
+
+def _prefixed(prefix: str, progress: Progress) -> Progress:
+    return lambda stage, done, total: progress(prefix + stage, done, total)

@@ -1,0 +1,52 @@
+"""What a model file says about the samples that the model was trained on."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+import actum
+from actum_model_trainer.samples import SegmentSample
+from som_classifier.presets import Preset
+
+
+class TrainingError(ValueError):
+    """No model can be trained on these samples."""
+
+
+def actions_of(samples: Sequence[SegmentSample]) -> list[str]:
+    """List the actions among the samples, sorted.
+
+    Raises:
+        TrainingError: there are fewer than two.
+    """
+    labels = sorted({sample.label for sample in samples})
+    if len(labels) < 2:
+        raise TrainingError(f"samples of at least two actions are needed; these are of {labels or 'none'}")
+    return labels
+
+
+def provenance(samples: Sequence[SegmentSample], preset: Preset, seed: int) -> dict[str, Any]:
+    """Return those fields of a model's metadata that every kind of model has."""
+    return {
+        "labels": actions_of(samples),
+        "preset": preset.name,
+        "parameters": asdict(preset),
+        "seed": seed,
+        "persons": sorted({sample.person for sample in samples if sample.person}),
+        "samples": len(samples),
+        "data_digest": digest_of(samples),
+        "actum_version": actum.__version__,
+    }
+
+
+def digest_of(samples: Sequence[SegmentSample]) -> str:
+    """Return the SHA-256 (hexadecimal) over everything that a training reads of its samples, in their order."""
+    digest = hashlib.sha256()
+    for sample in samples:
+        digest.update(f"{sample.label}\0{sample.person}\0{sample.joints.shape}\0{sample.depth_inferred}".encode())
+        for values in (sample.stamps_ns, sample.joints, sample.motion, sample.postures, sample.velocities):
+            digest.update(np.ascontiguousarray(values).tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,74 @@
+"""The segments that have been answered, so that each is answered once whatever marks come again."""
+
+from collections import OrderedDict
+from dataclasses import dataclass
+
+from actum.messages import Segment
+from actum.node import Counters
+from som_classifier.segments import ClosedSegment, OpenSegment
+
+REMEMBERED = 10_000
+"""Ids kept: hours of actions, in a few megabytes."""
+
+
+@dataclass
+class _Answered:
+    """When an answered segment started and ended, as far as that was known, and whether its id was used anew."""
+
+    start_ns: int | None
+    end_ns: int | None
+    reused: bool = False
+
+
+class AnsweredSegments:
+    """The newest answered ids, and what a further mark of one of them means."""
+
+    def __init__(self, counters: Counters) -> None:
+        self._counters = counters
+        self._answered: OrderedDict[str, _Answered] = OrderedDict()
+
+    def __contains__(self, segment_id: str) -> bool:
+        return segment_id in self._answered
+
+    def clear(self) -> None:
+        """Forget everything."""
+        self._answered.clear()
+
+    def remember(self, segment_id: str, start_ns: int | None, end_ns: int | None) -> None:
+        """Keep a segment that has just been answered."""
+        self._answered[segment_id] = _Answered(start_ns, end_ns)
+        while len(self._answered) > REMEMBERED:
+            self._answered.popitem(last=False)
+
+    def mark_again(self, mark: Segment, newest_ns: int) -> list[ClosedSegment]:
+        """Count a further mark of an answered segment, or reject the new segment for which its id was used.
+
+        Args:
+            mark: of an answered id.
+            newest_ns: the stamp that a mark without one gets.
+        """
+        answered = self._answered[mark.segment_id]
+        repeated = _repetition(mark, answered)
+        if repeated is not None:
+            self._counters.reject(*repeated)
+            return []
+        stamp_ns = mark.stamp_ns if mark.stamp_ns is not None else newest_ns
+        answered.reused = True
+        if mark.kind == "start":
+            answered.start_ns = stamp_ns
+        return [OpenSegment.of(mark, stamp_ns, stamp_ns).rejected("segment_id reused")]
+
+
+def _repetition(mark: Segment, answered: _Answered) -> tuple[str, str] | None:
+    """Return the counter and the detail of a mark that repeats one, or is an end that came too late; else None."""
+    is_start = mark.kind == "start"
+    known_ns = answered.start_ns if is_start else answered.end_ns
+    if not is_start and (answered.reused or mark.stamp_ns is None):
+        return "duplicate_mark", f"end of the answered segment {mark.segment_id!r}"
+    if not is_start and known_ns is None:
+        return "late", f"end of {mark.segment_id!r} after it was given up"
+    if mark.stamp_ns is not None and mark.stamp_ns == known_ns:
+        return "duplicate_mark", f"{mark.kind} of the answered segment {mark.segment_id!r}"
+    if is_start and answered.reused and mark.stamp_ns is None:
+        return "duplicate_mark", f"{mark.segment_id!r} is used up"
+    return None

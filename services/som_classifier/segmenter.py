@@ -1,0 +1,209 @@
+"""Cuts postures into segments by marks: whose, from when to when, with which frames, or why not.
+
+A segment closes once its posture stream has reached the end, or after two seconds of waiting for it.
+"""
+
+from collections import OrderedDict, deque
+from collections.abc import Callable
+
+from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
+from actum.messages import Posture, Segment
+from actum.node import SECOND_NS, Counters, Tick
+from actum.stamps import Order
+from som_classifier.answered_segments import AnsweredSegments
+from som_classifier.frames import Frame
+from som_classifier.segments import ClosedSegment, OpenSegment, why_no_recognition, with_cause
+from som_classifier.streams import Encode, Streams
+
+LATE_FOR = 16
+"""The newest segments that closed before all frames had come: postures of these are counted as late."""
+FAR_FUTURE_NS = 2**62
+"""Stands for the end of a segment without one: later than any stamp."""
+NO_END = "start without end: no end within 60 s"
+
+
+class Segmenter:
+    """Keeps the open segments of one sensor and closes each exactly once."""
+
+    def __init__(self, counters: Counters) -> None:
+        self._counters = counters
+        self._streams = Streams()
+        self._open: OrderedDict[str, OpenSegment] = OrderedDict()
+        self._answered = AnsweredSegments(counters)
+        self._late: deque[tuple[int, range]] = deque(maxlen=LATE_FOR)
+        self._session: str | None = None
+
+    def use(self, encoders: Callable[[], Encode]) -> None:
+        """Encode every agent's frames by an encoder of its own, those remembered and those to come."""
+        self._streams.use(encoders)
+
+    def posture(self, posture: Posture) -> tuple[Frame | None, list[ClosedSegment]]:
+        """Take the next posture; return its frame, None if it is stale, and the segments it closes."""
+        closed = self._restart(posture.session_id)
+        order, frame = self._streams.add(posture)
+        late = any(posture.agent == agent and posture.stamp_ns in stamps for agent, stamps in self._late)
+        what = f"posture of agent {posture.agent} at {posture.stamp_ns}"
+        if frame is None:
+            self._counters.reject("late" if late else "stale_stamp", what)
+            return None, closed
+        if posture.valid and not frame.valid:
+            self._counters.reject("bad_posture", f"{what}: missing, non-finite or absurd joints or motion")
+        if order is Order.RESTART:
+            closed += self._close_all("the source started anew")
+        elif late:
+            self._counters.reject("late", f"{what}, after its segment was answered")
+        self._note_progress(posture.stamp_ns)
+        return frame, closed + self._settle()
+
+    def mark(self, mark: Segment) -> list[ClosedSegment]:
+        """Take a start or end mark; return the segments it closes."""
+        if mark.segment_id in self._answered:
+            return self._answered.mark_again(mark, self._streams.newest_ns or 0)
+        return self._start(mark) if mark.kind == "start" else self._end(mark)
+
+    def tick(self, tick: Tick) -> list[ClosedSegment]:
+        """Stop waiting: after two seconds for the frames up to an end, after a longest segment for an end mark."""
+        closed = []
+        for segment in list(self._open.values()):
+            if segment.waiting_since_ns is None:
+                segment.waiting_since_ns = tick.monotonic_ns
+            waited_ns = tick.monotonic_ns - segment.waiting_since_ns
+            if segment.end_ns is None and waited_ns > MAX_SEGMENT_NS + MAX_SKEW_NS:
+                closed.append(self._reject(segment, self._why_no_end(segment)))
+            elif segment.end_ns is not None and waited_ns > MAX_SKEW_NS:
+                closed.append(self._close(segment))
+        return closed
+
+    def open_at(self, agent: int, stamp_ns: int) -> list[OpenSegment]:
+        """List the segments of an agent that hold this instant."""
+        return [segment for segment in self._open.values() if segment.whose == agent and segment.holds(stamp_ns)]
+
+    def frames_of(self, segment: OpenSegment) -> list[Frame]:
+        """List the frames an open segment holds so far."""
+        stream = None if segment.whose is None else self._streams.of(segment.whose)
+        if stream is None or segment.start_ns is None:
+            return []
+        return stream.between(segment.start_ns, segment.end_ns or FAR_FUTURE_NS)
+
+    def _why_no_end(self, segment: OpenSegment) -> str:
+        newest_ns = self._streams.newest_ns
+        if newest_ns is None or segment.start_ns is None or newest_ns < segment.start_ns:
+            return "start without end: no frame came after the start"
+        elapsed_s = (newest_ns - segment.start_ns) / SECOND_NS
+        return f"start without end: the frames ended {elapsed_s:.1f} s after the start"
+
+    def _note_progress(self, stamp_ns: int) -> None:
+        """Start segments that wait for the first posture; wait anew for an end mark where postures still come."""
+        for segment in self._open.values():
+            if segment.start_ns is None:
+                segment.start_ns = stamp_ns
+            if segment.end_ns is None and segment.start_ns <= stamp_ns:
+                segment.waiting_since_ns = None
+
+    def _settle(self) -> list[ClosedSegment]:
+        """Determine the agents that can be, and close the segments whose end is reached or which are too long."""
+        closed = []
+        for segment in list(self._open.values()):
+            if segment.whose is None:
+                segment.nearest = self._nearest(segment)
+            if segment.end_ns is not None:
+                if segment.whose is not None and self._streams.reached(segment.whose, segment.end_ns):
+                    closed.append(self._close(segment))
+            elif self._too_long(segment):
+                closed.append(self._reject(segment, NO_END))
+        return closed
+
+    def _too_long(self, segment: OpenSegment) -> bool:
+        newest_ns = self._streams.newest_ns
+        if segment.start_ns is None or newest_ns is None:
+            return False
+        return newest_ns > segment.start_ns + MAX_SEGMENT_NS + MAX_SKEW_NS
+
+    def _nearest(self, segment: OpenSegment) -> int | None:
+        """Return the agent nearest to the camera at the first valid frame from the start on, once that is certain."""
+        first = self._first(segment)
+        if first is None or segment.start_ns is None:
+            return None
+        stamp_ns, agent = first
+        return agent if self._streams.complete(segment.start_ns, stamp_ns) else None
+
+    def _first(self, segment: OpenSegment) -> tuple[int, int] | None:
+        if segment.start_ns is None:
+            return None
+        end_ns = segment.start_ns + MAX_SEGMENT_NS if segment.end_ns is None else segment.end_ns
+        return self._streams.first(segment.start_ns, end_ns)
+
+    def _start(self, mark: Segment) -> list[ClosedSegment]:
+        if mark.segment_id in self._open:
+            self._counters.reject("duplicate_mark", f"second start of {mark.segment_id!r}")
+            return []
+        start_ns = self._streams.newest_ns if mark.stamp_ns is None else mark.stamp_ns
+        self._open[mark.segment_id] = OpenSegment.of(mark, start_ns)
+        return self._settle()
+
+    def _end(self, mark: Segment) -> list[ClosedSegment]:
+        segment = self._open.get(mark.segment_id)
+        if segment is None:
+            end_ns = mark.stamp_ns if mark.stamp_ns is not None else self._streams.newest_ns or 0
+            self._answered.remember(mark.segment_id, None, end_ns)
+            return [OpenSegment.of(mark, end_ns, end_ns).rejected("end without start")]
+        if segment.end_ns is not None:
+            self._counters.reject("duplicate_mark", f"second end of {mark.segment_id!r}")
+            return []
+        newest_ns = self._streams.newest_ns if self._streams.newest_ns is not None else segment.start_ns or 0
+        segment.end_ns = newest_ns if mark.stamp_ns is None else mark.stamp_ns
+        segment.nearest = segment.waiting_since_ns = None
+        if segment.start_ns is not None and segment.end_ns < segment.start_ns:
+            return [self._reject(segment, "end before start")]
+        if segment.start_ns is not None and segment.end_ns - segment.start_ns > MAX_SEGMENT_NS:
+            return [self._reject(segment, NO_END)]
+        return self._settle()
+
+    def _close(self, segment: OpenSegment) -> ClosedSegment:
+        """Answer a segment that has its end, with the frames that have come."""
+        assert segment.end_ns is not None
+        start_ns = segment.start_ns if segment.start_ns is not None else 0
+        first = self._first(segment)
+        agent = segment.whose if segment.whose is not None or first is None else first[1]
+        stream = None if agent is None else self._streams.of(agent)
+        if stream is None or agent is None:
+            cause = self._streams.first_reason(start_ns, segment.end_ns) if agent is None else None
+            reason = "no person" if cause is None else "no person with a usable frame"
+            return self._reject(segment, with_cause(reason, cause))
+        if segment.end_ns - start_ns > MAX_SEGMENT_NS:
+            return self._reject(segment, NO_END)
+        if stream.newest_ns < segment.end_ns:
+            self._late.append((agent, range(start_ns, segment.end_ns + 1)))
+        frames = stream.between(start_ns, segment.end_ns)
+        missed = sum(frame.missed for frame in frames) + stream.missed_after(segment.end_ns)
+        self._forget(segment)
+        return ClosedSegment(
+            segment.segment_id, start_ns, segment.end_ns, agent, segment.hand, segment.label, frames, missed,
+            why_no_recognition(frames),
+        )  # fmt: skip
+
+    def _reject(self, segment: OpenSegment, reason: str) -> ClosedSegment:
+        self._forget(segment)
+        return segment.rejected(reason)
+
+    def _forget(self, segment: OpenSegment) -> None:
+        del self._open[segment.segment_id]
+        self._answered.remember(segment.segment_id, segment.start_ns, segment.end_ns)
+
+    def _restart(self, session_id: str) -> list[ClosedSegment]:
+        if session_id == self._session:
+            return []
+        first, self._session = self._session is None, session_id
+        if first:
+            return []
+        closed = self._close_all("the source started anew")
+        self._streams.clear()
+        self._answered.clear()
+        self._late.clear()
+        return closed
+
+    def _close_all(self, reason: str) -> list[ClosedSegment]:
+        return [
+            self._close(segment) if segment.end_ns is not None else self._reject(segment, reason)
+            for segment in list(self._open.values())
+        ]

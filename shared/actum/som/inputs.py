@@ -1,0 +1,86 @@
+"""Input vectors as arrays, and which of them a map cannot take; NaN stands for a missing component."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[Any]
+
+
+def some_rows(vectors: ArrayLike) -> Array:
+    """Return the vectors (n, dim) as an array; see `numbers`.
+
+    Raises:
+        ValueError: there is none.
+    """
+    rows = numbers(vectors)
+    if not len(rows):
+        raise ValueError("there are no vectors to measure a map with")
+    return rows
+
+
+def float_type(values: ArrayLike) -> np.dtype[np.floating]:
+    """Return float32 for float32 values, float64 for all others."""
+    return np.dtype(np.float32 if np.asarray(values).dtype == np.float32 else np.float64)
+
+
+def numbers(values: ArrayLike) -> Array:
+    """Return values as an array in their own precision, in double where they are no floats; None is NaN."""
+    given = np.asarray(values)
+    return given if given.dtype.kind == "f" else np.asarray(values, np.float64)
+
+
+def check_squarable(values: Array) -> None:
+    """Refuse values (n, dim) whose squared distances would overflow their precision.
+
+    Raises:
+        ValueError: naming the largest.
+    """
+    largest = np.nanmax(np.abs(values))
+    if largest > np.sqrt(np.finfo(values.dtype).max / values.shape[1]) / 4:
+        raise ValueError(f"values up to {largest:.0e} are too large for distances in {values.dtype}: scale them down")
+
+
+def training_vectors(vectors: ArrayLike, dim: int, dtype: np.dtype[np.floating]) -> Array:
+    """Return a copy of the vectors to learn from, (n, dim), in a map's precision.
+
+    Raises:
+        ValueError: there is none, its length is another, or one is infinite, too large to be squared, or has no
+            known component.
+    """
+    inputs = np.array(vectors, dtype=dtype, order="C")
+    if inputs.ndim != 2 or inputs.shape[1] != dim or not len(inputs):
+        raise ValueError(f"cannot train on shape {inputs.shape}: needs n > 0 rows of {dim}")
+    try:
+        is_complete(inputs)
+        check_squarable(inputs)
+    except ValueError as error:
+        raise ValueError(f"cannot train on these vectors: {error}") from None
+    return inputs
+
+
+def is_complete(vectors: Array) -> bool:
+    """Tell whether no component of the rows (n, dim) is missing.
+
+    Raises:
+        ValueError: a component is infinite, or every component of a row is missing.
+    """
+    if np.isfinite(vectors).all():
+        return True
+    if np.isinf(vectors).any():
+        raise ValueError(f"row {np.flatnonzero(np.isinf(vectors).any(axis=1))[0]} has an infinite component")
+    empty = np.isnan(vectors).all(axis=1)
+    if empty.any():
+        raise ValueError(f"row {np.flatnonzero(empty)[0]} has no known component, all are NaN")
+    return False
+
+
+def check_rows(vectors: Array, dim: int) -> None:
+    """Refuse what is no matrix of `dim` columns.
+
+    Raises:
+        ValueError: naming the shape that was given.
+    """
+    if vectors.ndim != 2 or vectors.shape[1] != dim:
+        raise ValueError(f"vectors of shape {vectors.shape} are no rows of {dim} components")
