@@ -19,7 +19,6 @@ CAMERA = np.array([[FOCAL_PX, 0.0, (WIDTH - 1) / 2], [0.0, FOCAL_PX, (HEIGHT - 1
 SAMPLES = 6
 """Along each side of a pixel: its grey level is the mean of 36, which places an edge to a hundredth of a pixel."""
 SIZE_M = 0.08
-WALL = 120.0
 CLUTTER = 60
 """Grey rectangles on the wall behind the markers."""
 SHADE, STRIPE_PX = 0.35, 80
@@ -114,10 +113,10 @@ def placed(
 
 
 def photograph(
-    markers: Sequence[Placed], blur_px: float, noise: float, shaded: bool, seed: int, number: int = 0
+    markers: Sequence[Placed], blur_px: float, noise: float, wall: float, shaded: bool, seed: int, number: int = 0
 ) -> Pixels:
-    """Draw markers before the wall of a seed, blurred, with normal noise of each image's own number."""
-    canvas, chance = np.full((HEIGHT, WIDTH), WALL), np.random.default_rng(seed)
+    """Draw markers before a wall with the clutter of a seed, blurred, with normal noise of each image's own number."""
+    canvas, chance = np.full((HEIGHT, WIDTH), wall), np.random.default_rng(seed)
     for _ in range(CLUTTER):
         x, y, width, height = chance.integers((0, 0, 8, 8), (WIDTH, HEIGHT, 90, 90))
         canvas[y : y + height, x : x + width] = chance.integers(40, 220)

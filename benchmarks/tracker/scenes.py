@@ -23,12 +23,13 @@ INK, PAPER = (20.0, 50.0), (140.0, 235.0)
 
 @dataclass(frozen=True)
 class Condition:
-    """How markers are seen: how steep (least and most, in degrees), with what blur, noise, paper around them, light."""
+    """How markers are seen: how steep (least and most, in degrees), with what blur, noise, paper, wall and light."""
 
     steep_deg: tuple[float, float] = (0.0, 40.0)
     blur_px: float = 0.7
     noise: float = 2.0
     quiet_cells: float = 1.0
+    wall: float = 120.0
     shaded: bool = False
 
 
@@ -37,7 +38,7 @@ CONDITIONS: Mapping[str, Condition] = {
     "steep": Condition(steep_deg=(50.0, 75.0)),
     "blurred": Condition(blur_px=1.4),
     "noisy": Condition(noise=8.0),
-    "narrow paper": Condition(quiet_cells=0.5),
+    "cut out": Condition(quiet_cells=0.5, wall=30.0),
     "half in shadow": Condition(shaded=True),
 }
 
@@ -64,7 +65,7 @@ class Scene:
         """The images, with the same wall and noise of their own."""
         look = CONDITIONS[self.condition]
         return [
-            photograph(markers, look.blur_px, look.noise, look.shaded, FIRST_SEED + self.seed, number)
+            photograph(markers, look.blur_px, look.noise, look.wall, look.shaded, FIRST_SEED + self.seed, number)
             for number, markers in enumerate(self.truth)
         ]
 
