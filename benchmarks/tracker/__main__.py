@@ -32,8 +32,9 @@ the mean of {SAMPLES}×{SAMPLES} samples of what it covers, then come blur and n
 {HZ} a second, in which the markers drift by up to a pixel an image: one for each of {len(FAMILIES)} families,
 {len(SIDES_PX)} sides (of the black square, {SIDES_PX[0]} to {SIDES_PX[-1]} px if it faced the camera) and
 {len(CONDITIONS)} conditions. Their seeds had no part in making the tracker. Conditions: `plain`, turned away by up to
-40°, blur 0.7 px (standard deviation), noise 2 grey levels, a cell of white paper around; the others differ in this: `steep`, 50 to 75°; `blurred`, 1.4 px; `noisy`, 8 grey levels; `cut out`, half a cell of paper, on a dark wall; `half in shadow`, the
-edge of a shadow that takes 65 % of the light falls on the marker. Ink and paper are drawn for each marker.
+40°, blur 0.7 px (standard deviation), noise 2 grey levels, a cell of white paper around; the others differ in this:
+`steep`, 50 to 75°; `blurred`, 1.4 px; `noisy`, 8 grey levels; `cut out`, half a cell of paper, on a dark wall; `half in
+shadow`, the edge of a shadow that takes 65 % of the light falls on the marker. Ink and paper are drawn for each marker.
 
 A marker counts as found where all its corners are within a fifth of its side (or 2 px) of the true ones; `wrong` counts
 other ids and places. Corners and distances are compared by the markers that all rows found; every row's distance comes
