@@ -15,7 +15,10 @@ UNMOVED = "unmoved"
 MOVED = "moved"
 """Along the surface and sideways: neither away from the actor nor towards."""
 
-PUSHED, PULLED = "pushed", "pulled"
+PUSHED = "pushed"
+"""What became of a thing that went away from the actor …"""
+PULLED = "pulled"
+"""… and towards them."""
 
 STEEPEST_SURFACE = 0.25
 """What rises by more than a quarter of its way has left the surface: a table seen by a tilted camera is flatter."""

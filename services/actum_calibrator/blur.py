@@ -5,9 +5,8 @@ import math
 import cv2
 import numpy as np
 
-from actum.arrays import Array
+from actum.arrays import Array, Pixels
 from actum_calibrator.board import Board
-from actum_calibrator.grey_images import Pixels
 
 ALONG = np.linspace(0.3, 0.7, 9)  # where an edge is measured, in parts of its length: clear of other edges
 STEPS = 41  # samples across an edge: several a pixel, as markers are printed and seen

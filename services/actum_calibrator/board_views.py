@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from actum.arrays import Array
+from actum.arrays import Array, Pixels
 from actum_calibrator.blur import blur_px, image_blur_px, image_from_plane
 from actum_calibrator.board import Board
-from actum_calibrator.grey_images import BlurredError, Pixels, UnusablePictureError
+from actum_calibrator.grey_images import BlurredError, UnusablePictureError
 
 FEWEST_CORNERS = 8  # twice what a pose takes, so that the view tells something of the camera, too
 MOST_BLUR_PX = 2.0  # standard deviation; beyond it corners are drawn off by what stands beside them

@@ -11,10 +11,8 @@ import imagesize
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Pixels
 from actum.messages import Image
-
-Pixels = NDArray[np.uint8]
-"""Grey levels (height, width)."""
 
 LARGEST_PIXELS = 10_000 * 10_000  # 100 MB of grey levels; no camera has more
 

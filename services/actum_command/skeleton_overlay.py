@@ -4,15 +4,13 @@ from collections.abc import Sequence
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from actum.arrays import Array
+from actum.arrays import Array, Pixels
 from actum.geometry import BONES
 from actum.messages import Agent
 from actum.skeletons import INDEX
 from sensor_gateway.lens import Lens
 
-Pixels = NDArray[np.uint8]
 Colour = tuple[int, int, int]
 
 LEFT: Colour = (255, 144, 30)  # BGR: blue

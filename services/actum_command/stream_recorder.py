@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 from actum import keys
 from actum.codec import DecodeError
+from actum.limits import MAX_SKEW_NS
 from actum.messages import MANUAL, Action, Message, Posture, Segment, Skeleton
-from actum.node import SECOND_NS, Counters
+from actum.node import Counters
 from actum.recording import Recorder
 
 STREAMS = frozenset(
@@ -17,8 +18,6 @@ STREAMS = frozenset(
 
 IMAGES = frozenset({keys.COLOR, keys.DEPTH})
 """What is stored where it is asked for: faces are personal data."""
-
-SKEW_NS = 2 * SECOND_NS  # how much later than a segment's final action its mark may still arrive
 
 
 def origin_of(mark: Segment) -> str:
@@ -124,7 +123,9 @@ class StreamRecorder:
 
     def _forget(self, now_ns: int) -> None:
         """Drop the bounds that no mark can be waiting for any more: a recording may have segments without end."""
-        self._bounds = {name: bounds for name, bounds in self._bounds.items() if now_ns - bounds.received_ns <= SKEW_NS}
+        self._bounds = {
+            name: bounds for name, bounds in self._bounds.items() if now_ns - bounds.received_ns <= MAX_SKEW_NS
+        }
 
     def _resolve(self, segment_id: str) -> None:
         """Store the pending marks of a segment if its bounds are known."""

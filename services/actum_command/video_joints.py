@@ -4,9 +4,10 @@ from pathlib import Path
 
 import numpy as np
 
+from actum.arrays import Pixels
 from actum.messages import Skeleton
 from actum.node import SECOND_NS, Counters
-from actum_command.skeleton_overlay import Pixels, drawn
+from actum_command.skeleton_overlay import drawn
 from sensor_gateway.cameras import estimator_of
 from sensor_gateway.captured_picture import Picture
 from sensor_gateway.devices.video import pictures_of

@@ -8,11 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from actum.arrays import Indices
+from actum.arrays import Floats, Indices
 from actum.som import Som
 from actum_model_inspector.answered import AnsweredSegment
 from actum_model_inspector.label_placement import LabelSpace, text_size
-from actum_model_inspector.model_maps import Floats, ModelMaps
+from actum_model_inspector.model_maps import ModelMaps
 from actum_model_inspector.regions import Regions, innermost_unit, largest_component, regions
 from actum_model_inspector.style import (
     HALO,

@@ -7,11 +7,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from actum.arrays import Indices
+from actum.arrays import Floats, Indices
 from actum.node import SECOND_NS
 from actum_model_inspector.answered import AnsweredSegment, encoded, headline
 from actum_model_inspector.label_placement import spread_apart
-from actum_model_inspector.model_maps import Floats
 from actum_model_inspector.stick_figures import Pen, draw_figures
 from actum_model_inspector.style import HALO, action_colours, axes_at, figure_without_layout, hide_axes, in_house_style
 from actum_model_inspector.text_layout import columns, shortened, wrapped

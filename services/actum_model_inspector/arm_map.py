@@ -6,10 +6,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from actum.arrays import Floats
 from actum.skeletons import INDEX
 from actum.som import Som
 from actum_model_inspector.posture_map import draw_ground, drawn_units, map_size, name_sides, which_are_drawn
-from actum_model_inspector.stick_figures import MIDDLE_M, STANDING, Floats, Pen, draw_arrows, draw_figures, standing
+from actum_model_inspector.stick_figures import MIDDLE_M, STANDING, Pen, draw_arrows, draw_figures, standing
 from actum_model_inspector.style import FAINT, figure_with_layout, in_house_style
 from som_classifier.first_layer import VELOCITY_WEIGHT
 from som_classifier.handedness import mirrored
@@ -19,7 +20,8 @@ FIGURE_SIZE = 1.45  # units of the map: figures have no legs here and may be lar
 LONGEST_STEP_M = 0.5  # of the fastest arm's arrow on a figure: it stays about within its unit
 ARROW_IN = 0.018  # width of the arrows' shafts
 
-_SHOULDER, _ENDS = INDEX["right_shoulder"], [INDEX["right_elbow"], INDEX["right_hand"]]
+_SHOULDER = INDEX["right_shoulder"]
+_ENDS = [INDEX["right_elbow"], INDEX["right_hand"]]
 _LEGS = [INDEX[f"{side}_{joint}"] for side in ("left", "right") for joint in ("knee", "foot")]
 _BUST = STANDING - STANDING[_SHOULDER] + np.array([-0.1, MIDDLE_M, 0.0])
 _BUST[_LEGS] = np.nan

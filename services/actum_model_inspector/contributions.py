@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from actum.arrays import Floats
 from actum.messages import Hand
-from actum_model_inspector.model_maps import Floats, complete_weights
+from actum_model_inspector.model_maps import complete_weights
 from som_classifier.first_layer import CHANNELS
 from som_classifier.frames import Frame
 from som_classifier.pyramid_model import PyramidModel

@@ -1,16 +1,14 @@
 """The picture that explains an answer: which parts of a segment, on which maps, favour it over another action."""
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from numpy.typing import NDArray
 
-from actum.arrays import Indices
+from actum.arrays import Floats, Indices
 from actum_model_inspector.answered import AnsweredSegment, encoded
 from actum_model_inspector.arm_map import ArmsOnBodies, fastest_m
 from actum_model_inspector.contributions import Contributions, contributions
@@ -22,7 +20,6 @@ from actum_model_inspector.waterfall import NEGATIVE, POSITIVE, TERM_IN, Term, d
 from som_classifier.handedness import mirrored
 from som_classifier.pyramid_model import PyramidModel
 
-Floats = NDArray[Any]
 Draw = Callable[[Axes, PyramidModel, Contributions], None]
 
 SHADES = LinearSegmentedColormap.from_list("for and against", [NEGATIVE, PAPER, POSITIVE])

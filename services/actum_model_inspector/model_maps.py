@@ -2,12 +2,10 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from actum.arrays import Indices
+from actum.arrays import Floats, Indices
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from actum.som import Som
@@ -18,8 +16,6 @@ from som_classifier.map_activity import soft_activity
 from som_classifier.model import Model
 from som_classifier.paper_model import PaperModel
 from som_classifier.pyramid_model import PyramidModel
-
-Floats = NDArray[Any]
 
 TORSO_FROM_HIPS_M = STANDING[INDEX["torso"]] - STANDING[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0)
 """The torso relative to the hips' middle of somebody who stands, (3,)."""

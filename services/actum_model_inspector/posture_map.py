@@ -1,19 +1,14 @@
 """The picture of the first map: a stick figure per unit, on the U-matrix (the distances between neighbours)."""
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from actum.arrays import Indices
+from actum.arrays import Floats, Indices
 from actum.som import Som
 from actum_model_inspector.model_maps import ModelMaps
 from actum_model_inspector.stick_figures import WHOLE_BODY, Pen, draw_figures, standing
 from actum_model_inspector.style import FAINT, LEFT, RIGHT, draw_squares, figure_with_layout, hide_axes, in_house_style
-
-Floats = NDArray[Any]
 
 MAX_FIGURES = 20  # along a side: more are too small to see
 SIDE_IN = 10.5  # of the longer side: half an inch for each of 20 figures

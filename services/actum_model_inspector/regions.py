@@ -1,15 +1,11 @@
 """The regions of the second map: which action each unit stands for, and where a region's name goes."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from actum.arrays import Indices, Mask
+from actum.arrays import Floats, Indices, Mask
 from actum.som.grid import Grid
-
-Floats = NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,19 +1,16 @@
 """Stick figures: joints in orthographic projection, seen from in front, a little from the actor's left and above."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import to_rgba
-from numpy.typing import NDArray
 
+from actum.arrays import Floats
 from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS, PARTS
 from actum_model_inspector.style import INK, LEFT, PAPER, RIGHT
-
-Floats = NDArray[Any]
 
 AZIMUTH_RAD = np.deg2rad(20.0)  # of the view: an arm stretched forward does not hide behind its own hand
 ELEVATION_RAD = np.deg2rad(12.0)  # for the same reason

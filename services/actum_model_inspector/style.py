@@ -14,15 +14,15 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, get_font, get_font_names
 from matplotlib.patheffects import withStroke
-from numpy.typing import NDArray
 
+from actum.arrays import Floats
 from actum_model_inspector.text_layout import on_one_line, wrapped
 
-Floats = NDArray[Any]
-
-INK, FAINT, PAPER = "#222222", "#767676", "#ffffff"
-RIGHT, LEFT = "#d55e00", "#0072b2"
-"""The actor's right and left, on every figure."""
+INK = "#222222"  # text and lines
+FAINT = "#767676"  # what is said beside: 4.5:1 on the paper
+PAPER = "#ffffff"
+RIGHT = "#d55e00"  # the actor's right on every figure …
+LEFT = "#0072b2"  # … and left: told apart by the colour-blind
 ACCENT = "#0072b2"
 """Of what a diagram is about."""
 

@@ -9,11 +9,11 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
-from actum.arrays import Indices
+from actum.arrays import Floats, Indices
 from actum.node import SECOND_NS
 from actum.som import Som
 from actum_model_inspector.answered import AnsweredSegment, encoded, headline
-from actum_model_inspector.model_maps import Floats, ModelMaps
+from actum_model_inspector.model_maps import ModelMaps
 from actum_model_inspector.posture_map import draw_postures, draw_units, map_size, name_sides
 from actum_model_inspector.style import HALO, PAPER, figure_with_layout, in_house_style
 from som_classifier.handedness import mirrored

@@ -3,9 +3,10 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from actum.arrays import Floats
 from actum.som import Som
 from actum_model_inspector.posture_map import FILLED, draw_ground, drawn_units, map_size, name_sides, which_are_drawn
-from actum_model_inspector.stick_figures import LONGEST_ARROW_M, Floats, Pen, draw_arrows, draw_figures, standing
+from actum_model_inspector.stick_figures import LONGEST_ARROW_M, Pen, draw_arrows, draw_figures, standing
 from actum_model_inspector.style import FAINT, figure_with_layout, in_house_style
 from som_classifier.kinematics import LAG_TIME_CONSTANT_S
 

@@ -9,7 +9,8 @@ from matplotlib.patches import Rectangle
 
 from actum_model_inspector.style import FAINT, INK, hide_axes
 
-POSITIVE, NEGATIVE = "#4d9221", "#9a4fa8"  # green and purple: told apart by the colour-blind
+POSITIVE = "#4d9221"  # green …
+NEGATIVE = "#9a4fa8"  # … and purple: told apart by the colour-blind
 TERM_IN = 0.22  # height of a row: a line of text with some air
 NAMES_IN = 1.0  # width of the terms' names
 BARS_IN = 3.2  # width of the bars

@@ -9,17 +9,14 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from actum.arrays import Indices
+from actum.arrays import Floats, Indices
 from actum_model_trainer.discriminants import FittedStage
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.temperature_scaling import matched_inverse_temperature
 from actum_model_trainer.upper_layers import UpperLayers
 from som_classifier.first_layer import FirstMaps
 from som_classifier.presets import Prior, PyramidPreset
-
-Floats = NDArray[Any]
 
 
 def inverse_temperatures(

@@ -1,14 +1,9 @@
 """Median squared distances on a map, in units of which a preset gives the contrasts of soft activities."""
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
-from actum.arrays import Array
+from actum.arrays import Array, Floats
 from actum.som import Som
-
-Floats = NDArray[Any]
 
 CHUNK_ROWS = 64  # rows whose distances to all others are worked out at once, to bound the memory
 SMALLEST_ERROR2 = 1e-6  # squared units of the vectors: a contrast divides by it and must not be 0

@@ -2,18 +2,16 @@
 
 from collections.abc import Sequence
 from itertools import product
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Indices
+from actum.arrays import Floats, Indices
 from actum_model_trainer.augmentation import Variant
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.first_layer import FirstMaps
 from som_classifier.pyramid import Prefix, PrefixSums, Pyramid, quantised
 
-Floats = NDArray[Any]
 PooledVectors = tuple[NDArray[np.float32], Indices]
 """Vectors (n, inputs), one for each variant and share of an action, and the index of the sample of each, (n,)."""
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Indices
+from actum.arrays import Floats, Indices
 from actum.node import SECOND_NS
 from actum.som import Som
 from actum_model_trainer.augmentation import Variant, variants
@@ -26,8 +26,6 @@ from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid import Pyramid
 from som_classifier.pyramid_model import PyramidMetadata, PyramidModel
 from som_classifier.stage_discriminants import StageDiscriminants
-
-Floats = NDArray[Any]
 
 MAX_ROWS = 20_000  # per map of the first layer: some 60 for each of its 324 units
 MIN_DURATION_S = 1 / 30  # a frame of a usual sensor: samples may be of equal stamps

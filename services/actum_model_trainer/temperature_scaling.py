@@ -3,12 +3,9 @@
 A softmax turns inverse temperature × cosines into probabilities: the larger the inverse temperature, the surer.
 """
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[Any]
+from actum.arrays import Floats
 
 SMALLEST_INVERSE_TEMPERATURE = 0.5  # per unit of cosine: even the largest lead, 2, makes odds of no more than e to 1
 LARGEST_INVERSE_TEMPERATURE = 200.0  # per unit of cosine: a lead of 0.02 already makes a confidence of 0.98

@@ -2,12 +2,11 @@
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Indices
+from actum.arrays import Floats, Indices
 from actum.som import Som
 from actum_model_trainer.discriminants import FittedStage
 from actum_model_trainer.progress import Progress
@@ -16,8 +15,6 @@ from som_classifier.map_activity import soft_activity
 from som_classifier.presets import PyramidPreset
 from som_classifier.second_layer import ActionMap
 from som_classifier.supervised import SupervisedLayer
-
-Floats = NDArray[Any]
 
 SMALLEST_VARIANCE = 1e-6  # squared scores: a contrast divides by it and must not be 0
 

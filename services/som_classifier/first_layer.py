@@ -4,16 +4,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Floats
 from actum.skeletons import INDEX, JOINTS
 from actum.som import Som, Together
 from som_classifier.handedness import ACROSS, OPPOSITE
-
-Floats = NDArray[Any]
 
 VELOCITY_WEIGHT = 3.0
 """Weight of velocities against positions in the arm map's input: both then have about the same variance."""
@@ -27,7 +25,8 @@ SMALLEST_ERROR2 = 6e-5
 _SIZE = 3 * len(JOINTS)
 _ARM = np.arange(3 * INDEX["right_elbow"], 3 * INDEX["right_hand"] + 3)
 _SHOULDER = np.tile(np.arange(3), 2) + 3 * INDEX["right_shoulder"]
-_ENDS, _ROOTS = (np.concatenate([components, components + _SIZE]) for components in (_ARM, _SHOULDER))
+_ENDS = np.concatenate([_ARM, _ARM + _SIZE])
+_ROOTS = np.concatenate([_SHOULDER, _SHOULDER + _SIZE])
 _WEIGHTS = np.repeat([1.0, VELOCITY_WEIGHT], len(_ARM))
 _MIRROR = np.concatenate([(3 * OPPOSITE[:, None] + np.arange(3)).ravel() + start for start in (0, _SIZE)])
 _SIGNS = np.tile(ACROSS, 2 * len(JOINTS))

@@ -28,7 +28,8 @@ _LIMBS = np.array(
     ]
 )
 _COMPONENTS = (3 * _LIMBS[..., None] + np.arange(3)).reshape(LIMBS, -1)
-_RIGHT_ARM, _LEFT_ARM = 0, 1
+_RIGHT_ARM = 0
+_LEFT_ARM = 1
 _UNITS_PER_M = 1000
 """Whole millimetres: finer than any tracker, and sums over the longest segment stay far below 2⁶³."""
 _JITTER_MM = 20.0

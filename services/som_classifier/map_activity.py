@@ -4,12 +4,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from actum.arrays import Array, Indices
+from actum.arrays import Array, Floats, Indices
 from actum.som import Som
-
-Floats = NDArray[Any]
 
 NO_WINNER = -1
 """Stands for the winner of an input of which no component is known."""

@@ -7,14 +7,12 @@ of two prefix sums, wherever the summation began.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Indices
+from actum.arrays import Floats, Indices
 
-Floats = NDArray[Any]
 Sums = NDArray[np.uint32]
 
 SCALE = float(2**19)

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from operator import mul
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from actum.arrays import Array, Indices
+from actum.arrays import Array, Floats, Indices
 from actum.node import SECOND_NS
 from actum.skeletons import JOINTS
 from actum.som import Som
@@ -34,7 +34,6 @@ from som_classifier.second_layer import ActionMap
 from som_classifier.stage_discriminants import StageDiscriminants, familiarity_of
 from som_classifier.supervised import SupervisedLayer
 
-Floats = NDArray[Any]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 

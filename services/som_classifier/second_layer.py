@@ -1,15 +1,13 @@
 """The second layer of the default recogniser: a map of the actions' scores."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Floats
 from actum.som import Som
 from som_classifier.map_activity import soft_activity
-
-Floats = NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False)

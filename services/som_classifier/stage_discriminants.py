@@ -3,14 +3,12 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Floats
 from actum.som.blas import row_matmul
-
-Floats = NDArray[Any]
 
 NEGLIGIBLE = 0.02
 """Stages that are less probable than this are left out: each costs a matrix product per frame."""

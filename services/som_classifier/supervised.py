@@ -2,14 +2,10 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from actum.arrays import Array, Indices
-
-Floats = NDArray[Any]
+from actum.arrays import Array, Floats, Indices
 
 
 @dataclass(frozen=True, eq=False)

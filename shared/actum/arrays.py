@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,10 +11,15 @@ from actum.messages import Joint
 
 Array = NDArray[np.float64]
 """Real numbers, in which NaN stands for what is unknown."""
+Floats = NDArray[Any]
+"""Real numbers of either precision: single where BLAS is to be fast."""
 Mask = NDArray[np.bool_]
 """Yes or no for each element of another array."""
 Indices = NDArray[np.intp]
 """Places in another array."""
+
+Pixels = NDArray[np.uint8]
+"""Grey levels or colours, 0 to 255."""
 
 UNKNOWN = (math.nan, math.nan, math.nan)
 """Where a missing joint is."""

@@ -15,6 +15,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, field_validator
 
 from actum import geometry
+from actum.arrays import Array
 from actum.messages import Intrinsics, Transform
 
 FORMAT: Literal["actum.calibration/1"] = "actum.calibration/1"
@@ -106,7 +107,7 @@ class Calibration(_Part):
         return hashlib.sha256(self.model_dump_json().encode()).hexdigest()[:12]
 
     @property
-    def matrix(self) -> geometry.Array:
+    def matrix(self) -> Array:
         """K of shape (3, 3)."""
         return np.array(self.K, dtype=np.float64).reshape(3, 3)
 

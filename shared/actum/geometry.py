@@ -8,11 +8,9 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Array
 from actum.skeletons import INDEX
-
-Array = NDArray[np.float64]
 
 BONES: tuple[tuple[int, int, float], ...] = tuple(
     (INDEX[parent], INDEX[child], length_m)

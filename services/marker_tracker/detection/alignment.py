@@ -11,9 +11,8 @@ from functools import cache
 import cv2
 import numpy as np
 
-from actum.arrays import Array, Mask
+from actum.arrays import Array, Mask, Pixels
 from marker_tracker.detection.families import Cells
-from marker_tracker.detection.images import Pixels
 
 SAMPLES_PER_CELL = 3
 """Along each side: the least that show where within a cell an edge lies."""

@@ -7,8 +7,7 @@ gradients around each corner (OpenCV's `cornerSubPix`): lens and paper bend long
 import cv2
 import numpy as np
 
-from actum.arrays import Array
-from marker_tracker.detection.images import Pixels
+from actum.arrays import Array, Pixels
 
 NEXT = [1, 2, 3, 0]
 """Index of the corner that ends the side which begins at a corner."""

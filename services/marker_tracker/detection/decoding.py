@@ -7,10 +7,9 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array, Indices, Mask
+from actum.arrays import Array, Indices, Mask, Pixels
 from marker_tracker.detection.alignment import Alignment, align, sample_squares
 from marker_tracker.detection.families import Cells, Family
-from marker_tracker.detection.images import Pixels
 from marker_tracker.detection.marker import AlignmentStart, Marker
 
 SAMPLES_PER_CELL = 3

@@ -6,12 +6,11 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array
+from actum.arrays import Array, Pixels
 from actum.node import SECOND_NS
 from marker_tracker.detection.corners import refine
 from marker_tracker.detection.decoding import Candidates, decode, read_in_place
 from marker_tracker.detection.families import family
-from marker_tracker.detection.images import Pixels
 from marker_tracker.detection.marker import Marker
 from marker_tracker.detection.quads import QuadDetector, inner_squares, rimmed_squares, within
 

@@ -6,13 +6,10 @@ import struct
 import cv2
 import imagesize
 import numpy as np
-from numpy.typing import NDArray
 
+from actum.arrays import Pixels
 from actum.darkness import is_black
 from actum.messages import Image
-
-Pixels = NDArray[np.uint8]
-"""A grey image (height, width)."""
 
 LARGEST_PIXELS = 4096 * 4096
 """Pixels of an image: 16 MB of grey levels, several times what a colour camera gives."""

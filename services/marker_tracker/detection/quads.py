@@ -8,10 +8,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array, Mask
+from actum.arrays import Array, Mask, Pixels
 from marker_tracker.detection.alignment import sample_squares
 from marker_tracker.detection.families import Family
-from marker_tracker.detection.images import Pixels
 
 SMALL_FAMILY = 50
 """Markers up to which a family is searched as a whole, at little cost, so that unknown markers are found and told."""

@@ -6,8 +6,7 @@ from typing import Self
 import cv2
 import numpy as np
 
-from actum.arrays import Array
-from marker_tracker.detection.images import Pixels
+from actum.arrays import Array, Pixels
 
 BLUR_PX = 0.8
 """Standard deviation in pixels: takes the noise off slopes, and leaves what a hand shows."""

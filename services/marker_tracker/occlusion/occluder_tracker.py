@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from actum.arrays import Pixels
 from actum.node import SECOND_NS
-from marker_tracker.detection.images import Pixels
 from marker_tracker.detection.marker import Key, Marker
 from marker_tracker.occlusion.crop import Crop
 from marker_tracker.occlusion.registration import Similarity, Template

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from actum.arrays import Pixels
 from actum.node import SECOND_NS
 from marker_tracker.detection.alignment import align, align_by_similarity
 from marker_tracker.detection.decoding import wrong_cells
 from marker_tracker.detection.detector import SAME_PLACE_SIDES
 from marker_tracker.detection.families import family
-from marker_tracker.detection.images import Pixels
 from marker_tracker.detection.marker import Key, Marker
 
 Box = tuple[int, int, int, int]

@@ -11,8 +11,10 @@ Array = NDArray[np.float64]
 Report = Callable[[int, int], None]
 """Called with the steps (or epochs) done and those in all."""
 
-_SMALLEST_RADIUS, _LARGEST_RADIUS = 1e-150, 1e150
-"""Between these (grid units) a radius can be squared in double precision."""
+_SMALLEST_RADIUS = 1e-150
+"""Between this (grid units) and the largest a radius can be squared in double precision."""
+_LARGEST_RADIUS = 1e150
+"""The other bound (grid units)."""
 
 
 def silent(done: int, total: int) -> None:
