@@ -20,6 +20,10 @@ SHADOW_THRESHOLD = 0.25
 """Between black (0) and white (1), instead of the middle: in a shadow white is darker than the middle."""
 MAX_WHITE_BORDER_SHARE = 0.1
 """Of the border's cells that may be read as white: with refined corners hardly one is."""
+NARROW_CELL_PX = 3.5
+"""Pixels per cell along the shortest side up to which neighbouring cells blur into one another."""
+SHARPENING = 0.25
+"""Of the Laplacian of a marker's cells, where it cannot be read otherwise: as the AprilTag library does."""
 MIN_CORRELATION = 0.72
 """Normalised cross-correlation with the pattern: cells of other things are read as some code, too."""
 SMALL_CELL_PX = 6.5
@@ -90,31 +94,53 @@ def _decoded(pixels: Pixels, candidates: Candidates) -> list[Marker]:
 
 
 def _read(levels: Array, corners_px: Array, family: Family) -> _Readings:
-    """Match grey levels, as of `_sampled_cells`, with a family's codes: in plain light, or else in a shadow."""
-    cells = _binarised(levels)
-    ids, turns, wrong, matched = _matched(cells, family, family.corrected)
-    (unread,) = np.nonzero(~matched)
-    if len(unread):
-        shadowed = _matched(_binarised(levels[unread], SHADOW_THRESHOLD), family, 0)
-        ids[unread], turns[unread], wrong[unread], matched[unread] = shadowed
+    """Match grey levels, as of `_sampled_cells`, with a family's codes.
+
+    What cannot be read as it is, is read as if in a shadow, and, where cells are narrow, sharpened.
+    """
+    sides_px = np.linalg.norm(corners_px - corners_px[:, [3, 0, 1, 2]], axis=2)
+    narrow = sides_px.min(axis=1) <= NARROW_CELL_PX * (family.cells + 2)
+    ids, turns, wrong = np.zeros((3, len(levels)), dtype=np.intp)
+    any_width, matched = np.ones(len(levels), dtype=bool), np.zeros(len(levels), dtype=bool)
+    for tried, threshold, tolerated, width in (
+        (levels, 0.5, family.corrected, any_width),
+        (levels, SHADOW_THRESHOLD, 0, any_width),
+        (_sharpened(levels), 0.5, family.corrected, narrow),
+    ):
+        (unread,) = np.nonzero(width & ~matched)
+        if len(unread):
+            found = _matched(tried[unread], threshold, family, tolerated)
+            ids[unread], turns[unread], wrong[unread], matched[unread] = found
     (index,) = np.nonzero(matched)
-    for at in index:
-        cells[at] = np.rot90(family.patterns[ids[at]], turns[at])
-    index = index[_correlation(levels, cells)[index] >= MIN_CORRELATION]
     upright = [np.roll(corners_px[at], turns[at], axis=0) for at in index]
     return _Readings(index, np.array(upright).reshape(-1, 4, 2), ids[index].tolist(), wrong[index].tolist())
 
 
-def _matched(cells: Cells, family: Family, tolerated: int) -> tuple[Indices, Indices, NDArray[np.int64], Mask]:
-    """Find the marker nearest to each reading (n, across, across) with its border.
+def _sharpened(levels: Array) -> Array:
+    """Undo blur between the cells of levels, as of `_sampled_cells`, by a Laplacian: (n, across, 1, across, 1)."""
+    cells = levels.mean(axis=(2, 4))
+    around = np.pad(cells, ((0, 0), (1, 1), (1, 1)), mode="edge")
+    beside = around[:, :-2, 1:-1] + around[:, 2:, 1:-1] + around[:, 1:-1, :-2] + around[:, 1:-1, 2:]
+    sharpened: Array = cells + SHARPENING * (4 * cells - beside)
+    return sharpened[:, :, None, :, None]
+
+
+def _matched(
+    levels: Array, threshold: float, family: Family, tolerated: int
+) -> tuple[Indices, Indices, NDArray[np.int64], Mask]:
+    """Find the marker nearest to each reading of levels, as of `_sampled_cells`, with its border.
 
     Returns:
-        Ids (n,), quarter turns (n,), wrong cells (n,), and whether code and border are as right as they must be (n,).
+        Ids (n,), quarter turns (n,), wrong cells (n,), and whether code, border and levels fit as they must (n,).
     """
+    cells = _binarised(levels, threshold)
     inner = cells[:, 1:-1, 1:-1]
     matches, white_border = family.match(inner), cells.sum(axis=(1, 2)) - inner.sum(axis=(1, 2))
     border_cells = 4 * (family.cells + 1)
     matched = (matches.wrong <= tolerated) & (white_border <= MAX_WHITE_BORDER_SHARE * border_cells)
+    for at in np.nonzero(matched)[0]:
+        cells[at] = np.rot90(family.patterns[matches.ids[at]], matches.turns[at])
+    matched &= _correlation(levels, cells) >= MIN_CORRELATION
     return matches.ids, matches.turns, matches.wrong + white_border, matched
 
 

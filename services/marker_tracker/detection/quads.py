@@ -24,6 +24,14 @@ RIM_EXTENT = (0.15, 0.85)
 """Of a side, in which the samples lie: nearer to its ends rough corners miss it."""
 MIN_CONTRAST = 10.0
 """Grey levels from inside to outside of a side: less is noise."""
+THRESHOLD_WINDOWS_PX = (5, 25, 10)
+"""Least and greatest window of the adaptive threshold, and the step between them. OpenCV begins at 3, where the rise
+across a blurred edge is lost."""
+OUTLINE_PX = THRESHOLD_WINDOWS_PX[0] // 2
+"""By which a square that OpenCV found may lie outside of its edge, on what is dark around it."""
+MIN_QUAD_DISTANCE = 0.05
+"""Of two squares' corners, as a share of the perimeter, below which OpenCV drops the smaller square: by its own 0.125
+it drops many a marker for the outline of its paper."""
 POLYGON_TOLERANCE = 0.03
 """Of an outline from its polygon, as a share of its length: OpenCV's own `polygonalApproxAccuracyRate`."""
 
@@ -51,7 +59,7 @@ class QuadDetector:
     def __init__(self, families: Sequence[Family], wanted: Sequence[Collection[int]]) -> None:
         """Search each family for its wanted ids, or for all where there are none or the family is small."""
         dictionaries = [_searched(family, ids) for family, ids in zip(families, wanted, strict=True)]
-        self._detector = cv2.aruco.ArucoDetector(dictionaries, cv2.aruco.DetectorParameters())
+        self._detector = cv2.aruco.ArucoDetector(dictionaries, _parameters())
 
     def find(self, pixels: Pixels, known: Array) -> Quads:
         """Find the quadrilaterals in a grey image (height, width), of which some (k, 4, 2) are known markers."""
@@ -88,6 +96,16 @@ def rimmed_squares(pixels: Pixels, quads: Quads) -> Array:
     return largest[:MAX_SECOND_LOOKS]
 
 
+def _parameters() -> Any:
+    parameters = cv2.aruco.DetectorParameters()
+    least_px, greatest_px, step_px = THRESHOLD_WINDOWS_PX
+    parameters.adaptiveThreshWinSizeMin = least_px
+    parameters.adaptiveThreshWinSizeMax = greatest_px
+    parameters.adaptiveThreshWinSizeStep = step_px
+    parameters.minMarkerDistanceRate = MIN_QUAD_DISTANCE
+    return parameters
+
+
 def _searched(family: Family, ids: Collection[int]) -> Any:
     """Leave out of a large family what is not wanted: time and false markers grow with the codes compared."""
     return family.only(ids) if ids and len(family.codes) > SMALL_FAMILY else family.dictionary
@@ -103,7 +121,9 @@ def _inner_square(pixels: Pixels, corners_px: Array) -> Array | None:
     left, top, right, bottom = max(left, 0), max(top, 0), left + width, top + height
     window = pixels[top:bottom, left:right]
     inside = np.zeros(window.shape, dtype=np.uint8)
-    cv2.fillConvexPoly(inside, np.round(corners_px - (left, top)).astype(np.int32), 1)
+    outline = np.round(corners_px - (left, top)).astype(np.int32)
+    cv2.fillConvexPoly(inside, outline, 1)
+    cv2.polylines(inside, [outline], True, 0, 2 * OUTLINE_PX + 1)
     levels = np.ascontiguousarray(window[inside > 0])
     middle = cv2.threshold(levels[None], 0, 255, cv2.THRESH_OTSU)[0] if levels.size else 0.0
     dark = ((window <= middle) & (inside > 0)).astype(np.uint8)
