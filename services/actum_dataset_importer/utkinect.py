@@ -18,9 +18,9 @@ from actum.skeletons import JOINTS, to_actum
 from actum_dataset_importer.takes import DatasetError, Take, camera_joints, files_of, read_rows, segment_marks, stamp_of
 
 IMAGES_PER_SECOND = 30
-"""The camera's rate, by which images are numbered."""
+"""The camera's rate (Hz); image numbers count at this rate."""
 SOURCE_JOINTS = 20
-"""Of Kinect's skeleton, before they are reduced to the fifteen."""
+"""Joints of Kinect's skeleton, of which fifteen are kept."""
 PATTERN = "joints_s*_e*.txt"
 NAME = re.compile(r"joints_(s(?P<person>\d\d)_e(?P<execution>\d\d))\.txt")
 LABELS = "actionLabel_modified.txt"
