@@ -15,7 +15,7 @@ from actum_calibrator.up_direction import UpDirection, UpDirectionEstimator
 from actum_command.commands.terminal import connect, fail, say
 from actum_command.live_calibration import SilentStreamError, live_skeletons
 
-PAUSE_NS = SECOND_NS // 2  # how long one instruction is left to be read before the next
+PAUSE_NS = SECOND_NS // 2  # shortest time between two instructions, so that each can be read
 
 
 def up(
@@ -25,16 +25,16 @@ def up(
 ) -> None:
     """Find how a tilted camera is tilted: one person stands upright and still before it, arms down, for two seconds."""
     frames = _live() if recording is None else _recorded(recording)
-    estimator, told, told_ns = UpDirectionEstimator(), "", -PAUSE_NS
+    estimator, instruction, instructed_ns = UpDirectionEstimator(), "", -PAUSE_NS
     for frame in frames:
         estimator.offer(frame)
         if estimator.found is not None:
             _report(estimator.found)
             return
-        is_new = estimator.instruction != told and abs(frame.stamp_ns - told_ns) >= PAUSE_NS
+        is_new = estimator.instruction != instruction and abs(frame.stamp_ns - instructed_ns) >= PAUSE_NS
         if recording is None and is_new:
-            told, told_ns = estimator.instruction, frame.stamp_ns
-            say(f"  {told}")
+            instruction, instructed_ns = estimator.instruction, frame.stamp_ns
+            say(f"  {instruction}")
     fail(f"nobody stood upright and still for long enough: {estimator.instruction}")
 
 
@@ -48,7 +48,7 @@ def _report(found: UpDirection) -> None:
 
 
 def _signed(angle_deg: float, positive: str, negative: str) -> str:
-    """Say an angle by the word for its sign."""
+    """Return an angle in words, its sign as one of two words."""
     return f"{positive if angle_deg >= 0 else negative} by {abs(angle_deg):.1f} degrees"
 
 

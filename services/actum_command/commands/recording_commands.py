@@ -16,9 +16,9 @@ from actum_command.commands.terminal import connect, fail, refuse_ending, refuse
 from actum_command.stream_recorder import IMAGES, STREAMS, StreamRecorder
 from actum_command.streaming import put_all, store_all
 
-WAIT_S = 5.0  # a preprocessor that is starting listens within this time
+WAIT_S = 5.0  # how long to wait for a preprocessor that is starting to subscribe
 ALL = "all"
-"""Marks of every origin."""
+"""The value of `--marks` for every origin."""
 
 
 def record(

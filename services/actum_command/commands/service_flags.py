@@ -1,4 +1,4 @@
-"""Options for every setting of the services that a command starts, from where the services declare them."""
+"""Options for every setting of the services that a command starts, made from the services' declarations."""
 
 import inspect
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from actum_command.service_settings import DECLARED, flag_of, negated_flag_of
 
 
 def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
-    """Let a command take every setting of the services that it has no option for itself; it gets them as `given`."""
+    """Add to a command an option for each setting of the services that it lacks; it gets their values as `given`."""
     own = dict(inspect.signature(command, eval_str=True).parameters)
     del own["given"]
     flags = {
@@ -35,7 +35,7 @@ def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def _flag(name: str, field: FieldInfo, service: str) -> inspect.Parameter:
-    """Declare an option for Typer; its value is the service's to judge."""
+    """Return a setting's option for Typer; the service validates its value."""
     words: dict[str, Any] = {"help": explained(field), "rich_help_panel": f"Settings of {service}"}
     is_switch = not placeholder(field)
     if is_switch:
