@@ -78,8 +78,8 @@ bench-paper: $(STAMP)  ## preset paper by the paper's own protocols, step by ste
 	@test -d "$$ACTUM_DATA" || { echo "bench-paper needs ACTUM_DATA: the folder that holds gharaee_set1/, msr_action3d/ and utkinect/" >&2; exit 1; }
 	$(BIN)/python -m benchmarks.paper
 
-bench-tracker: $(STAMP)  ## what the marker tracker costs for a frame, beside bare OpenCV
-	$(BIN)/python benchmarks/tracker.py
+bench-tracker: $(STAMP)  ## what the marker tracker costs for an image and how exact it is, beside OpenCV, about ten minutes
+	$(BIN)/python -m benchmarks.tracker
 
 picture: $(STAMP)  ## the README's pictures
 	$(BIN)/python -m docs.picture docs/scene.png

@@ -54,7 +54,7 @@ myst_heading_anchors = 3
 myst_enable_extensions = ["colon_fence"]
 suppress_warnings = ["myst.header"]  # pages of results print theirs as they come
 
-smartquotes = False  # settings quote JSON
+smartquotes_action = "De"  # dashes, no quotes: settings quote JSON
 
 html_theme = "furo"
 html_title = "actum"

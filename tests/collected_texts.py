@@ -43,10 +43,8 @@ class Collected:
 
     def take_assigned(self, name: str) -> None:
         """Collect what the variables of a name are set to."""
-        for path, tree in modules().items():
-            for node in ast.walk(tree):
-                if isinstance(node, ast.Assign) and name in [getattr(target, "id", "") for target in node.targets]:
-                    self.take(node.value, f"{path}:{node.lineno}")
+        for value, place in assigned(name):
+            self.take(value, place)
 
 
 @cache
@@ -102,7 +100,10 @@ def returns() -> dict[tuple[str, bool], list[ast.expr]]:
 
 
 def texts(node: ast.expr, followed: frozenset[str] = frozenset()) -> Iterator[str]:
-    """Yield the texts that an expression can be, as far as they stand in it or in a function that it calls."""
+    """Yield the texts that an expression can be, as far as they stand in it or in a function that it calls.
+
+    Of a tuple, as of a kind with its detail, it is the first.
+    """
     match node:
         case ast.Constant(value=str(text)):
             yield text
@@ -116,9 +117,22 @@ def texts(node: ast.expr, followed: frozenset[str] = frozenset()) -> Iterator[st
                 yield from texts(value, followed)
         case ast.Name(id=name) if name in constants():
             yield constants()[name]
+        case ast.Starred(value=ast.Name(id=name)):
+            for value, _ in assigned(name):
+                yield from texts(value, followed)
+        case ast.Tuple(elts=[first, *_]):
+            yield from texts(first, followed)
         case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)) if name not in followed:
             for returned in returns().get((name, ast.unparse(node.func).startswith("self.")), []):
                 yield from texts(returned, followed | {name})
+
+
+def assigned(name: str) -> Iterator[tuple[ast.expr, str]]:
+    """Yield what the variables of a name are set to, and where."""
+    for path, tree in modules().items():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Assign) and name in [getattr(target, "id", "") for target in node.targets]:
+                yield node.value, f"{path}:{node.lineno}"
 
 
 def calls() -> Iterator[tuple[str, str, ast.Call]]:

@@ -4,15 +4,15 @@ import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from docs.generate import fields, problems, settings
+from docs.generate import fields, reasons, rejects, settings
 
 DOCS = Path(__file__).parents[1]
 PAGES = (DOCS / "messages.md", DOCS / "operating.md")
 PARTS: Mapping[str, Callable[[], str]] = {
     "fields": fields.sections,
-    "rejects": problems.rejects_table,
-    "reasons": problems.reasons_table,
-    "absences": problems.absences_table,
+    "rejects": rejects.rejects_table,
+    "reasons": reasons.reasons_table,
+    "absences": reasons.absences_table,
     "settings": settings.sections,
 }
 PART = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end -->)", re.S)

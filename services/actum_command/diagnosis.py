@@ -8,9 +8,10 @@ from actum import __version__, keys
 from actum.codec import schema_name
 from actum.messages import MESSAGES, Info, Status
 from actum.runtime import Client
+from actum_command.processes import SERVICES
 from scene_simulator.endless_simulator import DESCRIPTION
 
-EXPECTED = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
+EXPECTED = ("sensor_gateway", *SERVICES)
 """The services of a whole system; the simulated scene stands in the sensor gateway's place, by its name."""
 
 STATUS_S = 2.5  # a little more than two of the reports that every service sends each second

@@ -48,9 +48,7 @@ class AnsweredSegments:
             newest_ns: the stamp that a mark without one gets.
         """
         answered = self._answered[mark.segment_id]
-        repeated = _repetition(mark, answered)
-        if repeated is not None:
-            self._counters.reject(*repeated)
+        if self._is_repetition(mark, answered):
             return []
         stamp_ns = mark.stamp_ns if mark.stamp_ns is not None else newest_ns
         answered.reused = True
@@ -58,17 +56,18 @@ class AnsweredSegments:
             answered.start_ns = stamp_ns
         return [OpenSegment.of(mark, stamp_ns, stamp_ns).rejected("segment_id reused")]
 
-
-def _repetition(mark: Segment, answered: _Answered) -> tuple[str, str] | None:
-    """Return the counter and the detail of a mark that repeats one, or is an end that came too late; else None."""
-    is_start = mark.kind == "start"
-    known_ns = answered.start_ns if is_start else answered.end_ns
-    if not is_start and (answered.reused or mark.stamp_ns is None):
-        return "duplicate_mark", f"end of the answered segment {mark.segment_id!r}"
-    if not is_start and known_ns is None:
-        return "late", f"end of {mark.segment_id!r} after it was given up"
-    if mark.stamp_ns is not None and mark.stamp_ns == known_ns:
-        return "duplicate_mark", f"{mark.kind} of the answered segment {mark.segment_id!r}"
-    if is_start and answered.reused and mark.stamp_ns is None:
-        return "duplicate_mark", f"{mark.segment_id!r} is used up"
-    return None
+    def _is_repetition(self, mark: Segment, answered: _Answered) -> bool:
+        """Count a mark that repeats an earlier one, or an end that came too late; False if it begins a new segment."""
+        is_start = mark.kind == "start"
+        known_ns = answered.start_ns if is_start else answered.end_ns
+        if not is_start and (answered.reused or mark.stamp_ns is None):
+            self._counters.reject("duplicate_mark", f"end of the answered segment {mark.segment_id!r}")
+        elif not is_start and known_ns is None:
+            self._counters.reject("late", f"end of {mark.segment_id!r} after it was given up")
+        elif mark.stamp_ns is not None and mark.stamp_ns == known_ns:
+            self._counters.reject("duplicate_mark", f"{mark.kind} of the answered segment {mark.segment_id!r}")
+        elif is_start and answered.reused and mark.stamp_ns is None:
+            self._counters.reject("duplicate_mark", f"{mark.segment_id!r} is used up")
+        else:
+            return False
+        return True

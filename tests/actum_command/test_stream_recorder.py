@@ -6,12 +6,13 @@ import pytest
 from mcap.reader import make_reader
 
 from actum import keys
+from actum.limits import MAX_SKEW_NS
 from actum.messages import MANUAL, REPLAY, SIMULATOR, Image, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS, Counters
 from actum.recording import Recorder, Recording
 from actum_command.commands import segment_commands
 from actum_command.scene_marks import mark_of
-from actum_command.stream_recorder import IMAGES, SKEW_NS, STREAMS, StreamRecorder
+from actum_command.stream_recorder import IMAGES, STREAMS, StreamRecorder
 from empty_messages import action, image, mark, skeleton, status
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator, labelled_stream
@@ -123,7 +124,7 @@ def test_answers_are_kept_only_as_long_as_a_mark_may_be_late(tmp_path: Path) -> 
         stream = StreamRecorder(recorder)
         for i in range(100):
             stream.take(action(i, i + 1, f"segment{i}"), received_ns=i * SECOND_NS)
-        assert len(stream._bounds) == 1 + SKEW_NS // SECOND_NS
+        assert len(stream._bounds) == 1 + MAX_SKEW_NS // SECOND_NS
     assert stream.stored == 100
 
 

@@ -117,3 +117,17 @@ def test_a_tag_as_narrow_as_at_steeper_angles_is_found(data, degrees, steeper) -
 def test_the_tag_is_found_in_smaller_photographs(data, degrees) -> None:
     pixels = cv2.imread(str(data / "markers" / "dt_apriltags" / f"test_image_rotation_{degrees}.png"))
     assert tag_in(cv2.resize(pixels, None, fx=0.75, fy=0.75, interpolation=cv2.INTER_AREA)).seen
+
+
+@pytest.mark.parametrize(("scale", "steeper"), [(0.6, 60), (0.42, 60), (0.35, 60), (0.6, 70), (0.8, 76), (1.0, 80)])
+def test_a_steep_tag_is_found_in_smaller_photographs(data, scale, steeper) -> None:
+    photograph = data / "markers" / "dt_apriltags" / "test_image_rotation_60.png"
+    narrower = np.cos(np.radians(steeper)) / np.cos(np.radians(60))
+    pixels = cv2.resize(
+        cv2.imread(str(photograph), cv2.IMREAD_GRAYSCALE),
+        None,
+        fx=scale * narrower,
+        fy=scale,
+        interpolation=cv2.INTER_AREA,
+    )
+    assert [marker.id for marker in MarkerDetector({"DICT_APRILTAG_36H11": ()}).search(pixels)] == [76]

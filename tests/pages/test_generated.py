@@ -5,9 +5,11 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
-from docs.generate import fields, problems, settings
+from docs.generate import fields, settings
 from docs.generate.pages import PAGES, renewed
 from docs.generate.processes import DIAGRAM, diagram
+from docs.generate.reasons import REASONS
+from docs.generate.rejects import COUNTED_BY, REJECTS
 
 from actum.codec import schema_name
 from actum.messages import MESSAGES, Message
@@ -57,7 +59,7 @@ def test_the_examples_are_messages(message: type[Message]) -> None:
 
 
 def test_every_kind_that_is_rejected_is_explained_and_none_else() -> None:
-    assert set(problems.REJECTS) == set(reject_kinds().texts)
+    assert set(REJECTS) == set(reject_kinds().texts)
 
 
 def test_no_kind_escapes_the_search() -> None:
@@ -69,15 +71,15 @@ def test_no_kind_escapes_the_search() -> None:
 def test_the_page_names_the_services_that_count_a_kind() -> None:
     for kind, places in reject_kinds().texts.items():
         packages = {place.split("/")[1] for place in places}
-        assert packages == (set(problems.REJECTS[kind]) or {"actum"}), kind
+        assert packages == (set(REJECTS[kind]) or {"actum"}), kind
 
 
 def test_every_reason_is_explained_and_none_else() -> None:
-    assert set(problems.REASONS) == set(reasons().texts)
+    assert set(REASONS) == set(reasons().texts)
 
 
 def test_every_explanation_says_what_to_do() -> None:
-    for kinds in (*(kinds for _, kinds in problems.COUNTED_BY), problems.REASONS):
+    for kinds in (*(kinds for _, kinds in COUNTED_BY), REASONS):
         for text, problem in kinds.items():
             assert problem.meaning.endswith("."), text
             assert problem.remedy.endswith((".", "?")), text

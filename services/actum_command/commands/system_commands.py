@@ -3,7 +3,7 @@
 import logging
 import threading
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, get_args
 
 import typer
 
@@ -15,6 +15,10 @@ from actum_command.commands.terminal import fail, say, settings
 from actum_command.service_settings import Given
 from actum_command.startup import CHECK_S, chosen_source, lack_of_model, refuse_taken, wait_for_router
 from actum_command.supervising import Program, Supervisor, UnusableError
+from sensor_gateway.settings import SourceName
+
+SOURCES = [name for name in get_args(SourceName) if name != "marker-camera"]
+"""What the gateway reads for `actum up`: a camera for the markers stands beside another one."""
 
 NO_MARKS = "nobody marks actions here: 'actum segment toggle' does, and 'actum play' beside --source none"
 
@@ -39,8 +43,7 @@ def up(
     source: Annotated[
         str | None,
         typer.Option(
-            help="simulator, camera, realsense, openni2, recording or none; default: camera "
-            "where --camera names one, else simulator"
+            help=f"simulator, {', '.join(SOURCES)} or none; default: camera where --camera names one, else simulator"
         ),
     ] = None,
     path: Annotated[Path | None, typer.Option(help="what a source from files plays")] = None,

@@ -20,6 +20,10 @@ SHADOW_THRESHOLD = 0.25
 """Binarisation threshold in a shadow, between black (0) and white (1): there white is darker than the usual 0.5."""
 MAX_WHITE_BORDER_SHARE = 0.1
 """Share of the border's cells that may be read as white: with refined corners hardly any is."""
+NARROW_CELL_PX = 3.5
+"""Largest width of a narrow cell, in pixels along the shortest side: neighbouring cells blur into one another."""
+SHARPENING = 0.25
+"""Weight of the Laplacian that sharpens narrow cells which cannot be read otherwise: the AprilTag library's."""
 MIN_CORRELATION = 0.72
 """Least normalised cross-correlation with the pattern: squares that are no markers may be read as a code, too."""
 SMALL_CELL_PX = 6.5
@@ -94,31 +98,53 @@ def _decoded(pixels: Pixels, candidates: Candidates) -> list[Marker]:
 
 
 def _read(levels: Array, corners_px: Array, family: Family) -> _Readings:
-    """Match levels, as `_sampled_cells` returns them, with a family's codes: in plain light, or else in a shadow."""
-    cells = _binarised(levels)
-    ids, turns, wrong, matched = _matched(cells, family, family.corrected)
-    (unread,) = np.nonzero(~matched)
-    if len(unread):
-        shadowed = _matched(_binarised(levels[unread], SHADOW_THRESHOLD), family, 0)
-        ids[unread], turns[unread], wrong[unread], matched[unread] = shadowed
+    """Match levels, as `_sampled_cells` returns them, with a family's codes.
+
+    Squares that cannot be read are read again with the threshold for shadows and, if their cells are narrow, sharpened.
+    """
+    sides_px = np.linalg.norm(corners_px - corners_px[:, [3, 0, 1, 2]], axis=2)
+    narrow = sides_px.min(axis=1) <= NARROW_CELL_PX * (family.cells + 2)
+    ids, turns, wrong = np.zeros((3, len(levels)), dtype=np.intp)
+    all_squares, matched = np.ones(len(levels), dtype=bool), np.zeros(len(levels), dtype=bool)
+    for attempted, threshold, tolerated, applies in (
+        (levels, 0.5, family.corrected, all_squares),
+        (levels, SHADOW_THRESHOLD, 0, all_squares),
+        (_sharpened(levels), 0.5, family.corrected, narrow),
+    ):
+        (unread,) = np.nonzero(applies & ~matched)
+        if len(unread):
+            result = _matched(attempted[unread], threshold, family, tolerated)
+            ids[unread], turns[unread], wrong[unread], matched[unread] = result
     (index,) = np.nonzero(matched)
-    for at in index:
-        cells[at] = np.rot90(family.patterns[ids[at]], turns[at])
-    index = index[_correlation(levels, cells)[index] >= MIN_CORRELATION]
     upright = [np.roll(corners_px[at], turns[at], axis=0) for at in index]
     return _Readings(index, np.array(upright).reshape(-1, 4, 2), ids[index].tolist(), wrong[index].tolist())
 
 
-def _matched(cells: Cells, family: Family, tolerated: int) -> tuple[Indices, Indices, NDArray[np.int64], Mask]:
-    """Find the marker nearest to each square's binary cells (n, across, across), border included.
+def _sharpened(levels: Array) -> Array:
+    """Sharpen levels, as from `_sampled_cells`, by the Laplacian of the cells' means: (n, across, 1, across, 1)."""
+    cells = levels.mean(axis=(2, 4))
+    padded = np.pad(cells, ((0, 0), (1, 1), (1, 1)), mode="edge")
+    neighbours = padded[:, :-2, 1:-1] + padded[:, 2:, 1:-1] + padded[:, 1:-1, :-2] + padded[:, 1:-1, 2:]
+    sharpened: Array = cells + SHARPENING * (4 * cells - neighbours)
+    return sharpened[:, :, None, :, None]
+
+
+def _matched(
+    levels: Array, threshold: float, family: Family, tolerated: int
+) -> tuple[Indices, Indices, NDArray[np.int64], Mask]:
+    """Binarise levels, as from `_sampled_cells`, and find the marker nearest to each square, border included.
 
     Returns:
-        Ids (n,), quarter turns (n,), wrong cells (n,), and whether code and border have few enough wrong cells (n,).
+        Ids (n,), quarter turns (n,), wrong cells (n,), and whether code, border and levels fit well enough (n,).
     """
+    cells = _binarised(levels, threshold)
     inner = cells[:, 1:-1, 1:-1]
     matches, white_border = family.match(inner), cells.sum(axis=(1, 2)) - inner.sum(axis=(1, 2))
     border_cells = 4 * (family.cells + 1)
     matched = (matches.wrong <= tolerated) & (white_border <= MAX_WHITE_BORDER_SHARE * border_cells)
+    for at in np.nonzero(matched)[0]:
+        cells[at] = np.rot90(family.patterns[matches.ids[at]], matches.turns[at])
+    matched &= _correlation(levels, cells) >= MIN_CORRELATION
     return matches.ids, matches.turns, matches.wrong + white_border, matched
 
 

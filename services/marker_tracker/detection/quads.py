@@ -24,6 +24,14 @@ RIM_EXTENT = (0.15, 0.85)
 """Part of a side in which the samples lie: near its ends, rough corners miss the side."""
 MIN_CONTRAST = 10.0
 """Grey levels by which the outside of a side is brighter than its inside: less is noise."""
+THRESHOLD_WINDOWS_PX = (5, 25, 10)
+"""Smallest and largest window of the adaptive threshold, and the step between them. OpenCV's smallest is 3, which is
+too small for a blurred edge."""
+OUTLINE_PX = THRESHOLD_WINDOWS_PX[0] // 2
+"""Pixels by which OpenCV's squares may extend beyond their edge, onto a dark surface around the paper."""
+MIN_QUAD_DISTANCE = 0.05
+"""Distance of two squares' corners, as a share of the perimeter, below which OpenCV drops the smaller square. With its
+default of 0.125 it drops many markers in favour of the outline of their paper."""
 POLYGON_TOLERANCE = 0.03
 """Deviation of an outline from its polygon, as a share of the outline's length: OpenCV's default."""
 
@@ -51,7 +59,7 @@ class QuadDetector:
     def __init__(self, families: Sequence[Family], wanted: Sequence[Collection[int]]) -> None:
         """Search each family for its wanted ids, or for all ids where none are wanted or the family is small."""
         dictionaries = [_searched(family, ids) for family, ids in zip(families, wanted, strict=True)]
-        self._detector = cv2.aruco.ArucoDetector(dictionaries, cv2.aruco.DetectorParameters())
+        self._detector = cv2.aruco.ArucoDetector(dictionaries, _parameters())
 
     def find(self, pixels: Pixels, known: Array) -> Quads:
         """Find the quadrilaterals in a grey image (height, width), given the corners (k, 4, 2) of its known markers."""
@@ -88,6 +96,16 @@ def rimmed_squares(pixels: Pixels, quads: Quads) -> Array:
     return largest[:MAX_REJECTED_READ]
 
 
+def _parameters() -> Any:
+    parameters = cv2.aruco.DetectorParameters()
+    least_px, greatest_px, step_px = THRESHOLD_WINDOWS_PX
+    parameters.adaptiveThreshWinSizeMin = least_px
+    parameters.adaptiveThreshWinSizeMax = greatest_px
+    parameters.adaptiveThreshWinSizeStep = step_px
+    parameters.minMarkerDistanceRate = MIN_QUAD_DISTANCE
+    return parameters
+
+
 def _searched(family: Family, ids: Collection[int]) -> Any:
     """Make the OpenCV dictionary to search: a large family's wanted ids only, as more codes give false markers."""
     return family.only(ids) if ids and len(family.codes) > SMALL_FAMILY else family.dictionary
@@ -103,7 +121,9 @@ def _inner_square(pixels: Pixels, corners_px: Array) -> Array | None:
     left, top, right, bottom = max(left, 0), max(top, 0), left + width, top + height
     window = pixels[top:bottom, left:right]
     inside = np.zeros(window.shape, dtype=np.uint8)
-    cv2.fillConvexPoly(inside, np.round(corners_px - (left, top)).astype(np.int32), 1)
+    outline = np.round(corners_px - (left, top)).astype(np.int32)
+    cv2.fillConvexPoly(inside, outline, 1)
+    cv2.polylines(inside, [outline], True, 0, 2 * OUTLINE_PX + 1)
     levels = np.ascontiguousarray(window[inside > 0])
     middle = cv2.threshold(levels[None], 0, 255, cv2.THRESH_OTSU)[0] if levels.size else 0.0
     dark = ((window <= middle) & (inside > 0)).astype(np.uint8)
