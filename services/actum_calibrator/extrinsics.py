@@ -95,7 +95,7 @@ def _adjusted(pairs: Sequence[Pair], markers: CameraModel, people: CameraModel, 
     ]
 
     def likeliest_board(people_from_markers: Array, i: int) -> tuple[float, Array]:
-        """Return the pose in the marker camera of pair i's board with the least error (px), after that error."""
+        """Return (error in px, pose in the marker camera) of the best candidate pose of pair i's board."""
         from_people = [compose(invert(people_from_markers), pose) for pose in in_people[i]]
         rated = [
             (_error_px(people_from_markers, pose, pairs[i], markers, people), pose)

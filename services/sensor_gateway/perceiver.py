@@ -13,7 +13,7 @@ from sensor_gateway.people.people_tracker import PeopleTracker
 from sensor_gateway.people.pose_estimator import Estimator
 
 JPEG_QUALITY = 90
-"""Of 100; much less would blur the corners of markers."""
+"""JPEG quality, of 100; much less would blur the corners of markers."""
 OTHER_SIZE = "image_size_mismatch"
 """Counter of pictures whose size differs from the calibrated one."""
 

@@ -37,7 +37,7 @@ MIN_CONTRAST = 10.0
 OUTLIER_WEIGHT = 0.2
 """Robust weight below which a grey level counts as covered: its residual is twice the Cauchy scale."""
 RELATIVE_DAMPING = 1e-3
-"""Of the normal matrix, as a share of its diagonal (Levenberg-Marquardt)."""
+"""Damping of the normal matrix, as a share of its diagonal (Levenberg-Marquardt)."""
 ABSOLUTE_DAMPING = 1e-3
 """Added to the diagonal, which keeps the normal matrix of a flat image invertible."""
 TANH_SLOPE = math.sqrt(2 / math.pi)
