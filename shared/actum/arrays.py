@@ -1,4 +1,4 @@
-"""NumPy arrays by their element type, and lists of joints as arrays."""
+"""Names of NumPy's array types by element type, and the conversion between lists of joints and arrays."""
 
 import math
 from collections.abc import Sequence
@@ -10,19 +10,18 @@ from numpy.typing import NDArray
 from actum.messages import Joint
 
 Array = NDArray[np.float64]
-"""Real numbers, in which NaN stands for what is unknown."""
+"""Real numbers in double precision; NaN stands for an unknown one."""
 Floats = NDArray[Any]
 """Real numbers of either precision: single where BLAS is to be fast."""
 Mask = NDArray[np.bool_]
-"""Yes or no for each element of another array."""
+"""A Boolean for each element of another array."""
 Indices = NDArray[np.intp]
-"""Places in another array."""
-
+"""Indices into another array."""
 Pixels = NDArray[np.uint8]
 """Grey levels or colours, 0 to 255."""
 
 UNKNOWN = (math.nan, math.nan, math.nan)
-"""Where a missing joint is."""
+"""The position of a missing joint."""
 
 
 def joints_to_array(joints: Sequence[Joint]) -> Array:
@@ -33,7 +32,7 @@ def joints_to_array(joints: Sequence[Joint]) -> Array:
 
 
 def joints_to_list(joints: Array) -> list[Joint]:
-    """Return joints (joints, 3) as a message has them: None where one is NaN."""
+    """Return joints (joints, 3) as the list that a message holds, None where one is NaN."""
     listed: list[Joint] = joints.tolist()
     if math.isnan(joints.sum()):
         return [None if unknown else joint for joint, unknown in zip(listed, np.isnan(joints[:, 0]), strict=True)]

@@ -19,13 +19,13 @@ from actum.arrays import Array
 from actum.messages import Intrinsics, Transform
 
 FORMAT: Literal["actum.calibration/1"] = "actum.calibration/1"
-"""What the file says of its form, so that a later one can be told from it."""
+"""The name of the file's format, by which later formats can be told apart."""
 DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
 """How many coefficients OpenCV's distortion models have."""
 FURTHEST_M = 1e6
-"""Positions beyond this are no cameras'."""
+"""Largest plausible coordinate of a camera (m)."""
 LARGEST_BYTES = 100_000
-"""Bytes read of a file: a calibration has some hundreds."""
+"""At most this many bytes of a file are read: a calibration has some hundreds."""
 HEADER = "# A camera's calibration: the sensor gateway sends it with each image (ACTUM_CALIBRATION names this file).\n"
 MATRICES = {"K": 3, "skeleton_from_image": 4}
 """The fields that are written row by row, and how many columns they have."""
@@ -34,15 +34,15 @@ WIDTH = 120
 REMEDY = "make one with 'actum calibrate intrinsics'"
 """What to do about a file that cannot be used."""
 
-NO_YAML = (yaml.YAMLError, ValueError, LookupError, ArithmeticError, AttributeError, TypeError, RecursionError)
-"""What PyYAML raises at a file: not all that its constructors stumble over becomes a YAMLError."""
+YAML_ERRORS = (yaml.YAMLError, ValueError, LookupError, ArithmeticError, AttributeError, TypeError, RecursionError)
+"""What PyYAML raises on an invalid file: its constructors also let other errors than YAMLError through."""
 
 Pixels = Annotated[int, Field(gt=0, le=100_000)]
 Measure = Annotated[FiniteFloat, Field(ge=0)]
 
 
 class CalibrationError(ValueError):
-    """A file that is no calibration, or not this camera's: which, what is wrong, what to do."""
+    """A file that is no calibration, or not this camera's; the text names the file, the problem and what to do."""
 
 
 class _Part(BaseModel):
@@ -50,7 +50,7 @@ class _Part(BaseModel):
 
 
 class IntrinsicsQuality(_Part):
-    """How K and distortion were found: deviations are of fx, fy, cx and cy, `coverage` a share of the image."""
+    """Quality of K and distortion: standard deviations of fx, fy, cx and cy, and the share of the image covered."""
 
     date: datetime.date
     views: int
@@ -60,7 +60,7 @@ class IntrinsicsQuality(_Part):
 
 
 class ExtrinsicsQuality(_Part):
-    """How skeleton_from_image was found: the reprojection error in both cameras, and standard deviations."""
+    """Quality of skeleton_from_image: the reprojection error in both cameras, and standard deviations."""
 
     date: datetime.date
     pairs: int
@@ -70,7 +70,7 @@ class ExtrinsicsQuality(_Part):
 
 
 class Calibration(_Part):
-    """One camera: intrinsics, and where the skeletons' camera sees it."""
+    """One camera's intrinsics, and its pose in the frame of the camera that sees people."""
 
     format: Literal["actum.calibration/1"] = FORMAT
     image_size: tuple[Pixels, Pixels]
@@ -103,7 +103,7 @@ class Calibration(_Part):
 
     @property
     def id(self) -> str:
-        """Name the content: the first 12 hexadecimal digits of the SHA-256 of its canonical JSON."""
+        """The first 12 hexadecimal digits of the SHA-256 of its canonical JSON: equal content has an equal id."""
         return hashlib.sha256(self.model_dump_json().encode()).hexdigest()[:12]
 
     @property
@@ -112,12 +112,12 @@ class Calibration(_Part):
         return np.array(self.K, dtype=np.float64).reshape(3, 3)
 
     def image_fields(self) -> dict[str, list[float]]:
-        """Return what an `Image` message says of its camera."""
+        """Return the fields of an `Image` message that describe its camera."""
         transform = self.skeleton_from_image or geometry.flat(np.eye(4))
         return {"K": self.K, "distortion": self.distortion, "skeleton_from_image": transform}
 
     def check_size(self, width: int, height: int, name: str) -> None:
-        """Pass an image of the size that was calibrated.
+        """Check that an image (its sides in px) has the size that was calibrated; `name` is for the error's text.
 
         Raises:
             CalibrationError: it has another size.
@@ -131,7 +131,7 @@ class Calibration(_Part):
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """Read a file.
+        """Read a calibration file.
 
         Raises:
             CalibrationError: it cannot be read, or is no calibration.
@@ -143,7 +143,7 @@ class Calibration(_Part):
             raise CalibrationError(f"{path}: no calibration: {_first(error)}; {REMEDY}") from None
 
     def save(self, path: Path) -> None:
-        """Write the file, replacing what is there."""
+        """Write the calibration file, replacing an existing one."""
         path.write_text(HEADER + _yaml(self.model_dump(exclude_none=True)), encoding="utf-8")
 
 
@@ -153,12 +153,12 @@ def _content(path: Path) -> object:
             return yaml.safe_load(file.read(LARGEST_BYTES))
     except OSError as error:
         raise CalibrationError(f"{path}: {error.strerror}; {REMEDY}") from None
-    except NO_YAML:
+    except YAML_ERRORS:
         raise CalibrationError(f"{path}: no YAML; {REMEDY}") from None
 
 
 class _Dumper(yaml.SafeDumper):
-    """Writes lists in one line and all else in blocks."""
+    """Writes each list on one line, all other values in block style."""
 
 
 def _in_one_line(dumper: yaml.SafeDumper, value: list[Any] | tuple[Any, ...]) -> yaml.Node:

@@ -1,4 +1,4 @@
-"""Messages to and from the wire: a msgpack map, an encoding that names the schema, a small attachment."""
+"""Encodes and decodes messages: a msgpack map, an encoding that names the schema, a small attachment."""
 
 import re
 from dataclasses import dataclass
@@ -13,19 +13,17 @@ from actum.messages import Message
 
 C = TypeVar("C", list[Any], dict[str, Any])
 ENCODING = re.compile(r"application/msgpack;(?P<schema>[a-z0-9_.]+)/(?P<version>\d{1,6})")
-"""What the encoding of one of our messages looks like."""
-DEPTH_LIMIT_ERRORS = (ValueError, TypeError, RecursionError, msgpack.exceptions.UnpackException)
-"""What msgpack raises at bytes that are no message, nested too deeply among them."""
+"""The Zenoh encoding of a message: the schema's name and version."""
+UNPACK_ERRORS = (ValueError, TypeError, RecursionError, msgpack.exceptions.UnpackException)
+"""What msgpack raises on bytes that it cannot unpack, for one because they are nested too deeply."""
 MOST_VALUES = 100_000
-"""In the maps and lists of one message: a value takes one byte on the wire, and up to a hundred once unpacked."""
-
-
+"""Most values in all maps and lists of a message: one takes a byte on the wire, up to a hundred once unpacked."""
 KNOWN_ENCODINGS = 256
-"""Encodings remembered with their verdict: a few per schema are in use."""
+"""Entries in the cache of accepted encodings: a few per schema are in use."""
 
 
 class DecodeError(ValueError):
-    """A payload that is no message of its key; `kind` is the name it is counted under."""
+    """A payload that is no valid message for its key; `kind` is the name it is counted under."""
 
     def __init__(self, kind: str, detail: str) -> None:
         super().__init__(f"{kind}: {detail}")
@@ -34,7 +32,7 @@ class DecodeError(ValueError):
 
 @dataclass(frozen=True)
 class Frame:
-    """What is put on a key, ready for the wire."""
+    """An encoded message, with the key to put it on."""
 
     key: str
     payload: bytes
@@ -55,7 +53,7 @@ def encode(message: Message) -> Frame:
 
 
 def decode(key: str, payload: bytes, encoding: str = "") -> Message:
-    """Unpack what stood on a key. Unknown fields are ignored, the key's sensor and name are filled in.
+    """Decode a payload received on a key. Unknown fields are ignored; a missing `sensor` is taken from the key.
 
     Raises:
         DecodeError: of kind `unknown_key`, `too_large`, `wrong_schema`, `higher_version`, `not_msgpack`,
@@ -74,7 +72,7 @@ def decode(key: str, payload: bytes, encoding: str = "") -> Message:
 
 @lru_cache(KNOWN_ENCODINGS)
 def _check_encoding(encoding: str, expected: type[Message]) -> None:
-    """Accept the key's own schema up to our version; any other encoding is a plain client's: version 1."""
+    """Raise an error for another schema or a newer version. An encoding that is not ours passes as version 1."""
     match = ENCODING.fullmatch(encoding)
     if match is None:
         return
@@ -89,7 +87,7 @@ def _check_encoding(encoding: str, expected: type[Message]) -> None:
 def _unpack(key: str, payload: bytes) -> dict[str, Any]:
     try:
         fields = msgpack.unpackb(payload) if len(payload) <= keys.MEGABYTE else _Unpacking().unpack(payload)
-    except DEPTH_LIMIT_ERRORS as error:
+    except UNPACK_ERRORS as error:
         raise DecodeError("not_msgpack", f"{key}: {type(error).__name__} {error}") from None
     if not isinstance(fields, dict):
         raise DecodeError("not_a_map", f"{key}: a {type(fields).__name__}, not a map with string keys")
@@ -97,9 +95,9 @@ def _unpack(key: str, payload: bytes) -> dict[str, Any]:
 
 
 class _Unpacking:
-    """Unpacks one large payload, and stops where it grows out of all proportion.
+    """Unpacks one large payload, and refuses it where it has too many values.
 
-    A byte can become an empty list of 56 bytes; only images are large, and their bulk is one value.
+    One byte can become an empty list of 56 bytes in memory. Only images are large, and their pixels are one value.
     """
 
     def __init__(self) -> None:

@@ -1,4 +1,4 @@
-"""A service's settings as flags, explained in plain words where pydantic-settings writes Python's types and values."""
+"""A service's settings as flags, with help in plain words in place of Python's types and values."""
 
 import json
 import types
@@ -13,13 +13,13 @@ from actum.settings import ServiceSettings
 S = TypeVar("S", bound=ServiceSettings)
 
 PLACEHOLDERS: dict[Any, str] = {bool: "", int: "INTEGER", float: "NUMBER", str: "TEXT", Path: "PATH"}
-"""What stands behind a flag in the help, by its value's type."""
+"""The placeholder after a flag in the help, by the type of its value."""
 STRUCTURED = "JSON"
-"""Lists, maps and what is made of them."""
+"""The placeholder of lists and maps."""
 
 
 def from_command_line(settings_type: type[S], program: str) -> S:
-    """Read settings from this process's flags, then from all that settings are read from.
+    """Read settings from this process's flags, then from the environment and the configuration file.
 
     Raises:
         ValueError: they cannot be used.
@@ -34,7 +34,7 @@ def from_command_line(settings_type: type[S], program: str) -> S:
 
 
 def explained(field: FieldInfo) -> str:
-    """Say what a setting is for, and what it is where nobody sets it."""
+    """Return a setting's help: its description, and its default where there is one."""
     default = field.get_default(call_default_factory=True)
     if default is None or default in ({}, [], ""):
         return field.description or ""
@@ -42,7 +42,7 @@ def explained(field: FieldInfo) -> str:
 
 
 def placeholder(field: FieldInfo) -> str:
-    """Say what is to stand behind a setting's flag; "" for one that is only on or off."""
+    """Return the placeholder after a setting's flag; "" for a switch."""
     annotation = _without_none(field.annotation)
     if get_origin(annotation) is Literal:
         return f"{{{','.join(map(str, get_args(annotation)))}}}"
@@ -50,13 +50,14 @@ def placeholder(field: FieldInfo) -> str:
 
 
 def _without_none(annotation: Any) -> Any:
-    """Look into what may also be left out."""
+    """Return X for the annotation `X | None`, any other annotation unchanged."""
     if get_origin(annotation) in (Union, types.UnionType):
         (annotation,) = (part for part in get_args(annotation) if part is not type(None))
     return annotation
 
 
 def _worded(default: Any) -> str:
+    """Return a default value as the help shows it."""
     match default:
         case bool():
             return "on" if default else "off"

@@ -8,24 +8,24 @@ from actum.arrays import Array
 from actum.node import SECOND_NS
 
 MIN_CUTOFF_HZ = 2.0
-"""Of a point at rest: it jitters little, and lags by 80 ms as it starts to move."""
+"""Cutoff for a point at rest: it jitters little, and lags by 80 ms as it starts to move."""
 BETA_PER_M = 8.0
 """How fast the cutoff rises with speed (1/m): at 0.5 m/s it is 6 Hz, a delay of 27 ms."""
 SPEED_CUTOFF_HZ = 4.0
-"""Of the speed's own low-pass, so that the noise of a derivative does not pass for speed."""
+"""Cutoff of the derivative's own low-pass, so that its noise does not count as speed."""
 GAP_NS = SECOND_NS // 2
-"""After a longer pause the past says nothing of where a point is."""
-_NO_TIME = np.eye(6)
-"""The Kalman filter's transition matrix over no time."""
-_AXES = np.eye(3)
-"""One row for each axis, x, y, z."""
+"""After a longer pause (ns) the filter restarts: the earlier positions say nothing about the next one."""
+_IDENTITY_6 = np.eye(6)
+"""The identity (6, 6): the Kalman filter's transition matrix over no time."""
+_IDENTITY_3 = np.eye(3)
+"""The identity (3, 3): equal variances and no covariance between x, y and z."""
 
 
 class OneEuro:
     """The one-euro filter (Casiez, Roussel, Vogel 2012): a low-pass whose cutoff rises with each point's own speed.
 
     f = f_min + β‖v‖; x̂ ← x̂ + (x - x̂) / (1 + 1 / (2π f Δt)); v is the low-passed derivative. A point that moves
-    steadily at v lags by 1 / (2π f) s. A gap of more than half a second starts anew.
+    steadily at v lags by a time of 1 / (2π f). After a gap of more than half a second the filter restarts.
     """
 
     def __init__(
@@ -40,7 +40,7 @@ class OneEuro:
         self._velocity = np.zeros(0)
 
     def step(self, stamp_ns: int, points: Array) -> Array:
-        """Take points (n, 3; m) and return them low-passed (n, 3); stamps rise."""
+        """Return points (n, 3; m) low-passed, (n, 3). A stamp that does not rise restarts the filter."""
         if self._stamp_ns is None or not 0 < stamp_ns - self._stamp_ns <= GAP_NS:
             self._points, self._velocity = points, np.zeros_like(points)
         else:
@@ -70,10 +70,10 @@ class MotionEstimate:
 
     @classmethod
     def initial(cls, position_m: Array, noise_m2: Array, speed_std_mps: float) -> "MotionEstimate":
-        """Begin at a measured position (3,) with noise covariance (3, 3); the velocity is 0 but for its deviation."""
+        """Begin at a measured position (3,) with noise covariance (3, 3); the velocity is 0 ± `speed_std_mps`."""
         covariance = np.zeros((6, 6))
         covariance[:3, :3] = noise_m2
-        covariance[3:, 3:] = speed_std_mps**2 * _AXES
+        covariance[3:, 3:] = speed_std_mps**2 * _IDENTITY_3
         return cls(np.concatenate([position_m, np.zeros(3)]), covariance)
 
     @property
@@ -87,13 +87,15 @@ class MotionEstimate:
         return self.state[3:]
 
     def predicted(self, interval_s: float, acceleration_std_mps2: float | Array) -> "MotionEstimate":
-        """Let time pass: x' = F x, P' = F P Fᵀ + G Gᵀ, with a random acceleration that is constant for all of it.
+        """Predict the state after an interval, under a constant random acceleration: x' = F x, P' = F P Fᵀ + G Gᵀ.
 
-        The acceleration's standard deviation is one for all axes, or one for each: (3,).
+        The acceleration's standard deviation is a single number for all axes, or one for each axis: (3,).
         """
-        transition = _NO_TIME.copy()
-        transition[:3, 3:] = interval_s * _AXES
-        disturbance = acceleration_std_mps2 * np.concatenate([interval_s**2 / 2 * _AXES, interval_s * _AXES])
+        transition = _IDENTITY_6.copy()
+        transition[:3, 3:] = interval_s * _IDENTITY_3
+        disturbance = acceleration_std_mps2 * np.concatenate(
+            [interval_s**2 / 2 * _IDENTITY_3, interval_s * _IDENTITY_3]
+        )
         covariance = transition @ self.covariance @ transition.T + disturbance @ disturbance.T
         return MotionEstimate(transition @ self.state, covariance)
 

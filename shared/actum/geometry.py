@@ -31,48 +31,47 @@ BONES: tuple[tuple[int, int, float], ...] = tuple(
         ("right_knee", "right_foot", 0.44),
     )
 )
-"""The skeleton as a tree walked out from the torso: parent, child, standard length in metres."""
+"""The skeleton as a tree with the torso as its root, parents first: parent, child, standard length in metres."""
 
 _PARENTS = np.array([parent for parent, _, _ in BONES])
-"""Where each bone begins: joints (14,)."""
+"""Index of the joint where each bone begins: (14,)."""
 _CHILDREN = np.array([child for _, child, _ in BONES])
-"""Where each bone ends: joints (14,)."""
+"""Index of the joint where each bone ends: (14,)."""
 _LENGTHS_M = np.array([length for _, _, length in BONES])
 """Standard lengths (m): (14,)."""
 SMALLEST_M = 1e-3
-"""What is shorter has no direction."""
+"""A shorter vector (m) has no defined direction."""
 ROUNDING = float(np.finfo(np.float64).eps)
-"""What is smaller beside 1 may be nothing but rounding, and has no direction either."""
+"""Part of a unit vector that may be nothing but rounding, and then has no defined direction either."""
 
 _NEXT = [1, 2, 0]
-"""The axis after x, y, z in a cross product …"""
-_LAST = [2, 0, 1]
-"""… and the one before."""
+"""For each axis the next one in cyclic order, as the cross product takes them."""
+_PREVIOUS = [2, 0, 1]
+"""For each axis the previous one in cyclic order."""
 
 
-def _walk() -> Array:
-    """Tell by ones which bones lead from the torso to each joint: (15, 14)."""
-    walk = np.zeros((len(INDEX), len(BONES)))
+def _paths_from_torso() -> Array:
+    """Return 1 for each bone on the path from the torso to a joint, else 0: (15, 14), joints by bones."""
+    paths = np.zeros((len(INDEX), len(BONES)))
     for bone, (parent, child, _) in enumerate(BONES):
-        walk[child] = walk[parent]
-        walk[child, bone] = 1.0
-    return walk
+        paths[child] = paths[parent]
+        paths[child, bone] = 1.0
+    return paths
 
 
-_WALK = _walk()
-"""Which bones lead from the torso to each joint: (15, 14)."""
-
+_PATHS = _paths_from_torso()
+"""Which bones lie on the path from the torso to each joint: (15, 14), 1 or 0."""
 
 RIGID_TOLERANCE = 1e-3
-"""How far the products of a rotation's rows may be from 0 and 1: transforms come with few decimals."""
+"""How far R Rᵀ of a rotation may be from the identity, per element: transforms are written with few decimals."""
 
 
 class DegenerateError(ValueError):
-    """Joints coincide or lie in line, so that no frame or direction is defined."""
+    """Joints coincide or lie on one line, so that no frame or direction is defined."""
 
 
 def is_rigid(transform: Array, furthest_m: float) -> bool:
-    """Tell whether (4, 4) is a rotation and a shift by no more than that in each axis, with 0 0 0 1 below them."""
+    """Tell whether a matrix (4, 4) is a rigid transform that shifts by at most `furthest_m` along each axis."""
     rotation, shift_m = transform[:3, :3], transform[:3, 3]
     if not np.isfinite(transform).all() or np.abs(rotation).max() > 2 or np.abs(shift_m).max() > furthest_m:
         return False
@@ -96,7 +95,7 @@ def apply(b_from_a: Array, points_a: Array) -> Array:
 
 
 def quaternion_xyzw(rotation: Array) -> list[float]:
-    """Turn a rotation matrix (3, 3) into a unit quaternion with w >= 0 (Bar-Itzhack 2000)."""
+    """Return a rotation matrix (3, 3) as a unit quaternion [x, y, z, w] with w >= 0 (Bar-Itzhack 2000)."""
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation
     symmetric = np.array(
         [
@@ -112,27 +111,27 @@ def quaternion_xyzw(rotation: Array) -> list[float]:
 
 
 def angle_between_rad(one: Array, other: Array) -> float:
-    """Return the angle between two rotations (3, 3), or between those of two transforms (4, 4)."""
+    """Return the angle (rad) between two rotations (3, 3), or between those of two transforms (4, 4)."""
     cosine = (float((one[:3, :3] * other[:3, :3]).sum()) - 1) / 2
     return math.acos(min(1.0, max(-1.0, cosine)))
 
 
 def rotated_xyzw(b_from_a: Array, quaternion_xyzw_a: Array) -> Array:
-    """Turn an orientation (4,), a unit quaternion, from frame a to frame b by a rigid transform (4, 4)."""
+    """Return in frame b an orientation given in frame a, both unit quaternions (4,), by a rigid transform (4, 4)."""
     x, y, z, w = quaternion_xyzw(b_from_a[:3, :3])
-    by = np.array([[w, -z, y, x], [z, w, -x, y], [-y, x, w, z], [-x, -y, -z, w]])
-    turned: Array = by @ quaternion_xyzw_a
-    return turned
+    left_product = np.array([[w, -z, y, x], [z, w, -x, y], [-y, x, w, z], [-x, -y, -z, w]])
+    rotated: Array = left_product @ quaternion_xyzw_a
+    return rotated
 
 
 def flat(transform: Array) -> list[float]:
-    """Write a transform (4, 4) as its 16 numbers, row-major."""
+    """Return the 16 numbers of a transform (4, 4), row-major."""
     numbers: list[float] = transform.ravel().tolist()
     return numbers
 
 
 def from_flat(numbers: list[float]) -> Array:
-    """Read a transform (4, 4) from its 16 numbers, row-major."""
+    """Return the transform (4, 4) of 16 numbers, row-major."""
     return np.array(numbers, dtype=np.float64).reshape(4, 4)
 
 
@@ -140,12 +139,15 @@ def ego_from_camera(joints: Array) -> Array:
     """Build the paper's egocentric frame from hips and torso (section 2.1, figure 3).
 
     The origin is the projection of the torso on the line through the hips; the axes lie along the hip line,
-    from the origin to the torso, and along the normal of their plane. Where a hip is unknown, the shoulders' line
-    moved down along the trunk stands in for the hips'.
+    from the origin to the torso, and along the normal of their plane. Where a hip is unknown, the line through the
+    shoulders, moved down along the trunk, replaces that through the hips.
 
     Args:
-        joints: (…, 15, 3) in any right-handed frame, here called camera; the result is (…, 4, 4). Torso, and either
-            both hips or both shoulders and neck are known.
+        joints: (…, 15, 3) in any right-handed frame, here called camera. The torso must be known, and either both
+            hips or both shoulders and the neck.
+
+    Returns:
+        The transforms, (…, 4, 4).
 
     Raises:
         DegenerateError: the hips, or the shoulders in their place, coincide, or the torso lies on their line.
@@ -153,7 +155,7 @@ def ego_from_camera(joints: Array) -> Array:
     right_hip, left_hip, torso = (joints[..., INDEX[name], :] for name in ("right_hip", "left_hip", "torso"))
     unknown = np.isnan(right_hip + left_hip)
     if unknown.any():
-        right, left = _below(joints)
+        right, left = _hips_from_shoulders(joints)
         right_hip, left_hip = np.where(unknown, right, right_hip), np.where(unknown, left, left_hip)
     left = _unit(left_hip - right_hip, "the hips, or the shoulders in their place, coincide")
     origin = right_hip + ((torso - right_hip) * left).sum(axis=-1, keepdims=True) * left
@@ -166,12 +168,12 @@ def ego_from_camera(joints: Array) -> Array:
 
 
 def scaled(joints: Array) -> Array:
-    """Give each bone its standard length, keeping its direction, walking out from the torso.
+    """Return the joints, (15, 3), with each bone at its standard length in its own direction, the torso unmoved.
 
-    A joint is known in the result where every joint on its way from the torso is.
+    A joint of the result is NaN where any joint on its path from the torso is unknown.
 
     Args:
-        joints: (15, 3); the torso is known.
+        joints: (15, 3), NaN where unknown; the torso is known.
 
     Raises:
         DegenerateError: a bone has no length, so that its direction is undefined.
@@ -181,8 +183,8 @@ def scaled(joints: Array) -> Array:
     if np.fmin.reduce(lengths) < SMALLEST_M:
         raise DegenerateError("two joined joints coincide")
     standard = bones * (_LENGTHS_M / lengths)[:, None]
-    walked = _walked_where_known(standard) if math.isnan(lengths.sum()) else _WALK @ standard
-    result: Array = joints[INDEX["torso"]] + walked
+    from_torso = _positions_where_known(standard) if math.isnan(lengths.sum()) else _PATHS @ standard
+    result: Array = joints[INDEX["torso"]] + from_torso
     return result
 
 
@@ -191,8 +193,8 @@ def upright(joints: Array, left_x: float, left_z: float) -> Array:
 
     Args:
         joints: in the frame of a level camera.
-        left_x: of the horizontal unit vector to the actor's left, along camera x.
-        left_z: of the same, along camera z.
+        left_x: the component along camera x of the horizontal unit vector to the actor's left.
+        left_z: its component along camera z.
     """
     upright_from_camera = np.array([[left_x, 0.0, left_z], [0.0, -1.0, 0.0], [left_z, 0.0, -left_x]])
     result: Array = (joints - joints[INDEX["torso"]]) @ upright_from_camera.T
@@ -200,10 +202,10 @@ def upright(joints: Array, left_x: float, left_z: float) -> Array:
 
 
 def untilted_from_camera(up_in_camera: Sequence[float]) -> Array:
-    """Return the rotation (3, 3) after which up (3,), of any length, is -y, as for a level camera.
+    """Return the rotation (3, 3) that turns the up vector (3,), of any length, to -y, where a level camera has it.
 
-    It undoes the roll about the line of sight, then the pitch about x: the line of sight stays forward, x = 0 and
-    z > 0, however the camera hangs. One that looks straight up or down, but for rounding, has no roll; none is undone.
+    It undoes the roll about the line of sight, then the pitch about x, so that the line of sight keeps x = 0 and
+    z > 0 for any mounting. A camera that looks straight up or down, within rounding, has no roll to undo.
     """
     x, y, z = _unit_of_any_length(up_in_camera)
     across = math.hypot(x, y)
@@ -215,23 +217,25 @@ def untilted_from_camera(up_in_camera: Sequence[float]) -> Array:
 
 
 def _unit_of_any_length(vector: Sequence[float]) -> Array:
-    """Return a vector's direction, also where its squares or its length are too large or too small for a float."""
+    """Return a vector's direction (3,), also where its squares or its length are too large or too small for a float."""
     _, exponent = math.frexp(max(map(abs, vector)))
     near_1 = [math.ldexp(component, -exponent) for component in vector]
     return np.array(near_1) / math.hypot(*near_1)
 
 
-def _walked_where_known(bones: Array) -> Array:
+def _positions_where_known(bones: Array) -> Array:
+    """Return the joints relative to the torso, (15, 3), NaN where a bone (14, 3) on the path to them is unknown."""
     unknown = np.isnan(bones[:, 0])
-    walked: Array = _WALK @ np.where(unknown[:, None], 0.0, bones)
-    walked[_WALK @ unknown > 0] = np.nan
-    return walked
+    positions: Array = _PATHS @ np.where(unknown[:, None], 0.0, bones)
+    positions[_PATHS @ unknown > 0] = np.nan
+    return positions
 
 
-def _below(joints: Array) -> tuple[Array, Array]:
-    """Move the right and the left shoulder down the trunk, as far below the torso as the neck is above it.
+def _hips_from_shoulders(joints: Array) -> tuple[Array, Array]:
+    """Return replacements of the right and the left hip, (…, 3) each, from shoulders, neck and torso.
 
-    That is 0.24 m for the standard bones, where hips are; of their distance only the direction matters.
+    The shoulders are moved along the trunk, as far below the torso as the neck is above it: 0.24 m for standard
+    bones, where the hips are. Of the line between them only the direction matters.
     """
     names = ("right_shoulder", "left_shoulder", "neck", "torso")
     right, left, neck, torso = (joints[..., INDEX[name], :] for name in names)
@@ -240,6 +244,7 @@ def _below(joints: Array) -> tuple[Array, Array]:
 
 
 def _unit(vectors: Array, problem: str) -> Array:
+    """Return vectors (…, 3) at unit length; `problem` is the error's text where one is too short."""
     lengths: Array = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True))
     if lengths.min() < SMALLEST_M:
         raise DegenerateError(problem)
@@ -247,5 +252,5 @@ def _unit(vectors: Array, problem: str) -> Array:
 
 
 def _cross(a: Array, b: Array) -> Array:
-    product: Array = a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT]
+    product: Array = a[..., _NEXT] * b[..., _PREVIOUS] - a[..., _PREVIOUS] * b[..., _NEXT]
     return product

@@ -9,11 +9,11 @@ import time
 from pathlib import Path
 
 FRESH_S = 5.0
-"""How old (s) the last word may be: services write one a second."""
+"""How old (s) the health file of a healthy service may be: it is touched once a second."""
 
 
 def write_health(path: Path, healthy: bool) -> None:
-    """Say that the service works and has a router now, or take that back."""
+    """Touch the health file of a service that works and has a router; remove that of any other."""
     if healthy:
         path.touch()
     else:
@@ -21,7 +21,7 @@ def write_health(path: Path, healthy: bool) -> None:
 
 
 def is_healthy(path: Path) -> bool:
-    """Whether the service has said so within the last seconds."""
+    """Tell whether the health file was touched within the last `FRESH_S`."""
     try:
         return time.time() - path.stat().st_mtime < FRESH_S
     except OSError:

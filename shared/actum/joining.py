@@ -1,4 +1,4 @@
-"""Recordings put one after another as one stream: stamps rise between them, intervals and gaps inside them stay."""
+"""Concatenates recordings into one stream with rising stamps; intervals and gaps inside a recording stay."""
 
 from collections.abc import Iterable, Iterator
 
@@ -7,11 +7,11 @@ from actum.messages import Message, Posture
 from actum.node import SECOND_NS
 
 PAUSE_NS = SECOND_NS
-"""Time between two recordings: filters that look back in time start anew."""
+"""Time between two recordings (ns): so long that filters over time restart."""
 
 
 def joined(recordings: Iterable[Iterable[Message]], start_ns: int | None = None) -> Iterator[Message]:
-    """Yield recordings, each in order of stamp, one after another.
+    """Yield the messages of recordings, one recording after another, each in the order of its stamps.
 
     All stamps of a recording are shifted by one constant: the first begins at `start_ns`, or keeps its stamps where
     that is None; every other begins `PAUSE_NS` after the newest stamp before it. The numbers on a key are shifted by
@@ -33,14 +33,14 @@ def joined(recordings: Iterable[Iterable[Message]], start_ns: int | None = None)
 
 
 def _stamps(message: Message, shift_ns: int) -> dict[str, int | None]:
-    """Shift a message's stamp, and the one of the frame before it where it names that."""
+    """Return a message's shifted stamp, and of a posture the shifted `previous_ns`."""
     if not isinstance(message, Posture) or message.previous_ns is None:
         return {"stamp_ns": message.stamp_ns + shift_ns}
     return {"stamp_ns": message.stamp_ns + shift_ns, "previous_ns": max(message.previous_ns + shift_ns, 0)}
 
 
 class _Numbers:
-    """Continues each key's numbers from one recording to the next."""
+    """Continues the sequence numbers of each key from one recording to the next."""
 
     def __init__(self) -> None:
         self._next: dict[str, int] = {}

@@ -10,16 +10,16 @@ from actum import messages as m
 BASE = "actum"
 """The first chunk of every key."""
 CHUNK = re.compile(r"[a-z0-9_-]+")
-"""What one chunk of a key may hold: what every Zenoh key expression, file name and label can."""
+"""The characters of one chunk of a key: those that Zenoh keys, file names and labels all allow."""
 
 MEGABYTE = 1_000_000
-"""Bytes."""
+"""In bytes."""
 CACHED_KEYS = 1024
-"""Keys remembered with what they mean."""
+"""Entries in each cache of built and of parsed keys."""
 
 
 class InvalidKeyError(ValueError):
-    """A key or one of its chunks is not of the table's form."""
+    """A key, or one of its chunks, does not fit the table of topics."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +45,9 @@ SKELETON = Topic("skeleton", m.Skeleton)
 COLOR = Topic("image/color", m.Image, priority="data_low", ring=1, max_bytes=64 * MEGABYTE)
 """Colour images: only the newest counts, so they may be dropped."""
 DEPTH = Topic("image/depth", m.Image, priority="data_low", ring=1, max_bytes=64 * MEGABYTE)
-"""Depth images, likewise."""
+"""Depth images, sent as colour images are."""
 POSTURE = Topic("posture/{}", m.Posture)
-"""Joints in the frame of one person."""
+"""Joints of one person, in the frames of that person's body."""
 OBJECTS = Topic("objects", m.Objects)
 """Every object's pose."""
 SEGMENT = Topic("segment", m.Segment, congestion="block", priority="interactive_high", cached=True)
@@ -55,13 +55,13 @@ SEGMENT = Topic("segment", m.Segment, congestion="block", priority="interactive_
 ACTION = Topic("action/{}", m.Action, max_bytes=4 * MEGABYTE)
 """The classifier's estimates; with maps and traces they are large."""
 EVENT = Topic("event/{}", m.Event, cached=True)
-"""Verb, object and result, one for each segment."""
+"""Events, one for each segment: verb, object and result."""
 STATUS = Topic("status/{}", m.Status, priority="background")
 """A service's health, once a second."""
 INFO = Topic("info/{}", m.Info)
-"""What a service is; a queryable."""
+"""A service's description; a queryable."""
 TRUTH = Topic("truth", m.Truth, cached=True)
-"""What the simulated scene really did."""
+"""The simulated scene's ground truth."""
 
 TOPICS: tuple[Topic, ...] = (
     SKELETON,
@@ -76,8 +76,8 @@ TOPICS: tuple[Topic, ...] = (
     INFO,
     TRUTH,
 )
-_BY_HEAD = {topic.leaf.removesuffix("/{}"): topic for topic in TOPICS}
-"""Topics by the part of the key that names them."""
+_BY_PREFIX = {topic.leaf.removesuffix("/{}"): topic for topic in TOPICS}
+"""Topics by their leaf without `/{}`, such as `posture`."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class Address:
 
 
 def chunk(text: str) -> str:
-    """Return `text` if it may stand as a key chunk.
+    """Return `text` unchanged if it is a valid chunk of a key.
 
     Raises:
         InvalidKeyError: it holds anything but a-z, 0-9, `_` and `-`.
@@ -105,7 +105,7 @@ def key(topic: Topic, sensor: str, name: str | int | None = None) -> str:
     """Build the concrete key of a topic, e.g. `actum/kinect0/posture/1`.
 
     Raises:
-        InvalidKeyError: the name is missing or is not for this topic, or a chunk cannot stand in a key.
+        InvalidKeyError: the topic needs a name and none is given, or has none and one is given, or a chunk is invalid.
     """
     if ("{}" in topic.leaf) != (name is not None):
         raise InvalidKeyError(f"{topic.leaf!r} does not go with the name {name!r}")
@@ -119,7 +119,7 @@ def pattern(topic: Topic, sensor: str = "*") -> str:
 
 
 def everything(sensor: str = "*") -> str:
-    """Build the key expression that matches all that a sensor's services put."""
+    """Build the key expression that matches every key of a sensor, or of all sensors."""
     return f"{BASE}/{sensor}/**"
 
 
@@ -130,25 +130,31 @@ def alive(sensor: str, service: str, instance: str) -> str:
 
 @dataclass(frozen=True)
 class Claim:
-    """Who is a service of a sensor (`alive`), or is to be it: when nobody is, or in the other's place."""
+    """An instance's claim to be the only instance of its service for a sensor.
+
+    Attributes:
+        role: `alive` runs, `candidate` is about to start, `successor` asks the running instance to stop.
+        instance: the instance's name.
+        session: the id of its Zenoh session, which a key with the role `alive` does not hold.
+    """
 
     role: Literal["alive", "candidate", "successor"]
     instance: str
     session: str = ""
 
 
-def wish(claim: Claim, sensor: str, service: str) -> str:
-    """Build the key of the token of one that is to be a service."""
+def claim_key(claim: Claim, sensor: str, service: str) -> str:
+    """Build the key of a candidate's or a successor's liveliness token."""
     return f"{BASE}/{chunk(sensor)}/{claim.role}/{chunk(service)}/{chunk(claim.instance)}/{chunk(claim.session)}"
 
 
 def claims(sensor: str, service: str) -> str:
-    """Build the key expression that matches the tokens of all that are a service or are to be."""
+    """Build the key expression that matches the liveliness tokens of all claims to a service."""
     return f"{BASE}/{chunk(sensor)}/*/{chunk(service)}/**"
 
 
 def claim_of(text: str) -> Claim | None:
-    """Take the key of such a token apart; None where it is none."""
+    """Parse the key of such a token; None for any other key."""
     match text.split("/"):
         case [_, _, "alive", _, instance]:
             return Claim("alive", instance)
@@ -160,35 +166,35 @@ def claim_of(text: str) -> Claim | None:
 
 @lru_cache(CACHED_KEYS)
 def parse(text: str) -> Address:
-    """Take a concrete key apart.
+    """Parse a concrete key.
 
     Raises:
-        InvalidKeyError: it is none of the table's keys.
+        InvalidKeyError: no topic of the table has such a key.
     """
     base, _, rest = text.partition("/")
     sensor, _, leaf = rest.partition("/")
     if base == BASE and CHUNK.fullmatch(sensor):
-        if leaf in _BY_HEAD and "{}" not in _BY_HEAD[leaf].leaf:
-            return Address(_BY_HEAD[leaf], sensor, None)
-        head, _, name = leaf.rpartition("/")
-        topic = _BY_HEAD.get(head)
+        if leaf in _BY_PREFIX and "{}" not in _BY_PREFIX[leaf].leaf:
+            return Address(_BY_PREFIX[leaf], sensor, None)
+        prefix, _, name = leaf.rpartition("/")
+        topic = _BY_PREFIX.get(prefix)
         if topic is not None and "{}" in topic.leaf and CHUNK.fullmatch(name):
             return Address(topic, sensor, name)
     raise InvalidKeyError(f"{text!r} is no actum key")
 
 
 def address_of(message: m.Message) -> Address:
-    """Tell where a message belongs."""
+    """Return the parsed form of the key that a message is put on."""
     sensor = message.sensor
     match message:
         case m.Image():
             return Address(DEPTH if message.format == "depth16_mm" else COLOR, sensor, None)
         case m.Posture() | m.Action() | m.Event():
-            return Address(_BY_HEAD[message.SCHEMA.removeprefix("actum.")], sensor, str(message.agent))
+            return Address(_BY_PREFIX[message.SCHEMA.removeprefix("actum.")], sensor, str(message.agent))
         case m.Status() | m.Info():
-            return Address(_BY_HEAD[message.SCHEMA.removeprefix("actum.")], sensor, message.service)
+            return Address(_BY_PREFIX[message.SCHEMA.removeprefix("actum.")], sensor, message.service)
         case _:
-            return Address(_BY_HEAD[message.SCHEMA.removeprefix("actum.")], sensor, None)
+            return Address(_BY_PREFIX[message.SCHEMA.removeprefix("actum.")], sensor, None)
 
 
 def key_of(message: m.Message) -> str:

@@ -1,12 +1,12 @@
-"""Bounds that services share: one that waits less, or keeps less, than another would lose what that one answers."""
+"""Limits that all services share: one that waited shorter, or kept less, than another would miss its answers."""
 
 from typing import Final
 
 from actum.node import SECOND_NS
 
 MAX_SKEW_NS: Final = 2 * SECOND_NS
-"""How much later than the newest message one of an earlier stamp may still come, on whichever key (ns)."""
+"""Longest delay between streams (ns): a message may come after another whose stamp is newer by this, on any key."""
 MAX_SEGMENT_NS: Final = 60 * SECOND_NS
-"""How long a segment may last (ns): what is longer is a mark that was forgotten, and memory is kept for as long."""
+"""Longest segment (ns): in a longer one the end mark was forgotten. Frames are kept for as long."""
 MAX_COORDINATE_M: Final = 100.0
-"""What is further away in any axis (m) is no place in a room."""
+"""Largest plausible coordinate (m): nothing in a room is further away along any axis."""

@@ -1,4 +1,4 @@
-"""Reads MCAP files of any origin, whole, broken off or damaged: metadata and messages as they lie in the file."""
+"""Reads MCAP files of any origin, also truncated and damaged ones: metadata, and messages in the order of the file."""
 
 import os
 import struct
@@ -14,14 +14,14 @@ from mcap.stream_reader import StreamReader
 from mcap.writer import MCAP0_MAGIC
 
 DAMAGE = (McapError, zstandard.ZstdError, ValueError, OverflowError, RuntimeError, KeyError, struct.error, MemoryError)
-"""What the library and its decompressors raise on bytes that are no MCAP."""
+"""What the library and its decompressors raise on bytes that are not valid MCAP."""
 
 REMEDY = "name a recording made by `actum record` or `actum import`"
 """What to do about a file that cannot be used."""
 
 
 class RecordingError(ValueError):
-    """A file that is no usable recording: which, what is wrong, what to do."""
+    """A file that is no usable recording; the text names the file, the problem and what to do."""
 
     def __init__(self, path: Path, problem: str, remedy: str) -> None:
         super().__init__(f"{path}: {problem}; {remedy}")
@@ -30,7 +30,7 @@ class RecordingError(ValueError):
 
 @dataclass(frozen=True)
 class StoredMessage:
-    """A message as it lies in the file."""
+    """A message of the file, not decoded."""
 
     publish_ns: int
     key: str
@@ -39,7 +39,7 @@ class StoredMessage:
 
 
 class McapFile:
-    """A file read from its start on each pass. `truncated` tells whether a pass has found it to break off."""
+    """An MCAP file, read from its start on each pass. `truncated` tells whether a pass found that it breaks off."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -78,7 +78,7 @@ class McapFile:
                     yield StoredMessage(record.publish_time, channel.topic, record.data, encoding)
 
     def records(self) -> Iterator[McapRecord]:
-        """Yield every record of the file, those of its chunks among them, up to its end or to where it breaks off.
+        """Yield every record of the file, also those inside its chunks, up to its end or to where it breaks off.
 
         Raises:
             RecordingError: as `metadata`.
@@ -108,19 +108,19 @@ class McapFile:
 
 
 class _Exact:
-    """A file that gives as many bytes as asked for or says that it has ended: the library takes fewer for all."""
+    """A file of which `read` returns all bytes asked for or raises `EndOfFile`: the library misses short reads."""
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file
-        self._left = os.fstat(file.fileno()).st_size
+        self._remaining = os.fstat(file.fileno()).st_size
 
     def read(self, length: int) -> bytes:
-        if length > self._left:
+        if length > self._remaining:
             raise EndOfFile
-        self._left -= length
+        self._remaining -= length
         return self._file.read(length)
 
 
 def encoding_of(channel: Channel, schema: str) -> str:
-    """Tell the encoding of a channel's messages; where no metadata of ours names it, its schema does."""
+    """Return the Zenoh encoding of a channel's messages: from our metadata, else from the schema's name."""
     return channel.metadata.get("encoding", f"application/msgpack;{schema}" if schema else "")

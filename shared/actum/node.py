@@ -1,4 +1,4 @@
-"""The shape of a service: a pure step over messages and ticks, and its replay without any transport."""
+"""The interface of a service, a pure step over messages and ticks; and its replay without a transport."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -11,11 +11,11 @@ from actum.messages import Message
 SECOND_NS = 1_000_000_000
 """Nanoseconds in a second."""
 TICK_NS = SECOND_NS // 10
-"""Between two ticks (ns): nothing waits more finely."""
+"""Interval between two ticks (ns): no service needs a finer one."""
 SETTLE_NS = 70 * SECOND_NS
-"""How long ticks go on after a replay (ns): longer than anything waits, segments of 60 s with 2 s of skew."""
+"""How long ticks go on after a replay (ns): longer than any service waits (a segment of 60 s and 2 s of skew)."""
 LONGEST_COMPLAINT = 500
-"""Characters kept of a complaint: part of what is complained of may be a megabyte."""
+"""Characters kept of an error text: it may quote a megabyte of input."""
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class Tick:
 
 @dataclass
 class Counters:
-    """What a node counts: rejects by kind, the newest complaint, its state in one word or two.
+    """A node's counters: rejected inputs by kind, the text of the newest error, and the node's state in a word or two.
 
-    `details` says what is in use (`model`, `calibration`, `source`), for `info`.
+    `details` names the `model`, the `calibration` or the `source` in use, for the message `info`.
     """
 
     rejects: Counter[str] = field(default_factory=Counter)
@@ -38,14 +38,14 @@ class Counters:
     details: dict[str, str] = field(default_factory=dict)
 
     def reject(self, kind: str, detail: str = "") -> None:
-        """Count one piece of bad input."""
+        """Count one rejected input under its kind; kind and detail become the newest error."""
         self.rejects[kind] += 1
         complaint = f"{kind}: {detail}" if detail else kind
         self.last_error = complaint[:LONGEST_COMPLAINT]
 
 
 class Node(Protocol):
-    """A service's core: state inside; no socket, no clock, no sleep."""
+    """A service's logic: it keeps state, but uses no socket, no clock and no sleep."""
 
     counters: Counters
 
@@ -56,16 +56,16 @@ class Node(Protocol):
 
     @property
     def inputs(self) -> tuple[keys.Topic, ...]:
-        """The topics it takes."""
+        """The topics of the messages that `handle` takes."""
         ...
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
-        """Take one message or tick and return what is to be put."""
+        """Handle one message or tick, and return the messages to put."""
         ...
 
 
 class Source(Protocol):
-    """A sensor: frames in the order of their stamps. The runtime decides when each is put."""
+    """A sensor that yields frames in the order of their stamps. The runtime decides when to put each."""
 
     counters: Counters
 
@@ -85,13 +85,13 @@ class Source(Protocol):
 
 
 class Numbering:
-    """Gives each message its number on its key."""
+    """Assigns sequence numbers (`seq`), counted from 0 on each key."""
 
     def __init__(self) -> None:
         self._next: Counter[str] = Counter()
 
     def numbered(self, message: Message) -> Message:
-        """Return the message with `seq` set; a number already there is kept and counted on from."""
+        """Return the message with `seq` set. A message that has a number keeps it, and the next one continues there."""
         key = keys.key_of(message)
         if message.seq is not None:
             self._next[key] = message.seq + 1
@@ -104,7 +104,7 @@ class Numbering:
 def replay(node: Node, messages: Iterable[tuple[int, Message]], settle_ns: int = SETTLE_NS) -> Iterator[Message]:
     """Feed a node messages at their arrival times (ns), with ticks between, and yield what it puts.
 
-    Ticks go on for `settle_ns` after the last message, so that everything that waits is answered.
+    Ticks go on for `settle_ns` after the last message, so that segments still waiting are answered, too.
     """
     numbering = Numbering()
     inputs = tuple(topic.message for topic in node.inputs)

@@ -1,4 +1,4 @@
-"""Recordings: MCAP files whose channels are Zenoh keys and whose messages are the payloads as they crossed them.
+"""Recordings: MCAP files whose channels are Zenoh keys and whose messages are the payloads that were put on them.
 
 `publish_time` is a message's stamp, `log_time` the time of its receipt, `sequence` its number on its key. A metadata
 record `actum.recording` holds `person`, `source` and free fields.
@@ -30,7 +30,7 @@ MESSAGE_ENCODING = "msgpack"
 SCHEMA_ENCODING = "jsonschema"
 """MCAP's name for the encoding of the schemas."""
 CHUNK_BYTES = 256 * 1024
-"""What a crash may cost: about three seconds of a skeleton stream."""
+"""Size of an MCAP chunk: a crash loses at most one, about three seconds of a skeleton stream."""
 
 SEQUENCE_MODULUS = 2**32
 """MCAP's message numbers have 32 bits."""
@@ -39,7 +39,7 @@ SEQUENCE_MODULUS = 2**32
 class Recorder:
     """Writes a recording. The file carries the suffix `.part` until it is closed, and is readable up to a crash.
 
-    Left by an exception, a `with` block leaves the `.part` file; otherwise the file takes its name.
+    Where an exception ends the `with` block the file keeps the suffix.
     """
 
     def __init__(self, path: Path, *, person: str, source: str, **fields: str) -> None:
@@ -66,7 +66,7 @@ class Recorder:
             self._finish()
 
     def close(self) -> None:
-        """Finish the file and give it its name."""
+        """Finish the file and remove the suffix `.part` from its name."""
         self._finish()
         self._part.replace(self.path)
 
@@ -74,7 +74,7 @@ class Recorder:
         """Store one message, numbered on its key where it has no number.
 
         Raises:
-            ValueError: a mark whose stamp is not resolved.
+            ValueError: the message is a mark without a stamp.
         """
         if message.stamp_ns is None:
             raise ValueError(f"a recorded message needs its stamp: {message!r}")
@@ -108,7 +108,7 @@ class Recorder:
 
 
 class Recording:
-    """A recording to read. Nothing but its metadata is held; messages are read from the file on each pass.
+    """A recording to read. Only its metadata is kept in memory; messages are read from the file on each pass.
 
     Raises:
         RecordingError: the file cannot be opened, is no MCAP, or is damaged.
@@ -117,13 +117,13 @@ class Recording:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.skipped: Counter[str] = Counter()
-        """What the newest pass left out, by kind: foreign channels and messages that do not decode."""
+        """Messages that the latest pass skipped, by kind: those on foreign channels and those that do not decode."""
         self._file = McapFile(path)
         self.metadata = self._file.metadata(METADATA)
 
     @property
     def truncated(self) -> bool:
-        """Whether a pass has found the file to break off; what lies before the break was read."""
+        """Whether a pass found that the file breaks off; the messages before the break were read."""
         return self._file.truncated
 
     @property
@@ -138,7 +138,7 @@ class Recording:
 
     @cached_property
     def topics(self) -> frozenset[keys.Topic]:
-        """The topics that at least one message lies on."""
+        """The topics of which the recording holds at least one message."""
         addresses = {key: _address(key) for key in {stored.key for stored in self._file.stored()}}
         return frozenset(address.topic for address in addresses.values() if address is not None)
 
@@ -146,22 +146,22 @@ class Recording:
         """Yield the messages of these topics, or of all, in order of `publish_time`.
 
         At one stamp, start marks come before everything else and end marks after it. Images are streamed, each key's
-        in the order it was written; all else is sorted.
+        in the order they were written; all other messages are sorted.
 
         Raises:
             RecordingError: the file is damaged.
         """
         self.skipped.clear()
-        small, image_keys = self._indexed(topics)
+        without_images, image_keys = self._indexed(topics)
         images = [self._of_key(key) for key in sorted(image_keys)]
-        in_order = merge(small, *images, key=attrgetter("publish_ns"))
+        in_order = merge(without_images, *images, key=attrgetter("publish_ns"))
         for _, instant in groupby(in_order, key=attrgetter("publish_ns")):
             yield from sorted(self._decoded(instant), key=_rank)
 
     def _indexed(self, topics: Collection[keys.Topic] | None) -> tuple[list[StoredMessage], set[str]]:
-        """Sort all that is small by stamp, and name the keys of the images."""
+        """Return the messages that are no images, sorted by stamp, and the keys of the images."""
         addresses: dict[str, keys.Address | None] = {}
-        small: list[StoredMessage] = []
+        without_images: list[StoredMessage] = []
         image_keys: set[str] = set()
         for stored in self._file.stored():
             address = addresses.setdefault(stored.key, _address(stored.key))
@@ -171,8 +171,8 @@ class Recording:
                 if address.topic.message is Image:
                     image_keys.add(stored.key)
                 else:
-                    small.append(stored)
-        return sorted(small, key=attrgetter("publish_ns")), image_keys
+                    without_images.append(stored)
+        return sorted(without_images, key=attrgetter("publish_ns")), image_keys
 
     def _of_key(self, key: str) -> Iterator[StoredMessage]:
         return (stored for stored in self._file.stored() if stored.key == key)
@@ -202,7 +202,7 @@ def _address(key: str) -> keys.Address | None:
 
 
 def _rank(message: Message) -> int:
-    """Order within one stamp: a segment holds the frames at its own bounds."""
+    """Return a message's rank within one stamp: start marks first, end marks last, so frames at both belong to it."""
     if not isinstance(message, Segment):
         return 1
     return 0 if message.kind == "start" else 2

@@ -1,4 +1,4 @@
-"""Recordings written anew, with some messages changed or left out and all else as it lies in the file."""
+"""Rewrites a recording with some messages changed or left out; all other records are copied unchanged."""
 
 import os
 import shutil
@@ -14,27 +14,27 @@ from actum.mcap_file import McapFile, StoredMessage, encoding_of
 from actum.recording import CHUNK_BYTES
 
 Change = Callable[[StoredMessage], StoredMessage | None]
-"""What is written in place of a message, of its payload and its stamp; None for nothing."""
+"""Returns the message to write in place of the given one (only payload and stamp count), or None to leave it out."""
 
 
 def rewrite(path: Path, change: Change) -> None:
-    """Write a recording anew beside itself, and put it in place once it is whole.
+    """Write the changed recording to a temporary file beside it, which replaces it once complete.
 
     Raises:
         RecordingError: the file is no recording, or damaged.
-        OSError: the new one cannot be written. In either case the file is left as it was.
+        OSError: the temporary file cannot be written. In either case the recording is left as it was.
     """
-    place = path.resolve()
-    with NamedTemporaryFile("wb", dir=place.parent, prefix=f"{place.name}.", suffix=".part", delete=False) as file:
-        beside = Path(file.name)
+    target = path.resolve()
+    with NamedTemporaryFile("wb", dir=target.parent, prefix=f"{target.name}.", suffix=".part", delete=False) as file:
+        temporary = Path(file.name)
         try:
             _copy(McapFile(path), cast(BinaryIO, file), change)
             file.flush()
             os.fsync(file.fileno())
-            shutil.copymode(place, beside)
-            beside.replace(place)
+            shutil.copymode(target, temporary)
+            temporary.replace(target)
         except BaseException:
-            beside.unlink(missing_ok=True)
+            temporary.unlink(missing_ok=True)
             raise
 
 
@@ -47,7 +47,7 @@ def _copy(source: McapFile, file: BinaryIO, change: Change) -> None:
 
 
 class _Copying:
-    """Hands one record after the other to the writer; schemas and channels stand twice in a whole file."""
+    """Copies records to the writer. A complete file holds its schemas and channels twice; they are copied once."""
 
     def __init__(self, writer: Writer, change: Change) -> None:
         self._writer = writer

@@ -13,7 +13,7 @@ from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, Settings
 from actum.keys import CHUNK
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
-"""Where the router is unless told otherwise: this machine, Zenoh's usual port."""
+"""The router's endpoint where none is set: this machine, Zenoh's usual port."""
 WITH_PORT = ("tcp", "udp", "tls", "quic", "ws")
 """Zenoh's transports whose addresses are host:port."""
 OTHER_TRANSPORTS = ("unixsock-stream", "unixpipe", "serial", "vsock")
@@ -23,14 +23,14 @@ HIGHEST_PORT = 65535
 
 
 class SettingsError(ValueError):
-    """Settings that cannot be used: which, why, what to do."""
+    """Settings that cannot be used; the text names the setting, the problem and what to do."""
 
 
 def host_and_port(endpoint: str) -> tuple[str, int] | None:
-    """Take an endpoint's address apart; None where its transport has no ports.
+    """Parse an endpoint into host and port; None where its transport has no ports.
 
     Raises:
-        SettingsError: it is none that Zenoh takes.
+        SettingsError: it is no endpoint of Zenoh's.
     """
     transport, _, address = re.split("[?#]", endpoint, maxsplit=1)[0].partition("/")
     if transport in OTHER_TRANSPORTS and address:
@@ -42,7 +42,7 @@ def host_and_port(endpoint: str) -> tuple[str, int] | None:
 
 
 def complaint(error: ValueError) -> str:
-    """Say in one line what cannot be used in settings, whoever found it."""
+    """Return one line that describes an error in settings, whether pydantic or our own code raised it."""
     if not isinstance(error, ValidationError):
         return str(error)
     problems = [
@@ -58,7 +58,7 @@ def _endpoint(text: str) -> str:
 
 
 def default_instance() -> str:
-    """Name this process among others of its service: host and process id, fit for a key chunk."""
+    """Return an instance name for this process: host and process id, as a valid chunk of a key."""
     host = "".join(c if CHUNK.fullmatch(c) else "-" for c in socket.gethostname().lower())
     return f"{host}-{os.getpid()}"
 
@@ -100,10 +100,10 @@ class ServiceSettings(BaseSettings):
         dotenv_settings: PydanticBaseSettingsSource,
         file_secret_settings: PydanticBaseSettingsSource,
     ) -> tuple[PydanticBaseSettingsSource, ...]:
-        """Flags first, then the environment, then the file that `ACTUM_CONFIG` names.
+        """Return the sources of settings: flags first, then the environment, then the file that `ACTUM_CONFIG` names.
 
         Raises:
-            SettingsError: that file is not there, or no TOML.
+            SettingsError: that file does not exist, or is no TOML.
         """
         return init_settings, env_settings, _file_source(settings_cls, os.environ.get("ACTUM_CONFIG"))
 

@@ -26,7 +26,7 @@ JOINTS: tuple[str, ...] = (
 """The order of every joint list in every message. Left and right are the actor's own."""
 
 INDEX: Mapping[str, int] = MappingProxyType({name: i for i, name in enumerate(JOINTS)})
-"""The place of each joint in that order."""
+"""The index of each joint in that order."""
 
 PARTS: Mapping[str, tuple[int, int, int]] = MappingProxyType(
     {
@@ -43,14 +43,17 @@ NITE_15: tuple[int, ...] = tuple(range(15))
 """The order of OpenNI and NITE 1, which is ours."""
 
 NITE2_15: tuple[int, ...] = (0, 1, 8, 2, 4, 6, 3, 5, 7, 9, 11, 13, 10, 12, 14)
-"""NiTE 2's own numbers: head neck, shoulders elbows hands (left, right), torso, hips knees feet (left, right)."""
+"""The NiTE 2 index of each of our joints. NiTE 2's order: head neck, shoulders elbows hands (left, right), torso,
+hips knees feet (left, right)."""
 
 KINECT_V1_20: tuple[int, ...] = (3, 2, 1, 4, 5, 7, 8, 9, 11, 12, 13, 15, 16, 17, 19)
-"""Kinect SDK v1: HipCenter Spine ShoulderCenter Head, then Shoulder Elbow Wrist Hand (left, right),
-Hip Knee Ankle Foot (left, right). The torso is the spine joint, the neck the shoulder centre."""
+"""The Kinect SDK v1 index of each of our joints. Kinect's order: HipCenter Spine ShoulderCenter Head, then Shoulder
+Elbow Wrist Hand (left, right), Hip Knee Ankle Foot (left, right). The torso is the spine joint, the neck the shoulder
+centre."""
 
 MSR_ACTION3D_20: tuple[int, ...] = (19, 2, 3, 0, 7, 11, 1, 8, 12, 4, 13, 17, 5, 14, 18)
-"""MSR Action3D's own order of the same twenty joints; its side B (larger x) is the actor's right."""
+"""The MSR Action3D index of each of our joints, from its own order of Kinect's twenty; its side B (larger x) is the
+actor's right."""
 
 SKELETON_MAPS: Mapping[str, tuple[int, ...]] = MappingProxyType(
     {"nite-15": NITE_15, "nite2-15": NITE2_15, "kinect-v1-20": KINECT_V1_20, "msr-action3d-20": MSR_ACTION3D_20}

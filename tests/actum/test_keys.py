@@ -47,7 +47,7 @@ def test_what_is_no_key_of_ours_is_refused(text: str) -> None:
 @pytest.mark.parametrize("role", ["candidate", "successor"])
 def test_who_is_to_be_a_service_is_read_back_from_its_token(role):
     claim = keys.Claim(role, "host-1", "ab12")
-    assert keys.claim_of(keys.wish(claim, "kinect0", "action_fusion")) == claim
+    assert keys.claim_of(keys.claim_key(claim, "kinect0", "action_fusion")) == claim
 
 
 def test_who_is_a_service_is_read_back_from_its_token_and_other_tokens_are_none():

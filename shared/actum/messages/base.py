@@ -1,4 +1,4 @@
-"""What every message is made of: the kinds of its fields, and the header."""
+"""The types of fields, and the header that every message has."""
 
 import math
 from typing import Annotated, ClassVar, Literal
@@ -23,11 +23,11 @@ Deviation = Annotated[FiniteFloat, Field(ge=0)]
 Hand = Literal["left", "right"]
 
 MOST_AGENTS = 64
-"""People in one message: a camera sees fewer, and memory is kept for each."""
+"""Most people in one message: a camera sees fewer, and services keep memory for each."""
 MOST_OBJECTS = 1024
-"""Objects in one message, for the same reason."""
+"""Most objects in one message, for the same reason."""
 _SHORTEST = 1e-3
-"""A vector shorter than this, or longer than its reciprocal, is taken for an error."""
+"""A direction vector shorter than this, or longer than its reciprocal, is taken for an error."""
 
 
 def _nonzero(direction: list[float]) -> list[float]:

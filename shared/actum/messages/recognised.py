@@ -1,4 +1,4 @@
-"""What is recognised of a segment: its marks, its action, its event."""
+"""Messages about a segment: its marks, the action recognised, the event."""
 
 from typing import Annotated, Literal
 
@@ -33,9 +33,9 @@ class Tensor(Model):
 MANUAL = "manual"
 """The origin of marks that a person puts."""
 SIMULATOR = "simulator"
-"""The origin of those of the simulated scene."""
+"""The origin of the simulated scene's marks."""
 REPLAY = "replay"
-"""The origin of those of a recording that is played."""
+"""The origin of the marks of a recording that is played."""
 
 
 class Segment(Message):

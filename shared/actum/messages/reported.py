@@ -1,4 +1,4 @@
-"""What services tell of themselves, and the simulated scene of what it did."""
+"""Messages in which services describe themselves, and the simulated scene's ground truth."""
 
 from typing import Annotated, Literal
 

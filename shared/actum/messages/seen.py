@@ -1,4 +1,4 @@
-"""What sources and trackers tell: images, people, postures, objects."""
+"""Messages of sensors, preprocessor and tracker: images, skeletons, postures, objects."""
 
 from typing import Annotated, Literal
 

@@ -18,16 +18,16 @@ from actum.runtime.session import RouterUnreachableError, client_config, connect
 from actum.settings import ServiceSettings
 
 OPEN_S = 5.0
-"""How long a program waits for the router (s) unless told otherwise."""
+"""How long a program waits for the router (s) by default."""
 POLL_S = 0.05
-"""Between two looks (s) for a subscriber that is to come."""
+"""Interval (s) at which a program looks for a subscriber."""
 DEEP_RING = 8192
-"""Messages kept for a program that reads late: half a minute of all streams."""
+"""Depth of a program's ring: half a minute of all streams, for one that reads late."""
 
 
 @dataclass(frozen=True)
 class Received:
-    """A sample as a message, or why it is none."""
+    """A sample that was received: its message or the error of decoding it, and the payload's size (bytes)."""
 
     key: str
     message: Message | None
@@ -87,7 +87,7 @@ class Client:
         self._outbox.put(message)
 
     def put_raw(self, key: str, payload: bytes, encoding: str = "", attachment: bytes | None = None) -> None:
-        """Put bytes as a plain client does."""
+        """Put bytes as a client without this library does."""
         self._session.put(
             key,
             payload,
@@ -110,7 +110,7 @@ class Client:
         return listening
 
     def wait_for_subscriber(self, topic: keys.Topic, timeout_s: float) -> bool:
-        """Wait until somebody subscribes to this sensor's key of the topic."""
+        """Wait until somebody subscribes to this sensor's key of the topic; False if nobody does in time."""
         publisher = self._session.declare_publisher(keys.key(topic, self.sensor))
         self._outbox.declare(keys.key(topic, self.sensor))
         deadline = time.monotonic() + timeout_s
@@ -126,11 +126,11 @@ class Client:
         return sorted(str(reply.ok.key_expr) for reply in replies if reply.ok is not None)
 
     def infos(self) -> list[Info]:
-        """Ask every service of this sensor what it is."""
-        every = zenoh.ConsolidationMode.NONE  # two of one service answer on one key
+        """Return the descriptions of all services of this sensor."""
+        every = zenoh.ConsolidationMode.NONE  # two instances of a service answer on one key
         replies = self._session.get(keys.pattern(keys.INFO, self.sensor), timeout=1.0, consolidation=every)
-        found = [_received(reply.ok).message for reply in replies if reply.ok is not None]
-        return [info for info in found if isinstance(info, Info)]
+        messages = [_received(reply.ok).message for reply in replies if reply.ok is not None]
+        return [info for info in messages if isinstance(info, Info)]
 
     def connected(self) -> bool:
         """Tell whether there is a router now."""

@@ -1,4 +1,4 @@
-"""What a service needs beside the library, and what to do where it is missing."""
+"""The optional dependencies of services (pip's extras), and how a process ends that lacks one."""
 
 import sys
 from collections.abc import Iterator
@@ -9,10 +9,10 @@ from actum.runtime.serving import UNUSABLE
 
 @contextmanager
 def needs_extra(name: str) -> Iterator[None]:
-    """Import within this what the extra `name` brings: where it is missing, the process ends with a line, code 2.
+    """Return a context in which to import the packages of an extra: if one is missing, say so and exit with code 2.
 
     Raises:
-        ModuleNotFoundError: a part of a package that is there is not, which is a bug.
+        ModuleNotFoundError: a submodule of an installed package is missing, which is a bug.
     """
     try:
         yield

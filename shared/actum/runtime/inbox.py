@@ -11,15 +11,15 @@ from actum import keys
 Subscriber = zenoh.Subscriber[zenoh.Handler[zenoh.Sample]] | ext.AdvancedSubscriber[zenoh.Handler[zenoh.Sample]]
 
 RECOVERED = (keys.SEGMENT, keys.ACTION, keys.EVENT)
-"""What publishers are asked for again: of these every message counts."""
+"""Topics on which every message counts: lost ones are requested again from their publishers."""
 HISTORY_DEPTH = 16
-"""Messages asked for on each key."""
+"""Most earlier messages requested on each key."""
 HISTORY_S = 4.0
-"""What is older was answered by whoever was there: two seconds of skew, two of waiting."""
+"""Oldest message requested (s): two seconds of skew, two of waiting. Older ones have been answered."""
 
 
 def subscribe(session: zenoh.Session, key_expr: str, ring: int, history_s: float | None = None) -> Subscriber:
-    """Declare a subscriber; one with a history asks publishers again for what it missed, and for what was before it."""
+    """Declare a subscriber. One with `history_s` also requests lost messages, and those put so long before it (s)."""
     channel: handlers.RingChannel[zenoh.Sample] = handlers.RingChannel(ring)
     if history_s is None:
         return session.declare_subscriber(key_expr, channel)
@@ -33,7 +33,7 @@ def subscribe(session: zenoh.Session, key_expr: str, ring: int, history_s: float
 
 
 class Inbox:
-    """The subscriptions of one node; `history_s` is for how long nobody has answered, `HISTORY_S` at the most."""
+    """The subscriptions of one node; messages of the last `history_s` are requested, of `HISTORY_S` at the most (s)."""
 
     def __init__(
         self, session: zenoh.Session, topics: Iterable[keys.Topic], sensor: str, history_s: float = HISTORY_S

@@ -1,4 +1,4 @@
-"""What a service tells about itself once a second."""
+"""Counts a service's messages, losses and latencies, and makes its messages `status` and `info` of them."""
 
 import socket
 import time
@@ -16,9 +16,9 @@ from actum.skeletons import JOINTS
 LATENCIES = 1000
 """Latencies kept for the percentiles: half a minute of one stream."""
 MOST_KEYS = 256
-"""Keys of agents who left long ago make room for new ones."""
+"""Most keys that are counted: the one silent for longest, such as that of an agent who left, makes room."""
 MOST_ORIGINS = 16
-"""Each mark may come from a process of its own."""
+"""Most publishers on a key whose numbers are followed: each mark may come from a process of its own."""
 
 
 class Meter:
@@ -37,7 +37,7 @@ class Meter:
         self._latencies_ms: deque[float] = deque(maxlen=LATENCIES)
 
     def received(self, key: str, message: Message, origin: str = "") -> None:
-        """Count a message, and the ones that its number says are missing before it: each origin numbers its own."""
+        """Count a message, and those lost before it by the gap in `seq`; each publisher (`origin`) numbers its own."""
         self._count(key)
         if message.seq is None:
             return
@@ -48,7 +48,7 @@ class Meter:
             del numbers[next(iter(numbers))]
 
     def put(self, key: str) -> None:
-        """Count a message of our own."""
+        """Count a message that the service put."""
         self._count(key)
 
     def _count(self, key: str) -> None:
@@ -59,15 +59,15 @@ class Meter:
                 counts.pop(silent, None)
 
     def rejected(self, kind: str, detail: str) -> None:
-        """Count a payload that is no message."""
+        """Count a payload that does not decode."""
         self._counters.reject(kind, detail)
 
     def took(self, milliseconds: float) -> None:
-        """Note how long one message took from arrival to the last put."""
+        """Record a latency: from a message's arrival to the last put of its answer (ms)."""
         self._latencies_ms.append(milliseconds)
 
     def status(self) -> Status:
-        """Report the last second."""
+        """Return the service's status, with rates since the last call."""
         now_ns = time.monotonic_ns()
         elapsed_s = max((now_ns - self._reported_ns) / 1e9, 1e-6)
         rates = {key: round((n - self._reported[key]) / elapsed_s, 2) for key, n in self._handled.items()}
@@ -88,7 +88,7 @@ class Meter:
         )
 
     def info(self) -> Info:
-        """Say what this service is."""
+        """Return the service's description."""
         return Info(
             stamp_ns=time.time_ns(),
             sensor=self._settings.sensor,

@@ -12,26 +12,26 @@ from actum.messages import Action, Message
 from actum.node import Numbering
 
 CACHE_DEPTH = 64
-"""Messages kept on each key for those who missed them: more than anybody asks for."""
+"""Messages that a publisher keeps on each key for late or interrupted subscribers: more than any requests."""
 HEARTBEAT_S = 0.5
-"""How often (s) the newest number is told, so that a loss of the last message is noticed."""
+"""Interval (s) at which a publisher repeats its newest number, so that a loss of the last message is noticed."""
 MOST_PUBLISHERS = 256
-"""Agents come and go with new numbers; the publisher that has been silent for longest makes room."""
+"""Most open publishers: agents come and go with new numbers, and the publisher silent for longest makes room."""
 
 _CONGESTION = {"drop": zenoh.CongestionControl.DROP, "block": zenoh.CongestionControl.BLOCK}
-"""Zenoh's name of what happens where a reader is slow."""
+"""Zenoh's congestion control, used where a reader is slow, by our names."""
 _PRIORITY = {
     "interactive_high": zenoh.Priority.INTERACTIVE_HIGH,
     "data_high": zenoh.Priority.DATA_HIGH,
     "data_low": zenoh.Priority.DATA_LOW,
     "background": zenoh.Priority.BACKGROUND,
 }
-"""Zenoh's names of the priorities."""
+"""Zenoh's priorities by our names."""
 Publisher = zenoh.Publisher | ext.AdvancedPublisher
 
 
 class Outbox:
-    """One publisher per key and kind, declared when first needed, `MOST_PUBLISHERS` at the most."""
+    """One publisher per key and kind (cached or plain), declared when first needed, `MOST_PUBLISHERS` at the most."""
 
     def __init__(self, session: zenoh.Session) -> None:
         self._session = session
@@ -84,7 +84,7 @@ class Outbox:
 
 
 def _is_cached(message: Message) -> bool:
-    """Every final answer counts; a partial one is soon replaced by the next."""
+    """Tell whether late subscribers recover a message. Of actions only the final do: a partial one is soon outdated."""
     if isinstance(message, Action):
         return message.final
     return keys.address_of(message).topic.cached

@@ -1,4 +1,4 @@
-"""A process that ends when the one that started it is gone, however that ended; on any Unix."""
+"""Ends this process when its parent process is gone, however that ended; on any Unix."""
 
 import os
 import signal
@@ -6,15 +6,15 @@ import threading
 import time
 
 PARENT = "ACTUM_PARENT"
-"""The variable that holds the process id of who started this process, where it is to end with them."""
+"""The environment variable with the id of the parent process that this one is to end with."""
 LOOK_S = 0.5
-"""Between two looks (s) at who the parent is."""
+"""Interval (s) at which the parent is checked."""
 LEAVE_S = 5.0
-"""How long leaving cleanly may take, as for any end."""
+"""How long (s) a clean end may take after SIGTERM; then the process is ended at once."""
 
 
 def end_with_parent() -> None:
-    """End this process as SIGTERM would, once it has another parent than the one that `ACTUM_PARENT` names."""
+    """Send this process SIGTERM once its parent is not the one that `ACTUM_PARENT` names, if that is set."""
     parent = os.environ.get(PARENT, "")
     if parent.isdecimal():
         threading.Thread(target=_watch, args=(int(parent),), daemon=True).start()

@@ -1,7 +1,8 @@
-"""One service of a kind for each sensor: the second is refused, or the first makes room for it.
+"""Ensures one instance of a service for each sensor: a second one is refused, or takes over from the first.
 
-Who is the service holds the liveliness token `alive`. Who is to be it holds `candidate` first and looks who else is
-there: a router takes a session's token before its next question, so of two candidates at least one sees the other.
+The instance that runs holds the liveliness token `alive`. One that is about to start declares the token `candidate`
+and queries the tokens of others: a router handles a session's token before its next query, so of two candidates at
+least one sees the other.
 """
 
 import logging
@@ -22,67 +23,70 @@ from actum.settings import ServiceSettings
 log = logging.getLogger("actum")
 
 SETTLING_S = 0.25
-"""How long a candidate looks for others: the time that a token may take from one router to the next."""
+"""How long (s) a candidate must see no other: the time that a token may take from one router to the next."""
 RETURNING_S = 1.5
-"""The same where the router has just come: by then the sessions that it had before are back."""
+"""The same (s) where the router has just started: by then its earlier sessions are connected again."""
 LEAVING_S = 1.5
-"""How long one that was just asked to stop may take."""
+"""How long (s) an instance that was just asked to stop may take."""
 YIELDING_S = 10.0
-"""How long one may take that is to make room: it looks for successors once a second."""
+"""How long (s) an instance may take to make room for a successor, which it looks for once a second."""
 LOST_S = LEASE_S + 3.0
-"""By then the token of one that was killed with its machine is gone."""
+"""How long (s) until the token of an instance has expired whose machine died."""
 POLL_S = 0.05
-"""Between two looks (s) at who else is there."""
+"""Interval between two queries of the tokens (s)."""
 ANSWER_S = 0.5
-"""How long (s) an answer may take, of one machine to another."""
+"""Timeout of a query (s), from one machine to another."""
 
 
 class PlaceTakenError(RuntimeError):
-    """Another process is the service that this one was to be."""
+    """Another instance of this service runs for the sensor."""
 
 
 class Alone:
-    """Whether a candidate has been the only one for long enough: a pure step over looks at who else is there."""
+    """Decides whether a candidate has seen no other instance for long enough: a pure step over results of queries."""
 
     def __init__(self, settling_s: float) -> None:
         self._settling_s = settling_s
-        self._alone_s: float | None = None
-        self._blind_s: float | None = None
+        self._alone_since_s: float | None = None
+        self._unanswered_since_s: float | None = None
 
     def for_long(self, others: Sequence[keys.Claim] | None, connected: bool, now_s: float) -> bool:
-        """Take what one look has shown, None where nobody answered."""
+        """Take the claims of others from one query, None where it failed; tell whether the candidate may start.
+
+        It may, too, where a connected router has left every query unanswered for `LOST_S`.
+        """
         if others is None:
-            self._alone_s, self._settling_s = None, RETURNING_S
+            self._alone_since_s, self._settling_s = None, RETURNING_S
             return connected and self._is_denied(now_s)
-        self._blind_s = None
-        self._alone_s = None if others else self._alone_s or now_s
-        return self._alone_s is not None and now_s - self._alone_s >= self._settling_s
+        self._unanswered_since_s = None
+        self._alone_since_s = None if others else self._alone_since_s or now_s
+        return self._alone_since_s is not None and now_s - self._alone_since_s >= self._settling_s
 
     def _is_denied(self, now_s: float) -> bool:
-        """Whether a router that is there never answers, and so is not to."""
-        self._blind_s = self._blind_s or now_s
-        if now_s - self._blind_s < LOST_S:
+        """Tell whether the router has failed to answer for so long that its access control must forbid the query."""
+        self._unanswered_since_s = self._unanswered_since_s or now_s
+        if now_s - self._unanswered_since_s < LOST_S:
             return False
         log.warning("nobody tells whether this runs twice: allow liveliness_query in the router's access control")
         return True
 
 
 class Place:
-    """The place of one service at one sensor, which one process has at a time."""
+    """The right to run as a service of a sensor, which one instance holds at a time."""
 
     def __init__(self, session: zenoh.Session, settings: ServiceSettings, service: str) -> None:
         self._session, self._settings, self._service = session, settings, service
         self._candidate = keys.Claim("candidate", settings.instance, str(session.zid()))
-        self._own: dict[str, zenoh.LivelinessToken] = {}
-        self._held_s = -math.inf
+        self._tokens: dict[str, zenoh.LivelinessToken] = {}
+        self._last_held_s = -math.inf
 
     def take(self, stop: threading.Event, settling_s: float) -> bool:
-        """Take the place as soon as nobody has it; False if stopped before.
+        """Become the running instance as soon as there is no other; False if stopped before.
 
         Raises:
-            PlaceTakenError: somebody has it, answers, and stays.
+            PlaceTakenError: another instance runs, answers, and stays.
         """
-        successor = keys.wish(replace(self._candidate, role="successor"), self._settings.sensor, self._service)
+        successor = keys.claim_key(replace(self._candidate, role="successor"), self._settings.sensor, self._service)
         if self._settings.take_over:
             self._declare(successor)
         taken = False
@@ -93,37 +97,47 @@ class Place:
 
     @property
     def vacant_s(self) -> float:
-        """For how long nobody else has been seen to have it; infinite if nobody ever was."""
-        return time.monotonic() - self._held_s
+        """How long ago (s) another instance was last seen to run; infinite if none ever was."""
+        return time.monotonic() - self._last_held_s
 
     def leave(self) -> None:
-        """Let others have it."""
-        for key in list(self._own):
+        """Withdraw all tokens, so that another instance may start."""
+        for key in list(self._tokens):
             self._undeclare(key)
 
     def lost_to(self) -> str | None:
-        """Tell who is to have the place instead: a successor, or the first by name of two that have it."""
+        """Return the instance that this one makes room for: a successor, or of two that run the first by name."""
         for other in self._others() or ():
             if other.role == "successor" or (other.role == "alive" and other.instance < self._settings.instance):
                 return other.instance
         return None
 
     def _is_free(self, stop: threading.Event) -> bool:
-        """Wait until nobody has or is about to take the place; False if stopped before."""
-        met_s = time.monotonic()
+        """Wait until no other instance runs or is a candidate; False if stopped before.
+
+        Raises:
+            PlaceTakenError: another instance runs, answers, and stays.
+        """
+        began_s = time.monotonic()
         silent: set[str] = set()
         while not stop.is_set():
             others = self._rivals()
             if not others:
-                return True  # also where nobody can tell: a candidate waits until somebody does
+                return True  # also where the query failed: a candidate repeats it until there is an answer
             for other in others:
-                if other.role == "alive" and not self._may_leave(other, time.monotonic() - met_s, silent):
+                if other.role == "alive" and not self._may_leave(other, time.monotonic() - began_s, silent):
                     raise PlaceTakenError(self._refusal(other))
             stop.wait(POLL_S)
         return False
 
     def _may_leave(self, holder: keys.Claim, waited_s: float, silent: set[str]) -> bool:
-        """Whether who has the place may yet be gone: it has had no time, or does not answer and its token may lapse."""
+        """Tell whether the running instance may yet leave: it had little time, or is silent and its token may expire.
+
+        Args:
+            holder: its claim.
+            waited_s: how long this one has waited for it.
+            silent: names of instances that do not answer, which are logged once; one is added where it does not.
+        """
         if waited_s < (YIELDING_S if self._settings.take_over else LEAVING_S):
             return True
         if waited_s > LOST_S or self._info_of(holder) is not None:
@@ -134,8 +148,8 @@ class Place:
         return True
 
     def _is_won(self, stop: threading.Event, settling_s: float) -> bool:
-        """Stand as a candidate; the first by name wins, unless somebody has the place already."""
-        candidate = keys.wish(self._candidate, self._settings.sensor, self._service)
+        """Declare this instance a candidate; of several the first by name wins, unless another instance runs."""
+        candidate = keys.claim_key(self._candidate, self._settings.sensor, self._service)
         self._declare(candidate)
         alone = Alone(settling_s)
         won = beaten = False
@@ -149,20 +163,21 @@ class Place:
         return won
 
     def _rivals(self) -> list[keys.Claim] | None:
-        """List who else has or is about to take the place, a successor comes later; None where nobody can tell."""
+        """Return the claims of running instances and candidates, not of successors; None where the query failed."""
         others = self._others()
         rivals = None if others is None else [other for other in others if other.role != "successor"]
         if any(rival.role == "alive" for rival in rivals or ()):
-            self._held_s = time.monotonic()
+            self._last_held_s = time.monotonic()
         return rivals
 
     def _others(self) -> list[keys.Claim] | None:
+        """Return the claims of all other instances; None where the query failed."""
         expression = keys.claims(self._settings.sensor, self._service)
         replies = list(self._session.liveliness().get(expression, timeout=ANSWER_S))
         if any(reply.ok is None for reply in replies) or not connected(self._session):
             return None
-        found = {str(reply.ok.key_expr) for reply in replies if reply.ok is not None}
-        claims = [keys.claim_of(key) for key in sorted(found - self._own.keys())]
+        token_keys = {str(reply.ok.key_expr) for reply in replies if reply.ok is not None}
+        claims = [keys.claim_of(key) for key in sorted(token_keys - self._tokens.keys())]
         return [claim for claim in claims if claim is not None]
 
     def _info_of(self, holder: keys.Claim) -> Info | None:
@@ -189,11 +204,11 @@ class Place:
         )
 
     def _declare(self, key: str) -> None:
-        self._own[key] = self._session.liveliness().declare_token(key)
+        self._tokens[key] = self._session.liveliness().declare_token(key)
 
     def _undeclare(self, key: str) -> None:
-        if key in self._own:
-            self._own.pop(key).undeclare()
+        if key in self._tokens:
+            self._tokens.pop(key).undeclare()
 
 
 def _name(claim: keys.Claim) -> tuple[str, str]:

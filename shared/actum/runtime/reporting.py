@@ -1,4 +1,4 @@
-"""What a service says of itself: its status once a second, and a line on its output where something has changed."""
+"""Reports of a running service: its status once a second, and a line of its log where something has changed."""
 
 import logging
 import threading
@@ -17,20 +17,20 @@ from actum.settings import ServiceSettings
 log = logging.getLogger("actum")
 
 REPORT_S = 1.0
-"""Between two reports (s)."""
+"""Interval between two reports (s)."""
 WELL = "running"
-"""How states begin that are as they should be."""
+"""The prefix of a state in which nothing is wrong."""
 
 
 class StateLog:
-    """Says each change of a service's state once; what is in use without trouble changes silently."""
+    """Logs each new problem of a service once, and its end; other changes of state are not logged."""
 
     def __init__(self, counters: Counters) -> None:
         self._counters = counters
         self._trouble: str | None = None
 
     def log_change(self) -> None:
-        """Say what is wrong if that is new, or that nothing is any more."""
+        """Log the problem if it is new, or that there is none any more."""
         trouble = None if self._counters.state.startswith(WELL) else self._counters.state
         source = self._counters.details.get("source")
         if trouble is not None and trouble != self._trouble:
@@ -41,7 +41,7 @@ class StateLog:
 
 
 class Reporter:
-    """Reports while a service works, and stops it where another takes its place."""
+    """Reports while a service runs, and stops it where another instance takes over."""
 
     def __init__(self, meter: Meter, state_log: StateLog, settings: ServiceSettings, lock: threading.Lock) -> None:
         self._meter, self._state_log, self._settings, self._lock = meter, state_log, settings, lock
@@ -56,23 +56,23 @@ class Reporter:
                 status = self._meter.status()
                 self._state_log.log_change()
             outbox.put(status)
-            self._tell_router(connected(session))
-            self._tell_health(healthy() and self._connected)
+            self._log_connection(connected(session))
+            self._write_health(healthy() and self._connected)
             successor = place.lost_to()
             if successor is not None:
                 log.warning("%s takes over for sensor %s: this one stops", successor, self._settings.sensor)
                 stop.set()
 
-    def _tell_router(self, now: bool) -> None:
-        """Say once that the router is lost, and once that it is back."""
+    def _log_connection(self, now: bool) -> None:
+        """Log once that the router is lost, and once that it is back."""
         if self._connected and not now:
             log.warning("lost the router at %s: waiting for it", self._settings.connect)
         elif now and not self._connected:
             log.info("connected to %s again", self._settings.connect)
         self._connected = now
 
-    def _tell_health(self, healthy: bool) -> None:
-        """Write the health file if there is to be one; where it cannot be written, say so once and go on."""
+    def _write_health(self, healthy: bool) -> None:
+        """Write the health file if one is set; where it cannot be written, log that once and go on."""
         if self._settings.health_file is None:
             return
         try:

@@ -27,7 +27,7 @@ def router_config(listen: str | None, config_file: Path | None) -> zenoh.Config:
 
 
 def serve_router(listen: str | None, config_file: Path | None, stop: threading.Event) -> None:
-    """Route until stopped.
+    """Run a router until stopped.
 
     Raises:
         SettingsError: the endpoint is taken, or the configuration is refused.

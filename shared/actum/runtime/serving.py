@@ -1,4 +1,4 @@
-"""The life of a service: connect, subscribe, step, report, and leave cleanly."""
+"""Runs a service: connects, subscribes, steps, reports, and ends cleanly."""
 
 import gc
 import logging
@@ -32,30 +32,30 @@ log = logging.getLogger("actum")
 S = TypeVar("S", bound=ServiceSettings)
 N = TypeVar("N")
 UNUSABLE = 2
-"""The code at the end of a process whose settings cannot be used …"""
+"""Exit code of a process whose settings cannot be used."""
 TAKEN = 3
-"""… and of one whose service another process does already."""
+"""Exit code of a process whose service another process runs already."""
 
 
 def run(settings_type: type[S], build: Callable[[S], Node]) -> None:
-    """Serve a node until SIGTERM or SIGINT; the process's whole life."""
+    """Run a node as this process's service until SIGTERM or SIGINT."""
     settings, node = _configured(settings_type, build)
     _live(NodeService(node, settings), settings)
 
 
 def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
-    """Serve a source until SIGTERM or SIGINT; the process's whole life."""
+    """Run a source as this process's service until SIGTERM or SIGINT."""
     settings, source = _configured(settings_type, build)
     _live(SourceService(source, settings), settings)
 
 
 def _configured(settings_type: type[S], build: Callable[[S], N]) -> tuple[S, N]:
-    """Read the settings and build what they describe; what cannot be used ends the process with a line, code 2."""
+    """Read the settings and build the node or source; if they cannot be used, print why and exit with code 2."""
     end_with_parent()
     service = settings_type.__module__.partition(".")[0]
     try:
         settings = from_command_line(settings_type, f"python -m {service}")
-        client_config(settings)  # refused now, not after what takes long to build
+        client_config(settings)  # a wrong one is refused now, before the build, which may take long
         return settings, build(settings)
     except ValidationError as error:
         print(f"{service}: {complaint(error)} (see --help)", file=sys.stderr)
@@ -68,12 +68,12 @@ def _live(service: "Service", settings: ServiceSettings) -> None:
     logging.basicConfig(level=os.environ.get("ACTUM_LOG", "INFO"), format=f"{service.name}: %(message)s")
     stop = stop_on_signals()
     service.introduce()
-    asked_s = time.monotonic()
+    began_s = time.monotonic()
     session = open_session(settings, stop)
     if session is None:
         return
-    settling_s = SETTLING_S if time.monotonic() - asked_s < RETRY_S else RETURNING_S
-    gc.freeze()  # what is there now stays; collections need not walk through it again
+    settling_s = SETTLING_S if time.monotonic() - began_s < RETRY_S else RETURNING_S
+    gc.freeze()  # objects that exist now live as long as the process: collections need not visit them again
     try:
         service.serve(session, stop, settling_s)
     except PlaceTakenError as error:
@@ -85,7 +85,7 @@ def _live(service: "Service", settings: ServiceSettings) -> None:
 
 
 class Service(ABC):
-    """What nodes and sources share: the way in and out, the place, the report and the description."""
+    """The part common to nodes and sources: start and end, the one instance per sensor, status and description."""
 
     def __init__(self, name: str, counters: Counters, settings: ServiceSettings) -> None:
         self.name = name
@@ -97,16 +97,16 @@ class Service(ABC):
         self._lock = threading.Lock()
 
     def introduce(self) -> None:
-        """Say what is read, and what is wrong already."""
+        """Log the source that is read, and any problem that there is already."""
         if "source" in self._counters.details:
             log.info("sensor %s: %s", self._settings.sensor, self._counters.details["source"])
         self._state_log.log_change()
 
     def serve(self, session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
-        """Work until stopped, once no other does the same.
+        """Run until stopped, once for `settling_s` no other instance is seen.
 
         Raises:
-            PlaceTakenError: another does.
+            PlaceTakenError: another instance runs and stays.
         """
         place = Place(session, self._settings, self.name)
         if not place.take(stop, settling_s):
@@ -126,7 +126,7 @@ class Service(ABC):
 
     @abstractmethod
     def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
-        """Do what this kind of service does, until stopped; nobody has done it for `vacant_s`."""
+        """Handle messages or put frames until stopped. No other instance has run for `vacant_s` seconds."""
 
     def _healthy(self) -> bool:
         return True
@@ -139,7 +139,7 @@ class Service(ABC):
 
 
 class NodeService(Service):
-    """A node: messages in, messages out, ticks between."""
+    """Runs a node: gives it messages and ticks, and puts the messages that it returns."""
 
     def __init__(self, node: Node, settings: ServiceSettings) -> None:
         super().__init__(node.name, node.counters, settings)
@@ -186,12 +186,12 @@ class NodeService(Service):
 
 
 def _origin(sample: zenoh.Sample) -> str:
-    """Name the session that put a sample: the one that stamped it."""
+    """Return the id of the session that put a sample, from its Zenoh timestamp; "" where it has none."""
     return str(sample.timestamp.get_id()) if sample.timestamp else ""
 
 
 class SourceService(Service):
-    """A source: each frame is put when its stamp is due."""
+    """Runs a source: puts each of its frames when the stamp is due."""
 
     def __init__(self, source: Source, settings: ServiceSettings) -> None:
         super().__init__(source.name, source.counters, settings)

@@ -1,4 +1,4 @@
-"""Opening a Zenoh session to the router, patiently and interruptibly."""
+"""Opens a Zenoh session to the router, waiting for it until stopped."""
 
 import json
 import logging
@@ -15,19 +15,19 @@ log = logging.getLogger("actum")
 OPEN_TIMEOUT_MS = 500
 """How long one attempt to reach the router may take (ms)."""
 RETRY_S = 0.2
-"""Between two attempts (s)."""
+"""Interval between two attempts (s)."""
 LEASE_S = 10.0
-"""How long Zenoh keeps the tokens of a session that has fallen silent, unless told otherwise."""
+"""Zenoh's default lease (s): how long the tokens of a silent session are kept."""
 
 TRANSPORT = {
     "transport/shared_memory/enabled": False,
     "transport/link/tx/queue/size/data_high": 16,
     "transport/link/tx/queue/congestion_control/drop/wait_before_drop": 50_000,  # microseconds
 }
-"""How every session of ours sends, clients and router alike.
+"""Transport settings of all our sessions, of clients and router alike.
 
-Shared memory loses messages silently when a reader is descheduled. With Zenoh's own two batches and 1 ms, a burst of
-thirty skeletons on a busy machine loses some; frames matter more than the milliseconds a put may then take.
+Shared memory loses messages silently when a reader is descheduled. With Zenoh's defaults, two batches and 1 ms, a
+burst of thirty skeletons on a busy machine loses some: rather a put takes some milliseconds than a frame is lost.
 """
 
 
@@ -42,15 +42,15 @@ def client_config(settings: ServiceSettings) -> zenoh.Config:
     """Build a client's configuration: one router, and no discovery, which does not cross container networks.
 
     Raises:
-        SettingsError: the file that is to be laid under it cannot be used.
+        SettingsError: the configuration file that it extends cannot be used.
     """
-    config = _laid_under(settings.zenoh_config) if settings.zenoh_config else zenoh.Config()
+    config = _base_config(settings.zenoh_config) if settings.zenoh_config else zenoh.Config()
     for path, value in _client_values(settings.connect).items():
         config.insert_json5(path, json.dumps(value))
     return config
 
 
-def _laid_under(file: Path) -> zenoh.Config:
+def _base_config(file: Path) -> zenoh.Config:
     try:
         return zenoh.Config.from_file(file)
     except zenoh.ZError as error:
@@ -67,13 +67,13 @@ def _client_values(endpoint: str) -> dict[str, Any]:
         "listen/endpoints": [],
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
-        "timestamping/enabled": True,  # how old a message is, for those who ask for the last seconds' again
+        "timestamping/enabled": True,  # late subscribers request messages by age
         **TRANSPORT,
     }
 
 
 def open_session(settings: ServiceSettings, stop: threading.Event) -> zenoh.Session | None:
-    """Wait for the router, saying so once; None if stopped before it came."""
+    """Open a session, waiting for the router, which is logged once; None if stopped before."""
     config = client_config(settings)
     waiting = False
     while not stop.is_set():

@@ -1,4 +1,4 @@
-"""Waiting that a signal ends: for a while, or until a stamp is due."""
+"""Waits that a signal ends: for a duration, or until a stamp is due."""
 
 import _thread
 import signal
@@ -21,10 +21,10 @@ def stop_on_signals() -> threading.Event:
 
 
 def wait_for(stop: threading.Event, seconds: float = float("inf")) -> bool:
-    """Wait until stopped or for so long; True if stopped.
+    """Wait until stopped, at most for `seconds`; True if stopped.
 
-    The wait is cut into slices: a signal that the kernel hands to one of Zenoh's threads does not end a wait of the
-    main thread, and its handler runs only once that thread moves.
+    The wait is cut into slices: a signal that the kernel delivers to one of Zenoh's threads does not end a wait of
+    the main thread, where alone Python runs the handler.
     """
     deadline_s = time.monotonic() + seconds
     while (left_s := deadline_s - time.monotonic()) > 0:
@@ -34,7 +34,7 @@ def wait_for(stop: threading.Event, seconds: float = float("inf")) -> bool:
 
 
 class Pace:
-    """Lets stamps pass at the speed at which they were captured, or a multiple of it."""
+    """Paces messages by their stamps, at the speed at which they were captured or a multiple of it."""
 
     def __init__(self, speed: float) -> None:
         self._speed = speed

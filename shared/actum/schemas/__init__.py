@@ -14,17 +14,17 @@ def file_name(message: type[Message]) -> str:
 
 
 def generated() -> dict[str, str]:
-    """Generate every schema file's text by its name."""
+    """Generate the text of every schema file, by the file's name."""
     return {file_name(message): _text(message) for message in MESSAGES}
 
 
 def committed(name: str) -> str:
-    """Read a schema file as it stands in the package."""
+    """Return the text of a schema file in the package."""
     return files(__name__).joinpath(name).read_text()
 
 
 def write(folder: Path) -> None:
-    """Write every schema file."""
+    """Write every schema file into a folder."""
     for name, text in generated().items():
         (folder / name).write_text(text)
 

@@ -1,4 +1,4 @@
-"""`python -m actum.schemas`: write the schema files anew."""
+"""`python -m actum.schemas`: write the schema files."""
 
 from pathlib import Path
 

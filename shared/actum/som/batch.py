@@ -1,4 +1,4 @@
-"""Batch training: every unit moves to the mean of what its neighbourhood won (Kohonen, 2013), by matrix products."""
+"""Batch training: each unit moves to the mean of the inputs that its neighbourhood won (Kohonen, 2013)."""
 
 from dataclasses import replace
 from functools import reduce
@@ -112,14 +112,17 @@ def _smoothed(sums: Doubles, grid: Grid, radius: float) -> Doubles:
 
 
 def _spread(by_row: Doubles, grid: Grid, radius: float, shift: int, start: int) -> Doubles:
-    """Return what rows with shift `shift` receive from rows with shift `start`, shape (receiving rows, cols, width).
+    """Return the part of the smoothed rows of shift `shift` that comes from rows of shift `start`.
 
     Args:
         by_row: the sums, (rows, cols, width).
-        grid: whose shifts these are, in substeps.
+        grid: of the map.
         radius: of the neighbourhood, grid units.
-        shift: of the receiving rows.
-        start: of the giving rows.
+        shift: of the smoothed rows, in substeps.
+        start: of the rows whose sums are taken, in substeps.
+
+    Returns:
+        (rows of shift `shift`, cols, width).
     """
     to, origin = np.flatnonzero(grid.shifts == shift), np.flatnonzero(grid.shifts == start)
     cols, width = np.arange(grid.cols), by_row.shape[2]
@@ -133,6 +136,6 @@ def _spread(by_row: Doubles, grid: Grid, radius: float, shift: int, start: int) 
 
 
 def _gaussians(positions: NDArray[Any], others: NDArray[Any], radius: float) -> Doubles:
-    """Return exp(−r² / 2 radius²) between positions on a line, (n,) and (m,), shape (n, m)."""
+    """Return exp(−r² / 2 radius²), r the distance between positions on a line, (n,) and (m,); shape (n, m)."""
     gaussians: Doubles = np.exp(-np.square(positions[:, None] - others) / (2 * radius**2))
     return gaussians

@@ -8,19 +8,19 @@ from numpy.typing import NDArray
 Floats = TypeVar("Floats", NDArray[np.float32], NDArray[np.float64])
 
 CHUNK_ROWS = 128
-"""Rows worth multiplying at once: their products still lie in the cache when they are read."""
+"""Rows multiplied at once: few enough that their products still lie in the cache when they are read."""
 _INNER = 128
-"""Terms summed in one product; longer sums are added up in parts of as many, so that tiles stay large."""
+"""Longest inner dimension of one product; longer sums are split into parts of this length, so that tiles stay large."""
 _LARGEST = 2**18
-"""Multiplications in one product up to which OpenBLAS stays on one thread; a second one rounds differently."""
+"""Multiplications in one product up to which OpenBLAS uses a single thread; several threads round differently."""
 _LANES = 16
-"""Widths are kept to multiples of this many numbers, which BLAS kernels treat alike."""
+"""Widths are padded to multiples of this many numbers, which BLAS kernels treat alike."""
 _ALIASING_BYTES = 4096
-"""Rows that lie a multiple of this apart fall into the same lines of the processor's cache."""
+"""Rows that lie a multiple of this apart in memory compete for the same lines of the processor's cache."""
 
 
 def padded_width(count: int) -> int:
-    """Return the next multiple of the kernels' width."""
+    """Return the smallest multiple of `_LANES` that is no less than `count`."""
     return -(-count // _LANES) * _LANES
 
 
@@ -70,6 +70,7 @@ def few_rows_matmul(left: Floats, right: Floats) -> Floats:
 
 
 def _tiles(left: Floats, right: Floats, out: Floats) -> None:
+    """Write left @ right to out in tiles of at most `_LARGEST` multiplications each."""
     width = max(_LANES, _LARGEST // (CHUNK_ROWS * left.shape[1]) // _LANES * _LANES)
     for top in range(0, len(left), CHUNK_ROWS):
         rows = slice(top, top + CHUNK_ROWS)

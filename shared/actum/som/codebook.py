@@ -58,7 +58,7 @@ class Codebook:
         object.__setattr__(self, "weights", weights)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle and copy what makes the map; NumPy's own copies of its weights could be written to."""
+        """Pickle and copy by the constructor's arguments, so that the copy's weights are read-only, too."""
         return type(self), tuple(getattr(self, field.name) for field in fields(self))
 
     @classmethod
@@ -86,7 +86,7 @@ class Codebook:
 
     @cached_property
     def grid(self) -> Grid:
-        """Where the units stand."""
+        """The grid that the units stand on."""
         return Grid(self.rows, self.cols, self.topology)
 
     @property
@@ -100,7 +100,7 @@ class Codebook:
         return self.weights.reshape(self.rows, self.cols, self.dim)
 
     def bmu(self, x: ArrayLike) -> int:
-        """Find the best matching unit of x (dim,), argmin ‖x − w‖, in one BLAS call; the first of equals.
+        """Find the best matching unit of x (dim,), argmin ‖x − w‖, in one BLAS call; of equally near ones the first.
 
         Raises:
             ValueError: x has another length, an infinite component or no known one.
@@ -126,12 +126,12 @@ class Codebook:
         if self.grid.nodes < 2:
             raise ValueError("a map of one unit has no second-best one")
         rows = numbers(vectors)
-        found = np.empty((len(rows), 2), np.intp)
+        best_units = np.empty((len(rows), 2), np.intp)
         for chunk, scores in self.lookup.scores(rows):
             best = scores.argmin(axis=1)
             np.put_along_axis(scores, best[:, None], np.inf, axis=1)
-            found[chunk] = np.stack([best, scores.argmin(axis=1)], axis=1)
-        return found
+            best_units[chunk] = np.stack([best, scores.argmin(axis=1)], axis=1)
+        return best_units
 
     def excess2(self, x: ArrayLike) -> Array:
         """Return each unit's squared distance to x beyond the winner's, d² − d²_min, shape (rows * cols,).
@@ -230,19 +230,19 @@ class Codebook:
 
     @cached_property
     def lookup(self) -> Lookup:
-        """The weights laid out for comparing."""
+        """The weights, laid out for computing distances to all units at once."""
         return Lookup(self.weights)
 
 
 def map_arrays(som: Codebook) -> dict[str, Array]:
-    """Return what a file holds of a map."""
+    """Return the arrays that a file stores of a map, by name."""
     return {"weights": som.planes, "topology": np.array(som.topology)}
 
 
 def stored_map(file: Mapping[str, Array], kind: type[Map]) -> Map:
-    """Make a map of what a file holds.
+    """Make a map of the arrays that `map_arrays` names.
 
     Raises:
-        ValueError, KeyError: the file holds something else.
+        ValueError, KeyError: the file holds other arrays.
     """
     return kind.of_planes(file["weights"], cast(Topology, str(file["topology"])))

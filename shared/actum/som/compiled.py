@@ -20,7 +20,7 @@ Indices = NDArray[np.intp]
 Function = TypeVar("Function", bound=Callable[..., object])
 
 LANES = 16
-"""Width of the map that is tried out: that of the vector registers, as real maps are padded to."""
+"""Units of the map on which the kernel is tried out: real maps are padded to multiples of it."""
 
 
 def _compiled(function: Function) -> Function:

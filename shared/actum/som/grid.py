@@ -1,4 +1,4 @@
-"""The grid that the units of a map stand on: who is whose neighbour, and how the neighbourhood falls off."""
+"""The grid that the units of a map stand on: positions, neighbours, and the Gaussian neighbourhood."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -67,7 +67,7 @@ class Grid:
 
     @property
     def substeps(self) -> int:
-        """Units' columns lie on multiples of 1 / substeps."""
+        """Steps into which a column is divided: all units stand at multiples of 1 / substeps along a row."""
         return 1 if self.topology == "rectangular" else 2
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Input vectors as arrays, and which of them a map cannot take; NaN stands for a missing component."""
+"""Conversion of input vectors to arrays, and checks of them; NaN stands for a missing component."""
 
 from typing import Any
 
@@ -27,15 +27,15 @@ def float_type(values: ArrayLike) -> np.dtype[np.floating]:
 
 def numbers(values: ArrayLike) -> Array:
     """Return values as an array in their own precision, in double where they are no floats; None is NaN."""
-    given = np.asarray(values)
-    return given if given.dtype.kind == "f" else np.asarray(values, np.float64)
+    array = np.asarray(values)
+    return array if array.dtype.kind == "f" else np.asarray(values, np.float64)
 
 
 def check_squarable(values: Array) -> None:
-    """Refuse values (n, dim) whose squared distances would overflow their precision.
+    """Check that squared distances between values (n, dim) do not overflow their precision.
 
     Raises:
-        ValueError: naming the largest.
+        ValueError: they do; the text names the largest value.
     """
     largest = np.nanmax(np.abs(values))
     if largest > np.sqrt(np.finfo(values.dtype).max / values.shape[1]) / 4:
@@ -46,8 +46,8 @@ def training_vectors(vectors: ArrayLike, dim: int, dtype: np.dtype[np.floating])
     """Return a copy of the vectors to learn from, (n, dim), in a map's precision.
 
     Raises:
-        ValueError: there is none, its length is another, or one is infinite, too large to be squared, or has no
-            known component.
+        ValueError: there is no vector, they have another length, or one is infinite, too large to be squared, or has
+            no known component.
     """
     inputs = np.array(vectors, dtype=dtype, order="C")
     if inputs.ndim != 2 or inputs.shape[1] != dim or not len(inputs):
@@ -77,10 +77,10 @@ def is_complete(vectors: Array) -> bool:
 
 
 def check_rows(vectors: Array, dim: int) -> None:
-    """Refuse what is no matrix of `dim` columns.
+    """Check that an array is a matrix of `dim` columns.
 
     Raises:
-        ValueError: naming the shape that was given.
+        ValueError: it is not; the text names its shape.
     """
     if vectors.ndim != 2 or vectors.shape[1] != dim:
         raise ValueError(f"vectors of shape {vectors.shape} are no rows of {dim} components")

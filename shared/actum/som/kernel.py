@@ -1,4 +1,4 @@
-"""A run of sequential adaptations, in NumPy; `actum.som.compiled` has the same compiled, equal to the bit."""
+"""The kernel of sequential training in NumPy; `actum.som.compiled` has it compiled, equal to the bit."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,4 +1,4 @@
-"""Linear initialisation: a map laid out flat along the first two principal components of its inputs (Kohonen)."""
+"""Linear initialisation: a map on the plane of the first two principal components of its inputs (Kohonen)."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ Doubles = NDArray[np.float64]
 _ROUNDS = 100
 """Orthogonal iterations; in each the error falls by the ratio of the seventh variance to the second."""
 _DIRECTIONS = 6
-"""Kept while iterating: with more than the two that are wanted these converge faster."""
+"""Directions that are iterated: with more than the two that are needed, these converge faster."""
 
 
 def linear_weights(vectors: NDArray[Any], grid: Grid) -> Doubles:

@@ -1,4 +1,4 @@
-"""Finds the nearest units of one vector or many, by squared distances less the term that all units share."""
+"""Finds the nearest units of one vector or many, by squared distances less the term |x|² that all units share."""
 
 from collections.abc import Iterator
 from math import isfinite
@@ -12,7 +12,7 @@ from actum.som.inputs import check_rows, is_complete
 
 Array = NDArray[Any]
 Scores = tuple[slice, Array]
-"""A slice of the rows that were asked for, and their scores, (rows, stride)."""
+"""A slice of the vectors that are scored, and their scores, (rows, stride)."""
 
 
 class Lookup:
@@ -34,11 +34,11 @@ class Lookup:
         self._shape = (self.dim,)
         self._stride = blas.stride(self.nodes, self.dtype)
         centred = (weights - self.centre).T
-        self._towards = np.zeros((self.dim + 1, self._stride), self.dtype)
-        self._towards[:-1, : self.nodes] = -centred
-        self._towards[-1] = np.finfo(self.dtype).max / 2
-        self._towards[-1, : self.nodes] = 0.5 * np.square(centred).sum(axis=0)
-        self._slopes, self._half_norms2 = self._towards[:-1], self._towards[-1]
+        self._score_matrix = np.zeros((self.dim + 1, self._stride), self.dtype)
+        self._score_matrix[:-1, : self.nodes] = -centred
+        self._score_matrix[-1] = np.finfo(self.dtype).max / 2
+        self._score_matrix[-1, : self.nodes] = 0.5 * np.square(centred).sum(axis=0)
+        self._slopes, self._half_norms2 = self._score_matrix[:-1], self._score_matrix[-1]
 
     @property
     def slopes(self) -> Array:
@@ -81,33 +81,33 @@ class Lookup:
 
     def winners(self, vectors: Array) -> NDArray[np.intp]:
         """Find the unit of the lowest score for each row of (n, dim), the first of equals. Shape (n,)."""
-        found = np.empty(len(vectors), np.intp)
+        winners = np.empty(len(vectors), np.intp)
         for chunk, scores in self.scores(vectors):
-            np.argmin(scores, axis=1, out=found[chunk])
-        return found
+            np.argmin(scores, axis=1, out=winners[chunk])
+        return winners
 
     def _known_scores(self, vectors: Array) -> Iterator[Scores]:
         for chunk, inputs, out in self._buffers(vectors, self.dim + 1):
             inputs[:, -1] = 1
             rows = chunk.stop - chunk.start
             np.subtract(vectors[chunk], self.centre, out=inputs[:rows, :-1], casting="same_kind")
-            blas.matmul_into(inputs, self._towards, out)
+            blas.matmul_into(inputs, self._score_matrix, out)
             yield chunk, out[:rows]
 
     def _partial_scores(self, vectors: Array) -> Iterator[Scores]:
-        towards = np.concatenate([self._slopes, 0.5 * np.square(self._slopes)])
+        matrix = np.concatenate([self._slopes, 0.5 * np.square(self._slopes)])
         for chunk, inputs, out in self._buffers(vectors, 2 * self.dim):
             rows = chunk.stop - chunk.start
             known = ~np.isnan(vectors[chunk])
             inputs[:rows, : self.dim] = np.where(known, vectors[chunk] - self.centre, 0)
             inputs[:rows, self.dim :] = known
-            blas.matmul_into(inputs, towards, out)
+            blas.matmul_into(inputs, matrix, out)
             out[:rows] *= (self.dim / known.sum(axis=1, keepdims=True)).astype(self.dtype)
             out[:, self.nodes :] = self._half_norms2[self.nodes :]
             yield chunk, out[:rows]
 
     def _buffers(self, vectors: Array, width: int) -> Iterator[tuple[slice, Array, Array]]:
-        """Give each chunk of rows zeroed space for its inputs and space for its scores, rows padded for BLAS."""
+        """Yield for each chunk of rows a zeroed array for its inputs and one for its scores, rows padded for BLAS."""
         inputs = np.zeros((blas.CHUNK_ROWS, width), self.dtype)
         out = np.empty((blas.CHUNK_ROWS, self._stride), self.dtype)
         for start in range(0, len(vectors), blas.CHUNK_ROWS):

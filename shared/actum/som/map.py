@@ -50,15 +50,16 @@ class Som(Codebook):
 
     @classmethod
     def linear(cls, rows: int, cols: int, vectors: ArrayLike, topology: Topology = "rectangular") -> Self:
-        """Make an untrained map that lies flat along the two main directions of the rows of (n, dim).
+        """Make an untrained map on the plane of the first two principal components of the rows of (n, dim).
 
         The same vectors make the same map, in their precision: float32 or float64.
 
         Raises:
             ValueError: the vectors are no rows with known components.
         """
-        shown = np.asarray(vectors)
-        inputs = training_vectors(shown, shown.shape[-1] if shown.ndim else 0, float_type(shown))
+        rows_given = np.asarray(vectors)
+        dim = rows_given.shape[-1] if rows_given.ndim else 0
+        inputs = training_vectors(rows_given, dim, float_type(rows_given))
         return cls(rows, cols, linear_weights(inputs, Grid(rows, cols, topology)).astype(inputs.dtype), topology)
 
     def train(
@@ -91,8 +92,8 @@ class Som(Codebook):
     ) -> Self:
         """Return the map after `epochs` batch adaptations to all rows of (n, dim).
 
-        Each unit moves to the mean of what its neighbourhood won; the radius falls exponentially from the first value
-        to the second. The result is the same for any number of threads (Kohonen, 2013).
+        Each unit moves to the mean of the inputs that its neighbourhood won; the radius falls exponentially from the
+        first value to the second. The result is the same for any number of threads (Kohonen, 2013).
 
         Args:
             vectors: the inputs, (n, dim).

@@ -12,9 +12,9 @@ Report = Callable[[int, int], None]
 """Called with the steps (or epochs) done and those in all."""
 
 _SMALLEST_RADIUS = 1e-150
-"""Between this (grid units) and the largest a radius can be squared in double precision."""
+"""Smaller radii (grid units) cannot be squared in double precision."""
 _LARGEST_RADIUS = 1e150
-"""The other bound (grid units)."""
+"""Nor can larger ones (grid units)."""
 
 
 def silent(done: int, total: int) -> None:
@@ -96,7 +96,7 @@ def falling(first: float, last: float, steps: int) -> Array:
     """Return values (steps,) that fall exponentially from first to last.
 
     Raises:
-        ValueError: one of these is not finite and above 0.
+        ValueError: first or last is not finite and above 0.
     """
     if not (0 < first < np.inf and 0 < last < np.inf):
         raise ValueError(f"nothing falls exponentially from {first} to {last}: both must be finite and above 0")

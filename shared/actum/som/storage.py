@@ -19,11 +19,11 @@ UNREADABLE = (
     OSError, ValueError, TypeError, EOFError, KeyError, RuntimeError, MemoryError, OverflowError, SyntaxError,
     tokenize.TokenError, zipfile.BadZipFile, zlib.error,
 )  # fmt: skip
-"""What NumPy and zipfile are known to raise on files that are not theirs or were cut or altered."""
+"""What NumPy and zipfile are known to raise on files of another kind, truncated or altered."""
 
 
 class SomError(ValueError):
-    """A file that does not hold what was to be read from it; the text names the file and the problem.
+    """A file that no map or training can be read from; the text names the file and the problem.
 
     >>> from actum.som import Som
     >>> try:
@@ -38,7 +38,7 @@ class SomError(ValueError):
 
 
 def write(path: Path, file_format: str, arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Write the arrays beside the path and move them there in one step, so that no half file is ever seen.
+    """Write the arrays to a temporary file and rename it in one step, so that no partial file is ever read.
 
     Raises:
         OSError: the file cannot be written.
@@ -54,7 +54,7 @@ def write(path: Path, file_format: str, arrays: Mapping[str, NDArray[Any]]) -> N
 
 @contextmanager
 def reading(path: Path, file_format: str) -> Iterator[Mapping[str, NDArray[Any]]]:
-    """Give the arrays of a file; any error while they are read and used in the `with` block is the file's.
+    """Return a context with the arrays of a file; errors of reading or using them in the `with` block are `SomError`s.
 
     Raises:
         SomError: the file is missing, foreign or damaged.

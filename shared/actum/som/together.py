@@ -13,9 +13,10 @@ Array = NDArray[Any]
 
 
 class Together:
-    """Maps of as many units each, their weights laid out as the blocks of one matrix.
+    """Maps with equal numbers of units, their weights laid out as the diagonal blocks of one matrix.
 
-    That saves calls where inputs come one by one. The result is that of each map's `Codebook.excess2s`, up to rounding.
+    One product instead of several saves time where inputs come one by one. The result is that of each map's
+    `Codebook.excess2s`, up to rounding.
 
     >>> maps = [Codebook(1, 2, [[0.0], [3.0]]), Codebook(1, 2, [[0.0, 0.0], [1.0, 1.0]])]
     >>> Together(maps).excess2s(np.array([[1.0, 1.0, 0.0]])).round(6).tolist()
