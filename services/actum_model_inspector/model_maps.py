@@ -110,7 +110,7 @@ class PaperMaps(ModelMaps):
 
     def action_unit(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a segment of encoded frames."""
-        return self.model.place(frames)
+        return self.model.action_unit(frames)
 
     def unit_cosines(self) -> Floats:
         """Return the neurons' cosines for the weights of each unit of the second map as input, (units, actions)."""

@@ -1,4 +1,4 @@
-"""Joints that a source loses for a moment are taken to move on with the rest of the body."""
+"""Fills short gaps in single joints: a joint that is lost for a moment moves with the rest of the body."""
 
 from collections.abc import Sequence
 
@@ -9,15 +9,15 @@ from actum.node import SECOND_NS
 from actum.skeletons import JOINTS
 
 BRIDGED_NS = 3 * SECOND_NS // 10
-"""So long (ns) a lost joint counts as keeping its place relative to the others; later its place is unknown."""
+"""Longest gap that is filled (ns): for so long a lost joint keeps its place relative to the others."""
 
 
 class Bridge:
-    """One agent's joints as last seen, to fill gaps with."""
+    """Fills gaps in one agent's joints, from its last usable frame."""
 
     def __init__(self) -> None:
         self._joints: Array = np.full((len(JOINTS), 3), np.nan)
-        self._seen_ns = np.zeros(len(JOINTS), np.int64)
+        self._measured_ns = np.zeros(len(JOINTS), np.int64)
 
     def filled(self, stamp_ns: int, joints: Array, missing: Sequence[int]) -> Array:
         """Return joints (15, 3) with missing ones extrapolated; NaN where one was lost longer than `BRIDGED_NS` ago.
@@ -30,18 +30,18 @@ class Bridge:
             joints: (15, 3), camera frame, metres.
             missing: which of them are not known.
         """
-        seen = np.ones(len(JOINTS), dtype=bool)
-        seen[missing] = False
-        both = seen & ~np.isnan(self._joints[:, 0])
-        displacement = (joints[both] - self._joints[both]).mean(axis=0) if both.any() else np.zeros(3)
-        lately = stamp_ns - self._seen_ns <= BRIDGED_NS
-        extrapolated = np.where(lately[:, None], self._joints + displacement, np.nan)
-        filled: Array = np.where(seen[:, None], joints, extrapolated)
+        measured = np.ones(len(JOINTS), dtype=bool)
+        measured[missing] = False
+        in_both = measured & ~np.isnan(self._joints[:, 0])
+        displacement = (joints[in_both] - self._joints[in_both]).mean(axis=0) if in_both.any() else np.zeros(3)
+        recent = stamp_ns - self._measured_ns <= BRIDGED_NS
+        extrapolated = np.where(recent[:, None], self._joints + displacement, np.nan)
+        filled: Array = np.where(measured[:, None], joints, extrapolated)
         return filled
 
     def keep(self, stamp_ns: int, joints: Array, missing: Sequence[int]) -> None:
         """Remember a usable frame: its joints (15, 3) as `filled` returned them, and which of them were missing."""
         self._joints = joints
-        seen_ns = np.full(len(JOINTS), stamp_ns)
-        seen_ns[missing] = self._seen_ns[missing]
-        self._seen_ns = seen_ns
+        measured_ns = np.full(len(JOINTS), stamp_ns)
+        measured_ns[missing] = self._measured_ns[missing]
+        self._measured_ns = measured_ns

@@ -1,4 +1,4 @@
-"""Tells which frames cannot be used: those with non-finite or absurd joints, or without a trunk."""
+"""Refuses frames that cannot be used: those with non-finite or absurd joints, or without a trunk."""
 
 from collections.abc import Sequence
 
@@ -24,7 +24,7 @@ class BadFrameError(ValueError):
 
 
 def check_frame(joints: Array, missing: Sequence[int], reach_limit_m: float, bone_limit_m: float) -> None:
-    """Refuse joints that cannot be used.
+    """Check that a frame's joints can be used.
 
     Args:
         joints: (15, 3), camera frame, metres.
@@ -53,10 +53,10 @@ def _require_trunk(missing: Sequence[str]) -> None:
 
 
 def _require_near(joints: Array, missing: Sequence[int], reach_limit_m: float) -> None:
-    given = [i for i in range(len(JOINTS)) if i not in missing]
-    for i in given:
+    known = [i for i in range(len(JOINTS)) if i not in missing]
+    for i in known:
         if not np.isfinite(joints[i]).all():
             raise BadFrameError("not_finite", f"{JOINTS[i]} is not a finite position")
-    for i in given:
+    for i in known:
         if np.abs(joints[i]).max() > reach_limit_m:
             raise BadFrameError("absurd_joint", f"{JOINTS[i]} is more than {reach_limit_m:g} m away")

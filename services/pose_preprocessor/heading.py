@@ -1,4 +1,4 @@
-"""The smoothed direction in which an actor is turned, of which the upright frame is made."""
+"""The actor's smoothed heading, which defines the upright frame."""
 
 import math
 
@@ -11,14 +11,14 @@ from actum.skeletons import INDEX
 from pose_preprocessor.part_motion import GAP_NS
 
 TIME_CONSTANT_S = 1.0
-"""Of the filter: a turn within an action stays in the posture, the direction in which the actor stands does not."""
+"""Time constant of the filter: it takes out the direction in which the actor stands, but no turn within an action."""
 FIRST_S = 1 / 30
-"""How long the first frame counts for (s): one frame of a 30 Hz camera."""
+"""The duration as which the first frame counts (s): one frame of a 30 Hz camera."""
 
 FACING_SD_RAD = math.radians(15.0)
 """Prior standard deviation of the yaw of people who act for a camera, from facing it."""
 VARIANCE_INFLATION = 2.0
-"""The variance of the filtered heading over that of single frames: errors of successive frames are correlated."""
+"""Factor from the variance of single frames to that of the filtered heading: their errors are correlated in time."""
 
 _SMALLEST = 1e-3
 """A mean of unit vectors that is shorter than this has no direction."""
@@ -43,7 +43,7 @@ class HeadingFilter:
         self._left = (1.0, 0.0)
 
     def step(self, stamp_ns: int, joints: Array) -> tuple[float, float]:
-        """Return the unit vector (camera x, z) to the actor's left; begins anew after a gap.
+        """Return the unit vector (camera x, z) to the actor's left; after a gap the filter restarts.
 
         Where no direction is defined, as for a person lying on one side, it is the last one, at first that of a person
         who faces the camera.
@@ -65,13 +65,13 @@ class HeadingFilter:
 
     def _update(self, left: tuple[float, float], elapsed_s: float) -> None:
         self._span_s += elapsed_s
-        fading = 1.0 - math.exp(-elapsed_s / TIME_CONSTANT_S)
-        weight = max(fading, elapsed_s / self._span_s)
+        smoothing_gain = 1.0 - math.exp(-elapsed_s / TIME_CONSTANT_S)
+        weight = max(smoothing_gain, elapsed_s / self._span_s)
         (x, z), (left_x, left_z) = self._mean, left
         self._mean = (x + weight * (left_x - x), z + weight * (left_z - z))
         if math.hypot(*left) >= _SMALLEST:
             error_rad = math.remainder(_yaw_rad(left) - _yaw_rad(self._mean), math.tau)
-            self._variance_rad2 += fading * (error_rad * error_rad - self._variance_rad2)
+            self._variance_rad2 += smoothing_gain * (error_rad * error_rad - self._variance_rad2)
 
     def _shrunk_rad(self, yaw_rad: float) -> float:
         """Return a yaw shrunk towards facing the camera, by its variance relative to the prior's."""

@@ -21,12 +21,12 @@ from pose_preprocessor.settings import Settings
 
 _TORSO = INDEX["torso"]
 ALWAYS = (_TORSO, INDEX["neck"])
-"""The joints that every valid posture has, if only bridged from a moment before."""
+"""The joints that every valid posture has, measured or bridged."""
 
 
 @dataclass
 class _Person:
-    """An agent's last usable joints as they came, and its filters."""
+    """An agent's last usable joints, as they were received, and its filters."""
 
     joints: list[Joint] | None = None
     bridge: Bridge = field(default_factory=Bridge)
@@ -39,7 +39,7 @@ class _Person:
         Args:
             stamp_ns: of the frame.
             metric_and_scaled: (2, 15, 3), camera frame.
-            up_in_camera: gravity's opposite; None where the camera is level.
+            up_in_camera: the direction against gravity, camera frame; None where the camera is level.
         """
         level = metric_and_scaled
         if up_in_camera is not None:
@@ -49,7 +49,7 @@ class _Person:
 
 
 class PosePreprocessor:
-    """Rejects bad frames, expresses the others in the actor's own frames, scaled and metric (paper, section 2.1)."""
+    """Rejects bad frames; expresses the others in the actor's body frames, scaled and metric (paper, section 2.1)."""
 
     name = "pose_preprocessor"
     inputs = (keys.SKELETON,)
@@ -64,7 +64,7 @@ class PosePreprocessor:
         self._previous_ns: int | None = None
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
-        """Turn a skeleton into one posture per agent, or one for agent 0 when nobody is there."""
+        """Turn a skeleton into one posture per agent, or one that is not valid, for agent 0, when nobody is there."""
         if not isinstance(message, Skeleton):
             return []
         order = self._order.judge(message.stamp_ns, message.session_id)
@@ -97,7 +97,7 @@ class PosePreprocessor:
         """Forget people who have left: a tracker that numbers them anew at each return would pile them up."""
         present = {agent.agent for agent in frame.agents}
         for agent in self._persons.keys() - present:
-            if self._persons[agent].motion.is_over(frame.stamp_ns):
+            if self._persons[agent].motion.restarts_at(frame.stamp_ns):
                 del self._persons[agent]
 
     def _posture(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:

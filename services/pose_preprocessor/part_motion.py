@@ -1,4 +1,4 @@
-"""How much each body part moves from frame to frame, which attention is decided by (paper, section 2.1)."""
+"""How much each body part moves from frame to frame; attention goes to the part that moves most (paper, 2.1)."""
 
 import math
 
@@ -9,9 +9,9 @@ from actum.node import SECOND_NS
 from actum.skeletons import INDEX, PARTS
 
 GAP_NS = SECOND_NS // 2
-"""After a longer pause (ns) between two frames nothing is known of the motion in between: filters begin anew."""
+"""After a longer pause (ns) between two frames filters restart: the motion in between is unknown."""
 TIME_CONSTANT_S = 0.3
-"""Of the low-pass: noise of single frames averages out, an action of a second or more remains."""
+"""Time constant of the low-pass: noise of single frames averages out, an action of a second or more remains."""
 _IN_PART = np.array([[joint in part for joint in range(len(INDEX))] for part in PARTS.values()], dtype=np.float64)
 _PART_SIZES = _IN_PART.sum(axis=1)
 _TORSO = INDEX["torso"]
@@ -21,15 +21,15 @@ class PartMotionFilter:
     """The mean displacement of each body part of one agent, from low-passed joints relative to the torso.
 
     Sums of unfiltered displacements would add up a joint's noise, which is largest at the feet. Egocentric axes jitter
-    themselves, and move a joint the more the further it is from the hips; so the axes are the camera's.
+    themselves, and move a joint the more the further it is from the hips; therefore the camera's axes are used.
     """
 
     def __init__(self) -> None:
         self._stamp_ns: int | None = None
         self._smooth: Array = np.zeros((len(INDEX), 3))
 
-    def is_over(self, stamp_ns: int) -> bool:
-        """Tell whether a step at this stamp would begin anew, after a gap or for the first time."""
+    def restarts_at(self, stamp_ns: int) -> bool:
+        """Tell whether a step at this stamp would restart the filter, after a gap or for the first time."""
         return self._stamp_ns is None or stamp_ns - self._stamp_ns > GAP_NS
 
     def step(self, stamp_ns: int, joints: Array) -> list[float]:
@@ -47,8 +47,8 @@ class PartMotionFilter:
             self._smooth = relative
             return [0.0] * len(PARTS)
         elapsed_ns = stamp_ns - before_ns
-        share = 1.0 - float(np.exp(-elapsed_ns / SECOND_NS / TIME_CONSTANT_S))
-        steps = share * (relative - self._smooth)
+        gain = 1.0 - float(np.exp(-elapsed_ns / SECOND_NS / TIME_CONSTANT_S))
+        steps = gain * (relative - self._smooth)
         lengths = np.sqrt(np.einsum("ij,ij->i", steps, steps))
         if math.isnan(lengths.sum()):
             self._smooth = np.where(np.isnan(steps), relative, self._smooth + steps)

@@ -13,5 +13,5 @@ class Settings(ServiceSettings):
 
     @classmethod
     def defaults(cls) -> "Settings":
-        """Return the default values without reading the environment or a file, for whatever has to repeat itself."""
+        """Return the default values without reading the environment or a file, so that results can be reproduced."""
         return cls.model_construct()

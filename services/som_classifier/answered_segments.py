@@ -1,4 +1,4 @@
-"""The segments that have been answered, so that each is answered once whatever marks come again."""
+"""Remembers which segments have been answered, so that none is answered twice when its marks are repeated."""
 
 from collections import OrderedDict
 from dataclasses import dataclass
@@ -8,12 +8,12 @@ from actum.node import Counters
 from som_classifier.segments import ClosedSegment, OpenSegment
 
 REMEMBERED = 10_000
-"""Ids kept: hours of actions, in a few megabytes."""
+"""Segment ids kept: hours of actions, in a few megabytes."""
 
 
 @dataclass
 class _Answered:
-    """When an answered segment started and ended, as far as that was known, and whether its id was used anew."""
+    """The bounds of an answered segment, None where unknown, and whether a later segment has reused its id."""
 
     start_ns: int | None
     end_ns: int | None
@@ -21,7 +21,7 @@ class _Answered:
 
 
 class AnsweredSegments:
-    """The newest answered ids, and what a further mark of one of them means."""
+    """The segments answered last, by id, and the handling of further marks with such an id."""
 
     def __init__(self, counters: Counters) -> None:
         self._counters = counters
@@ -35,16 +35,16 @@ class AnsweredSegments:
         self._answered.clear()
 
     def remember(self, segment_id: str, start_ns: int | None, end_ns: int | None) -> None:
-        """Keep a segment that has just been answered."""
+        """Add a segment that has just been answered."""
         self._answered[segment_id] = _Answered(start_ns, end_ns)
         while len(self._answered) > REMEMBERED:
             self._answered.popitem(last=False)
 
     def mark_again(self, mark: Segment, newest_ns: int) -> list[ClosedSegment]:
-        """Count a further mark of an answered segment, or reject the new segment for which its id was used.
+        """Count a mark that repeats one of an answered segment; return the rejected segment of one that reuses its id.
 
         Args:
-            mark: of an answered id.
+            mark: its id is that of an answered segment.
             newest_ns: the stamp that a mark without one gets.
         """
         answered = self._answered[mark.segment_id]

@@ -27,7 +27,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
 )
 _HIPS = [INDEX["left_hip"], INDEX["right_hip"]]
 _TORSO = INDEX["torso"]
-_UP_TO_THE_NECK = np.array([0.0, next(length_m for _, end, length_m in BONES if end == INDEX["neck"]), 0.0])
+_NECK_FROM_TORSO = np.array([0.0, next(length_m for _, end, length_m in BONES if end == INDEX["neck"]), 0.0])
 
 
 @dataclass(frozen=True)
@@ -37,12 +37,12 @@ class PostureInput:
     Attributes:
         axes: `posture`, the paper's, from hips and torso of every posture anew; `upright`, gravity and the actor's
             heading, smoothed over time.
-        origin: the torso, or the middle of the hips, about where the paper's point 0 lies; where a hip is unknown, as
-            far below the torso as the neck usually is above it.
+        origin: the torso, or the middle of the hips, about where the paper's point 0 lies; where a hip is unknown, the
+            point as far below the torso as the neck usually is above it.
         attention: the part that moves most over a segment (`moving`), one part by its name, or the whole body (`all`).
 
     Raises:
-        ValueError: one of them is none of these.
+        ValueError: an attribute has a value that is not listed here.
     """
 
     axes: Axes
@@ -60,7 +60,9 @@ class PostureInput:
         return 3 * len(JOINTS) if self.attention == ALL else 3 * _PART_JOINTS.shape[1]
 
     def rows(self, joints: Array, upright: Array) -> Array:
-        """Return one frame's input vectors, one for each choice that attention has, shape (choices, size).
+        """Return one frame's input vectors, one for each part that attention may choose, shape (choices, size).
+
+        Where attention is `all`, there is a single choice, the whole body.
 
         Args:
             joints: (15, 3), scaled, along the axes of the posture.
@@ -71,11 +73,11 @@ class PostureInput:
         return relative.reshape(1, -1) if self.attention == ALL else relative[_PART_JOINTS].reshape(len(PARTS), -1)
 
     def attended(self, motion: Array, present: Mask) -> tuple[int, int]:
-        """Return the index of the part that a segment's attention goes to, and that of the row to take.
+        """Return the index of the part that is attended to over a segment, and that of its row among `rows`.
 
         Args:
             motion: (n, 5), each part's displacement (m) since the frame before.
-            present: (choices,), which of the rows have a joint in some frame.
+            present: (choices,), which of the rows have a known joint in at least one frame.
         """
         if self.attention == ALL:
             return attended_part(motion), 0
@@ -84,21 +86,21 @@ class PostureInput:
 
 
 def _hips(points: Array) -> Array:
-    """Return the middle of the hips (3,) of (15, 3)."""
+    """Return the middle of the hips (3,) of joints (15, 3), estimated from the torso where a hip is unknown."""
     hips: Array = points[_HIPS].mean(axis=0)
-    return points[_TORSO] - _UP_TO_THE_NECK if np.isnan(hips).any() else hips
+    return points[_TORSO] - _NECK_FROM_TORSO if np.isnan(hips).any() else hips
 
 
 def attended_part(motion: NDArray[Any], fixed: str | None = None, present: Mask | None = None) -> int:
-    """Return the index of the part that moves most over a segment, or of the fixed one; ties by listed order.
+    """Return the index of the part that moves most over a segment, or of the fixed one; of equals the first in `PARTS`.
 
-    A part of which no frame has a joint is passed over while another has one.
+    A part without a known joint in any frame is chosen only where no part has one.
 
     Args:
         motion: (n, 5), each part's displacement (m) since the frame before. The first row is motion from
             before the segment and does not count.
-        fixed: a name of `skeletons.PARTS`, or None to choose.
-        present: (5,), which parts have a joint in some frame; all where None.
+        fixed: a name of `skeletons.PARTS`, or None for the part that moves most.
+        present: (5,), which parts have a known joint in at least one frame; all where None.
     """
     if fixed is not None and (present is None or present[PART_NAMES.index(fixed)]):
         return PART_NAMES.index(fixed)

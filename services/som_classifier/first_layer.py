@@ -25,8 +25,10 @@ SMALLEST_ERROR2 = 6e-5
 _SIZE = 3 * len(JOINTS)
 _ARM = np.arange(3 * INDEX["right_elbow"], 3 * INDEX["right_hand"] + 3)
 _SHOULDER = np.tile(np.arange(3), 2) + 3 * INDEX["right_shoulder"]
-_ENDS = np.concatenate([_ARM, _ARM + _SIZE])
-_ROOTS = np.concatenate([_SHOULDER, _SHOULDER + _SIZE])
+_ARM_COLUMNS = np.concatenate([_ARM, _ARM + _SIZE])
+"""Columns of the right elbow and hand in a row of `frame_inputs`, positions and then velocities: (12,)."""
+_SHOULDER_COLUMNS = np.concatenate([_SHOULDER, _SHOULDER + _SIZE])
+"""The right shoulder's columns, from which those of elbow and hand are measured: (12,)."""
 _WEIGHTS = np.repeat([1.0, VELOCITY_WEIGHT], len(_ARM))
 _MIRROR = np.concatenate([(3 * OPPOSITE[:, None] + np.arange(3)).ravel() + start for start in (0, _SIZE)])
 _SIGNS = np.tile(ACROSS, 2 * len(JOINTS))
@@ -49,7 +51,7 @@ def arm_inputs(rows: Floats) -> Floats:
     Args:
         rows: (n, 90), `frame_inputs`; of the mirror image for the left arm.
     """
-    inputs: Floats = (rows[:, _ENDS] - rows[:, _ROOTS]) * _WEIGHTS
+    inputs: Floats = (rows[:, _ARM_COLUMNS] - rows[:, _SHOULDER_COLUMNS]) * _WEIGHTS
     return inputs
 
 
@@ -61,9 +63,9 @@ class FirstMaps:
         postures: of dimension 45.
         velocities: of dimension 45, with as many units.
         arms: of dimension 12, with as many units.
-        contrasts: of each map's soft activity, in its squared distance.
-        arm_shares: what the arm map's activity adds up to, for the acting arm and for the other one; that of the other
-            maps adds up to 1.
+        contrasts: of each map's soft activity, in the unit of its squared distances.
+        arm_shares: the sum of the arm map's activity for the acting arm, and for the other one; for each of the other
+            maps the sum is 1.
     """
 
     postures: Som
@@ -74,12 +76,12 @@ class FirstMaps:
 
     @property
     def maps(self) -> tuple[Som, Som, Som]:
-        """All three."""
+        """The maps of postures, velocities and arms."""
         return self.postures, self.velocities, self.arms
 
     @property
     def units(self) -> int:
-        """The length of a frame's activity: as many units of each map, those of the arm map twice."""
+        """The length of a frame's activity vector: the units of all maps, those of the arm map twice."""
         return len(CHANNELS) * len(self.postures.weights)
 
     def activities(self, postures: Floats, velocities: Floats) -> Floats:
@@ -89,14 +91,14 @@ class FirstMaps:
 
         Args:
             postures: (n, 15, 3), upright, scaled, metres.
-            velocities: (n, 15, 3), of the same, as `Kinematics` has them.
+            velocities: (n, 15, 3), of the same joints, as `Kinematics` defines them.
         """
         rows = frame_inputs(postures, velocities)
         channels = [*zip(self.maps, _inputs_of_maps(rows), strict=True), (self.arms, arm_inputs(mirrored_inputs(rows)))]
         return self._normalised(np.concatenate([_excess2s(som, inputs) for som, inputs in channels], axis=1))
 
     def winners(self, postures: Floats) -> NDArray[np.intp]:
-        """Return the map of postures' winner for each of (n, 15, 3), shape (n,); the first where nothing is known."""
+        """Return the map of postures' winner for each of (n, 15, 3), shape (n,); 0 where all joints are missing."""
         winners: NDArray[np.intp] = _excess2s(self.postures, postures.reshape(-1, _SIZE)).argmin(axis=1)
         return winners
 
@@ -136,7 +138,8 @@ class FirstMaps:
     def _partly_known(self, rows: Floats) -> Floats:
         """Return d² − d²_min of each map for rows (2, 90) with missing components, shape (2, maps, units)."""
         inputs = _inputs_of_maps(rows)
-        excess2s = [_excess2(som, own[side]) for side in (0, 1) for som, own in zip(self.maps, inputs, strict=True)]
+        pairs = list(zip(self.maps, inputs, strict=True))
+        excess2s = [_excess2(som, map_rows[side]) for side in (0, 1) for som, map_rows in pairs]
         return np.concatenate(excess2s).reshape(2, len(self.maps), -1)
 
     def _normalised(self, excess2s: Floats) -> Floats:
@@ -166,12 +169,12 @@ def _inputs_of_maps(rows: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _excess2(som: Som, x: Floats) -> Floats:
-    """Return d² − d²_min of each unit for x (dim,), shape (units,); 0 for all where nothing is known of x."""
+    """Return d² − d²_min of each unit for x (dim,), shape (units,); all 0 where every component is missing."""
     return np.zeros(len(som.weights), som.dtype) if np.isnan(x).all() else som.excess2(x)
 
 
 def _excess2s(som: Som, rows: Floats) -> Floats:
-    """Return d² − d²_min of each unit for rows (n, dim), shape (n, units); 0 where nothing is known of a row."""
+    """Return d² − d²_min of each unit for rows (n, dim), shape (n, units); 0 where all of a row is missing."""
     known = ~np.isnan(rows).all(axis=1)
     excess2s = np.zeros((len(rows), len(som.weights)), som.dtype)
     excess2s[known] = som.excess2s(rows[known])

@@ -1,6 +1,6 @@
 """The activity of the default recogniser's first layer at each frame, kept as prefix sums.
 
-Whatever is needed of a segment is a difference of two prefix sums, so that its cost does not grow with its length.
+A sum over a segment is the difference of two prefix sums, so that its cost does not grow with the segment's length.
 """
 
 from collections.abc import Sequence
@@ -31,13 +31,13 @@ _MILLIONTHS = 1e6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrameActivity:
-    """The prefix sums right before and right after a frame, and its winners.
+    """The prefix sums before and after a frame, and its winners on the posture map.
 
     Attributes:
-        before: activities summed up to the frame, of the actor as seen and mirrored.
-        after: the same including the frame.
-        totals_before: the other sums up to the frame.
-        totals_after: the same including the frame.
+        before: sums of activities over all earlier frames, of the actor as seen and mirrored.
+        after: the same with this frame.
+        totals_before: the other sums over all earlier frames.
+        totals_after: the same with this frame.
         winners: the posture map's winner for the actor as seen and mirrored.
     """
 
@@ -62,8 +62,8 @@ class FrameEncoder:
         assert frame.kinematics is not None and frame.motion is not None
         posture = frame.kinematics.posture
         activities = self._first.frame_activities(posture, frame.kinematics.velocity)
-        seen, in_mirror = activities[:, : len(self._first.postures.weights)].argmax(axis=1).tolist()
-        log_errors = self._first.log_errors(np.stack([posture, mirrored(posture)]), [seen, in_mirror])
+        winner, mirror_winner = activities[:, : len(self._first.postures.weights)].argmax(axis=1).tolist()
+        log_errors = self._first.log_errors(np.stack([posture, mirrored(posture)]), [winner, mirror_winner])
         moved_um = np.rint(frame.motion * _UM_PER_M).astype(np.int64)
         before, totals_before = self._prefix, self._totals
         self._sums = self._sums + quantised(activities)
@@ -73,7 +73,7 @@ class FrameEncoder:
         self._totals[_LIMBS] += limb_moments(posture).ravel()
         self._totals[_MISSING] += len(frame.missing)
         self._totals[_LOG_ERRORS] += np.rint(log_errors * _MILLIONTHS).astype(np.int64)
-        return FrameActivity(before, self._prefix, totals_before, self._totals, (seen, in_mirror))
+        return FrameActivity(before, self._prefix, totals_before, self._totals, (winner, mirror_winner))
 
 
 def segment_sums(frames: Sequence[FrameActivity], in_mirror: bool) -> PrefixSums:
@@ -92,7 +92,7 @@ def most_moved_part(frames: Sequence[FrameActivity]) -> str:
     return PART_NAMES[int((frames[-1].totals_after - frames[0].totals_after)[_PARTS].argmax())]
 
 
-def seen_share(frames: Sequence[FrameActivity]) -> float:
+def known_joint_share(frames: Sequence[FrameActivity]) -> float:
     """Return the share of joints that are known, over all frames."""
     missing = frames[-1].totals_after[_MISSING] - frames[0].totals_before[_MISSING]
     return 1.0 - int(missing) / (len(JOINTS) * len(frames))

@@ -22,17 +22,17 @@ class Frame:
 
     Attributes:
         stamp_ns: capture time.
-        previous_ns: capture time of the frame before it, whichever people that shows; None for the first.
+        previous_ns: capture time of the frame before it, whoever is in that one; None for the first.
         agents: the numbers of all people in the captured frame.
         missed: how many frames were lost right before it.
         distance_m: from the camera to the origin of the actor's egocentric frame; infinite where unknown.
         joints: (15, 3), egocentric, scaled to the standard body; NaN where the source lacks a joint.
-        motion: (5,), mean displacement of each body part since the frame before, metres.
+        motion: (5,), mean displacement of each body part since that frame, metres.
         kinematics: smoothed positions and velocities in the upright frame.
         missing: the joints that are NaN in `kinematics`.
-        depth_inferred: whether distances were inferred from a picture and a body's usual size.
-        activity: what the encoder of the model in use returned for it.
-        reason: why the preprocessor could not use it.
+        depth_inferred: whether distances were inferred from an image and a standard body's size.
+        activity: the encoder's result for this frame, of a type that the model defines.
+        reason: why the preprocessor could not use the frame; None where it could.
     """
 
     stamp_ns: int
@@ -84,7 +84,7 @@ def frame_of(posture: Posture, lost: int, smoothing: KinematicsFilter) -> Frame:
 def _usable_arrays(posture: Posture) -> tuple[Array, Array, Array] | None:
     """Return joints (15, 3), motion (5,) and upright joints (15, 3).
 
-    None where a value is not finite or absurd, or all joints are missing.
+    Return None where a value is not finite or absurd, or all joints are missing.
     """
     if not posture.valid or posture.joints is None or posture.motion is None:
         return None
@@ -94,13 +94,14 @@ def _usable_arrays(posture: Posture) -> tuple[Array, Array, Array] | None:
     return (joints, motion, upright) if usable and (np.abs(motion) < MAX_COORDINATE_M).all() else None
 
 
-def _is_usable(listed: Sequence[Joint], read: Array) -> bool:
-    """Tell whether some joint is there, and every one that is there is finite and within bounds."""
-    missing = listed.count(None)
-    return missing < len(listed) and np.count_nonzero(np.abs(read) < MAX_COORDINATE_M) == read.size - 3 * missing
+def _is_usable(joints: Sequence[Joint], array: Array) -> bool:
+    """Tell whether some joint is known, and all known ones are finite and within bounds; `array` has the same joints."""
+    missing = joints.count(None)
+    return missing < len(joints) and np.count_nonzero(np.abs(array) < MAX_COORDINATE_M) == array.size - 3 * missing
 
 
 def _distance_m(posture: Posture) -> float:
+    """Return the distance (m) from the camera to the egocentric frame's origin; infinite where unknown."""
     if posture.ego_from_camera is None:
         return math.inf
     return math.hypot(*posture.ego_from_camera[3:12:4])

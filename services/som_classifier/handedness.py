@@ -35,7 +35,7 @@ _UNITS_PER_M = 1000
 _JITTER_MM = 20.0
 """Added to the spreads of both arms before they are compared, so that noise makes no resting arm the acting one."""
 _FACTOR = 1.65
-"""How many times as much as the other an arm must move to be the acting one; with less, both act."""
+"""How many times the other arm's spread the acting arm's must be; below, both act."""
 
 OPPOSITE = np.array([INDEX[name.replace("left_", "R_").replace("right_", "left_").replace("R_", "right_")]
                      for name in JOINTS])  # fmt: skip
@@ -46,8 +46,8 @@ ACROSS = np.array([-1.0, 1.0, 1.0])
 
 def mirrored(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the positions or velocities (…, 15, 3) of the actor's mirror image, same shape."""
-    other: NDArray[np.float64] = vectors[..., OPPOSITE, :] * ACROSS
-    return other
+    image: NDArray[np.float64] = vectors[..., OPPOSITE, :] * ACROSS
+    return image
 
 
 def limb_moments(posture: NDArray[np.float64]) -> Integers:
@@ -82,7 +82,7 @@ class LimbSpreads:
 
     @classmethod
     def of(cls, summed: Integers) -> "LimbSpreads":
-        """Compute them from the moments summed over the frames, shape (4, 8)."""
+        """Compute the spreads from the moments (4, 8) summed over the frames."""
         return cls([_spread(limb) for limb in summed.tolist()])
 
     @property
@@ -90,8 +90,8 @@ class LimbSpreads:
         """The side of the arm that moves most of all limbs, and clearly more than the other arm; else None."""
         sides: tuple[tuple[Hand, int, int], ...] = (("left", _LEFT_ARM, _RIGHT_ARM), ("right", _RIGHT_ARM, _LEFT_ARM))
         most = max(self.limbs)
-        for hand, own, other in sides:
-            if most == self.limbs[own] and most + _JITTER_MM > _FACTOR * (self.limbs[other] + _JITTER_MM):
+        for hand, arm, other in sides:
+            if most == self.limbs[arm] and most + _JITTER_MM > _FACTOR * (self.limbs[other] + _JITTER_MM):
                 return hand
         return None
 
@@ -102,7 +102,7 @@ class LimbSpreads:
 
 
 def _spread(limb: Sequence[int]) -> float:
-    """Return √(mean |x|² − |mean x|²) from the sums of x (6), of |x|² and of 1."""
+    """Return √(mean |x|² − |mean x|²), mm, from the sums of x (6 coordinates), of |x|² and of 1."""
     a, b, c, d, e, f, squares, count = limb
     if not count:
         return 0.0

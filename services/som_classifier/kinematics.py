@@ -8,15 +8,15 @@ from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
 
 GAP_NS = SECOND_NS // 2
-"""After a longer pause (ns) the filter begins anew: a joint may have gone anywhere in between."""
+"""After a longer pause (ns) the filter restarts: a joint may have gone anywhere in between."""
 STILL_TIME_CONSTANT_S = 0.3
-"""Of the low-pass of a joint at rest: long enough for tracking noise to average out."""
+"""Time constant of the low-pass for a joint at rest: long enough for tracking noise to average out."""
 STILL_SPEED_MPS = 0.3
-"""At this speed (m/s) the time constant has fallen to half of that at rest, and falls on with the speed."""
+"""Speed (m/s) at which the time constant is half of that at rest; it falls further with the speed."""
 SPEED_TIME_CONSTANT_S = 0.1
-"""Of the low-pass of the velocity that the speed is taken of: a movement's start is noticed within a few frames."""
+"""Time constant of the low-pass for the velocity whose norm is the speed: short, to notice a movement's start soon."""
 LAG_TIME_CONSTANT_S = 0.125
-"""Of the second low-pass: at a steady velocity it lags behind by velocity times this."""
+"""Time constant of the second low-pass: at a constant velocity it lags behind by velocity times this."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,9 +24,8 @@ class Kinematics:
     """Position and velocity of each joint in the upright frame; NaN where a joint is missing.
 
     Attributes:
-        posture: (15, 3), metres, low-passed the more the slower the joint moves.
-        velocity: (15, 3), metres by which each joint is ahead of its own low-pass: at a steady velocity, that in m/s
-            times 0.125 s.
+        posture: (15, 3), metres, low-passed, more strongly the slower the joint moves.
+        velocity: (15, 3), metres, `posture` less its own low-pass: a constant velocity in m/s, times 0.125 s.
     """
 
     posture: Array
@@ -37,8 +36,8 @@ class KinematicsFilter:
     """A low-pass per joint whose time constant falls with its speed (after Casiez, 2012), then a second for velocity.
 
     Noise of resting joints is suppressed, fast ones are hardly delayed. With s the low-passed speed of a joint,
-    x += (1 - exp(-dt (1 + s / 0.3 m/s) / 0.3 s)) (measured - x). A joint that was missing begins anew, and so do all
-    after a gap or where the stamps go back.
+    x += (1 - exp(-dt (1 + s / 0.3 m/s) / 0.3 s)) (measured - x). A joint's filter restarts after it was missing, those
+    of all joints after a gap or where stamps go back.
     """
 
     def __init__(self) -> None:
@@ -69,17 +68,17 @@ class KinematicsFilter:
         self._speed = np.zeros(joints.shape)
 
     def _advance(self, joints: Array, elapsed_s: float) -> None:
-        moved = (joints - self._before) / elapsed_s
-        self._speed = self._speed + (1 - np.exp(-elapsed_s / SPEED_TIME_CONSTANT_S)) * (moved - self._speed)
+        velocity = (joints - self._before) / elapsed_s
+        self._speed = self._speed + (1 - np.exp(-elapsed_s / SPEED_TIME_CONSTANT_S)) * (velocity - self._speed)
         speeds = np.sqrt(np.einsum("ij,ij->i", self._speed, self._speed))
-        shares = 1 - np.exp(elapsed_s / -STILL_TIME_CONSTANT_S * (1 + speeds / STILL_SPEED_MPS))
+        gains = 1 - np.exp(elapsed_s / -STILL_TIME_CONSTANT_S * (1 + speeds / STILL_SPEED_MPS))
         self._before = joints
-        step = shares[:, None] * (joints - self._smooth)
+        step = gains[:, None] * (joints - self._smooth)
         self._lagging = _lagged(self._lagging, self._smooth, step, elapsed_s)
         self._smooth = self._smooth + step
 
     def _advance_known(self, joints: Array, known: Mask, elapsed_s: float) -> Kinematics:
-        """Advance while joints are missing: their state is kept, and those that come back begin anew."""
+        """Advance while joints are missing: their state is kept, and the filters of those that come back restart."""
         returned = (known & ~self._known)[:, None]
         present = np.where(known[:, None], joints, self._before)
         self._before = np.where(returned, present, self._before)

@@ -1,4 +1,4 @@
-"""How active an input makes the units of a map: soft activity, its centre and the winner (paper, section 2.1)."""
+"""The response of a map to an input: soft activity of its units, the activity's centre, the winner (paper, 2.1)."""
 
 from dataclasses import dataclass
 from typing import Any

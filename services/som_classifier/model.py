@@ -31,12 +31,13 @@ class ModelMetadata(BaseModel):
         preset: name of the set of training parameters.
         parameters: their values.
         seed: of every random number drawn in training.
-        persons: whose samples it was trained on.
-        samples: how many these were.
+        persons: the people whose samples it was trained on.
+        samples: the number of training samples.
         data_digest: SHA-256 over the training samples.
-        actum_version: that trained it.
+        actum_version: the version of actum that trained it.
         held_out: confusion counts of cross-validation, by action done and by action answered; each sample is scored
-            without its person, or without itself where that was the only one. Empty where nothing was held out.
+            by discriminants fitted without its person, or without its fold where nobody else did the action. Empty
+            where nothing was held out.
     """
 
     model_config = ConfigDict(frozen=True, extra="ignore", strict=True)
@@ -69,7 +70,7 @@ class Encoder(Protocol):
     """Computes the activity of a model's first layer, for one agent's frames in order."""
 
     def encode(self, frame: Frame) -> Any:
-        """Return what the model needs of a valid frame, to be kept as `Frame.activity`."""
+        """Return the first layer's activity for a valid frame, to be kept as `Frame.activity`."""
         ...
 
 
@@ -78,7 +79,7 @@ class Model(ABC):
 
     Attributes:
         metadata: what the file holds beside the weights.
-        min_frames: fewer valid frames than these are not answered.
+        min_frames: the fewest valid frames for which it gives an answer.
     """
 
     metadata: ModelMetadata
@@ -95,7 +96,7 @@ class Model(ABC):
         """Build the model of a file's metadata (JSON) and arrays.
 
         Raises:
-            ValueError, KeyError: the parts are not there or do not fit together.
+            ValueError, KeyError: fields or arrays are missing or do not fit together.
         """
 
     @abstractmethod
@@ -137,7 +138,7 @@ class Model(ABC):
         return digest.hexdigest()[:12]
 
     def save(self, path: Path) -> None:
-        """Write the file (npz, no pickle) beside its place and move it there in one step.
+        """Write the file (npz, no pickle) under a temporary name and rename it in one step.
 
         Raises:
             OSError: the file cannot be written.

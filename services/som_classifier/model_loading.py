@@ -50,7 +50,7 @@ def load_model(path: Path) -> Model:
 
 def _parts(path: Path, stored: IO[bytes]) -> tuple[str, Arrays]:
     """Return the metadata as JSON, and the arrays by name."""
-    if not zipfile.is_zipfile(stored):  # which NumPy would advise to read as a pickle
+    if not zipfile.is_zipfile(stored):  # NumPy's own error would advise to read it as a pickle
         raise ModelError(path, "no actum model, or a damaged one")
     stored.seek(0)
     with np.load(stored, allow_pickle=False) as file:

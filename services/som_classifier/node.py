@@ -19,14 +19,14 @@ from som_classifier.settings import Settings
 from som_classifier.watched_model import WatchedModel
 
 POLL_TICKS = 5
-"""Ticks between two looks at the model file, half a second: a new model seems to be used at once."""
+"""Ticks between two checks of the model file, half a second: a new model seems to be used at once."""
 
 
 class ModelSource(Protocol):
     """Where a new model may come from while the node runs."""
 
     def poll(self, counters: Counters) -> Model | None:
-        """Return a model that is new since the last call."""
+        """Return the model if it is new since the last call, else None."""
         ...
 
 
@@ -59,7 +59,7 @@ class SomClassifier:
         return node
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
-        """Take a posture, a mark or a tick; return the actions it gives rise to."""
+        """Take a posture, a mark or a tick; return the partial and final actions that follow from it."""
         if isinstance(message, Message):
             self._sensor = message.sensor
         match message:

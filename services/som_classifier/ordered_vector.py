@@ -32,9 +32,9 @@ def without_repeats(winners: Indices) -> Indices:
 
 
 def resampled(path: Array, points: int) -> Array:
-    """Place points at equal arc length Δ / (points − 1) along a polyline of shape (n, 2). Shape (points, 2).
+    """Place points along a polyline (n, 2) of length Δ, Δ / (points − 1) apart along it. Shape (points, 2).
 
-    The path's ends are kept exactly. A path of one point, a still posture, is that point repeated.
+    The path's ends are kept exactly. A path of one point, a still posture, becomes that point repeated.
 
     Raises:
         ValueError: the path has no point, or fewer than two are asked for.
@@ -42,9 +42,9 @@ def resampled(path: Array, points: int) -> Array:
     if not len(path) or points < 2:
         raise ValueError(f"cannot place {points} points along a path of {len(path)}")
     lengths = np.hypot(*np.diff(path, axis=0).T)
-    reached = np.concatenate(([0.0], np.cumsum(lengths)))
-    wanted = np.linspace(0.0, reached[-1], points)
-    return np.stack([np.interp(wanted, reached, axis) for axis in path.T], axis=1)
+    arc_lengths = np.concatenate(([0.0], np.cumsum(lengths)))
+    targets = np.linspace(0.0, arc_lengths[-1], points)
+    return np.stack([np.interp(targets, arc_lengths, axis) for axis in path.T], axis=1)
 
 
 def ordered_vector(path: Array, points: int) -> Array:

@@ -81,7 +81,7 @@ class PaperModel(Model):
         """Build the model of a file's metadata (JSON) and arrays.
 
         Raises:
-            ValueError, KeyError: the parts are not there or do not fit together.
+            ValueError, KeyError: fields or arrays are missing or do not fit together.
         """
         stored = PaperMetadata.model_validate_json(metadata)
         layer1, layer2 = Som.of_planes(arrays["layer1"]), Som.of_planes(arrays["layer2"])
@@ -110,7 +110,7 @@ class PaperModel(Model):
         )
 
     def first_activity(self, joints: Array, upright: Array) -> MapActivity:
-        """Return the first map's activity for each of one frame's inputs among which attention chooses, (choices,).
+        """Return the first map's activity for one frame, for each part that attention may choose, (choices,).
 
         Args:
             joints: (15, 3), along the axes of the posture.
@@ -132,7 +132,7 @@ class PaperModel(Model):
         """Return the trajectory of the centre of activity over the first map, shape (changes, 2)."""
         return trajectory(self.attended(frames)[1])
 
-    def place(self, frames: Sequence[Frame]) -> int:
+    def action_unit(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a segment."""
         return self.layer2.bmu(ordered_vector(self.trace(frames), self.metadata.points))
 
@@ -147,7 +147,7 @@ class PaperModel(Model):
         return activity
 
     def _mismatch(self) -> str | None:
-        """Name the first thing about the layers that does not fit together."""
+        """Return the first inconsistency between metadata and layers, None where there is none."""
         stored = self.metadata
         neurons = len(self.layer2.weights)
         if stored.joint_order != list(JOINTS):

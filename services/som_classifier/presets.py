@@ -47,9 +47,9 @@ class Prior:
     Attributes:
         people: its weight, as a number of people beyond the first of those trained on.
         gain: inverse temperature of the softmax of cosines.
-        gain_where_inferred: the same where distances were inferred from a picture and a body's usual size.
+        gain_where_inferred: the same where distances were inferred from an image and a standard body's size.
         familiar: the familiarity that most segments of known actions exceed.
-        familiar_from_one: the same where nobody showed an action more than once: scores are lower then.
+        familiar_from_one: the same where no person has performed an action more than once: scores are lower then.
         log_error: the mean log(d²) of postures from the posture map that a person not trained on may well reach with a
             trained action, d in metres over all joints of a standard body.
     """
@@ -97,27 +97,27 @@ class PyramidPreset:
         name: that it is chosen by.
         units: rows and columns of each map of the first layer.
         unit_epochs: epochs of its batch training.
-        unit_radius: the first and the last neighbourhood radius of that, grid units.
+        unit_radius: the first and the last neighbourhood radius of that training, grid units.
         relative_contrast: of its soft activity, in units of the median squared distance to the winner.
-        arm_shares: what the arm map's activity adds up to, for the acting arm and for the other one; that of the other
-            maps adds up to 1.
-        levels: the pyramid's cells on each level.
-        overlap: how far each reaches over its borders, as a fraction of its length.
+        arm_shares: the sum of the arm map's activity for the acting arm, and for the other one; for each of the other
+            maps the sum is 1.
+        levels: the number of the pyramid's cells on each level.
+        overlap: how far each cell reaches over its borders, as a fraction of its length.
         turns_deg: augmentation: rotations of each sample about the vertical.
-        leans_deg: augmentation: tilts backwards that go with these, where depth was inferred from a picture: there a
-            body's tilt is uncertain.
+        leans_deg: augmentation: the tilt backwards that is combined with each rotation where depth was inferred from
+            an image: there a body's tilt is uncertain.
         others: augmentation by other bodies.
         others_of_few: the same where samples are of `few_people` at most, which hardly show how people differ.
         few_people: see `others_of_few`.
-        stages: the shares of an action that each set of discriminant axes is trained on; the last is the whole.
+        stages: the shares of an action that the discriminants of each stage are trained on; the last is the whole.
         shrinkage: of the discriminants' covariance, in units of the mean squared length of the pooled vectors.
-        held_out_share: the weight, in the scores that the action map learns, of those from axes that were trained
-            without the person scored; the rest comes from the final axes.
-        fewest_scores: score vectors that the upper layers learn at least; fewer are filled up with mixtures.
-        least_share: the smallest weight that the sample whose action it is has in a mixture.
+        held_out_share: the weight of the cross-validated scores in the scores that the action map is trained on; the
+            rest is that of the training scores.
+        fewest_scores: the least number of score vectors that the upper layers are trained on; mixup makes missing ones.
+        least_share: the smallest weight, in such a mixture, of the sample that gives it its action.
         concepts: rows and columns of the action map.
         concept_epochs: epochs of its batch training.
-        concept_radius: the first and the last neighbourhood radius of that, grid units.
+        concept_radius: the first and the last neighbourhood radius of that training, grid units.
         relative_concept_contrast: of its soft activity, in units of the scores' mean variance within an action.
         beta: adaptation strength of the third layer.
         epochs: how often the third layer is shown every training vector.
@@ -199,7 +199,7 @@ PYRAMID = PyramidPreset(
     known_share=0.95,
     prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28, familiar_from_one=0.2, log_error=-2.5),
 )
-"""The default. How it was chosen, and on whom, is said in benchmarks/recognition."""
+"""The default. benchmarks/recognition says how its numbers were chosen, and on which people."""
 
 DEFAULT = PYRAMID
 

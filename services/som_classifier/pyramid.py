@@ -18,11 +18,11 @@ Sums = NDArray[np.uint32]
 SCALE = float(2**19)
 """Quantisation steps per unit of activity; a finer step would leave fewer frames before a sum wraps around."""
 MOST_FRAMES = 2**32 // 2**19 - 1
-"""So many frames of activity 1 stay below 2³²; longer segments are summed in steps of as many."""
+"""Longest run of frames of activity 1 whose sum stays below 2³²; longer segments are summed in runs of this length."""
 
 
 def quantised(activities: Floats) -> Sums:
-    """Return activities within [0, 1] as whole numbers, in the same shape."""
+    """Return activities within [0, 1] as whole quantisation steps, in the same shape."""
     whole: Sums = np.rint(activities * SCALE).astype(np.uint32)
     return whole
 
@@ -56,23 +56,23 @@ class PrefixSums:
         return len(self.prefixes) - 1
 
     def until(self, frames: int) -> "PrefixSums":
-        """Return those of the first frames alone."""
+        """Return the prefix sums of the first frames alone, so many."""
         return PrefixSums(self.prefixes[: frames + 1], self.side)
 
     def since_start(self, at: Sequence[int]) -> NDArray[np.unsignedinteger]:
         """Return the quantised activities summed up to each of the instants `at` (0 to n), shape (len(at), units)."""
         if len(self) > MOST_FRAMES:
-            return self._since_start_in_steps(at)
+            return self._since_start_in_runs(at)
         sums = self._sums(at)
         sums -= self.prefixes[0].sums[self.side]
         return sums
 
-    def _since_start_in_steps(self, at: Sequence[int]) -> NDArray[np.uint64]:
+    def _since_start_in_runs(self, at: Sequence[int]) -> NDArray[np.uint64]:
         """Return the same for segments over which a sum may wrap around 2³² more than once."""
-        marks = self._sums(range(0, len(self.prefixes), MOST_FRAMES))
-        before = np.cumsum(np.diff(marks, axis=0, prepend=marks[:1]), axis=0, dtype=np.uint64)
-        step = [k // MOST_FRAMES for k in at]
-        summed: NDArray[np.uint64] = before[step] + (self._sums(at) - marks[step])
+        run_starts = self._sums(range(0, len(self.prefixes), MOST_FRAMES))
+        before = np.cumsum(np.diff(run_starts, axis=0, prepend=run_starts[:1]), axis=0, dtype=np.uint64)
+        run = [k // MOST_FRAMES for k in at]
+        summed: NDArray[np.uint64] = before[run] + (self._sums(at) - run_starts[run])
         return summed
 
     def _sums(self, at: Sequence[int]) -> Sums:
@@ -80,7 +80,7 @@ class PrefixSums:
         return np.concatenate([prefixes[k].sums[side] for k in at]).reshape(len(at), -1)
 
     def instants_of(self, progress: Sequence[float]) -> Floats:
-        """Return the fractional instants, from 0 (start) to n (end), at which the segment has progressed so far.
+        """Return the instants, as fractional frame numbers from 0 to n, at which a segment reaches given progress.
 
         Progress rises from 0 to 1: half of it with time, half with the distance that the body parts travel; with time
         alone where nothing moves. Within a frame it is linear.
@@ -126,7 +126,7 @@ class Pyramid:
             raise ValueError("no frame to pool over")
         at = segment.instants_of(self._borders)
         below = np.minimum(at.astype(np.intp), len(segment) - 1)
-        sums, growth = _sums_beside(segment, below.tolist())
+        sums, growth = _sums_at_and_after(segment, below.tolist())
         growth -= sums
         growth *= (at - below).astype(np.float32)[:, None]
         sums += growth
@@ -161,7 +161,7 @@ class Pyramid:
         return np.array([self._borders.index(end) for _, end in self._spans])
 
 
-def _sums_beside(segment: PrefixSums, below: Sequence[int]) -> NDArray[np.float32]:
+def _sums_at_and_after(segment: PrefixSums, below: Sequence[int]) -> NDArray[np.float32]:
     """Return the sums since the start at these instants and at those right after, shape (2, len(below), units)."""
     sums = segment.since_start([*below, *(k + 1 for k in below)])
     return sums.astype(np.float32).reshape(2, len(below), -1)

@@ -1,4 +1,4 @@
-"""The default recogniser: maps of posture, velocity and arm, pooled over a segment, told apart, laid out on a map."""
+"""The default recogniser: posture, velocity and arm maps, a temporal pyramid, linear discriminants, an action map."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from som_classifier.frame_activity import (
     left_handed,
     mean_log_error,
     most_moved_part,
-    seen_share,
+    known_joint_share,
     segment_sums,
 )
 from som_classifier.frames import Frame
@@ -43,18 +43,18 @@ class PyramidMetadata(ModelMetadata):
 
     Attributes:
         posture_contrast: of the posture map's soft activity, in squared metres.
-        velocity_contrast: of the velocity map's.
-        arm_contrast: of the arm map's.
-        arm_shares: what the arm map's activity adds up to, for the acting arm and for the other one.
+        velocity_contrast: of the velocity map's soft activity, in its squared distance.
+        arm_contrast: of the arm map's soft activity, in its squared distance.
+        arm_shares: the sum of the arm map's activity for the acting arm, and for the other one.
         mirrors: whether an action of the left arm is read as its mirror image.
-        levels: the pyramid's cells on each level.
-        overlap: how far each reaches over its borders, as a fraction of its length.
-        fractions: the share of an action that each stage of the discriminants has seen.
+        levels: the number of the pyramid's cells on each level.
+        overlap: how far each cell reaches over its borders, as a fraction of its length.
+        fractions: the share of an action that has been seen at each stage of the discriminants.
         log_duration_mean: mean of the logarithm of the training segments' durations (s).
-        log_duration_sd: their standard deviation.
+        log_duration_sd: standard deviation of that logarithm.
         concept_contrast: of the action map's soft activity, in squared scores.
         gains: the inverse temperatures of the softmax that turns cosines into probabilities, by stage.
-        familiar: the familiarity below which an action may be none of those trained.
+        familiar: the open-set threshold: with a lower familiarity an action may be none of those trained.
         usual_log_errors: for each action, the mean log(d²) of its postures from the map of postures that a person not
             trained on may well reach, d in metres over all joints of a standard body.
     """
@@ -82,7 +82,7 @@ class PyramidModel(Model):
 
     Attributes:
         first: the maps of posture, velocity and the acting arm.
-        stages: the discriminants on their pooled activities.
+        stages: the discriminants on the maps' pooled activities.
         action_map: the second layer, a map of the discriminants' scores.
         layer3: one neuron per action on the second layer's activity.
     """
@@ -116,7 +116,7 @@ class PyramidModel(Model):
         """Build the model of a file's metadata (JSON) and arrays.
 
         Raises:
-            ValueError, KeyError: the parts are not there or do not fit together.
+            ValueError, KeyError: fields or arrays are missing or do not fit together.
         """
         stored = PyramidMetadata.model_validate_json(metadata)
         action_som = Som.of_planes(arrays["concepts"])
@@ -157,7 +157,7 @@ class PyramidModel(Model):
         familiarity = self.familiarity(activities, scores)
         return Recognition(
             label=self.labels[winner],
-            confidence=_probability(cosines, winner, inverse_temperature * seen_share(activities)),
+            confidence=_probability(cosines, winner, inverse_temperature * known_joint_share(activities)),
             activations=dict(zip(self.labels, cosines.tolist(), strict=True)),
             part=most_moved_part(activities),
             familiarity=familiarity,
@@ -185,7 +185,7 @@ class PyramidModel(Model):
     def maps(self, frames: Sequence[Frame]) -> Arrays:
         """Return the activity of each map over a segment, by name, (rows, cols) each.
 
-        That of the first layer is its mean over the frames, relative to the most active unit's.
+        A map of the first layer has its mean activity over the frames, relative to that of its most active unit.
         """
         activities: list[FrameActivity] = [frame.activity for frame in frames]
         scores = self.scores(activities, self.stages.weights(0.0, complete=True))
@@ -193,8 +193,8 @@ class PyramidModel(Model):
         sums = segment.since_start([len(segment)]).reshape(len(CHANNELS), -1)[: len(self.first.maps)]
         relative = sums / sums.max(axis=1, keepdims=True)
         first = {
-            name: own.reshape(som.rows, som.cols)
-            for name, som, own in zip(("postures", "velocities", "arms"), self.first.maps, relative, strict=True)
+            name: activity.reshape(som.rows, som.cols)
+            for name, som, activity in zip(("postures", "velocities", "arms"), self.first.maps, relative, strict=True)
         }
         action_som = self.action_map.som
         active = soft_activity(action_som.excess2(scores), self.action_map.contrast)
@@ -210,7 +210,7 @@ class PyramidModel(Model):
         return self.stages.scores(self.pyramid.vector(self.prefix_sums(activities)), stages)
 
     def _metadata_problem(self) -> str | None:
-        """Name the first thing about the metadata that does not fit together."""
+        """Return the first inconsistency within the metadata, None where there is none."""
         stored = self.metadata
         actions, stages = len(stored.labels), len(stored.fractions)
         if stored.joint_order != list(JOINTS):
@@ -222,11 +222,11 @@ class PyramidModel(Model):
         return None
 
     def _array_problem(self) -> str | None:
-        """Name the first of the arrays that does not fit the metadata or the other arrays."""
+        """Return the first inconsistency of an array with the metadata or other arrays, None where there is none."""
         first, units = self.first, len(self.action_map.som.weights)
         actions, stages = len(self.metadata.labels), len(self.metadata.fractions)
-        loose = (self.stages.axes, self.stages.offsets, self.action_map.mean)
-        if not all(array.dtype == np.float32 and np.isfinite(array).all() for array in loose):
+        outside_maps = (self.stages.axes, self.stages.offsets, self.action_map.mean)
+        if not all(array.dtype == np.float32 and np.isfinite(array).all() for array in outside_maps):
             return "its axes, their offsets or its mean are not finite single-precision numbers"
         shapes = {
             "maps of the first layer": ({len(som.weights) for som in first.maps}, {len(first.postures.weights)}),

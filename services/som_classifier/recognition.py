@@ -9,7 +9,7 @@ class Recognition:
 
     Attributes:
         label: the action whose neuron is most active.
-        confidence: of that, within [0, 1]; its definition is the model's.
+        confidence: in the label, within [0, 1]; each kind of model defines it.
         activations: every neuron's cosine by action.
         part: the body part that moves most.
         familiarity: how similar the segment is to what was trained; None where the model cannot tell.

@@ -17,8 +17,8 @@ class ActionMap:
     Attributes:
         som: the map, of as many input dimensions as there are actions.
         contrast: of its soft activity, in squared scores.
-        mean: (units,), the mean of the unit-length activities in training, which is subtracted: what all actions have
-            in common tells none from another.
+        mean: (units,), the mean of the unit-length activities in training, which is subtracted: activity common to all
+            actions does not separate them.
     """
 
     som: Som

@@ -1,4 +1,4 @@
-"""Cuts postures into segments by marks: whose, from when to when, with which frames, or why not.
+"""Cuts postures into segments by marks: known_agent, from when to when, with which frames, or why not.
 
 A segment closes once its posture stream has reached the end, or after two seconds of waiting for it.
 """
@@ -16,7 +16,7 @@ from som_classifier.segments import ClosedSegment, OpenSegment, why_no_recogniti
 from som_classifier.streams import Encode, Streams
 
 LATE_FOR = 16
-"""The newest segments that closed before all frames had come: postures of these are counted as late."""
+"""Segments remembered of those that closed before all their frames had come; their postures are counted as late."""
 FAR_FUTURE_NS = 2**62
 """Stands for the end of a segment without one: later than any stamp."""
 NO_END = "start without end: no end within 60 s"
@@ -42,16 +42,16 @@ class Segmenter:
         closed = self._restart(posture.session_id)
         order, frame = self._streams.add(posture)
         late = any(posture.agent == agent and posture.stamp_ns in stamps for agent, stamps in self._late)
-        what = f"posture of agent {posture.agent} at {posture.stamp_ns}"
+        detail = f"posture of agent {posture.agent} at {posture.stamp_ns}"
         if frame is None:
-            self._counters.reject("late" if late else "stale_stamp", what)
+            self._counters.reject("late" if late else "stale_stamp", detail)
             return None, closed
         if posture.valid and not frame.valid:
-            self._counters.reject("bad_posture", f"{what}: missing, non-finite or absurd joints or motion")
+            self._counters.reject("bad_posture", f"{detail}: missing, non-finite or absurd joints or motion")
         if order is Order.RESTART:
             closed += self._close_all("the source started anew")
         elif late:
-            self._counters.reject("late", f"{what}, after its segment was answered")
+            self._counters.reject("late", f"{detail}, after its segment was answered")
         self._note_progress(posture.stamp_ns)
         return frame, closed + self._settle()
 
@@ -62,7 +62,7 @@ class Segmenter:
         return self._start(mark) if mark.kind == "start" else self._end(mark)
 
     def tick(self, tick: Tick) -> list[ClosedSegment]:
-        """Stop waiting: after two seconds for the frames up to an end, after a longest segment for an end mark."""
+        """Close the segments that have waited too long: 2 s for the last frames, a longest segment for an end mark."""
         closed = []
         for segment in list(self._open.values()):
             if segment.waiting_since_ns is None:
@@ -75,12 +75,12 @@ class Segmenter:
         return closed
 
     def open_at(self, agent: int, stamp_ns: int) -> list[OpenSegment]:
-        """List the segments of an agent that hold this instant."""
-        return [segment for segment in self._open.values() if segment.whose == agent and segment.holds(stamp_ns)]
+        """List the open segments of an agent that hold this instant."""
+        return [segment for segment in self._open.values() if segment.known_agent == agent and segment.holds(stamp_ns)]
 
     def frames_of(self, segment: OpenSegment) -> list[Frame]:
         """List the frames an open segment holds so far."""
-        stream = None if segment.whose is None else self._streams.of(segment.whose)
+        stream = None if segment.known_agent is None else self._streams.of(segment.known_agent)
         if stream is None or segment.start_ns is None:
             return []
         return stream.between(segment.start_ns, segment.end_ns or FAR_FUTURE_NS)
@@ -93,7 +93,7 @@ class Segmenter:
         return f"start without end: the frames ended {elapsed_s:.1f} s after the start"
 
     def _note_progress(self, stamp_ns: int) -> None:
-        """Start segments that wait for the first posture; wait anew for an end mark where postures still come."""
+        """Start segments that wait for the first posture; restart the wait for an end mark while postures come."""
         for segment in self._open.values():
             if segment.start_ns is None:
                 segment.start_ns = stamp_ns
@@ -101,13 +101,13 @@ class Segmenter:
                 segment.waiting_since_ns = None
 
     def _settle(self) -> list[ClosedSegment]:
-        """Determine the agents that can be, and close the segments whose end is reached or which are too long."""
+        """Determine agents where that is possible; close the segments known_agent end is reached and those too long."""
         closed = []
         for segment in list(self._open.values()):
-            if segment.whose is None:
+            if segment.known_agent is None:
                 segment.nearest = self._nearest(segment)
             if segment.end_ns is not None:
-                if segment.whose is not None and self._streams.reached(segment.whose, segment.end_ns):
+                if segment.known_agent is not None and self._streams.reached(segment.known_agent, segment.end_ns):
                     closed.append(self._close(segment))
             elif self._too_long(segment):
                 closed.append(self._reject(segment, NO_END))
@@ -128,6 +128,7 @@ class Segmenter:
         return agent if self._streams.complete(segment.start_ns, stamp_ns) else None
 
     def _first(self, segment: OpenSegment) -> tuple[int, int] | None:
+        """Return stamp and agent of the segment's first valid frame so far, None where there is none."""
         if segment.start_ns is None:
             return None
         end_ns = segment.start_ns + MAX_SEGMENT_NS if segment.end_ns is None else segment.end_ns
@@ -160,11 +161,11 @@ class Segmenter:
         return self._settle()
 
     def _close(self, segment: OpenSegment) -> ClosedSegment:
-        """Answer a segment that has its end, with the frames that have come."""
+        """Close a segment that has its end mark, with the frames that have come."""
         assert segment.end_ns is not None
         start_ns = segment.start_ns if segment.start_ns is not None else 0
         first = self._first(segment)
-        agent = segment.whose if segment.whose is not None or first is None else first[1]
+        agent = segment.known_agent if segment.known_agent is not None or first is None else first[1]
         stream = None if agent is None else self._streams.of(agent)
         if stream is None or agent is None:
             cause = self._streams.first_reason(start_ns, segment.end_ns) if agent is None else None
@@ -187,10 +188,12 @@ class Segmenter:
         return segment.rejected(reason)
 
     def _forget(self, segment: OpenSegment) -> None:
+        """Move a segment from the open to the answered ones."""
         del self._open[segment.segment_id]
         self._answered.remember(segment.segment_id, segment.start_ns, segment.end_ns)
 
     def _restart(self, session_id: str) -> list[ClosedSegment]:
+        """Close all segments and forget all frames where the session is another one than before."""
         if session_id == self._session:
             return []
         first, self._session = self._session is None, session_id

@@ -9,7 +9,7 @@ from actum.messages import Hand, Segment
 from som_classifier.frames import Frame
 
 LONGEST_WHY = 500
-"""Characters of a frame's reason that are told with a segment's: what a source says may be of any length."""
+"""Characters of a frame's reason that a segment's reason quotes: a source may send a text of any length."""
 
 
 @dataclass
@@ -19,12 +19,12 @@ class OpenSegment:
     Attributes:
         segment_id: of its marks.
         start_ns: None until the first posture, where none had been seen when it started without a stamp.
-        agent: whose it is, where the mark says so.
-        hand: which hand acts, where the mark says so.
-        label: the action, where the mark says so.
+        agent: who acts; None where the mark does not say so.
+        hand: which hand acts; None where the mark does not say so.
+        label: the action; None where the mark does not say so.
         end_ns: None until its end mark.
-        nearest: whose it is where the mark does not say so, once that can be told.
-        waiting_since_ns: the tick since which its end, or the frames up to its end, have been waited for.
+        nearest: the agent nearest to the camera, where the mark names none; None until it is determined.
+        waiting_since_ns: the tick since which the segment waits for its end mark, or for the frames up to its end.
     """
 
     segment_id: str
@@ -38,12 +38,12 @@ class OpenSegment:
 
     @classmethod
     def of(cls, mark: Segment, start_ns: int | None, end_ns: int | None = None) -> "OpenSegment":
-        """Return the segment that a mark tells of."""
+        """Return the open segment of a mark."""
         return cls(mark.segment_id, start_ns, mark.agent, mark.hand, mark.label, end_ns)
 
     @property
-    def whose(self) -> int | None:
-        """The agent, as far as it is known."""
+    def known_agent(self) -> int | None:
+        """The agent that the mark names, or the nearest one; None where neither is known."""
         return self.nearest if self.agent is None else self.agent
 
     def holds(self, stamp_ns: int) -> bool:
@@ -53,11 +53,11 @@ class OpenSegment:
         )
 
     def rejected(self, reason: str) -> "ClosedSegment":
-        """Return it closed, without frames."""
+        """Return the segment closed, without frames and with the reason for which it is rejected."""
         start_ns = self.start_ns if self.start_ns is not None else 0
         end_ns = self.end_ns if self.end_ns is not None else start_ns
         return ClosedSegment(
-            self.segment_id, start_ns, end_ns, self.whose or 0, self.hand, self.label, reason=reason
+            self.segment_id, start_ns, end_ns, self.known_agent or 0, self.hand, self.label, reason=reason
         )  # fmt: skip
 
 

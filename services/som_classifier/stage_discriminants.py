@@ -25,9 +25,9 @@ class StageDiscriminants:
     Attributes:
         axes: (stages, inputs, actions), float32, the discriminant axes.
         offsets: (stages, actions), float32.
-        fractions: (stages,), the share of an action that each stage has seen; the last is 1.
+        fractions: (stages,), the share of an action that has been seen at each stage; the last is 1.
         log_duration_mean: mean of the logarithm of the training segments' durations (s).
-        log_duration_sd: their standard deviation.
+        log_duration_sd: standard deviation of that logarithm.
     """
 
     axes: NDArray[np.float32]
@@ -48,14 +48,14 @@ class StageDiscriminants:
         """
         if complete:
             return [0.0] * (len(self.fractions) - 1) + [1.0]
-        seen = math.log(max(elapsed_s, SHORTEST_S)) - self.log_duration_mean
-        z2s = [((seen - math.log(fraction)) / self.log_duration_sd) ** 2 for fraction in self.fractions]
+        log_share = math.log(max(elapsed_s, SHORTEST_S)) - self.log_duration_mean
+        z2s = [((log_share - math.log(fraction)) / self.log_duration_sd) ** 2 for fraction in self.fractions]
         likely = [math.exp(0.5 * (min(z2s) - z2)) for z2 in z2s]
         kept = [weight if weight >= NEGLIGIBLE * sum(likely) else 0.0 for weight in likely]
         return [weight / sum(kept) for weight in kept]
 
     def scores(self, vector: NDArray[np.float32], weights: Sequence[float]) -> NDArray[np.float32]:
-        """Return the scores averaged over stages, about 1 for the action done and 0 for the others, shape (actions,).
+        """Return the weighted mean of the stages' scores: about 1 for the action done, 0 for the others, (actions,).
 
         Args:
             vector: (inputs,), of the pyramid.
@@ -76,7 +76,7 @@ def familiarity_of(scores: Floats, log_error: float, usual_log_errors: Sequence[
     Args:
         scores: (actions,).
         log_error: the mean logarithm of the posture map's squared quantization error (m²).
-        usual_log_errors: (actions,), what a person not trained on may well reach with each action.
+        usual_log_errors: (actions,), the same mean to expect of a person not trained on, for each action.
     """
     likeliest = int(scores.argmax())
     return float(scores[likeliest]) - LOG_ERROR_COST * max(log_error - usual_log_errors[likeliest], 0.0)

@@ -29,7 +29,7 @@ class Stream:
         self._encode = encode
 
     def use(self, encode: Encode) -> None:
-        """Encode all frames anew, and those to come."""
+        """Encode all frames, those kept and those to come, by this encoder."""
         self._encode = encode
         for frame in self._frames:
             self._encode_valid(frame)
@@ -83,7 +83,7 @@ class Stream:
 
 
 class Streams:
-    """Every agent's stream, and how far they have come."""
+    """The streams of all agents, and the newest stamp among them."""
 
     def __init__(self) -> None:
         self._streams: dict[int, Stream] = {}
@@ -118,11 +118,11 @@ class Streams:
         return order, frame
 
     def reached(self, agent: int, stamp_ns: int) -> bool:
-        """Tell whether an agent's stream has come as far as this."""
+        """Tell whether an agent's newest frame is at a stamp or after it."""
         return agent in self._streams and self._streams[agent].newest_ns >= stamp_ns
 
     def first(self, start_ns: int, end_ns: int) -> tuple[int, int] | None:
-        """Return stamp and agent of the first valid frame within a segment, of several the nearest to the camera."""
+        """Return stamp and agent of the first valid frame within these bounds, of several the nearest to the camera."""
         valid = (
             (frame.stamp_ns, frame.distance_m, agent)
             for agent, stream in self._streams.items()
@@ -145,18 +145,21 @@ class Streams:
     def complete(self, start_ns: int, end_ns: int) -> bool:
         """Tell whether every captured frame from the start to the end has come, for every agent in it.
 
-        Once one stream is further past the end than another may lag behind it, what has not come counts as lost.
+        Once the newest stamp is more than the longest delay past the end, frames that have not come count as lost.
         """
         if self.newest_ns is not None and self.newest_ns > end_ns + MAX_SKEW_NS:
             return True
         frames = [frame for stream in self._streams.values() for frame in stream.between(start_ns, end_ns)]
-        come = {frame.stamp_ns for frame in frames}
+        arrived_ns = {frame.stamp_ns for frame in frames}
         agents = {agent for frame in frames for agent in frame.agents}
-        linked = all(f.previous_ns is None or f.previous_ns < start_ns or f.previous_ns in come for f in frames)
+        linked = all(f.previous_ns is None or f.previous_ns < start_ns or f.previous_ns in arrived_ns for f in frames)
         return linked and all(self.reached(agent, end_ns) for agent in agents)
 
     def _advance(self, stamp_ns: int) -> None:
-        """Advance the newest stamp, from which an absurd one is dropped at the next; forget silent agents."""
+        """Advance the newest stamp, and forget agents that are silent.
+
+        A stamp that is far from the newest one replaces it, so that an absurd one counts only until the next.
+        """
         if self.newest_ns is None or abs(stamp_ns - self.newest_ns) > MEMORY_NS:
             self.newest_ns = stamp_ns
         self.newest_ns = max(stamp_ns, self.newest_ns)

@@ -36,7 +36,7 @@ class SupervisedLayer:
 
     @classmethod
     def of_means(cls, inputs: Array, targets: Indices, actions: int) -> "SupervisedLayer":
-        """Make a layer whose weights are the mean of the inputs of each action, all equal where it has none.
+        """Make a layer whose weights are the mean of the inputs of each action, all equal where it has no input.
 
         Args:
             inputs: (n, inputs).
@@ -84,7 +84,7 @@ class SupervisedLayer:
 def adapt(weights: Array, x: Array, desired: Array, beta: float) -> None:
     """Apply the delta rule w += β x (d − y) in place and make the weights unit length again.
 
-    The paper prints [y − d], which drives each neuron away from what it should answer.
+    The paper prints [y − d], which drives each neuron away from its desired answer.
 
     Args:
         weights: (actions, inputs), rows of unit length.

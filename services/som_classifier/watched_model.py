@@ -8,11 +8,11 @@ from som_classifier.model_loading import ModelError, load_model
 
 
 class WatchedModel:
-    """Loads the file whenever its time or size has changed."""
+    """Loads the file whenever its modification time or size has changed."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._seen: tuple[int, int] | None = None
+        self._loaded_version: tuple[int, int] | None = None
         self._loaded = False
 
     def poll(self, counters: Counters) -> Model | None:
@@ -30,9 +30,9 @@ class WatchedModel:
             self._refuse(counters, str(error))
             return None
         version = (stat.st_mtime_ns, stat.st_size)
-        if version == self._seen:
+        if version == self._loaded_version:
             return None
-        self._seen = version
+        self._loaded_version = version
         try:
             model = load_model(self._path)
         except ModelError as error:

@@ -130,6 +130,6 @@ def test_the_map_of_actions_is_most_active_where_the_way_is_nearest() -> None:
     model, frames = paper_model(), walk(0, 3, 6)
     (activities,) = model.maps(frames).values()
     nearest = model.layer2.bmu(ordered_vector(model.trace(frames), model.metadata.points))
-    assert nearest == model.place(frames)
+    assert nearest == model.action_unit(frames)
     assert activities.shape == (model.layer2.rows, model.layer2.cols)
     assert activities.max() == activities.ravel()[nearest] == 1

@@ -14,7 +14,7 @@ from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.samples import SegmentSample
 from recognisers import in_a_mirror, tiny_model, tiny_samples
 from som_classifier.attention import PART_NAMES, attended_part
-from som_classifier.frame_activity import FrameActivity, seen_share
+from som_classifier.frame_activity import FrameActivity, known_joint_share
 from som_classifier.frames import Frame
 from som_classifier.handedness import mirrored
 from som_classifier.pyramid import SCALE, Pyramid
@@ -206,13 +206,13 @@ def codes_of(sample: SegmentSample) -> list[FrameActivity]:
 
 
 def test_the_share_of_the_joints_that_was_there() -> None:
-    assert seen_share(codes_of(SAMPLES[0])) == 1.0
+    assert known_joint_share(codes_of(SAMPLES[0])) == 1.0
     poor = lacking(SAMPLES[0], *SOME)
-    assert seen_share(codes_of(poor)) == pytest.approx(11 / 15)
+    assert known_joint_share(codes_of(poor)) == pytest.approx(11 / 15)
     both = codes_of(one_after_the_other(poor, SAMPLES[0]))
     half = len(poor.stamps_ns)
-    assert seen_share(both) == pytest.approx(13 / 15)
-    assert seen_share(both[half:]) == 1.0
+    assert known_joint_share(both) == pytest.approx(13 / 15)
+    assert known_joint_share(both[half:]) == 1.0
 
 
 def test_the_more_joints_are_missing_the_lower_the_confidence() -> None:
