@@ -18,10 +18,10 @@ from som_classifier.first_layer import ARM_INPUTS, CHANNELS, FirstMaps
 from som_classifier.frame_activity import (
     FrameActivity,
     FrameEncoder,
+    known_joint_share,
     left_handed,
     mean_log_error,
     most_moved_part,
-    known_joint_share,
     segment_sums,
 )
 from som_classifier.frames import Frame
