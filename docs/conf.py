@@ -34,6 +34,7 @@ RESULTS = {
     "Webcam": "benchmarks/camera/results",
     "Webcam: what was tried": "benchmarks/camera/README",
     "The paper": "benchmarks/paper/results",
+    "Marker tracker": "benchmarks/tracker/results",
     "Maps": "benchmarks/som",
 }
 PROJECT = ["deploy/README", "CONTRIBUTING", "CHANGELOG", "SECURITY"]

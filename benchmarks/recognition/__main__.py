@@ -15,7 +15,7 @@ from benchmarks.page import measure_page, part_asked_for
 from .accuracy import action_sets, authors, cross_subject, random_halves, utkinect
 from .bench import Bench
 from .bodies import bodies
-from .calibration import calibration
+from .confidence_calibration import calibration
 from .cost import cost
 from .datasets import Datasets
 from .early import early

@@ -13,8 +13,8 @@ from benchmarks.page import measure_page, part_asked_for
 
 from .accuracy import FAMILIES, SIDES_PX, accuracy
 from .cut_outs import ANGLES_DEG, FAMILY, NUMBERS, SIDE_PX, cut_outs
+from .marker_scenes import CONDITIONS, HZ, IMAGES
 from .rendering import SAMPLES
-from .scenes import CONDITIONS, HZ, IMAGES
 from .speed import speed
 
 PAGE = Path(__file__).with_name("results.md")

@@ -12,9 +12,9 @@ from marker_tracker.pose.camera_model import CameraModel
 from marker_tracker.pose.catalogue import MountedMarker
 from marker_tracker.pose.poses import BadPoseError, solve
 
+from .marker_scenes import CONDITIONS, HZ, Scene
 from .rendering import CAMERA, SIZE_M, Placed
 from .rows import ROWS, Row
-from .scenes import CONDITIONS, HZ, Scene
 
 Array = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""An object as events describe it: where it is as the segment ends, and whether the hand that had it has it still."""
+"""An object as events describe it: its pose at the segment's end, and whether the acting hand still holds it."""
 
 from collections.abc import Mapping, Sequence
 
@@ -16,7 +16,7 @@ from actum.arrays import Array
 from actum.messages import ActedObject, Hand, ObjectPose
 
 CAMERA = "camera"
-"""What events call the camera frame."""
+"""Name of the camera frame in events."""
 
 
 def acted_object(
@@ -28,14 +28,14 @@ def acted_object(
     start_ns: int,
     settings: Settings,
 ) -> ActedObject:
-    """Describe an object as events do.
+    """Describe a chosen object or one of its rivals as events do.
 
     Args:
-        track: the object, or a rival of it.
-        distance_m: the smallest distance of a hand to it.
-        choice: which hand acted, and what is held in it.
-        hands: the actor's.
-        frames: the objects' up to the segment's end.
+        track: the object's track.
+        distance_m: the smallest distance of a hand to the object.
+        choice: the hand that acted, and the object held in it.
+        hands: the tracks of the actor's hands.
+        frames: the samples of objects up to the segment's end.
         start_ns: the segment's start.
         settings: thresholds, and the fixed frame.
     """
@@ -60,23 +60,23 @@ def acted_object(
 
 
 def _in_hand(track: ObjectTrack, hand: HandTrack, is_held: bool, settings: Settings) -> tuple[bool, bool]:
-    """Tell whether the hand took the object along in the segment, and whether it is in the hand as that ends.
+    """Tell whether the hand took the object along in the segment, and whether it holds the object at the segment's end.
 
-    It is where its place in the hand is then what it was while it was taken along or, for one that was held still,
-    all the time.
+    The object is in the hand at the end if its offset from the hand is then the same as while it was taken along or,
+    if it was held without motion, as in the whole segment.
     """
     pair = comotion(hand, track, settings.reach_m, settings.moved_m)
     taken_along = pair.transport_m(since_ns=0.0) >= settings.moved_m
-    had = hand.in_segment & (pair.with_hand if taken_along else is_held)
-    if not had.any():
+    in_hand = hand.in_segment & (pair.with_hand if taken_along else is_held)
+    if not in_hand.any():
         return taken_along, False
     last = hand.in_segment & (hand.stamps_ns >= hand.stamps_ns[-1] - SETTLED_NS)
-    slip_m = np.median(pair.hand_to_object_m[last], axis=0) - np.median(pair.hand_to_object_m[had], axis=0)
+    slip_m = np.median(pair.hand_to_object_m[last], axis=0) - np.median(pair.hand_to_object_m[in_hand], axis=0)
     return taken_along, float(np.linalg.norm(slip_m)) <= SLIP_M
 
 
 def _end_pose(track: ObjectTrack, frames: Sequence[ObjectsSample]) -> ObjectPose:
-    """Give the object's pose at the end in the camera frame; its orientation if no hand moved it unseen since."""
+    """Return the object's pose at the end in the camera frame, with its orientation only if it is visible then."""
     quaternions = (f.quaternions_xyzw[track.id] for f in reversed(frames) if track.id in f.quaternions_xyzw)
     quaternion = next(quaternions, None) if track.seen[-1] else None
     return ObjectPose(

@@ -1,4 +1,4 @@
-"""Who acts, and with which hands: one person's postures around a segment as arrays."""
+"""The actor of a segment: one person's postures as arrays, and the hands that may have acted."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ from actum.skeletons import INDEX
 BOTH_HANDS: tuple[Hand, Hand] = ("right", "left")
 
 PART_HANDS: dict[str | None, Hand] = {"right_arm": "right", "left_arm": "left"}
-"""The hand of the body part that moved most."""
+"""Hand of each arm, by the name of the body part that moved most."""
 
 FACING_NS = 2 * SECOND_NS
-"""The direction faced is averaged over this long from the start: the hips of one posture are several degrees out."""
+"""Nanoseconds from the start over which the facing direction is averaged: in one posture it is degrees off."""
 
 SMALLEST_FORWARD = 1e-3
-"""The horizontal part of a unit vector; one with less points up or down within 0.06 degrees."""
+"""Least horizontal length of a unit vector: one with less points up or down within 0.06 degrees."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Actor:
     """One person's p valid postures, from some time before a segment to its end.
 
     `stamps_ns` (p,) count from the segment's start, `ego_from_camera` is (p, 4, 4), `joints_m` (p, 15, 3) egocentric,
-    NaN where unknown. `depth_std_m` (p,), `up_in_camera` (p, 3) and `has_front` (p,) are as of `Body`.
+    NaN where unknown. `depth_std_m` (p,), `up_in_camera` (p, 3) and `has_front` (p,) are those of `Body`.
     """
 
     stamps_ns: Array
@@ -39,7 +39,7 @@ class Actor:
     has_front: Mask
 
     def in_segment(self) -> "Actor":
-        """Keep the postures of the segment itself."""
+        """Return an actor with the postures of the segment itself, without the time before it."""
         inside = self.stamps_ns >= 0
         return Actor(
             self.stamps_ns[inside],
@@ -71,14 +71,14 @@ class Actor:
         return in_ego_m
 
     def median_depth_std_m(self) -> float:
-        """Return the median standard deviation of the body's distance from the camera; 0 where that was measured."""
+        """Return the median standard deviation of the body's distance from the camera; 0 if that is measured."""
         return float(np.median(self.depth_std_m)) if len(self.depth_std_m) else 0.0
 
     def level_from_camera(self) -> Array | None:
         """Build the actor's level frame as a rotation (3, 3): rows right, up, forward in the camera frame.
 
-        Up is against gravity at the first posture; forward is the direction faced, averaged over `FACING_NS` and made
-        horizontal; right = forward x up. None where the actor faces straight up or down.
+        Up is against gravity at the first posture; forward is the facing direction, averaged over `FACING_NS` and
+        projected onto the horizontal; right = forward x up. None where the actor faces straight up or down.
         """
         up = self.up_in_camera[0] / np.linalg.norm(self.up_in_camera[0])
         early = self.stamps_ns <= self.stamps_ns[0] + FACING_NS
@@ -106,6 +106,6 @@ def actor_of(postures: Sequence[PostureSample], start_ns: int) -> Actor:
 
 
 def acting_sides(action: Action) -> tuple[Hand, ...]:
-    """List the hands that may have acted: the one that was marked, else the moving arm's, else both."""
+    """List the hands that may have acted: the one that the mark names, else that of the moving arm, else both."""
     side = action.hand or PART_HANDS.get(action.part)
     return BOTH_HANDS if side is None else (side,)

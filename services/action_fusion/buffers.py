@@ -10,16 +10,17 @@ from actum.node import SECOND_NS
 from actum.stamps import Order, StampGuard
 
 LOOK_BACK_NS = 9 * SECOND_NS // 10
-"""How long before a segment an object may have been seen last; recordings played in a row are a second apart."""
+"""How long before a segment an object may have been seen last; a gap in a stream this long separates two recordings,
+which are played a second apart."""
 
 MEMORY_NS = 10 * SECOND_NS
-"""How long before a segment a hand may have taken what it still holds, or come to where it still rests."""
+"""How long before a segment samples count: a hand may have grasped an object, or come to rest, that early."""
 
 LATEST_ACTION_NS = 4 * SECOND_NS
-"""An action may come this long after its segment's end: two seconds of waiting, two of skew between streams."""
+"""Longest delay of an action after its segment's end: two seconds of waiting, two of skew between streams."""
 
 MOST_ANSWERED = 16
-"""So many of the last answered segments are remembered, to tell which samples come too late for them."""
+"""Number of answered segments that are remembered, to recognise samples that come too late for them."""
 
 KEPT_NS = MAX_SEGMENT_NS + MEMORY_NS + LATEST_ACTION_NS
 """How long samples are kept: for the longest segment, the time before it, and the wait for its action."""
@@ -42,7 +43,7 @@ class Buffer(Generic[S]):
         return self._samples[-1].stamp_ns if self._samples else -1
 
     def judge(self, sample: S) -> Order:
-        """Judge a sample's place in the stream: only a stamp that went back is a restart, no new session."""
+        """Judge a sample's order in the stream; a new session counts as a restart only if the stamp went back."""
         order = self._guard.judge(sample.stamp_ns, sample.session_id)
         return Order.NEXT if sample.stamp_ns > self.newest_ns else order
 
@@ -58,7 +59,7 @@ class Buffer(Generic[S]):
         self._answered.clear()
 
     def mark_answered(self, start_ns: int, end_ns: int) -> None:
-        """Remember that a segment has been answered: samples of it that still come are too late."""
+        """Remember that a segment has been answered, so that its later samples are too late."""
         self._answered.append(range(start_ns, end_ns + 1))
 
     def is_too_late(self, stamp_ns: int) -> bool:
@@ -66,9 +67,9 @@ class Buffer(Generic[S]):
         return any(stamp_ns in segment for segment in self._answered)
 
     def of_segment(self, start_ns: int, end_ns: int) -> list[S]:
-        """List the samples of a segment and of the time before it, of the same session as the last of them.
+        """List the samples of a segment and of `MEMORY_NS` before it, in the session of the last sample.
 
-        What precedes a gap of `LOOK_BACK_NS` or more before the segment is left out.
+        Samples before a gap of `LOOK_BACK_NS` or more that precedes the segment are left out.
         """
         window = [sample for sample in self._samples if start_ns - MEMORY_NS <= sample.stamp_ns <= end_ns]
         listed = [sample for sample in window if sample.session_id == window[-1].session_id]

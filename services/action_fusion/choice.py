@@ -16,8 +16,8 @@ OFF_THE_LINE = "no object along the arm"
 class Choice:
     """The object acted on (`track`), or `why` there is none.
 
-    `hand` acted, and has the object `held`; `rivals` are as likely as the object, or nearly; `pointing` tells how well
-    the arm points at it.
+    `hand` is the hand that acted, `held` the object it holds. `rivals` are objects about as likely as `track`.
+    `pointing` tells how well the arm points at `track`.
     """
 
     track: ObjectTrack | None = None

@@ -1,4 +1,4 @@
-"""Which object an action is applied to: by the ray of the arm, by plain proximity, or by the interaction."""
+"""Choice of the object that an action is applied to: by the pointing ray, by proximity, or by the interaction."""
 
 import math
 from collections.abc import Sequence
@@ -13,32 +13,32 @@ from action_fusion.settings import Settings
 from actum.messages import Action, Hand
 
 MOST_NAMED = 3
-"""More objects that another moved would make the reason too long to read."""
+"""Most objects moved by another person that the reason names: more would make it too long to read."""
 
 
 def choose(
     action: Action,
-    found: Sequence[Proximity],
+    proximities: Sequence[Proximity],
     actor: Actor,
     hands: HandTracks,
     sides: Sequence[Hand],
     settings: Settings,
 ) -> Choice:
-    """Choose the object by the measure that the action and the settings ask for.
+    """Choose the object by the measure that the action and the settings select.
 
     Args:
-        action: what was recognised.
-        found: the objects, and how near the hands came to them.
-        actor: who acts, in the segment itself.
+        action: the recognised action.
+        proximities: the objects, and the smallest distances of the actor's hands to them.
+        actor: the actor's postures in the segment itself.
         hands: the tracks of all hands, from some time before the segment to its end.
         sides: the actor's hands that may have acted.
         settings: thresholds and labels.
     """
-    if not found:
+    if not proximities:
         return Choice(why=NO_OBJECT)
     if action.action in settings.pointing_labels:
-        return pointed_at([one.track for one in found], actor, sides, settings)
-    near = [one for one in found if math.isfinite(one.distance_m)]
+        return pointed_at([one.track for one in proximities], actor, sides, settings)
+    near = [one for one in proximities if math.isfinite(one.distance_m)]
     if not near:
         return Choice(why=NO_HAND)
     if settings.measure == "proximity":
@@ -50,7 +50,7 @@ def choose(
 
 
 def _why_none(near: Sequence[Proximity], hands: HandTracks, settings: Settings) -> str:
-    """Say why nothing was acted on, and name what another moved."""
+    """Return the reason why no object was chosen, and name the objects that another person moved."""
     why = LEFT_ALONE if any(one.distance_m <= settings.reach_m for one in near) else OUT_OF_REACH
     displaced = displaced_by_others([one.track for one in near], hands, settings)
     named = " and ".join(track.label for track in displaced[:MOST_NAMED])

@@ -1,4 +1,4 @@
-"""Co-motion of a hand and an object: an object that moves as a hand does, near it, is in that hand."""
+"""Co-motion of a hand and an object: an object that moves near a hand and as the hand does is in that hand."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -12,25 +12,26 @@ from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
 
 STEP_NS = 1 * SECOND_NS
-"""Steps are taken over this long: a joint's noise is small beside them, and what moves no further is at rest."""
+"""Nanoseconds over which displacements are measured: long enough for motion to exceed a joint's noise."""
 
 STEADY_M = 0.05
-"""What is in a hand stays within a hand's breadth of its place there."""
+"""Largest deviation of a held object's offset from the hand: the breadth of a hand."""
 
 EXPLAINED = 0.5
-"""The hand's step explains the object's where it takes away more than half of its square."""
+"""Least share of the object's squared displacement that the hand's displacement explains."""
 
 TransportingHands = Mapping[int, Sequence[HandTrack]]
-"""The hands that transport each object, by its id."""
+"""The hands that transport each object, by the object's id."""
 
 
 @dataclass(frozen=True)
 class Comotion:
-    """A hand and an object at the n instants of the hand.
+    """The motion of an object relative to a hand, at the n instants of the hand's track.
 
-    `object_m` (n, 3) is the object's position in the camera frame, `hand_to_object_m` (n, 3) the vector between them,
-    `path_m` (n,) how far the object went since the instant before. `near` (n,) tells whether it was within reach,
-    `in_motion` (n,) whether its step over `STEP_NS` is noticeable, `with_hand` (n,) whether the hand moved it.
+    `object_m` (n, 3) is the object's position in the camera frame, `hand_to_object_m` (n, 3) the vector from the hand
+    to it, `path_m` (n,) the object's path since the previous instant. `near` (n,) tells whether the object is within
+    reach, `in_motion` (n,) whether its displacement over `STEP_NS` is noticeable, `with_hand` (n,) whether the hand
+    moves it.
     """
 
     hand: HandTrack
@@ -44,13 +45,13 @@ class Comotion:
 
     @property
     def distances_m(self) -> Array:
-        """How far the object was from the hand (n,)."""
+        """Distances (n,) of the object from the hand."""
         distances_m: Array = np.linalg.norm(self.hand_to_object_m, axis=1)
         return distances_m
 
     @property
     def recent(self) -> Mask:
-        """Which instants are of the segment or of just before it (n,)."""
+        """Mask (n,) of the instants in the segment or at most `LOOK_BACK_NS` before it."""
         recent: Mask = self.hand.stamps_ns >= -LOOK_BACK_NS
         return recent
 
@@ -60,34 +61,35 @@ class Comotion:
         return bool((self.near & self.in_motion & self.hand.in_segment).any())
 
     def transport_m(self, since_ns: float = -LOOK_BACK_NS) -> float:
-        """Sum the object's path in the hand from an instant on, by default from just before the segment."""
+        """Return the length of the object's path in the hand since an instant, by default just before the segment."""
         return float(self.path_m[self.with_hand & (self.hand.stamps_ns >= since_ns)].sum())
 
     def is_transported(self, moved_m: float) -> bool:
         """Whether the hand moved the object by `moved_m` or more, and for at least half of its path near the hand.
 
-        What it did before counts where it has held the object since; else only the segment and the time just before.
+        Only the segment and `LOOK_BACK_NS` before it count, and earlier motion if the hand has held the object since.
         """
         otherwise_m = float(self.path_m[self.recent & self.in_motion & self.near & ~self.with_hand].sum())
         return self.transport_m() >= max(moved_m, otherwise_m) or self._is_held_since(moved_m)
 
     def _is_held_since(self, moved_m: float) -> bool:
-        """Whether the hand moved the object before the segment, and has had it at the same place in it up to there."""
+        """Whether the hand moved the object before the segment, and kept it at a constant offset up to the segment."""
         before = np.flatnonzero(~self.hand.in_segment)
         recent = before[self.recent[before]]
         if not len(recent):
             return False
         in_hand_m = np.median(self.hand_to_object_m[recent], axis=0)
-        strayed = np.linalg.norm(self.hand_to_object_m[before] - in_hand_m, axis=1) > STEADY_M
-        held = before[np.flatnonzero(strayed)[-1] + 1 :] if strayed.any() else before
+        slipped = np.linalg.norm(self.hand_to_object_m[before] - in_hand_m, axis=1) > STEADY_M
+        held = before[np.flatnonzero(slipped)[-1] + 1 :] if slipped.any() else before
         return float(self.path_m[held][self.with_hand[held]].sum()) >= moved_m
 
 
 def comotion(hand: HandTrack, track: ObjectTrack, reach_m: float, moved_m: float) -> Comotion:
-    """Compare the steps of hand and object at each instant of the hand.
+    """Compare the displacements of hand and object at each instant of the hand's track.
 
-    With d_o and d_h their displacements since, in the last second, the object was furthest from where it is, the hand
-    moves the object where |d_o| is `moved_m` or more and 1 - |d_o - d_h|^2 / |d_o|^2 > 1/2, within `reach_m`.
+    The displacements d_o and d_h are taken since the instant of the last second at which the object was furthest from
+    its present position. The hand moves the object where |d_o| is `moved_m` or more, the explained share
+    1 - |d_o - d_h|^2 / |d_o|^2 exceeds 1/2, and the object is within `reach_m`.
     """
     object_m = track.at(hand.stamps_ns)
     since = instants_furthest_away(object_m, hand.stamps_ns, STEP_NS)
@@ -115,7 +117,7 @@ def transporting_hands(pairs: Sequence[Comotion], moved_m: float) -> Transportin
 
 
 def _without(pair: Comotion, others: Sequence[Comotion]) -> Comotion:
-    """Leave out the instants at which another hand moved the object."""
+    """Clear `in_motion` and `with_hand` at the instants at which another hand moved the object."""
     alone = np.ones_like(pair.with_hand)
     for other in others:
         if len(other.hand.stamps_ns):

@@ -1,8 +1,8 @@
-"""Depth alignment: objects are shifted along their line of sight to the hand, as far as the body's depth is uncertain.
+"""Depth alignment: shift objects along their line of sight to the hand, as far as the body's depth is uncertain.
 
-A body whose distance is guessed from its size alone seems nearer or further than it is, by about the same amount for a
-whole segment; across the line of sight it is seen exactly. So where a hand comes to an object in the image, the gap
-between them in depth may be the body's error.
+A body whose distance is estimated from its size alone is too near or too far by about the same amount for a whole
+segment, while its error across the line of sight is small. So where a hand comes to an object in the image, the gap
+between them in depth may be the error of the body's depth.
 """
 
 from collections.abc import Collection, Sequence
@@ -19,17 +19,17 @@ ACROSS_STD_M = 0.05
 """Standard deviation of a hand's distance from an object across the line of sight."""
 
 LIKELY_STD = 2.0
-"""A gap in depth of more standard deviations is not the body's error but real."""
+"""Largest gap in depth, in standard deviations, that may be the body's error; a larger one is real."""
 
 
 def aligned_in_depth(
     tracks: Sequence[ObjectTrack], hands: Collection[HandTrack], depth_std_m: float, settings: Settings
 ) -> list[ObjectTrack]:
-    """Shift each object along its line of sight towards the hand that came nearest to it, all its positions alike.
+    """Shift all positions of each object along its line of sight, towards the hand that came nearest to it.
 
     With a the distance across and d along the line of sight and s_a, s_d their standard deviations, the nearest
-    instant is that of the smallest a²/s_a² + d²/(s_a² + s_d²), and the shift is the share s_d²/(s_a² + s_d²) of d
-    there. An object that no hand came within reach of in the image stays.
+    instant is that of the smallest a²/s_a² + d²/(s_a² + s_d²). The shift is the share s_d²/(s_a² + s_d²) of d at
+    that instant. An object is not shifted if no hand came within reach of it across the line of sight.
     """
     if depth_std_m == 0:
         return list(tracks)
@@ -41,7 +41,7 @@ def aligned_in_depth(
 
 
 def _shift_m(track: ObjectTrack, hands: Collection[HandTrack], depth_std_m: float, settings: Settings) -> Array:
-    """Return the shift (3,) in the camera frame."""
+    """Compute the shift (3,) of an object in metres, in the camera frame."""
     hands_m = np.concatenate([hand.positions_m[hand.in_segment] for hand in hands] or [np.empty((0, 3))])
     stamps_ns = np.concatenate([hand.stamps_ns[hand.in_segment] for hand in hands] or [np.empty(0)])
     objects_m = track.at(stamps_ns)

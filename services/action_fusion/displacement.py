@@ -1,4 +1,4 @@
-"""What became of an object, from its displacement in the actor's level frame: lifted, pushed, 0.21 m right."""
+"""The outcome for an object, from its displacement in the actor's level frame: lifted, pushed, 0.21 m right."""
 
 from typing import Any
 
@@ -13,42 +13,42 @@ DIRECTIONS = (("right", "left"), ("up", "down"), ("away", "towards"))
 UNMOVED = "unmoved"
 
 MOVED = "moved"
-"""Along the surface and sideways: neither away from the actor nor towards."""
+"""Outcome of a displacement along the surface and sideways."""
 
 PUSHED = "pushed"
-"""What became of a thing that went away from the actor …"""
+"""Outcome of a displacement along the surface and away from the actor."""
 PULLED = "pulled"
-"""… and towards them."""
+"""Outcome of a displacement along the surface and towards the actor."""
 
 STEEPEST_SURFACE = 0.25
-"""What rises by more than a quarter of its way has left the surface: a table seen by a tilted camera is flatter."""
+"""Largest rise along a surface, as a share of the path: a table seen by a tilted camera is flatter."""
 
 
 def described(displacement_m: Array, moved_m: float, has_front: bool, expected: str | None) -> dict[str, Any]:
-    """Describe a displacement as events do: `motion`, `result`, `outcome`, and whether it `agrees` with the expected.
+    """Return an event's fields `motion`, `result`, `outcome` and `agrees` (with the expected outcome).
 
-    The result tells the axis on which the object was displaced most, e.g. "0.21 m away", or "unmoved".
+    The result tells the direction in which the object was displaced most, e.g. "0.21 m away", or "unmoved".
 
     Args:
         displacement_m: (3,), right, up, forward of the actor.
-        moved_m: less is no displacement.
-        has_front: whether forward is the actor's own; if not, all that is level is sideways.
-        expected: the outcome that the action is to have, if it is to have one.
+        moved_m: a shorter displacement counts as unmoved.
+        has_front: whether forward is the actor's facing direction; if not, horizontal directions are "sideways".
+        expected: the outcome expected of the action; None where none is.
     """
-    became = outcome(displacement_m, moved_m, has_front)
+    name = outcome(displacement_m, moved_m, has_front)
     direction = _direction(displacement_m, moved_m, has_front)
     return {
         "motion": Motion(displacement_m=displacement_m.tolist(), direction=direction),
         "result": UNMOVED if direction is None else f"{float(np.abs(displacement_m).max()):.2f} m {direction}",
-        "outcome": became,
-        "agrees": _agrees(became, expected),
+        "outcome": name,
+        "agrees": _agrees(name, expected),
     }
 
 
 def outcome(displacement_m: Array, moved_m: float, has_front: bool = True) -> str:
-    """Say what was done to the object: lifted, put down, pushed, pulled, moved or unmoved.
+    """Name the outcome for the object: lifted, put down, pushed, pulled, moved or unmoved.
 
-    Args as of `described`.
+    The arguments are those of `described`.
     """
     length = float(np.linalg.norm(displacement_m))
     if length < moved_m:
@@ -62,15 +62,15 @@ def outcome(displacement_m: Array, moved_m: float, has_front: bool = True) -> st
 
 
 def _direction(displacement_m: Array, moved_m: float, has_front: bool) -> str | None:
-    """Name the direction in which the object was displaced most; None where it was not."""
+    """Name the direction in which the object was displaced most; None where it is unmoved."""
     if float(np.linalg.norm(displacement_m)) < moved_m:
         return None
     axis = int(np.argmax(np.abs(displacement_m)))
     return DIRECTIONS[axis][float(displacement_m[axis]) < 0] if has_front or axis == 1 else "sideways"
 
 
-def _agrees(became: str, expected: str | None) -> bool | None:
-    """Tell whether an outcome is the expected one; None where none is, or where it may be: things are pushed aside."""
-    if expected is None or (became == MOVED and expected in (PUSHED, PULLED)):
+def _agrees(name: str, expected: str | None) -> bool | None:
+    """Tell whether an outcome is the expected one; None where none is expected, or for pushes and pulls sideways."""
+    if expected is None or (name == MOVED and expected in (PUSHED, PULLED)):
         return None
-    return became == expected
+    return name == expected

@@ -1,4 +1,4 @@
-"""The transform from the camera frame to a fixed one, as a setting gives it: events tell object poses in both."""
+"""The setting of the transform from the camera frame to a fixed frame; events give object poses in both frames."""
 
 import re
 from pathlib import Path
@@ -10,24 +10,24 @@ from actum.arrays import Array
 
 FORM = "16 numbers of a rigid 4x4 transform (rows one after the other, metres), or a file that holds just these"
 MOST_CHARACTERS = 10_000
-"""So much of a file is read: 16 numbers at their longest take 400."""
+"""Characters read of a file: 16 numbers take 400 at most."""
 
 FURTHEST_M = 1e6
-"""Largest translation: more is a mistake in the unit."""
+"""Largest translation in metres: more is a mistake in the unit."""
 
 SEPARATORS = re.compile(r"[\s,;\[\]]+")
-"""What may stand between numbers: lists as NumPy, JSON and MATLAB write them."""
+"""Separators between numbers, in lists as NumPy, JSON and MATLAB write them."""
 
 
-def as_text(given: object) -> str | None:
-    """Write a rigid transform as its 16 numbers, from numbers, from text that lists them, or from the file it names.
+def as_text(value: object) -> str | None:
+    """Write a rigid transform as its 16 numbers; the value is a list of them, text that lists them, or a file's name.
 
     Raises:
-        ValueError: it is no such transform, or the file cannot be read.
+        ValueError: the value is no rigid transform, or the file cannot be read.
     """
-    if given is None:
+    if value is None:
         return None
-    text = given if isinstance(given, str) else str(given)
+    text = value if isinstance(value, str) else str(value)
     numbers = _numbers(text)
     if numbers is None:
         numbers = _numbers(_content(text))
@@ -44,7 +44,7 @@ def from_text(text: str) -> Array:
 
 
 def _numbers(text: str) -> list[float] | None:
-    """Read what a text lists; None where it lists anything but numbers."""
+    """Read the numbers that a text lists; None where it lists anything else."""
     try:
         return [float(word) for word in SEPARATORS.split(text) if word]
     except ValueError:

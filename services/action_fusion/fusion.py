@@ -1,4 +1,4 @@
-"""From an action, its actor's postures and the objects' positions to one event."""
+"""Fuse an action, its actor's postures and the objects' positions to one event."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -30,13 +30,13 @@ def fuse(
     frames: Sequence[ObjectsSample],
     settings: Settings,
 ) -> Event:
-    """Tell what a recognised action was applied to, and what became of it.
+    """Build the event of a recognised action: the object it was applied to, and the outcome for that object.
 
     Args:
         action: a valid final action with label and end.
-        postures: its agent's, from some time before the start up to the end.
-        others: those of each of the other agents who are there, over the same time.
-        frames: the objects', over the same time.
+        postures: the acting agent's samples, from some time before the segment's start up to its end.
+        others: the posture samples of each other agent in the image, over the same time.
+        frames: the samples of objects, over the same time.
         settings: thresholds and labels.
     """
     start_ns, sides = action.start_ns, acting_sides(action)
@@ -44,14 +44,14 @@ def fuse(
     acting = actor.in_segment()
     hands = hand_tracks(actor, [actor_of(other, start_ns) for other in others])
     tracks = _tracks(action, frames, hands, acting.median_depth_std_m(), settings)
-    found = proximities(acting, tracks, sides)
-    choice = choose(action, found, acting, hands, sides, settings)
-    distances_m = {one.track.id: one.distance_m for one in found if np.isfinite(one.distance_m)}
+    measured = proximities(acting, tracks, sides)
+    choice = choose(action, measured, acting, hands, sides, settings)
+    distances_m = {one.track.id: one.distance_m for one in measured if np.isfinite(one.distance_m)}
     likely = [acted_object(t, distances_m[t.id], choice, hands.own, frames, start_ns, settings) for t in choice.likely]
-    became = _became(action, choice, acting, settings)
+    outcome = _outcome(action, choice, acting, settings)
     return Event(
         **_common(action),
-        **became,
+        **outcome,
         object=likely[0] if likely else None,
         held=None if choice.held is None else HeldObject(id=choice.held.id, name=choice.held.name),
         hand=sides[0] if len(sides) == 1 else choice.hand,
@@ -60,13 +60,13 @@ def fuse(
         candidates=likely if choice.rivals else [],
         pointing=choice.pointing,
         why=choice.why,
-        sentence=sentence(action, choice, became["result"]),
+        sentence=sentence(action, choice, outcome["result"]),
         missed=action.missed + _lost([sample for sample in postures if sample.stamp_ns >= start_ns]),
     )
 
 
 def rejected(action: Action, reason: str) -> Event:
-    """Pass a rejection on, with its reason."""
+    """Build the invalid event of a rejected action, with the reason."""
     return Event(
         **_common(action),
         valid=False,
@@ -84,7 +84,7 @@ def rejected(action: Action, reason: str) -> Event:
 
 
 def _common(action: Action) -> dict[str, Any]:
-    """Copy what an event takes over from its action."""
+    """Return the fields that an event copies from its action."""
     return {
         "stamp_ns": action.stamp_ns,
         "sensor": action.sensor,
@@ -104,7 +104,7 @@ def _common(action: Action) -> dict[str, Any]:
 def _tracks(
     action: Action, frames: Sequence[ObjectsSample], hands: HandTracks, depth_std_m: float, settings: Settings
 ) -> list[ObjectTrack]:
-    """Track the objects; the paper's measure takes sightings alone."""
+    """Track the objects present in the segment and fill occlusions; the paper's measure uses sightings only."""
     present = [t for t in object_tracks(frames, action.start_ns) if t.stamps_ns[-1] >= -LOOK_BACK_NS]
     tracks = aligned_in_depth(present, hands.own.values(), depth_std_m, settings)
     if settings.measure == "proximity" or action.end_ns is None:
@@ -112,8 +112,8 @@ def _tracks(
     return fill_occlusions(tracks, hands.everyones, action.end_ns - action.start_ns, settings)
 
 
-def _became(action: Action, choice: Choice, actor: Actor, settings: Settings) -> dict[str, Any]:
-    """Tell what became of the object, in the level frame of the actor as the segment starts."""
+def _outcome(action: Action, choice: Choice, actor: Actor, settings: Settings) -> dict[str, Any]:
+    """Return the event's fields of motion and outcome, in the actor's level frame at the segment's start."""
     level_from_camera = None if choice.track is None else actor.level_from_camera()
     if choice.track is None or level_from_camera is None:
         return {"motion": None, "result": None, "outcome": None, "agrees": None}
@@ -123,6 +123,6 @@ def _became(action: Action, choice: Choice, actor: Actor, settings: Settings) ->
 
 
 def _lost(postures: Sequence[PostureSample]) -> int:
-    """Count the postures lost between those received, from their numbers; numbers that fall are a restart."""
+    """Count the postures lost between the received ones, by gaps in their sequence numbers; a fall is a restart."""
     numbers = [sample.seq for sample in postures if sample.seq is not None]
     return sum(max(later - earlier - 1, 0) for earlier, later in pairwise(numbers))

@@ -1,6 +1,6 @@
-"""Where the hands were, in the camera frame: there an object that nobody moves stays where it is.
+"""Tracks of the hands in the camera frame, in which an object that nobody moves has a constant position.
 
-Distances are the same in it as in the egocentric frame, which is a rigid transform of it at every instant.
+Distances are the same as in the egocentric frame, because the two frames differ by a rigid transform at every instant.
 """
 
 import math
@@ -15,16 +15,16 @@ from actum.messages import Hand
 from actum.node import SECOND_NS
 
 MOST_INSTANTS = 600
-"""Longer tracks are thinned to this many or fewer, to bound the time: 20 s at 30 Hz; a minute is left at 9 Hz."""
+"""Most instants of a track, to bound the computing time: 20 s at 30 Hz. Longer tracks are subsampled."""
 
 SMOOTHING_NS = SECOND_NS // 10
-"""Positions are averaged over this long before and after: a joint's noise of a centimetre becomes four millimetres."""
+"""Nanoseconds averaged on either side of an instant: reduces a joint's noise of a centimetre to four millimetres."""
 
 SPEED_NS = SECOND_NS // 10
-"""A speed is measured over this long before and after, in which a joint's noise of a centimetre is 7 cm/s."""
+"""Nanoseconds on either side of an instant over which speed is measured: a centimetre of noise is then 7 cm/s."""
 
 FURTHEST_SHARE = 0.8
-"""About furthest: at this share of the greatest distance or more, of which noise makes up the rest."""
+"""Share of the greatest distance from which a position counts as furthest: the rest may be noise."""
 
 
 @dataclass(frozen=True)
@@ -37,12 +37,12 @@ class HandTrack:
 
     @property
     def in_segment(self) -> Mask:
-        """Which instants (n,) are of the segment, not of the time before it."""
+        """Mask (n,) of the instants in the segment; the others lie before it."""
         inside: Mask = self.stamps_ns >= 0
         return inside
 
     def at(self, stamps_ns: Array) -> Array:
-        """Interpolate linearly, holding the first and the last: (p,) to (p, 3); NaN where the hand was never known."""
+        """Interpolate positions (p, 3) at stamps (p,) linearly, constant beyond both ends; NaN if there are none."""
         if not len(self.stamps_ns):
             return np.full((len(stamps_ns), 3), np.nan)
         return np.stack([np.interp(stamps_ns, self.stamps_ns, axis) for axis in self.positions_m.T], axis=1)
@@ -61,19 +61,19 @@ class HandTrack:
 
 @dataclass(frozen=True)
 class HandTracks:
-    """The actor's own hands that are known, and those of the other people who are there."""
+    """The tracks of the actor's own hands, and those of the other people in the image."""
 
     own: Mapping[Hand, HandTrack]
     others: Sequence[HandTrack] = ()
 
     @property
     def everyones(self) -> list[HandTrack]:
-        """All of them, the actor's first."""
+        """The tracks of all hands, the actor's first."""
         return [*self.own.values(), *self.others]
 
 
 def hand_tracks(actor: Actor, others: Sequence[Actor]) -> HandTracks:
-    """Track the hands of the actor and of the other people there; hands that are never known are left out."""
+    """Track the hands of the actor and of other people; a hand whose joint is always missing has no track."""
     return HandTracks(_tracks_of(actor), [track for other in others for track in _tracks_of(other).values()])
 
 
@@ -91,7 +91,7 @@ def _hand_track(actor: Actor, side: Hand) -> HandTrack:
 
 
 def _smoothed(positions_m: Array, stamps_ns: Array) -> Array:
-    """Average positions (n, 3) over a fifth of a second around each, less at both ends."""
+    """Average positions (n, 3) over a fifth of a second around each, over less time near both ends."""
     if not len(positions_m):
         return positions_m
     here = np.arange(len(stamps_ns))
@@ -104,27 +104,27 @@ def _smoothed(positions_m: Array, stamps_ns: Array) -> Array:
 
 
 def last_instants_away(positions_m: Array, step_m: float) -> Indices:
-    """Find, for each of n positions (n, 3), the last one before it that is `step_m` or more away from it.
+    """Find, for each of n positions (n, 3), the last earlier one that is `step_m` or more away.
 
     Returns:
         indices (n,), -1 where there is none.
     """
-    found = np.full(len(positions_m), -1, dtype=np.int64)
+    last = np.full(len(positions_m), -1, dtype=np.int64)
     for i, position_m in enumerate(positions_m):
         away = np.flatnonzero(np.linalg.norm(positions_m[:i] - position_m, axis=1) >= step_m)
         if len(away):
-            found[i] = away[-1]
-    return found
+            last[i] = away[-1]
+    return last
 
 
 def instants_furthest_away(positions_m: Array, stamps_ns: Array, within_ns: float) -> Indices:
-    """Find, for each of n positions (n, 3) at stamps (n,), when in the last `within_ns` it was about furthest away.
+    """Find, for each of n positions (n, 3) at stamps (n,), the earlier instant at which it was furthest away.
 
-    That is the last instant with at least four fifths of the greatest distance, so that time at rest before a start
-    does not count.
+    That is the last instant within `within_ns` with at least four fifths of the greatest distance, so that time at
+    rest before a motion does not count.
 
     Returns:
-        indices (n,), each up to its own.
+        indices (n,), each at most the position's own index.
     """
     if not len(positions_m):
         return np.empty(0, dtype=np.int64)

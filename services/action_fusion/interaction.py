@@ -1,4 +1,4 @@
-"""Which object a hand interacts with, decided over the whole segment from closeness and from co-motion."""
+"""The object that a hand interacts with, decided over the whole segment from distance and co-motion."""
 
 from collections.abc import Sequence
 
@@ -14,28 +14,33 @@ from action_fusion.tool_use import tool_target
 from actum.messages import Hand
 
 STEADY_SHARE = 0.75
-"""Of the segment: so long has an object to stay in its place in the hand to be held, though neither moves."""
+"""Least share of the segment in which a held object has a constant offset from the hand, where neither moves."""
 
 MOST_OBJECTS = 32
-"""Each is compared with each hand: of more, those that no hand came near are left out."""
+"""Most objects that are compared with each hand, the nearest ones: bounds the computing time."""
 
 NUDGED_MORE = 3.0
-"""One object was nudged and another was not where the first moved this many times as far."""
+"""An object counts as nudged if it moved this many times as far as every other one."""
 
 
 def interacted_with(
     tracks: Sequence[ObjectTrack], hands: HandTracks, sides: Sequence[Hand], may_use_tool: bool, settings: Settings
 ) -> Choice | None:
-    """Decide what was acted on; None where nothing was: an empty reach, a pantomime.
+    """Choose the object acted on; None where there is none, as in an empty reach or a pantomime.
 
-    In this order: what a hand holds and transports or, if it is used as a tool, what it is used on; what was displaced
-    while the hand was at it, for objects do not move by themselves; what the hand reached for and left where it is;
-    what it has just released; and what was displaced further away from it: thrown, or pushed with a tool. What is
-    displaced where the actor's hands never were is another person's.
+    The first of these that exists is chosen:
+
+    - the object that a hand holds and transports or, if that is used as a tool, the object it is used on;
+    - an object displaced while a hand was near it;
+    - an object that a hand reached for and left in place;
+    - the object that a hand has just released;
+    - an object displaced further away from the hand: thrown, or pushed with a tool.
+
+    An object displaced where the actor's hands never were was moved by another person.
 
     Args:
         tracks: the objects, from some time before the segment to its end.
-        hands: all hands over the same time: what another person moves is not this actor's.
+        hands: all hands over the same time; objects that another person's hands transport are left out.
         sides: the actor's hands that may have acted.
         may_use_tool: whether a held object may be a tool.
         settings: thresholds.
@@ -57,7 +62,7 @@ def interacted_with(
 
 
 def displaced_by_others(tracks: Sequence[ObjectTrack], hands: HandTracks, settings: Settings) -> list[ObjectTrack]:
-    """List what was displaced, but not in the actor's hands nor, where no hand is known to have it, near them."""
+    """List the displaced objects that neither were in the actor's hands, nor moved near them in nobody's hand."""
     displaced = [track for track in tracks if track.is_displaced(settings.moved_m)]
     pairs = _pairs(displaced, hands, settings)
     transporting = transporting_hands(pairs, settings.moved_m)
@@ -76,7 +81,7 @@ def _transports(transporting: TransportingHands, pair: Comotion) -> bool:
 
 
 def _concerned(tracks: Sequence[ObjectTrack], own: Sequence[HandTrack], settings: Settings) -> list[ObjectTrack]:
-    """Drop what lay still beyond the reach of a held tool; of very many objects the nearest are left."""
+    """Drop objects that stayed in place beyond the reach of a held tool; keep at most the nearest `MOST_OBJECTS`."""
     distances_m = [
         min(float(np.linalg.norm(track.at(hand.stamps_ns) - hand.positions_m, axis=1).min()) for hand in own)
         for track in tracks
@@ -90,7 +95,7 @@ def _concerned(tracks: Sequence[ObjectTrack], own: Sequence[HandTrack], settings
 
 
 def _is_pushed_with_tool(pair: Comotion, settings: Settings) -> bool:
-    """Whether the object went as the hand did, as far from it as a tool reaches that may have no marker."""
+    """Whether the object moved with the hand at a tool's distance; the tool may have no marker."""
     with_tool = comotion(pair.hand, pair.track, settings.reach_with_tool_m, settings.moved_m)
     return with_tool.is_transported(settings.moved_m)
 
@@ -102,9 +107,9 @@ def _is_held(pair: Comotion, settings: Settings) -> bool:
     hand_to_object_m = pair.hand_to_object_m[pair.hand.in_segment]
     if not len(hand_to_object_m):
         return False
-    strayed = np.linalg.norm(hand_to_object_m - np.median(hand_to_object_m, axis=0), axis=1)
+    slip = np.linalg.norm(hand_to_object_m - np.median(hand_to_object_m, axis=0), axis=1)
     near = np.linalg.norm(hand_to_object_m, axis=1) <= settings.grasp_m
-    return bool(np.mean((strayed <= STEADY_M) & near) >= STEADY_SHARE)
+    return bool(np.mean((slip <= STEADY_M) & near) >= STEADY_SHARE)
 
 
 def _with_held(
@@ -116,7 +121,7 @@ def _with_held(
 
 
 def _reached(hands: Sequence[HandTrack], free: Sequence[Comotion], settings: Settings) -> Choice | None:
-    """Take what a hand missed by least; of those that it missed by hardly more the one that gave way, if one did."""
+    """Choose the object with the smallest miss of a hand; among nearly equal misses, an object that was nudged."""
     misses = [miss for hand in hands for miss in _missed(hand, free, settings)]
     if not misses:
         return None
@@ -129,14 +134,14 @@ def _reached(hands: Sequence[HandTrack], free: Sequence[Comotion], settings: Set
 
 
 def _missed(hand: HandTrack, free: Sequence[Comotion], settings: Settings) -> list[tuple[Comotion, float]]:
-    """Pair the objects that the hand may have reached with the distances by which it missed them."""
+    """Return the objects that the hand may have reached, each with the distance by which the hand missed it."""
     own = [pair for pair in free if pair.hand is hand]
     misses = misses_m(hand, own, settings)
     return [(pair, misses[pair.track.id]) for pair in own if pair.track.id in misses]
 
 
 def _nudged(pairs: Sequence[Comotion]) -> Comotion | None:
-    """Find the one that gave way clearly more than every other object, if there is one."""
+    """Find the object that was nudged clearly further than every other one; None where there is none."""
     nudges = sorted(((nudge_m(pair), i) for i, pair in enumerate(pairs)), reverse=True)
     most_m, best = nudges[0][0], pairs[nudges[0][1]]
     others = [nudged_m for nudged_m, i in nudges[1:] if pairs[i].track is not best.track]
@@ -144,7 +149,7 @@ def _nudged(pairs: Sequence[Comotion]) -> Comotion | None:
 
 
 def _released(own: Sequence[Comotion], transporting: TransportingHands) -> Choice | None:
-    """Take what a hand has just released."""
+    """Choose the object that a hand released last."""
     released = [pair for pair in own if _transports(transporting, pair)]
     latest = max(released, key=lambda pair: float(pair.hand.stamps_ns[pair.with_hand].max()), default=None)
     return None if latest is None else Choice(latest.track, latest.hand.side)

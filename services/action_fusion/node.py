@@ -1,4 +1,4 @@
-"""The fusion's pure step: it waits until the input streams have reached a segment's end, and answers it once."""
+"""The fusion's pure step: waits until the input streams have reached a segment's end, and puts one event for it."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -14,25 +14,25 @@ from actum.node import SECOND_NS, Counters, Tick
 from actum.stamps import Order
 
 WAIT_NS = MAX_SKEW_NS + SECOND_NS // 5
-"""The skew, and two ticks' grace for the tick that starts the count."""
+"""How long an action waits: the skew, and two ticks, since waiting is counted from the first tick after the action."""
 
 REMEMBERED = 10_000
-"""So many answered segments are remembered, to tell duplicates: more than a day has, and little memory."""
+"""Answered segments remembered to recognise duplicates: more than a day has, in little memory."""
 
 MOST_AGENTS = 16
-"""So many people's postures are kept: more than a camera tells apart, and a bound on the memory."""
+"""Most people whose postures are kept, to bound the memory: more than a camera tells apart."""
 
 
 @dataclass
 class Pending:
-    """An action that waits for the input streams; `since_ns` is the time of the first tick after it came."""
+    """An action that waits for the input streams; `since_ns` is the time of the first tick after its arrival."""
 
     action: Action
     end_ns: int
     since_ns: int | None = None
 
     def is_before(self, restart_ns: int) -> bool:
-        """Tell whether its segment is of the time before a restart of the stream at stamp `restart_ns`."""
+        """Tell whether the action's segment lies before the restart of a stream at stamp `restart_ns`."""
         return self.action.start_ns < restart_ns or self.end_ns > restart_ns + MAX_SKEW_NS
 
 
@@ -54,7 +54,7 @@ class ActionFusion:
         self._answered: dict[tuple[str, int, int | None, str | None], None] = {}
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
-        """Take one posture, objects message, action or tick; return the events it completes."""
+        """Process one posture, objects message, action or tick; return the events that it completes."""
         match message:
             case Posture():
                 sample = posture_sample(message, self.counters)
@@ -68,7 +68,7 @@ class ActionFusion:
         return []
 
     def _take(self, buffer: Buffer[S], sample: S, what: str) -> list[Event]:
-        """Add a sample to its stream and answer what waited for it; after a restart, also all of the time before."""
+        """Add a sample to its stream; return the events of actions that waited for it or lie before a restart."""
         order = buffer.judge(sample)
         if order is Order.STALE:
             self.counters.reject("stale_stamp", f"{what} at {sample.stamp_ns} after {buffer.newest_ns}")
@@ -77,15 +77,15 @@ class ActionFusion:
         if order is Order.RESTART:
             events = [self._answer(pending) for pending in list(self._pending) if pending.is_before(sample.stamp_ns)]
             buffer.clear()
-            self._forget_later(sample.stamp_ns + MAX_SKEW_NS)
+            self._clear_streams_beyond(sample.stamp_ns + MAX_SKEW_NS)
             self._answered.clear()
         if buffer.is_too_late(sample.stamp_ns):
             self.counters.reject("late", f"{what} at {sample.stamp_ns}, after its segment was answered")
         buffer.append(sample)
         return events + self._complete()
 
-    def _forget_later(self, stamp_ns: int) -> None:
-        """Clear the streams that are further than `stamp_ns` after a restart: they are still of the time before it."""
+    def _clear_streams_beyond(self, stamp_ns: int) -> None:
+        """Clear the streams with samples after `stamp_ns`: they lie before a restart of the sensor's clock."""
         if self._objects.newest_ns > stamp_ns:
             self._objects.clear()
         for postures in self._postures.values():
@@ -112,7 +112,7 @@ class ActionFusion:
         return self._complete()
 
     def _tick(self, tick: Tick) -> list[Event]:
-        """Answer what has waited long enough with what is there."""
+        """Return the events of actions that have waited long enough, from the samples received so far."""
         events = []
         for pending in list(self._pending):
             if pending.since_ns is None:
@@ -122,11 +122,11 @@ class ActionFusion:
         return events
 
     def _complete(self) -> list[Event]:
-        """Answer what has all its samples. Stamps rise, so the sample at the end itself is the last that counts."""
+        """Return the events of the actions that have all their samples, up to the stamp of the segment's end."""
         return [self._answer(pending) for pending in list(self._pending) if self._is_complete(pending)]
 
     def _is_complete(self, pending: Pending) -> bool:
-        """Tell whether all streams have reached its end; one that is much further is of the time before a restart."""
+        """Tell whether all streams have reached the segment's end; one far beyond it still lies before a restart."""
         postures = self._postures.get(pending.action.agent)
         reached = (-1 if postures is None else postures.newest_ns, self._objects.newest_ns)
         if not all(pending.end_ns <= newest_ns <= pending.end_ns + LATEST_ACTION_NS for newest_ns in reached):
@@ -135,11 +135,11 @@ class ActionFusion:
         return all(buffer is not None and buffer.newest_ns >= last_ns for buffer, last_ns in others)
 
     def _own(self, pending: Pending) -> list[PostureSample]:
-        """List the postures of the one who acts, of the segment and of the time before it."""
+        """List the acting person's postures in the segment and before it."""
         return self._buffer(pending.action.agent).of_segment(pending.action.start_ns, pending.end_ns)
 
     def _others(self, agent: int, postures: Sequence[PostureSample]) -> list[tuple[Buffer[PostureSample] | None, int]]:
-        """List the streams of the other people in the image, and when each was there last (ns)."""
+        """List the streams of the other people in the image, and the stamp at which each was in it last (ns)."""
         last_ns = {other: sample.stamp_ns for sample in postures for other in sample.agents if other != agent}
         return [(self._postures.get(other), last) for other, last in last_ns.items()]
 
@@ -159,7 +159,7 @@ class ActionFusion:
         )
 
     def _buffer(self, agent: int) -> Buffer[PostureSample]:
-        """Find an agent's stream; a new one takes the place of the one not heard of for longest."""
+        """Return an agent's stream; a new agent's replaces the least recently used one if there are too many."""
         buffer = self._postures.pop(agent, None) or Buffer()
         if len(self._postures) == MOST_AGENTS:
             del self._postures[next(iter(self._postures))]

@@ -1,4 +1,4 @@
-"""Where each object was at any instant of a segment, from the images in which it was seen or image-tracked."""
+"""Tracks of the objects in a segment: positions interpolated between the images with a sighting or image tracking."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -10,13 +10,13 @@ from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
 
 SETTLED_SAMPLES = 3
-"""An object's position at an instant is the median of this many sightings, so that one outlier does no harm."""
+"""Number of sightings whose median is an object's position at the start or end: one outlier does no harm."""
 
 SETTLED_NS = SECOND_NS // 4
-"""Sightings further apart than this may be of different positions."""
+"""Nanoseconds from the start or end within which sightings are taken: the object may move in more."""
 
 RESTING_M = 0.05
-"""What a hand holds is at rest where it stays within a hand's breadth: a joint's noise is less than half of it."""
+"""Largest distance from its last position at which a held object is at rest: twice a joint's noise and more."""
 
 
 @dataclass(frozen=True)
@@ -36,12 +36,12 @@ class ObjectTrack:
 
     @property
     def label(self) -> str:
-        """What sentences call the object, e.g. `object 3 "cup"`."""
+        """The object's name in sentences, e.g. `object 3 "cup"`."""
         return f'object {self.id} "{self.name}"'
 
     @property
     def is_occluded(self) -> bool:
-        """Whether some positions are no sightings."""
+        """Whether the object is occluded at some positions."""
         return not bool(self.seen.all())
 
     def keeping(self, kept: Mask) -> "ObjectTrack":
@@ -49,7 +49,7 @@ class ObjectTrack:
         return replace(self, stamps_ns=self.stamps_ns[kept], positions_m=self.positions_m[kept], seen=self.seen[kept])
 
     def at(self, stamps_ns: Array) -> Array:
-        """Interpolate linearly between positions, holding the first and the last: (p,) to (p, 3)."""
+        """Interpolate positions (p, 3) at stamps (p,) linearly, constant beyond both ends."""
         axes = [np.interp(stamps_ns, self.stamps_ns, axis) for axis in self.positions_m.T]
         return np.stack(axes, axis=1)
 
@@ -63,7 +63,7 @@ class ObjectTrack:
         return float(np.linalg.norm(self.displacement_m())) >= moved_m
 
     def end_m(self) -> Array:
-        """Find the last position (3,): of the last sightings or, in a hand, the mean over the rest at the end."""
+        """Estimate the last position (3,): the median of the last sightings or, if occluded, the mean of the rest."""
         latest = self.stamps_ns >= self.stamps_ns[-1] - SETTLED_NS
         if self.seen[-1]:
             unseen = np.flatnonzero(~self.seen)
@@ -75,7 +75,7 @@ class ObjectTrack:
         return rest_m
 
     def _start_m(self) -> Array:
-        """Find the position (3,) at the segment's start, by the sightings around it."""
+        """Estimate the position (3,) at the segment's start, by the sightings around it."""
         apart_ns = np.abs(self.stamps_ns[self.seen])
         nearest = np.argsort(apart_ns, kind="stable")[:SETTLED_SAMPLES]
         around = nearest[apart_ns[nearest] <= SETTLED_NS]

@@ -1,4 +1,4 @@
-"""Where an object is while a hand occludes it: it moves with the hand that has grasped it, and else stays."""
+"""Positions of occluded objects: an object moves with the hand that has grasped it, and else stays in place."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,17 +17,17 @@ SHORTEST_GAP_NS = SECOND_NS // 5
 """Shorter gaps between sightings are interpolated linearly."""
 
 TOUCHING_M = 0.02
-"""A hand this close to its smallest distance has arrived: about a joint's noise."""
+"""Excess over a hand's smallest distance up to which the hand has arrived: about a joint's noise."""
 
 SLIP_M = 0.10
-"""What a hand holds stays where it is in the hand, as far as a joint's noise lets one tell."""
+"""Largest change of a held object's offset from the hand: a joint's noise."""
 
 
 @dataclass(frozen=True)
 class Grasp:
-    """A hand has an object, unseen, from the instant `taken` of the hand's track to the instant `released`.
+    """A hand holds an occluded object from the instant `taken` of the hand's track to the instant `released`.
 
-    `distance_m` is the hand's smallest distance from where the object was seen before.
+    `distance_m` is the hand's smallest distance from the object's last sighting before the grasp.
     """
 
     hand: HandTrack
@@ -37,29 +37,29 @@ class Grasp:
 
     @property
     def stamps_ns(self) -> Array:
-        """The stamps (g,) of the grasp."""
+        """Stamps (g,) of the g instants of the grasp."""
         return self.hand.stamps_ns[self.taken : self.released + 1]
 
     @property
     def hand_m(self) -> Array:
-        """The hand's positions (g, 3), camera frame."""
+        """The hand's positions (g, 3) during the grasp, camera frame."""
         return self.hand.positions_m[self.taken : self.released + 1]
 
 
 def fill_occlusions(
     tracks: Sequence[ObjectTrack], hands: Sequence[HandTrack], end_ns: int, settings: Settings
 ) -> list[ObjectTrack]:
-    """Let an object that is not seen move with the hand that has it, until it is seen again or the segment ends.
+    """Move each occluded object with the hand that holds it, until its next sighting or the segment's end.
 
-    Its position is the image-tracked one of what occludes it where there is one, and else that of the hand's joint.
-    Only a hand that came within grasp of where the object was seen last can have it. Where the object is seen again, it
-    has to be displaced and within reach of that hand. Of several that are not seen again a hand has the nearest, and
-    none if it transports another one that is seen.
+    The object's positions are the image-tracked ones, or else those of the hand's joint. A hand can hold an object only
+    if it came within grasp of the object's last sighting. If there is a next sighting, it must be displaced and within
+    reach of that hand. Of several objects without a next sighting, a hand holds the nearest, and none if it transports
+    a visible object.
     """
     grasped = [_keep_grasped(track, hands, settings) for track in tracks]
     bridged = [_bridge_gaps(track, hands, settings) for track in grasped if len(track.stamps_ns)]
-    lost = [found for hand in hands if (found := _lost_in_hand(bridged, hand, end_ns, settings)) is not None]
-    grasps = {track.id: grasp for grasp, track in sorted(lost, key=lambda found: -found[0].distance_m)}
+    lost = [pair for hand in hands if (pair := _lost_in_hand(bridged, hand, end_ns, settings)) is not None]
+    grasps = {track.id: grasp for grasp, track in sorted(lost, key=lambda pair: -pair[0].distance_m)}
     return [_extrapolated(track, grasps[track.id]) if track.id in grasps else track for track in bridged]
 
 
@@ -74,7 +74,7 @@ def _keep_grasped(track: ObjectTrack, hands: Sequence[HandTrack], settings: Sett
 
 
 def _holds(hand: HandTrack, track: ObjectTrack, first: int, last: int, settings: Settings) -> bool:
-    """Whether a hand came within grasp of the first position, and the object is in the same place in it at the last."""
+    """Whether a hand came within grasp of position `first`, and kept its offset from the object until `last`."""
     since_ns, until_ns = track.stamps_ns[[first, last]]
     inside = np.flatnonzero((hand.stamps_ns >= since_ns) & (hand.stamps_ns <= until_ns))
     if not len(inside):
@@ -88,7 +88,7 @@ def _holds(hand: HandTrack, track: ObjectTrack, first: int, last: int, settings:
 
 
 def _bridge_gaps(track: ObjectTrack, hands: Sequence[HandTrack], settings: Settings) -> ObjectTrack:
-    """Fill the gaps between two sightings at different positions with those in the hand that had the object."""
+    """Fill each gap between sightings at different positions with the object's positions in the hand that held it."""
     for i in np.flatnonzero(np.diff(track.stamps_ns) >= SHORTEST_GAP_NS)[::-1]:
         before_m, after_m = track.positions_m[i : i + 2]
         if np.linalg.norm(after_m - before_m) < settings.moved_m:
@@ -103,7 +103,7 @@ def _bridge_gaps(track: ObjectTrack, hands: Sequence[HandTrack], settings: Setti
 def _lost_in_hand(
     tracks: Sequence[ObjectTrack], hand: HandTrack, end_ns: int, settings: Settings
 ) -> tuple[Grasp, ObjectTrack] | None:
-    """Find the object that was seen last before this hand took it: the nearest, if there is one."""
+    """Find the object that this hand has grasped and that is not seen any more, the nearest of several."""
     unseen = [track for track in tracks if end_ns - track.stamps_ns[-1] >= SHORTEST_GAP_NS]
     grasps = [(_grasp(track, len(track.stamps_ns) - 1, hand, float(end_ns), settings), track) for track in unseen]
     lost = [(grasp, track) for grasp, track in grasps if grasp is not None]
@@ -112,12 +112,12 @@ def _lost_in_hand(
     pairs = [comotion(hand, track, settings.reach_m, settings.moved_m) for track in tracks]
     in_hand = [pair for pair in pairs if pair.transport_m(since_ns=0.0) >= settings.moved_m]
     transported = {pair.track.id for pair in in_hand if pair.is_transported(settings.moved_m)}
-    candidates = [found for found in lost if not transported or found[1].id in transported]
-    return min(candidates, key=lambda found: found[0].distance_m, default=None)
+    candidates = [(grasp, track) for grasp, track in lost if not transported or track.id in transported]
+    return min(candidates, key=lambda candidate: candidate[0].distance_m, default=None)
 
 
 def _grasp(track: ObjectTrack, sighting: int, hand: HandTrack, until_ns: float, settings: Settings) -> Grasp | None:
-    """Find when the hand takes the object after a sighting, and when it releases it before the next."""
+    """Find when the hand grasps the object after a sighting and releases it before the next; None where it does not."""
     since_ns = track.stamps_ns[sighting]
     instants = np.flatnonzero((hand.stamps_ns >= since_ns) & (hand.stamps_ns <= until_ns))
     if not len(instants):
@@ -137,12 +137,12 @@ def _grasp(track: ObjectTrack, sighting: int, hand: HandTrack, until_ns: float, 
 
 
 def _first_closest(distances_m: Array) -> int:
-    """Find the first of the distances (n,) that is the smallest but for `TOUCHING_M`."""
+    """Find the index of the first of the distances (n,) that exceeds the smallest by at most `TOUCHING_M`."""
     return int(np.argmax(distances_m <= distances_m.min() + TOUCHING_M))
 
 
 def _interpolated(track: ObjectTrack, sighting: int, grasp: Grasp) -> ObjectTrack:
-    """Move the object with the hand between two sightings; the slip between them is spread over the time."""
+    """Move the object with the hand between two sightings; its offset from the hand changes linearly in between."""
     hand_m = grasp.hand_m
     start_m, end_m = track.positions_m[sighting] - hand_m[0], track.positions_m[sighting + 1] - hand_m[-1]
     share = np.linspace(0.0, 1.0, len(hand_m))[:, None]
@@ -150,7 +150,7 @@ def _interpolated(track: ObjectTrack, sighting: int, grasp: Grasp) -> ObjectTrac
 
 
 def _extrapolated(track: ObjectTrack, grasp: Grasp) -> ObjectTrack:
-    """Move the object with the hand from its last sighting on, in the place in the hand at which it was taken."""
+    """Move the object with the hand after its last sighting, at the offset from the hand at which it was grasped."""
     hand_m = grasp.hand_m
     moving = np.flatnonzero(grasp.hand.speeds_m_per_s()[grasp.taken : grasp.released + 1] > RESTING_M_PER_S)
     at_rest_m = hand_m[: max(1, moving[0] if len(moving) else len(hand_m))]
@@ -159,7 +159,7 @@ def _extrapolated(track: ObjectTrack, grasp: Grasp) -> ObjectTrack:
 
 
 def _inserted(track: ObjectTrack, index: int, stamps_ns: Array, positions_m: Array) -> ObjectTrack:
-    """Insert unseen positions (g, 3) at stamps (g,) before the position `index`, or after all."""
+    """Insert positions (g, 3) without sighting, at stamps (g,), before the position `index` or at the end."""
     inside = (stamps_ns > track.stamps_ns[index - 1]) & (
         stamps_ns < (track.stamps_ns[index] if index < len(track.stamps_ns) else np.inf)
     )

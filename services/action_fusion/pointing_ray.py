@@ -1,4 +1,4 @@
-"""Pointing: the object nearest to the ray on which the actor's stretched arm points is meant."""
+"""Pointing: the action is applied to the object nearest to the ray of the actor's stretched arm."""
 
 import math
 from collections.abc import Sequence
@@ -13,23 +13,23 @@ from actum.arrays import Array, Indices
 from actum.messages import Hand, Pointing
 
 HOLDING_SHARE = 1 / 3
-"""The last part of a pointing action, in which the arm is stretched out."""
+"""Last share of a pointing action, in which the arm is stretched out."""
 
 POINTING_M = 0.08
-"""The arm is out while its ray's tip is this near to where it is in that part: a joint's noise is a third of it."""
+"""Largest distance of the ray's tip from its median in that last share while the arm is out: thrice a joint's noise."""
 
 FINGER_M = 0.10
-"""How far the stretched index finger ends beyond the hand joint, on the line of the forearm."""
+"""Distance from the hand joint to the tip of the stretched index finger, along the line of the forearm."""
 
 CLEARLY = 0.5
-"""One ray fits clearly better than another where an object is off it by less than this share of the angle."""
+"""Ratio of angles below which one ray fits an object clearly better than another."""
 
 SMALLEST_M = 1e-9
-"""Divisors are kept at least this large: shorter vectors have no direction."""
+"""Least divisor: shorter vectors have no direction."""
 
 
 def pointed_at(tracks: Sequence[ObjectTrack], actor: Actor, sides: Sequence[Hand], settings: Settings) -> Choice:
-    """Choose the object at the smallest angle to the ray of the hand that points; those nearly as close are rivals."""
+    """Choose the object at the smallest angle to the pointing ray; objects at nearly the same angle are rivals."""
     side = pointing_side(actor, sides)
     by_angle = zip(_angles(tracks, actor, side), tracks, strict=True)
     ranked = sorted((one for one in by_angle if math.isfinite(one[0])), key=lambda one: one[0])
@@ -45,12 +45,12 @@ def pointed_at(tracks: Sequence[ObjectTrack], actor: Actor, sides: Sequence[Hand
 
 
 def pointing_side(actor: Actor, sides: Sequence[Hand]) -> Hand:
-    """Name the hand whose finger is furthest from the line of hips and head, the median over the action's last part."""
+    """Return the hand whose finger is furthest from the line of hips and head, by the median over the last share."""
     return max(sides, key=lambda side: _outstretched_m(actor, side))
 
 
 def fingertip_m(actor: Actor, side: Hand) -> Array:
-    """Return where the hand's stretched index finger ends (p, 3), egocentric."""
+    """Return the tip (p, 3) of the hand's stretched index finger, egocentric."""
     elbow, hand = actor.joint_m(f"{side}_elbow"), actor.hand_m(side)
     forearm = hand - elbow
     length = np.linalg.norm(forearm, axis=1, keepdims=True)
@@ -59,10 +59,10 @@ def fingertip_m(actor: Actor, side: Hand) -> Array:
 
 
 def pointing_angle(object_ego: Array, tip_ego: Array, origin_ego: Array) -> float:
-    """Compute the angle (rad) between the rays origin-to-tip and origin-to-object, medians while the arm is out.
+    """Compute the angle (rad) between the median rays from origin to tip and to object, while the arm is out.
 
-    All are (p, 3) in metres in the actor's egocentric frame, NaN where unknown. The angle is infinite where origin and
-    tip are never known together.
+    All arguments are (p, 3) in metres in the actor's egocentric frame, NaN where unknown. The angle is infinite where
+    origin and tip are never known together.
     """
     known = np.flatnonzero(np.isfinite(tip_ego + origin_ego).all(axis=1))
     if not len(known):
@@ -76,9 +76,9 @@ def pointing_angle(object_ego: Array, tip_ego: Array, origin_ego: Array) -> floa
 
 
 def _angles(tracks: Sequence[ObjectTrack], actor: Actor, side: Hand) -> list[float]:
-    """Measure each object's angle to the ray from head to finger or, where that fits clearly better, the arm's.
+    """Measure each object's angle to the ray from head to finger, or to that of the arm if that fits clearly better.
 
-    Most people hold the finger where they look, some point with the stretched arm.
+    Most people point along the line of sight over the finger, some along the stretched arm.
     """
     objects = [actor.to_ego(track.at(actor.stamps_ns)) for track in tracks]
     head, tip = actor.joint_m("head"), fingertip_m(actor, side)

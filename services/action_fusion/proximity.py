@@ -1,4 +1,4 @@
-"""The paper's measure (section 2.2): the object that a hand came nearest to is acted on."""
+"""The paper's measure (section 2.2): an action is applied to the object that a hand came nearest to."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from actum.messages import Hand
 
 @dataclass(frozen=True)
 class Proximity:
-    """The smallest distance of a hand to an object, infinite where no hand is known, and which hand that was."""
+    """The smallest distance of a hand to an object, infinite where no hand is known, and the hand that came nearest."""
 
     track: ObjectTrack
     distance_m: float
@@ -23,7 +23,7 @@ class Proximity:
 
 
 def proximities(actor: Actor, tracks: Sequence[ObjectTrack], sides: Sequence[Hand]) -> list[Proximity]:
-    """Measure how near the hands on these sides came to each object."""
+    """Measure the smallest distance of the hands on these sides to each object."""
     return [_proximity(actor, track, sides) for track in tracks]
 
 
@@ -37,14 +37,14 @@ def _proximity(actor: Actor, track: ObjectTrack, sides: Sequence[Hand]) -> Proxi
 def smallest_distance(object_ego: Array, hand_ego: Array) -> float:
     """Compute min over the segment of PM = ||O - hand||_2 in metres; infinite where the hand is never known.
 
-    Both are (p, 3) in metres in the actor's egocentric frame, NaN where unknown.
+    Both arguments are (p, 3) in metres in the actor's egocentric frame, NaN where unknown.
     """
     distances = np.linalg.norm(object_ego - hand_ego, axis=1)
     return float(np.nanmin(distances)) if np.isfinite(distances).any() else np.inf
 
 
 def nearest(near: Sequence[Proximity], settings: Settings) -> Choice | None:
-    """Choose the object with the smallest distance, if a hand reached it; one displaced may be reached with a tool."""
+    """Choose the object with the smallest distance within reach; a displaced object may be at a tool's distance."""
     moved_m, reach_m, reach_with_tool_m = settings.moved_m, settings.reach_m, settings.reach_with_tool_m
     reached = [
         one for one in near if one.distance_m <= (reach_with_tool_m if one.track.is_displaced(moved_m) else reach_m)

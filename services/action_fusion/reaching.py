@@ -1,4 +1,4 @@
-"""Which object a hand has reached for, where it has moved none: by closeness, and by where the reach was heading."""
+"""The object that a hand reached for without moving any: by distance, and by the direction of the reach."""
 
 from collections.abc import Mapping, Sequence
 
@@ -11,41 +11,42 @@ from action_fusion.stops import stops
 from actum.arrays import Array, Indices, Mask
 
 REACH_STEP_M = 0.05
-"""The last of a reach, by which its goal is told: several times a joint's noise, less than a hand's breadth."""
+"""Length of a reach's last step, which gives its direction: several times a joint's noise."""
 
 NUDGE_M = 0.001
-"""An object that is touched gives way by more; less is the table's trembling."""
+"""Least motion of a nudged object: less is the table's trembling."""
 
 NUDGE_TO_NOISE = 5.0
-"""A nudge is told from noise where it is at least this many standard deviations."""
+"""Least ratio of a nudge to the noise's standard deviation."""
 
 FEWEST_POSITIONS = 10
-"""From fewer positions the noise cannot be estimated."""
+"""Fewest positions from which the noise can be estimated."""
 
 MAD_TO_STD = 0.6745
 """Median absolute deviation of a Gaussian, in standard deviations."""
 
 TOUCHED_M = 0.13
-"""A hand that has acted elsewhere is at an object only if it touches it: from the palm to the fingertips, and half of
-a small object."""
+"""Largest distance of a hand that touches an object, required of a hand that has acted elsewhere before: from the palm
+to the fingertips, and half of a small object."""
 
 RIM_M = 0.10
-"""A hand that stops further from an object's centre than a grasp is at its rim if it went for it: its line passes
-within half of an object of two decimetres."""
+"""Largest miss of a reach that stops at an object's rim, further from its centre than a grasp: half of an object of two
+decimetres."""
 
 AIMED = 0.5
-"""A reach heads at an object where at least half of its last step brought the hand nearer to it: within 60 degrees."""
+"""Least share of the last step by which the hand came nearer to an object that the reach aims at: within 60 degrees."""
 
 
 def misses_m(hand: HandTrack, pairs: Sequence[Comotion], settings: Settings) -> Mapping[int, float]:
-    """Measure by how much the hand misses each object that it may have reached, by the object's id.
+    """Measure the distance by which the hand misses each object that it may have reached, by the object's id.
 
-    A reach ends on a line to its goal. With c = (r' - r) / s the share of the hand's last step s by which the
-    distance r fell, the line of the step passes the object at r sqrt(1 - c^2); a hand that made no such step, or
-    moved away, misses it by r. The median is taken over the instants at which the hand rests where it works last, with
-    the object in grasp, or at its rim if it went for it. Of these only those count to which a reach for any object has
-    led or, where no reach was seen, all, if they are most of the segment. A hand that has stopped elsewhere before has
-    acted there, and on nothing, for nothing was moved: it has to touch what it is to have reached for.
+    A reach ends on a straight line to its goal. Let c = (r' - r) / s be the share of the hand's last step s by which
+    its distance from the object fell from r' to r. The line of the step passes the object at r sqrt(1 - c^2); a hand
+    that made no step, or moved away, misses the object by r. The miss is the median over the instants of the hand's
+    last stop at which the object is within grasp, or the hand has stopped at its rim after a reach aimed at it.
+
+    Only instants that follow a reach aimed at some object count. Without such a reach all instants count, if they make
+    up half of the segment. A hand that stopped elsewhere before must touch an object to have reached for it.
     """
     if not pairs:
         return {}
@@ -54,11 +55,11 @@ def misses_m(hand: HandTrack, pairs: Sequence[Comotion], settings: Settings) -> 
     distances = np.stack([pair.distances_m for pair in pairs])
     stopped = stops(hand)
     missed = distances * np.sqrt(1 - closings**2)
-    at_hand = distances <= (TOUCHED_M if stopped.acted_before else settings.grasp_m)
+    in_grasp = distances <= (TOUCHED_M if stopped.acted_before else settings.grasp_m)
     at_rim = (distances <= settings.reach_m) & (missed <= RIM_M) & (not stopped.acted_before)
-    aimed = (at_hand | at_rim) & (closings >= AIMED)
+    aimed = (in_grasp | at_rim) & (closings >= AIMED)
     arrived: Mask = stopped.last & np.asarray(aimed.any(axis=0))
-    counted = (at_hand | aimed) & arrived if arrived.any() else at_hand & stopped.last
+    counted = (in_grasp | aimed) & arrived if arrived.any() else in_grasp & stopped.last
     fewest = 1 if arrived.any() else max(1, np.count_nonzero(hand.in_segment) / 2)
     touched: Mask = counted.sum(axis=1) >= fewest
     return {
@@ -67,9 +68,9 @@ def misses_m(hand: HandTrack, pairs: Sequence[Comotion], settings: Settings) -> 
 
 
 def nudge_m(pair: Comotion) -> float:
-    """Measure how far an object gave way within the segment (m, root mean square); 0 where that may be noise.
+    """Measure an object's motion within the segment (m, root mean square); 0 where it may be noise.
 
-    The noise is estimated from second differences, which are sqrt(6) times as large.
+    The noise is estimated from second differences, whose standard deviation is sqrt(6) times as large.
     """
     positions_m = pair.object_m[pair.hand.in_segment]
     if len(positions_m) < FEWEST_POSITIONS:
@@ -81,7 +82,7 @@ def nudge_m(pair: Comotion) -> float:
 
 
 def _closing(hand: HandTrack, pair: Comotion, since: Indices) -> Array:
-    """Measure the share of the hand's last step by which it came nearer to where the object is, 0 to 1 (n,)."""
+    """Measure the share (n,) of the hand's last step by which the hand came nearer to the object, 0 to 1."""
     steps = np.linalg.norm(hand.positions_m - hand.positions_m[since], axis=1)
     nearer = np.linalg.norm(pair.object_m - hand.positions_m[since], axis=1) - pair.distances_m
     shares = np.divide(nearer, steps, out=np.zeros_like(steps), where=(since >= 0) & (steps > 0))

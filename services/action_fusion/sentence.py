@@ -5,9 +5,9 @@ from actum.messages import Action
 
 
 def sentence(action: Action, choice: Choice, result: str | None) -> str:
-    """Say the action, its object or objects, what was used, what became of it; an unknown action is said to be so.
+    """Compose the sentence: the action or "unknown", the object or objects, the tool, the result, the confidence.
 
-    Why no object was chosen is said where there were objects to choose from and a hand to choose by.
+    The reason why no object was chosen takes the result's place, if an object was in sight and a hand known.
     """
     what = f"unknown, most like {action.action}" if action.unknown else str(action.action)
     why = None if choice.why in (NO_HAND, NO_OBJECT) else choice.why

@@ -10,7 +10,7 @@ from actum.settings import ServiceSettings
 
 
 class Settings(ServiceSettings):
-    """What the fusion can be told beside what every service can."""
+    """Settings of the fusion, besides those of every service."""
 
     measure: Literal["joint", "proximity"] = Field(
         "joint",
@@ -57,5 +57,5 @@ class Settings(ServiceSettings):
 
     @property
     def reach_with_tool_m(self) -> float:
-        """How far from a hand a tool in it reaches (m); the tool may have no marker."""
+        """Largest distance from a hand that a tool in it reaches (m); the tool may have no marker."""
         return self.reach_m + self.grasp_m

@@ -1,4 +1,4 @@
-"""Where a hand comes to rest within a segment: what it works at is where it stops last, not where it passed."""
+"""The stops of a hand within a segment: the hand acts where it stops last, not where it passes."""
 
 from dataclasses import dataclass
 
@@ -8,23 +8,23 @@ from action_fusion.hand_tracks import HandTrack
 from actum.arrays import Array, Indices, Mask
 
 RESTING_M_PER_S = 0.15
-"""A reach is several times as fast (0.3 m/s and more), and comes to rest at its goal."""
+"""Largest speed of a resting hand: a reach is at least twice as fast (0.3 m/s and more)."""
 
 SLOWEST_SHARE = 0.2
-"""Where a hand never rests, this share of its instants, the slowest, counts."""
+"""Share of the instants, the slowest ones, that count as rest if the hand never rests."""
 
 SAME_PLACE_M = 0.07
-"""A hand that rests within this of where it rested is in the same place: a joint's noise is a third of it."""
+"""Largest distance between two stops in the same place: three times a joint's noise."""
 
 HESITATION_M = 0.10
-"""A stop nearer than this to the last one is a hesitation before it; one further away is an action of its own."""
+"""Largest distance from the last stop of a stop that is a mere hesitation; one further away is an action of its own."""
 
 
 @dataclass(frozen=True)
 class Stops:
-    """Where a hand stops: `last` (n,) marks the instants at which it rests where it works last.
+    """The stops of a hand: `last` (n,) marks the instants at which it rests in the place of its last stop.
 
-    `acted_before` is whether it had stopped elsewhere before, away from where it came from.
+    `acted_before` is whether it had stopped elsewhere before, apart from its place at the segment's start.
     """
 
     last: Mask
@@ -32,18 +32,18 @@ class Stops:
 
 
 def stops(hand: HandTrack) -> Stops:
-    """Find where a hand rests last, not counting the place it came from, to which it may have gone back."""
+    """Find a hand's last stop away from its place at the segment's start, to which it may have returned."""
     resting = _resting(hand)
-    at = np.flatnonzero(resting)
-    if not len(at):
+    stopped = np.flatnonzero(resting)
+    if not len(stopped):
         return Stops(resting, acted_before=False)
     home_m = hand.positions_m[np.flatnonzero(hand.in_segment)[0]]
-    away = at[_distances_m(hand, at, home_m) > SAME_PLACE_M]
+    away = stopped[_distances_m(hand, stopped, home_m) > SAME_PLACE_M]
     if not len(away):
         return Stops(resting, acted_before=False)
     last_m = hand.positions_m[away[-1]]
     last = np.zeros_like(resting)
-    last[at[_distances_m(hand, at, last_m) <= SAME_PLACE_M]] = True
+    last[stopped[_distances_m(hand, stopped, last_m) <= SAME_PLACE_M]] = True
     return Stops(last, acted_before=bool((_distances_m(hand, away, last_m) > HESITATION_M).any()))
 
 
@@ -53,7 +53,7 @@ def _distances_m(hand: HandTrack, instants: Indices, position_m: Array) -> Array
 
 
 def _resting(hand: HandTrack) -> Mask:
-    """Tell the segment's instants (n,) at which the hand rests, or is slowest."""
+    """Mask (n,) of the segment's instants at which the hand rests or, if it never does, is slowest."""
     inside = hand.in_segment
     if not inside.any():
         return inside

@@ -1,4 +1,4 @@
-"""Samples of the input streams: what fusion keeps of a posture and of an objects message, checked once."""
+"""Samples of the input streams: the checked contents of posture and objects messages that fusion uses."""
 
 import math
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from actum.messages import Objects, Posture
 from actum.node import Counters
 
 UNIT_TOLERANCE = 0.1
-"""How much a quaternion's length may differ from 1: rounding differs by less, what is no orientation by more."""
+"""Largest deviation of a quaternion's length from 1: rounding causes less, values that are no orientation more."""
 
 LEVEL = (0.0, -1.0, 0.0)
 """Up in the frame of a level camera, whose y axis points down."""
@@ -22,8 +22,8 @@ LEVEL = (0.0, -1.0, 0.0)
 class Body:
     """A valid posture: `ego_from_camera` (4, 4), and joints (15, 3) in metres, egocentric, NaN where one is missing.
 
-    `has_front` is false where the egocentric frame is not a body's, so that its forward axis says nothing.
-    `depth_std_m` is the standard deviation of the body's distance from the camera, 0 where that was measured.
+    `has_front` is false where the egocentric frame was not computed from a body, so that its forward axis is arbitrary.
+    `depth_std_m` is the standard deviation of the body's distance from the camera, 0 where the distance is measured.
     `up_in_camera` points against gravity.
     """
 
@@ -36,7 +36,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Sample:
-    """What all samples have: the capture stamp, and the session of the source."""
+    """A sample of any stream: the capture stamp, and the session of the source."""
 
     stamp_ns: int
     session_id: str
@@ -44,7 +44,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class PostureSample(Sample):
-    """One posture; `body` is None where it was invalid, `agents` are all who were in the image with this one."""
+    """One posture; `body` is None where it was invalid, `agents` are the numbers of all people in the image."""
 
     seq: int | None
     body: Body | None
@@ -55,8 +55,8 @@ class PostureSample(Sample):
 class ObjectsSample(Sample):
     """The objects of one image by id: positions (3,) in metres in the camera frame, and names.
 
-    Those `image_tracked` were occluded; their position is that of what occludes them, tracked in the image.
-    `quaternions_xyzw` (4,) are there for those that were seen.
+    The objects `image_tracked` were occluded; their positions come from the occluder, tracked in the image.
+    `quaternions_xyzw` (4,) holds the orientations of the objects that were seen.
     """
 
     positions_m: dict[int, Array]
@@ -66,7 +66,7 @@ class ObjectsSample(Sample):
 
 
 def posture_sample(posture: Posture, counters: Counters) -> PostureSample:
-    """Read a posture; one that says it is valid and cannot be is counted as `bad_posture`, a joint as `bad_joint`."""
+    """Read a posture; count an unusable one that claims to be valid as `bad_posture`, a bad joint as `bad_joint`."""
     body = _body(posture, counters) if posture.valid else None
     if posture.valid and body is None:
         counters.reject("bad_posture", f"agent {posture.agent} at {posture.stamp_ns}: no joints_m or no rigid frame")
@@ -74,23 +74,23 @@ def posture_sample(posture: Posture, counters: Counters) -> PostureSample:
 
 
 def objects_sample(message: Objects, counters: Counters) -> ObjectsSample:
-    """Read the seen and the image-tracked objects, no remembered ones; absurdly far ones count as `bad_object`."""
-    known = [found for found in message.objects if found.seen or found.followed] if message.valid else []
-    near = [found for found in known if max(map(abs, found.position_m)) < MAX_COORDINATE_M]
+    """Read the seen and the image-tracked objects, not the remembered ones; count absurdly far ones as `bad_object`."""
+    known = [each for each in message.objects if each.seen or each.followed] if message.valid else []
+    near = [each for each in known if max(map(abs, each.position_m)) < MAX_COORDINATE_M]
     if len(near) < len(known):
         counters.reject("bad_object", f"an object beyond {MAX_COORDINATE_M:g} m at {message.stamp_ns}")
     return ObjectsSample(
         message.stamp_ns,
         message.session_id,
-        {found.id: np.array(found.position_m, dtype=np.float64) for found in near},
-        {found.id: found.name for found in near},
-        frozenset(found.id for found in near if not found.seen),
-        {found.id: unit for found in near if found.seen and (unit := _unit(found.quaternion_xyzw)) is not None},
+        {each.id: np.array(each.position_m, dtype=np.float64) for each in near},
+        {each.id: each.name for each in near},
+        frozenset(each.id for each in near if not each.seen),
+        {each.id: unit for each in near if each.seen and (unit := _unit(each.quaternion_xyzw)) is not None},
     )
 
 
 def _unit(quaternion: list[float]) -> Array | None:
-    """Make an orientation a unit quaternion (4,); None where it is far from one."""
+    """Normalise a quaternion to unit length (4,); None where its length is far from 1."""
     length = math.hypot(*quaternion)
     return np.array(quaternion) / length if abs(length - 1) <= UNIT_TOLERANCE else None
 

@@ -1,4 +1,4 @@
-"""Printed patterns: single markers and the ChArUco board, by their measures."""
+"""Printed patterns: single markers and the ChArUco board, by their dimensions."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,13 +9,13 @@ import numpy as np
 
 from actum.arrays import Array, Mask
 
-FEWEST_SQUARES = 3  # each way: fewer have no inner corners to speak of
-MOST_SQUARES = 50  # each way: more are too small to be seen
-LARGEST_SQUARE_M = 1.0  # a larger number is one in mm, given by mistake
+FEWEST_SQUARES = 3  # in each direction: fewer have too few inner corners
+MOST_SQUARES = 50  # in each direction: more are too small to be detected
+LARGEST_SQUARE_M = 1.0  # a larger number is in mm by mistake
 
 
 class PatternError(ValueError):
-    """A marker or a board that cannot be: what is wrong, and what can be."""
+    """An impossible marker or board; the message tells what is wrong and what is possible."""
 
 
 def families() -> list[str]:
@@ -24,10 +24,10 @@ def families() -> list[str]:
 
 
 def canonical(family: str) -> str:
-    """Turn a family's name, with or without DICT_ and in any case, into OpenCV's.
+    """Return OpenCV's name of a family, from a name in any letter case, with or without DICT_.
 
     Raises:
-        PatternError: there is none of that name.
+        PatternError: there is no family of that name.
     """
     if family in families():
         return family
@@ -42,7 +42,7 @@ def dictionary_of(family: str) -> Any:
     """Return OpenCV's dictionary of a family.
 
     Raises:
-        PatternError: there is none of that name.
+        PatternError: there is no family of that name.
     """
     return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, canonical(family)))
 
@@ -69,7 +69,7 @@ class Board:
     Its frame has the origin at the top left outer corner, x to the right, y down, z into the print.
 
     Raises:
-        PatternError: the measures make no board.
+        PatternError: a board of these dimensions is impossible.
     """
 
     columns: int = 7
@@ -101,27 +101,27 @@ class Board:
 
     @property
     def margin_m(self) -> float:
-        """White between a marker and the edge of its square."""
+        """Width of the white between a marker and the edge of its square."""
         return (self.square_m - self.marker_m) / 2
 
     @cached_property
     def corners_m(self) -> Array:
-        """Inner corners by id (n, 3), m, z = 0."""
+        """Inner corners (n, 3) in metres, in the order of their ids; z = 0."""
         return np.asarray(self.opencv.getChessboardCorners(), dtype=np.float64)
 
     @cached_property
     def outline_m(self) -> Array:
-        """The four outer corners (4, 2), m, clockwise from the origin."""
+        """The four outer corners (4, 2) in metres, clockwise from the origin."""
         return np.array([[0, 0], [self.width_m, 0], [self.width_m, self.height_m], [0, self.height_m]])
 
     @cached_property
     def opencv(self) -> Any:
-        """The same as OpenCV's board."""
+        """The board as an OpenCV object."""
         size = (self.columns, self.rows)
         return cv2.aruco.CharucoBoard(size, self.square_m, self.marker_m, dictionary_of(self.family))
 
     def __str__(self) -> str:
-        """Say it as the options of the command do."""
+        """Describe the board in the terms of the command's options."""
         return (
             f"{self.columns}x{self.rows} squares of {self.square_m * 1000:g} mm, "
             f"markers {self.family} of {self.marker_m * 1000:g} mm"

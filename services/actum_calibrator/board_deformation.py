@@ -1,4 +1,4 @@
-"""How a board is bent: taken for flat, a millimetre of bend in A4 changes the focal length found by more than 1 %."""
+"""Estimates a board's bend: assumed to be flat, an A4 board bent by 1 mm biases the focal length by more than 1 %."""
 
 from collections.abc import Callable
 
@@ -8,19 +8,20 @@ from actum.arrays import Array
 from actum_calibrator.board import Board
 
 Deformation = Array
-"""A quadratic surface: heights (3,) in m by u^2, u v and v^2, u and v from the middle in halves of the diagonal."""
+"""Coefficients (3,) in m of a quadratic surface: z = a u^2 + b u v + c v^2, with u and v from the middle in half
+diagonals."""
 
 Residuals = Callable[[Deformation], Array]
-"""Corners as found minus as projected (2n), px, of the camera that fits a board with this deformation best."""
+"""Returns the residuals (2n,) in px, detected minus projected, of the camera that best fits a board so deformed."""
 
 FLAT: Deformation = np.zeros(3)
-STEP_M = 5e-4  # of the differences: well above the noise of corners, well below the bends that matter
+STEP_M = 5e-4  # of the numerical differences: well above the noise of corners, well below relevant bends
 ITERATIONS = 2  # the residuals are almost linear in the deformation
-LEAST_CHI_SQUARED = 30.0  # with three degrees of freedom, noise alone exceeds it once in a million times
+LEAST_CHI_SQUARED = 30.0  # with three degrees of freedom, noise alone exceeds it with a probability of 1e-6
 
 
 def deformed_corners_m(board: Board, deformation: Deformation) -> Array:
-    """Return the board's inner corners (n, 3), m, with the heights of a deformation (3,)."""
+    """Return the board's inner corners (n, 3) in metres, with the z of a deformation (3,)."""
     corners = board.corners_m.copy()
     half = np.array([board.width_m, board.height_m]) / 2
     u, v = ((corners[:, :2] - half) / np.linalg.norm(half)).T
@@ -29,10 +30,10 @@ def deformed_corners_m(board: Board, deformation: Deformation) -> Array:
 
 
 def estimate_deformation(residuals_of: Residuals, unknowns: int) -> Deformation:
-    """Find the deformation (3,) that fits best, by Gauss-Newton with numerical differences.
+    """Estimate the deformation (3,) by Gauss-Newton with numerical differences.
 
-    Return `FLAT` where it is not significant beside the noise of the corners, by a chi-squared test. `unknowns` is
-    how many other parameters are fitted to the same corners.
+    Return `FLAT` if it is not significant against the noise of the corners, by a chi-squared test. `unknowns` is the
+    number of other parameters that are fitted to the same corners.
     """
     deformation = FLAT
     for _ in range(ITERATIONS):

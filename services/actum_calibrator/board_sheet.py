@@ -1,4 +1,4 @@
-"""The calibration board to print."""
+"""The printable sheet of the calibration board."""
 
 import numpy as np
 
@@ -7,12 +7,12 @@ from actum_calibrator.printed_sheet import BOLD, EDGE_MM, Sheet, document
 from actum_calibrator.sheet_sizes import SheetSize
 
 STRIP_MM = 15.0  # kept free below the board for the ruler
-RULER_BOTTOM_MM = 8.5  # leaves room for the ruler's numbers above what printers cannot reach
-BESIDE_RULER_MM = 158.0  # from the ruler's left end to the text at its right: behind the ruler's own advice
+RULER_BOTTOM_MM = 8.5  # leaves room for the ruler's numbers above the edge that printers cannot reach
+BESIDE_RULER_MM = 158.0  # from the ruler's left end to the text at its right, beyond the ruler's own text
 
 
 def board_sheet(board: Board, sheet_size: SheetSize) -> bytes:
-    """Write a PDF of the board in true size, on paper lying sideways.
+    """Write a PDF of the board in true size, on paper in landscape format.
 
     Raises:
         PatternError: the board does not fit the paper.

@@ -1,4 +1,4 @@
-"""The board's corners as one image shows them, refined to fractions of a pixel; blurred images are refused."""
+"""Detects the board's corners in an image, refines them to fractions of a pixel, and refuses blurred images."""
 
 import math
 from dataclasses import dataclass
@@ -11,18 +11,18 @@ from actum_calibrator.blur import blur_px, image_blur_px, image_from_plane
 from actum_calibrator.board import Board
 from actum_calibrator.grey_images import BlurredError, UnusablePictureError
 
-FEWEST_CORNERS = 8  # twice what a pose takes, so that the view tells something of the camera, too
-MOST_BLUR_PX = 2.0  # standard deviation; beyond it corners are drawn off by what stands beside them
-MOST_BLUR_OF_DIAGONAL = 1e-3  # of the image's diagonal: a large image's blur is judged by it instead
+FEWEST_CORNERS = 8  # twice as many as a pose needs, so that the view also constrains the camera
+MOST_BLUR_PX = 2.0  # standard deviation; beyond it corners are biased by the markers beside them
+MOST_BLUR_OF_DIAGONAL = 1e-3  # share of the image's diagonal: the limit for large images
 WINDOW_PX = (2, 20)  # least and most half width of the windows in which corners are refined
-BLINDING_SHARE = 0.65  # of the most blur: from here on blur is named as the cause when no board is found
+BLINDING_SHARE = 0.65  # share of the largest blur above which blur is named as the cause when no board is found
 REFINEMENT = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, 100, 1e-4)
 """When the refinement of a corner ends: after 100 iterations, or a step of 1e-4 px."""
 
 
 @dataclass(frozen=True)
 class View:
-    """Corners of the board in one image: `ids` (n) and `corners_px` (n, 2); `size` is (width, height)."""
+    """Corners of the board in one image: n `ids` and `corners_px` (n, 2); `size` is (width, height) in px."""
 
     name: str
     size: tuple[int, int]
@@ -33,7 +33,7 @@ class View:
 
     @property
     def corners_m(self) -> Array:
-        """The same corners in the board's frame: (n, 3)."""
+        """The same corners (n, 3) in the board's frame, in metres."""
         return self.board.corners_m[self.ids]
 
     @property
@@ -42,7 +42,7 @@ class View:
         return math.hypot(*self.size)
 
     def outline_px(self) -> Array:
-        """Return where the board's four outer corners are in the image, by its homography, seen or not: (4, 2)."""
+        """Return the board's four outer corners (4, 2) in the image, by the homography, visible or not."""
         image_from_board = image_from_plane(self.board, self.ids, self.corners_px)
         return np.asarray(cv2.perspectiveTransform(self.board.outline_m[None], image_from_board)[0], dtype=np.float64)
 
@@ -58,7 +58,7 @@ class BoardFinder:
         """Find the board in grey levels (height, width).
 
         Raises:
-            UnusablePictureError: it is not there, shows too few corners, or is blurred.
+                UnusablePictureError: there is no board, too few corners are visible, or the image is blurred.
         """
         corners, numbers, _, _ = self._detector.detectBoard(pixels)
         ids = [] if numbers is None else [int(number) for number in np.ravel(numbers)]
@@ -72,14 +72,14 @@ class BoardFinder:
         return View(name, (width, height), self._board, ids, corners_px, blur)
 
     def _refined(self, pixels: Pixels, ids: list[int], corners_px: Array) -> Array:
-        """Refine corners (n, 2) in windows that just leave out the markers beside them, which would draw them off."""
+        """Refine corners (n, 2) in windows that just exclude the markers beside them, which would bias the corners."""
         reach = int(np.clip(round(self._margin_px(ids, corners_px)), *WINDOW_PX))
         start = corners_px.astype(np.float32).reshape(-1, 1, 2)
         refined = cv2.cornerSubPix(pixels, start, (reach, reach), (-1, -1), REFINEMENT)
         return np.asarray(refined, dtype=np.float64).reshape(-1, 2)
 
     def _margin_px(self, ids: list[int], corners_px: Array) -> float:
-        """Return the width of the white around the markers, in the direction in which it is foreshortened more."""
+        """Return the width (px) of the white around the markers, along the axis that is foreshortened more."""
         image_from_board = image_from_plane(self._board, ids, corners_px)
         middle, margin = self._board.outline_m.mean(axis=0), self._board.margin_m
         ends = middle + margin * np.array([[0, 0], [1, 0], [0, 1]])
@@ -92,7 +92,7 @@ class BoardFinder:
 
 
 def _unfound(pixels: Pixels, name: str, corners: int) -> UnusablePictureError:
-    """Say why the board was not found."""
+    """Return the error that tells why the board was not found."""
     blur = image_blur_px(pixels)
     if blur is None:
         return UnusablePictureError(name, "nothing to be seen: too dark, too bright or empty")

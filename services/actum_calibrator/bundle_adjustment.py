@@ -1,4 +1,4 @@
-"""Bundle adjustment of two cameras: their transform and the board's pose in every pair, to the corners in all images.
+"""Bundle adjustment of two cameras: fits their transform and the board's pose in every pair to all detected corners.
 
 A pose (6) is a rotation vector (rad) and a translation (m); `b_from_a` maps points of frame a to frame b.
 """
@@ -15,11 +15,11 @@ from actum.calibration import Calibration
 from actum_calibrator.board_views import View
 from actum_calibrator.pairs import Pair
 
-ITERATIONS = 60  # far more than it takes from a good start: ten or so
-SMALLEST_STEP = 1e-9  # rad and m: below what any board determines
+ITERATIONS = 60  # from a good start about ten suffice
+SMALLEST_STEP = 1e-9  # rad and m: far below the accuracy of any board
 DAMPING = 1e-3  # of the first step, relative to the diagonal of the normal equations, as Marquardt has it
-LEAST_DAMPING = 1e-12  # from here on a step is Gauss and Newton's
-MOST_DAMPING = 1e9  # where even so short a step does not lower the cost, it is at its minimum
+LEAST_DAMPING = 1e-12  # with less damping a step is a Gauss-Newton step
+MOST_DAMPING = 1e9  # if not even so short a step lowers the cost, it is at its minimum
 
 
 @dataclass(frozen=True)
@@ -31,30 +31,30 @@ class CameraModel:
 
     @classmethod
     def of(cls, calibration: Calibration) -> "CameraModel":
-        """Take them from a calibration."""
+        """Build the model of a calibration."""
         return cls(calibration.matrix, np.array(calibration.distortion, dtype=np.float64))
 
     def reprojection_errors_px(self, view: View, camera_from_board: Array) -> Array:
-        """Return corners as projected minus as seen (n, 2), with the board at a pose (6)."""
+        """Return projected minus detected corners (n, 2), with the board at a pose (6)."""
         projected, _ = self._project(view, camera_from_board)
         errors: Array = projected - view.corners_px
         return errors
 
     def linearised(self, view: View, camera_from_board: Array) -> tuple[Array, Array]:
-        """Return the same errors, flat (2n), and their Jacobian by the pose (2n, 6)."""
+        """Return the reprojection errors (2n,) in px, and their Jacobian (2n, 6) with respect to the pose."""
         projected, jacobian = self._project(view, camera_from_board)
         return (projected - view.corners_px).ravel(), jacobian[:, :6]
 
     def pose_candidates(self, view: View) -> list[Array]:
-        """Return the one or two poses (6) that a plane can have here, by IPPE (Collins and Bartoli 2014), refined."""
+        """Return the one or two refined poses (6) that fit a view of a plane, by IPPE (Collins and Bartoli 2014)."""
         _, rotations, positions, _ = cv2.solvePnPGeneric(
             view.corners_m, view.corners_px, self.matrix, self.distortion, flags=cv2.SOLVEPNP_IPPE
         )
-        found = [
+        poses = [
             self._refined(view, np.asarray(rotation), np.asarray(position))
             for rotation, position in zip(rotations, positions, strict=True)
         ]
-        return [pose for pose in found if np.isfinite(pose).all()]
+        return [pose for pose in poses if np.isfinite(pose).all()]
 
     def _refined(self, view: View, rotation: Array, position: Array) -> Array:
         refined = cv2.solvePnPRefineLM(
@@ -63,7 +63,7 @@ class CameraModel:
         return np.concatenate([np.ravel(part) for part in refined])
 
     def _project(self, view: View, camera_from_board: Array) -> tuple[Array, Array]:
-        """Return projected corners (n, 2) and OpenCV's Jacobian, by the pose and then by the camera's parameters."""
+        """Return projected corners (n, 2) and OpenCV's Jacobian: columns of the pose, then of the camera parameters."""
         rotation, position = camera_from_board[:3], camera_from_board[3:]
         projected, jacobian = cv2.projectPoints(view.corners_m, rotation, position, self.matrix, self.distortion)
         return np.asarray(projected, dtype=np.float64).reshape(-1, 2), np.asarray(jacobian, dtype=np.float64)
@@ -71,7 +71,7 @@ class CameraModel:
 
 @dataclass(frozen=True)
 class BundleAdjustment:
-    """The outcome: poses (6), each pair's RMS reprojection error, and the covariance (6, 6) of the transform."""
+    """The result: poses (6), each pair's RMS reprojection error, and the covariance (6, 6) of the transform."""
 
     people_from_markers: Array
     markers_from_boards: list[Array]
@@ -82,9 +82,9 @@ class BundleAdjustment:
 class BundleAdjuster:
     """Levenberg-Marquardt over the transform between the cameras and the board's pose in every pair.
 
-    Each pair's errors count by the weight w = 1 / (1 + (rms / `scale_px`)^2), Cauchy's, so that a pair that
-    contradicts the others does not draw them along. The parameters (6 + 6 pairs) are the transform from the marker
-    camera to the people camera, then the pose of each pair's board in the marker camera.
+    Each pair's errors have Cauchy's weight w = 1 / (1 + (rms / `scale_px`)^2), so that a pair that contradicts the
+    others has little influence. The parameters (6 + 6 pairs) are the transform from the marker camera to the people
+    camera, then the pose of each pair's board in the marker camera.
     """
 
     def __init__(self, markers: CameraModel, people: CameraModel, pairs: Sequence[Pair], scale_px: float) -> None:
@@ -92,7 +92,7 @@ class BundleAdjuster:
         self._scale_px = scale_px
 
     def adjust(self, people_from_markers: Array, markers_from_boards: Sequence[Array]) -> BundleAdjustment:
-        """Adjust from a first guess, poses (6)."""
+        """Adjust the parameters, starting from poses (6) of the transform and of each pair's board."""
         parameters, damping = np.concatenate([people_from_markers, *markers_from_boards]), DAMPING
         cost = self._cost(parameters)
         for _ in range(ITERATIONS):
@@ -126,7 +126,7 @@ class BundleAdjuster:
         )
 
     def _errors(self, parameters: Array) -> list[Array]:
-        """Return each pair's reprojection errors in both images, flat."""
+        """Return each pair's reprojection errors (2n,) in both images, n corners together."""
         people_from_markers, boards = parameters[:6], parameters[6:].reshape(-1, 6)
         return [
             np.concatenate(
@@ -139,7 +139,7 @@ class BundleAdjuster:
         ]
 
     def _normal_equations(self, parameters: Array) -> tuple[Array, Array]:
-        """Return the weighted J^T J (p, p) and J^T e (p) of all p parameters; a pair involves its own board alone."""
+        """Return the weighted J^T J (p, p) and J^T e (p,) of all p parameters; a pair involves only its own board."""
         normal, gradient = np.zeros((len(parameters), len(parameters))), np.zeros(len(parameters))
         for i, weight in enumerate(self._weights(parameters)):
             involved = np.r_[0:6, 6 + 6 * i : 12 + 6 * i]
@@ -149,7 +149,7 @@ class BundleAdjuster:
         return normal, gradient
 
     def _linearised(self, people_from_markers: Array, markers_from_board: Array, pair: Pair) -> tuple[Array, Array]:
-        """Return one pair's errors (m), and their Jacobian (m, 12) by the transform and by the board's pose."""
+        """Return one pair's errors (m,), and their Jacobian (m, 12) with respect to transform and board pose."""
         people_from_board, by_transform, by_board = compose_with_jacobians(people_from_markers, markers_from_board)
         in_markers, markers_jacobian = self._markers.linearised(pair.markers, markers_from_board)
         in_people, people_jacobian = self._people.linearised(pair.people, people_from_board)
@@ -163,12 +163,12 @@ class BundleAdjuster:
 
 
 def compose(b_from_a: Array, a_from_board: Array) -> Array:
-    """Chain two poses (6): b_from_board (6)."""
+    """Compose two poses (6) to b_from_board (6)."""
     return compose_with_jacobians(b_from_a, a_from_board)[0]
 
 
 def compose_with_jacobians(b_from_a: Array, a_from_board: Array) -> tuple[Array, Array, Array]:
-    """Chain two poses (6), with the Jacobians (6, 6) by the first and by the second argument."""
+    """Compose two poses (6); also return the Jacobians (6, 6) with respect to the first and the second argument."""
     second, first = b_from_a, a_from_board
     r, t, r_r1, r_t1, r_r2, r_t2, t_r1, t_t1, t_r2, t_t2 = cv2.composeRT(first[:3], first[3:], second[:3], second[3:])
     by_second, by_first = np.block([[r_r2, r_t2], [t_r2, t_t2]]), np.block([[r_r1, r_t1], [t_r1, t_t1]])

@@ -1,4 +1,4 @@
-"""A picture of a calibration: where the board was in the image, how the corners fit, each view's error and tilt."""
+"""A picture of a calibration: image coverage, residuals of the corners, each view's error and tilt."""
 
 import io
 import math
@@ -13,12 +13,12 @@ from actum_calibrator.board_views import View
 from actum_calibrator.intrinsics import Intrinsics
 from actum_calibrator.view_set import CELLS
 
-WIDTH = 900  # px of the image's drawing
-PANEL = 400  # px of the column of figures beside it
+WIDTH = 900  # px, width of the drawn image
+PANEL = 400  # px, width of the column of figures beside it
 EDGE = 28  # px around both
 TOP = 64  # px kept free for the title
-ARROW = 22.0  # px: the length at which a large residual, the 95th percentile, is about drawn
-FINE = 2  # times as large each way before it is reduced, so that lines come out smooth
+ARROW = 22.0  # px: about the drawn length of a large residual, the 95th percentile
+FINE = 2  # oversampling in each direction, which makes lines smooth
 MOST_ROWS = 24  # views listed; the worst stand first
 INK = "#1c2833"
 FAINT = "#7f8c8d"
@@ -31,7 +31,7 @@ BAR = "#7fb3d5"
 
 
 class Drawing:
-    """A canvas drawn finely and reduced, so that lines come out smooth; coordinates are those of the result."""
+    """An oversampled canvas, which makes lines smooth; coordinates are pixels of the result."""
 
     def __init__(self, width: int, height: int) -> None:
         self._image = Image.new("RGB", (width * FINE, height * FINE), "white")
@@ -66,29 +66,33 @@ class Drawing:
         return file.getvalue()
 
 
-def coverage_picture(found: Intrinsics, views: Sequence[View]) -> bytes:
+def coverage_picture(intrinsics: Intrinsics, views: Sequence[View]) -> bytes:
     """Draw a calibration as PNG."""
-    scale = WIDTH / found.size[0]
-    height = round(found.size[1] * scale)
+    scale = WIDTH / intrinsics.size[0]
+    height = round(intrinsics.size[1] * scale)
     drawing = Drawing(WIDTH + PANEL + 2 * EDGE, max(height + TOP + 64, TOP + 276 + 20 * min(len(views), MOST_ROWS)))
     drawing.text(EDGE, 18, "Camera calibration", 22)
     drawing.text(
-        EDGE, 45, f"{found.size[0]}x{found.size[1]} image, where the board was and how its corners fit", 14, FAINT
+        EDGE,
+        45,
+        f"{intrinsics.size[0]}x{intrinsics.size[1]} image, where the board was and how its corners fit",
+        14,
+        FAINT,
     )
-    _draw_cells(drawing, found, height)
+    _draw_cells(drawing, intrinsics, height)
     _draw_views(drawing, views, scale)
-    magnification = _magnification(found.residuals_px)
-    _draw_residuals(drawing, found.residuals_px, views, scale, magnification)
+    magnification = _magnification(intrinsics.residuals_px)
+    _draw_residuals(drawing, intrinsics.residuals_px, views, scale, magnification)
     _draw_legend(drawing, height + TOP + 14, magnification)
-    _draw_figures(drawing, found, views, WIDTH + 2 * EDGE)
+    _draw_figures(drawing, intrinsics, views, WIDTH + 2 * EDGE)
     return drawing.png()
 
 
-def _draw_cells(drawing: Drawing, found: Intrinsics, height: int) -> None:
+def _draw_cells(drawing: Drawing, intrinsics: Intrinsics, height: int) -> None:
     columns, rows = CELLS
     for row, column in np.ndindex(rows, columns):
         left, top = EDGE + column * WIDTH / columns, TOP + row * height / rows
-        colour = COVERED if found.covered[row, column] else EMPTY
+        colour = COVERED if intrinsics.covered[row, column] else EMPTY
         drawing.box(left, top, left + WIDTH / columns - 1, top + height / rows - 1, colour)
 
 
@@ -111,7 +115,7 @@ def _draw_residuals(
 
 
 def _magnification(residuals_px: Sequence[Array]) -> float:
-    """Choose how many times residuals (n, 2) are drawn as long: 1, 2 or 5 times a power of ten."""
+    """Choose the magnification of residuals (n, 2): 1, 2 or 5 times a power of ten."""
     large = float(np.percentile(np.linalg.norm(np.vstack(residuals_px), axis=1), 95))
     wanted = ARROW / max(large, 1e-6)
     power = 10.0 ** math.floor(math.log10(wanted))
@@ -133,16 +137,16 @@ def _draw_legend(drawing: Drawing, top: float, magnification: float) -> None:
     drawing.text(EDGE, top + 22, advice, 13, FAINT)
 
 
-def _draw_figures(drawing: Drawing, found: Intrinsics, views: Sequence[View], left: float) -> None:
-    fx, cx, fy, cy = found.matrix[0, 0], found.matrix[0, 2], found.matrix[1, 1], found.matrix[1, 2]
-    deviations = found.deviations_px
+def _draw_figures(drawing: Drawing, intrinsics: Intrinsics, views: Sequence[View], left: float) -> None:
+    fx, cx, fy, cy = intrinsics.matrix[0, 0], intrinsics.matrix[0, 2], intrinsics.matrix[1, 1], intrinsics.matrix[1, 2]
+    deviations = intrinsics.deviations_px
     rows = [
-        ("RMS", f"{found.rms_px:.3f} px", f"{len(views)} views, {sum(len(v.ids) for v in views)} corners"),
+        ("RMS", f"{intrinsics.rms_px:.3f} px", f"{len(views)} views, {sum(len(v.ids) for v in views)} corners"),
         ("fx", f"{fx:.1f} ± {deviations[0]:.1f} px", f"{deviations[0] / fx:.2%}"),
         ("fy", f"{fy:.1f} ± {deviations[1]:.1f} px", f"{deviations[1] / fy:.2%}"),
         ("cx", f"{cx:.1f} ± {deviations[2]:.1f} px", ""),
         ("cy", f"{cy:.1f} ± {deviations[3]:.1f} px", ""),
-        ("coverage", f"{found.coverage:.0%}", "of the image"),
+        ("coverage", f"{intrinsics.coverage:.0%}", "of the image"),
     ]
     for row, (name, value, remark) in enumerate(rows):
         y = TOP + 24 * row
@@ -150,16 +154,16 @@ def _draw_figures(drawing: Drawing, found: Intrinsics, views: Sequence[View], le
         drawing.text(left + 80, y, value, 15)
         drawing.text(left + 236, y, remark, 13, FAINT)
     drawing.text(left, TOP + 152, "distortion k1 k2 p1 p2 k3", 13, FAINT)
-    drawing.text(left, TOP + 170, "  ".join(f"{value:.4f}" for value in found.distortion), 14)
-    _draw_view_bars(drawing, found, views, left, TOP + 212)
+    drawing.text(left, TOP + 170, "  ".join(f"{value:.4f}" for value in intrinsics.distortion), 14)
+    _draw_view_bars(drawing, intrinsics, views, left, TOP + 212)
 
 
-def _draw_view_bars(drawing: Drawing, found: Intrinsics, views: Sequence[View], left: float, top: float) -> None:
-    """List views, the worst first."""
+def _draw_view_bars(drawing: Drawing, intrinsics: Intrinsics, views: Sequence[View], left: float, top: float) -> None:
+    """List each view with its RMS error and tilt, the worst first."""
     drawing.text(left, top, "view", 13, FAINT)
     drawing.text(left + 180, top, "RMS (px)", 13, FAINT)
     drawing.text(left + PANEL - 20, top, "tilt (deg)", 13, FAINT, "ra")
-    rows = sorted(zip(found.rms_of_views_px(), views, found.tilts_deg, strict=True), key=lambda row: -row[0])
+    rows = sorted(zip(intrinsics.rms_of_views_px(), views, intrinsics.tilts_deg, strict=True), key=lambda row: -row[0])
     longest = max(rows[0][0], 1e-9)
     for row, (error, view, tilt) in enumerate(rows[:MOST_ROWS]):
         y = top + 22 + 20 * row

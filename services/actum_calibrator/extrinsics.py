@@ -1,4 +1,4 @@
-"""Where the camera that sees people sees the one that sees markers, from pairs of pictures of one board."""
+"""Estimates the transform from the marker camera to the people camera, from pairs of pictures of one board."""
 
 import datetime
 import math
@@ -16,19 +16,19 @@ from actum_calibrator.bundle_adjustment import BundleAdjuster, BundleAdjustment,
 from actum_calibrator.pairs import Pair
 from actum_calibrator.view_set import PoorSetError
 
-FEWEST_PAIRS = 3  # each pair alone has two candidate transforms; the third pair decides where two disagree
-ROBUST_SCALE_OF_NOISE = 2.0  # residuals beyond twice the noise of single cameras are taken for a moved board or camera
-MISMATCH = 3.0  # times the RMS error of its own calibration: the calibration is another camera's
-LEAST_MISMATCH_OF_DIAGONAL = 2.5e-4  # 0.2 px in 640x480: so little is the noise of corners
-OUTLIER = 3.0  # times the noise of a pair's single cameras: a camera or the board has moved
-LEAST_OUTLIER_OF_DIAGONAL = 5e-4  # 0.4 px in 640x480: so little is the noise of two calibrations
-MOST_POSITION_DEVIATION_MM = 5.0  # small beside the distances of objects from each other
+FEWEST_PAIRS = 3  # a single pair allows several transforms; a third pair decides if two disagree
+ROBUST_SCALE_OF_NOISE = 2.0  # residuals beyond twice the noise of single cameras indicate a moved board or camera
+MISMATCH = 3.0  # times the calibration's RMS error: above it, the calibration belongs to another camera
+LEAST_MISMATCH_OF_DIAGONAL = 2.5e-4  # 0.2 px in 640x480: the noise of corners
+OUTLIER = 3.0  # times the noise of a pair's single cameras: above it, a camera or the board has moved
+LEAST_OUTLIER_OF_DIAGONAL = 5e-4  # 0.4 px in 640x480: the noise of two calibrations
+MOST_POSITION_DEVIATION_MM = 5.0  # small compared with the distances between objects
 MOST_ROTATION_DEVIATION_DEG = 0.5  # 17 mm at a distance of 2 m
 
 
 @dataclass(frozen=True)
 class Extrinsics:
-    """The transform (4, 4; m) from the marker camera's frame to the people camera's, and how well the pairs fit it."""
+    """The transform (4, 4; m) from the marker camera's frame to the people camera's, and measures of its quality."""
 
     skeleton_from_image: Array
     rms_px: float
@@ -41,8 +41,8 @@ def estimate_extrinsics(pairs: Sequence[Pair], markers: Calibration, people: Cal
     """Fit one transform to all pairs, minimising the reprojection error in both cameras.
 
     Raises:
-        PoorSetError: too few pairs, pairs that contradict each other, or that do not determine the transform.
-        CalibrationError: a picture has another size than its camera's calibration.
+        PoorSetError: there are too few pairs, or they contradict each other or do not determine the transform.
+        CalibrationError: the size of a picture differs from that of its camera's calibration.
     """
     if len(pairs) < FEWEST_PAIRS:
         raise PoorSetError(
@@ -58,20 +58,20 @@ def estimate_extrinsics(pairs: Sequence[Pair], markers: Calibration, people: Cal
         raise PoorSetError(reasons)
     both = zip(markers_noise_px, people_noise_px, strict=True)
     noise_px = [math.sqrt((one**2 + other**2) / 2) for one, other in both]
-    found = _adjusted(pairs, *cameras, float(np.median(noise_px)))
-    if reasons := _contradictions(found, pairs, noise_px) or _undetermined(found):
+    adjustment = _adjusted(pairs, *cameras, float(np.median(noise_px)))
+    if reasons := _contradictions(adjustment, pairs, noise_px) or _undetermined(adjustment):
         raise PoorSetError(reasons)
-    return _extrinsics(found)
+    return _extrinsics(adjustment)
 
 
 def _noise_px(view: View, camera: CameraModel) -> float:
-    """Return the RMS reprojection error where one camera alone may see the board anywhere."""
+    """Return the RMS reprojection error of one camera's view alone, at the best pose of the board."""
     candidates = camera.pose_candidates(view)
     return min((rms_px(camera.reprojection_errors_px(view, pose)) for pose in candidates), default=math.inf)
 
 
 def _mismatch(what: str, noise_px: Sequence[float], calibration: Calibration) -> list[str]:
-    """Say that a calibration is not the camera's: corners fit it worse than those that it was made from."""
+    """Return a complaint if corners fit a calibration worse than its own ones did: it belongs to another camera."""
     least_px = LEAST_MISMATCH_OF_DIAGONAL * math.hypot(*calibration.image_size)
     made_px = calibration.intrinsics.rms_px if calibration.intrinsics else 2 * least_px / MISMATCH
     limit_px, typical_px = max(MISMATCH * made_px, least_px), float(np.median(noise_px))
@@ -84,7 +84,7 @@ def _mismatch(what: str, noise_px: Sequence[float], calibration: Calibration) ->
 
 
 def _adjusted(pairs: Sequence[Pair], markers: CameraModel, people: CameraModel, noise_px: float) -> BundleAdjustment:
-    """Start from the transform that single pairs propose and that suits most pairs, then adjust to all."""
+    """Choose the initial transform among those of single pairs, by the median error over all, then adjust it."""
     in_markers = [markers.pose_candidates(pair.markers) for pair in pairs]
     in_people = [people.pose_candidates(pair.people) for pair in pairs]
     proposals = [
@@ -95,7 +95,7 @@ def _adjusted(pairs: Sequence[Pair], markers: CameraModel, people: CameraModel, 
     ]
 
     def likeliest_board(people_from_markers: Array, i: int) -> tuple[float, Array]:
-        """Return the pose of a pair's board in the marker camera, of all candidates, with the least error in both."""
+        """Return (error in px, pose in the marker camera) of the best candidate pose of pair i's board."""
         from_people = [compose(invert(people_from_markers), pose) for pose in in_people[i]]
         rated = [
             (_error_px(people_from_markers, pose, pairs[i], markers, people), pose)
@@ -118,18 +118,18 @@ def _error_px(
     return rms_px(np.vstack([in_markers, in_people]))
 
 
-def _contradictions(found: BundleAdjustment, pairs: Sequence[Pair], noise_px: Sequence[float]) -> list[str]:
-    """Name the pairs that the transform of the others does not suit."""
+def _contradictions(adjustment: BundleAdjustment, pairs: Sequence[Pair], noise_px: Sequence[float]) -> list[str]:
+    """Return complaints about the pairs that do not fit the common transform."""
     views: list[View] = [view for pair in pairs for view in (pair.markers, pair.people)]
     least_px = LEAST_OUTLIER_OF_DIAGONAL * max(view.diagonal_px for view in views)
     limits_px = [max(OUTLIER * noise, least_px) for noise in noise_px]
-    rated = zip(pairs, found.rms_px, limits_px, strict=True)
+    rated = zip(pairs, adjustment.rms_px, limits_px, strict=True)
     outliers = [f"{pair.name} ({error:.1f} px, at most {limit:.1f})" for pair, error, limit in rated if error > limit]
     if 2 * len(outliers) > len(pairs):
         return [
             f"the pairs fit no transform: {len(outliers)} of {len(pairs)} contradict each other, RMS "
-            f"{_rms_px(found):.2f} px: are the two calibrations these cameras', at this size, zoom and focus, and did "
-            f"nothing move between the two pictures of a pair? {', '.join(outliers)}"
+            f"{_rms_px(adjustment):.2f} px: are the two calibrations these cameras', at this size, zoom and focus, and "
+            f"did nothing move between the two pictures of a pair? {', '.join(outliers)}"
         ]
     if outliers:
         return [
@@ -139,8 +139,8 @@ def _contradictions(found: BundleAdjustment, pairs: Sequence[Pair], noise_px: Se
     return []
 
 
-def _undetermined(found: BundleAdjustment) -> list[str]:
-    position_mm, rotation_deg = _deviations(found)
+def _undetermined(adjustment: BundleAdjustment) -> list[str]:
+    position_mm, rotation_deg = _deviations(adjustment)
     if position_mm <= MOST_POSITION_DEVIATION_MM and rotation_deg <= MOST_ROTATION_DEVIATION_DEG:
         return []
     return [
@@ -150,32 +150,32 @@ def _undetermined(found: BundleAdjustment) -> list[str]:
     ]
 
 
-def _extrinsics(found: BundleAdjustment) -> Extrinsics:
+def _extrinsics(adjustment: BundleAdjustment) -> Extrinsics:
     """Write the transform as a matrix (4, 4), with its quality."""
     transform = np.eye(4)
-    transform[:3, :3], _ = cv2.Rodrigues(found.people_from_markers[:3])
-    transform[:3, 3] = found.people_from_markers[3:]
-    return Extrinsics(transform, _rms_px(found), found.rms_px, *_deviations(found))
+    transform[:3, :3], _ = cv2.Rodrigues(adjustment.people_from_markers[:3])
+    transform[:3, 3] = adjustment.people_from_markers[3:]
+    return Extrinsics(transform, _rms_px(adjustment), adjustment.rms_px, *_deviations(adjustment))
 
 
-def _deviations(found: BundleAdjustment) -> tuple[float, float]:
-    """Return the standard deviations of the position (mm) and of the rotation (deg), over all three axes."""
-    variances = np.diag(found.covariance)
+def _deviations(adjustment: BundleAdjustment) -> tuple[float, float]:
+    """Return the standard deviations of the position (mm) and the rotation (deg), summed over the three axes."""
+    variances = np.diag(adjustment.covariance)
     return 1000 * math.sqrt(float(variances[3:].sum())), math.degrees(math.sqrt(float(variances[:3].sum())))
 
 
-def _rms_px(found: BundleAdjustment) -> float:
-    return float(np.sqrt(np.mean(np.square(found.rms_px))))
+def _rms_px(adjustment: BundleAdjustment) -> float:
+    return float(np.sqrt(np.mean(np.square(adjustment.rms_px))))
 
 
-def with_extrinsics(markers: Calibration, found: Extrinsics, date: datetime.date) -> Calibration:
-    """Return the marker camera's calibration with the transform in it."""
+def with_extrinsics(markers: Calibration, extrinsics: Extrinsics, date: datetime.date) -> Calibration:
+    """Add the transform and its quality to the marker camera's calibration."""
     quality = ExtrinsicsQuality(
         date=date,
-        pairs=len(found.rms_of_pairs_px),
-        rms_px=round(found.rms_px, 4),
-        position_standard_deviation_mm=round(found.position_deviation_mm, 3),
-        rotation_standard_deviation_deg=round(found.rotation_deviation_deg, 4),
+        pairs=len(extrinsics.rms_of_pairs_px),
+        rms_px=round(extrinsics.rms_px, 4),
+        position_standard_deviation_mm=round(extrinsics.position_deviation_mm, 3),
+        rotation_standard_deviation_deg=round(extrinsics.rotation_deviation_deg, 4),
     )
-    numbers = [round(value, 9) for value in geometry.flat(found.skeleton_from_image)]
+    numbers = [round(value, 9) for value in geometry.flat(extrinsics.skeleton_from_image)]
     return markers.model_copy(update={"skeleton_from_image": numbers, "extrinsics": quality})

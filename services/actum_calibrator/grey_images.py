@@ -1,4 +1,4 @@
-"""Grey levels from image files and messages; what is huge or broken is refused before it costs anything."""
+"""Decodes image files and messages to grey levels; refuses huge and damaged ones before memory is allocated."""
 
 import io
 import struct
@@ -18,7 +18,7 @@ LARGEST_PIXELS = 10_000 * 10_000  # 100 MB of grey levels; no camera has more
 
 
 class UnusablePictureError(ValueError):
-    """A picture that shows no board to calibrate with: `name` tells which, the message why."""
+    """A picture that cannot be used for calibration: `name` tells which one, the message why."""
 
     def __init__(self, name: str, problem: str) -> None:
         super().__init__(f"{name}: {problem}")
@@ -33,7 +33,7 @@ def read_grey(path: Path) -> Pixels:
     """Read an image file as grey levels of shape (height, width).
 
     Raises:
-        UnusablePictureError: it cannot be read, is no image or a huge one.
+        UnusablePictureError: the file cannot be read, is no image, or is too large.
     """
     try:
         return decode_grey(path.read_bytes(), path.name)
@@ -45,7 +45,7 @@ def grey_from_message(image: Image, name: str) -> Pixels:
     """Decode a colour image message to grey levels (height, width).
 
     Raises:
-        UnusablePictureError: it is a depth image, broken, huge, or not of the size it names.
+        UnusablePictureError: the image is a depth image, damaged, too large, or not of the size in its message.
     """
     if image.format == "jpeg":
         pixels = decode_grey(image.data, name)
@@ -59,10 +59,10 @@ def grey_from_message(image: Image, name: str) -> Pixels:
 
 
 def decode_grey(data: bytes, name: str) -> Pixels:
-    """Decode an image, its header first, to grey levels (height, width); `name` is for the complaint.
+    """Decode an image, its header first, to grey levels (height, width); `name` is used in errors.
 
     Raises:
-        UnusablePictureError: it is no image, broken or huge.
+        UnusablePictureError: the data are no image, damaged or too large.
     """
     try:
         width, height = imagesize.get(io.BytesIO(data), exif_rotation=False)
@@ -82,23 +82,23 @@ def _decoded(data: bytes) -> NDArray[Any] | None:
     flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION
     try:
         return cv2.imdecode(np.frombuffer(data, dtype=np.uint8), flags)
-    except cv2.error:  # a header of measures that OpenCV takes for impossible
+    except cv2.error:  # OpenCV refuses the size in the header
         return None
 
 
 def complaints(unusable: Sequence[UnusablePictureError]) -> list[str]:
-    """Sum up what is wrong with pictures, and what to do."""
+    """Sum up in sentences how many pictures are unusable, why, and what to do."""
     blurred = sum(isinstance(error, BlurredError) for error in unusable)
     others = len(unusable) - blurred
-    said = []
+    sentences = []
     if blurred:
-        said.append(f"{_pictures(blurred)} blurred: hold the board still, give it more light, focus the lens")
+        sentences.append(f"{_pictures(blurred)} blurred: hold the board still, give it more light, focus the lens")
     if others:
-        said.append(
+        sentences.append(
             f"{_pictures(others)} without a usable board: is it the board that --board, --square-mm, --marker-mm and "
             "--family describe, near enough, whole and without glare?"
         )
-    return said
+    return sentences
 
 
 def _pictures(count: int) -> str:

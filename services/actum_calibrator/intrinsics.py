@@ -1,4 +1,4 @@
-"""One camera's intrinsics from views of the board (Zhang 2000), and what speaks against what was found."""
+"""Estimates a camera's intrinsics from views of the board (Zhang 2000), and refuses unreliable results."""
 
 import datetime
 import math
@@ -21,28 +21,28 @@ from actum_calibrator.view_set import (
     tilt_shortcomings,
 )
 
-MOST_FOCAL_DEVIATION = 0.005  # standard deviation of the focal length in parts of it: 10 mm at 2 m
-MOST_RMS_OF_DIAGONAL = 1e-3  # 0.8 px in 640x480; sharp views of a flat board have a quarter of it
-SIGNIFICANT_DEVIATIONS = 4.0  # standard deviations by which a focal length differs for certain
-MOST_BEND_OF_DIAGONAL = 0.01  # of the board's diagonal: beyond it a quadratic surface no longer describes the bend
+MOST_FOCAL_DEVIATION = 0.005  # relative standard deviation of the focal length: 10 mm at 2 m
+MOST_RMS_OF_DIAGONAL = 1e-3  # 0.8 px in 640x480; sharp views of a flat board have a quarter of that
+SIGNIFICANT_DEVIATIONS = 4.0  # standard deviations from which two focal lengths differ significantly
+MOST_BEND_OF_DIAGONAL = 0.01  # share of the board's diagonal: a larger bend is no quadratic surface
 CAMERA_UNKNOWNS = 9  # fx, fy, cx, cy, k1, k2, p1, p2, k3
 POSE_UNKNOWNS = 6  # of each view: a rotation and a translation
 
 
 @dataclass(frozen=True)
 class Intrinsics:
-    """A camera found from views.
+    """A camera's intrinsics estimated from views.
 
     Attributes:
-        size: the image's width and height.
-        matrix: K (3, 3).
-        distortion: k1, k2, p1, p2, k3.
+        size: the image's width and height in px.
+        matrix: K (3, 3), in px.
+        distortion: (5,) k1, k2, p1, p2, k3.
         rms_px: the root mean square reprojection error over all views.
-        deviations_px: the standard deviations of fx, fy, cx and cy (4,).
-        residuals_px: each view's corners as found minus as projected (n, 2).
+        deviations_px: (4,), the standard deviations of fx, fy, cx and cy.
+        residuals_px: each view's detected minus projected corners (n, 2).
         tilts_deg: each view's angle between the board and the image plane.
-        covered: the cells of the image in which the board has been (rows, columns).
-        bend_mm: how far the board is from flat, from its lowest to its highest corner; it is allowed for.
+        covered: (rows, columns), the cells of the image that the board has covered.
+        bend_mm: height difference between the board's lowest and highest corner; the estimate allows for it.
     """
 
     size: tuple[int, int]
@@ -57,7 +57,7 @@ class Intrinsics:
 
     @property
     def coverage(self) -> float:
-        """Share of the image in which the board has been."""
+        """Share of the image that the board has covered."""
         return float(self.covered.mean())
 
     def rms_of_views_px(self) -> list[float]:
@@ -71,24 +71,26 @@ def rms(residuals_px: Array) -> float:
 
 
 def estimate_intrinsics(views: Sequence[View]) -> Intrinsics:
-    """Calibrate one camera (Zhang 2000), allowing for the board's deformation where the views tell one.
+    """Calibrate one camera (Zhang 2000), allowing for the board's deformation if it is significant.
 
     Raises:
-        PoorSetError: the views do not determine it.
+        PoorSetError: the views do not determine the camera, or contradict each other.
     """
     if reasons := shortcomings(views):
         raise PoorSetError([*reasons, *tilt_shortcomings(nominal_tilts_deg(views))])
-    found = _calibrated(views)
-    if reasons := [*tilt_shortcomings(found.tilts_deg), *_ill_fitting(found, views)] or _contradiction(found, views):
+    intrinsics = _calibrated(views)
+    if reasons := [*tilt_shortcomings(intrinsics.tilts_deg), *_ill_fitting(intrinsics, views)] or _contradiction(
+        intrinsics, views
+    ):
         raise PoorSetError(reasons)
-    found = _with_deformation(found, views)
-    if reasons := _bent(found, views) or _undetermined(found):
+    intrinsics = _with_deformation(intrinsics, views)
+    if reasons := _bent(intrinsics, views) or _undetermined(intrinsics):
         raise PoorSetError(reasons)
-    return found
+    return intrinsics
 
 
 def _with_deformation(flat: Intrinsics, views: Sequence[View]) -> Intrinsics:
-    """Calibrate anew with the board's deformation, where the views tell one."""
+    """Calibrate again with the board's deformation if it is significant; else return `flat`."""
 
     def residuals_of(deformation: Deformation) -> Array:
         return np.concatenate(_calibrated(views, deformation, flat).residuals_px).ravel()
@@ -98,7 +100,7 @@ def _with_deformation(flat: Intrinsics, views: Sequence[View]) -> Intrinsics:
 
 
 def _calibrated(views: Sequence[View], deformation: Deformation = FLAT, start: Intrinsics | None = None) -> Intrinsics:
-    """Calibrate with a board of some deformation (3,); only a flat one needs no camera to start from."""
+    """Calibrate with a board of a deformation (3,); one that is not flat needs initial intrinsics (`start`)."""
     board_m = deformed_corners_m(views[0].board, deformation)
     objects = [board_m[view.ids].astype(np.float32) for view in views]
     images = [view.corners_px.astype(np.float32) for view in views]
@@ -126,13 +128,13 @@ def _calibrated(views: Sequence[View], deformation: Deformation = FLAT, start: I
     )
 
 
-def _contradiction(found: Intrinsics, views: Sequence[View]) -> list[str]:
-    """Name the view that fits worst, where without it the focal length is another, or is determined only then."""
-    worst = int(np.argmax(found.rms_of_views_px()))
+def _contradiction(intrinsics: Intrinsics, views: Sequence[View]) -> list[str]:
+    """Complain about the worst view if without it the focal length changes significantly, or is determined at all."""
+    worst = int(np.argmax(intrinsics.rms_of_views_px()))
     without = _calibrated([view for i, view in enumerate(views) if i != worst])
-    focal, others, deviations = np.diag(found.matrix)[:2], np.diag(without.matrix)[:2], without.deviations_px[:2]
+    focal, others, deviations = np.diag(intrinsics.matrix)[:2], np.diag(without.matrix)[:2], without.deviations_px[:2]
     limits = np.maximum(SIGNIFICANT_DEVIATIONS * deviations, MOST_FOCAL_DEVIATION * others)
-    only_without = _focal_deviation(without) <= MOST_FOCAL_DEVIATION < _focal_deviation(found)
+    only_without = _focal_deviation(without) <= MOST_FOCAL_DEVIATION < _focal_deviation(intrinsics)
     if not only_without and (np.abs(focal - others) <= limits).all():
         return []
     return [
@@ -142,27 +144,29 @@ def _contradiction(found: Intrinsics, views: Sequence[View]) -> list[str]:
     ]
 
 
-def _focal_deviation(found: Intrinsics) -> float:
-    """Return the standard deviation of the focal length, in parts of it, along the axis in which it is worse."""
+def _focal_deviation(intrinsics: Intrinsics) -> float:
+    """Return the relative standard deviation of the focal length, the larger one of both axes."""
     return max(
-        float(found.deviations_px[axis] / found.matrix[axis, axis]) if found.matrix[axis, axis] > 0 else math.inf
+        float(intrinsics.deviations_px[axis] / intrinsics.matrix[axis, axis])
+        if intrinsics.matrix[axis, axis] > 0
+        else math.inf
         for axis in (0, 1)
     )
 
 
-def _bent(found: Intrinsics, views: Sequence[View]) -> list[str]:
+def _bent(intrinsics: Intrinsics, views: Sequence[View]) -> list[str]:
     board = views[0].board
     limit_mm = 1000 * MOST_BEND_OF_DIAGONAL * math.hypot(board.width_m, board.height_m)
-    if found.bend_mm <= limit_mm:
+    if intrinsics.bend_mm <= limit_mm:
         return []
     return [
-        f"the board is bent by {found.bend_mm:.1f} mm, at most {limit_mm:.1f}: glue it to something flat and stiff, "
-        "and take the pictures anew"
+        f"the board is bent by {intrinsics.bend_mm:.1f} mm, at most {limit_mm:.1f}: glue it to something flat and "
+        "stiff, and take the pictures anew"
     ]
 
 
-def _undetermined(found: Intrinsics) -> list[str]:
-    share = _focal_deviation(found)
+def _undetermined(intrinsics: Intrinsics) -> list[str]:
+    share = _focal_deviation(intrinsics)
     if share <= MOST_FOCAL_DEVIATION:
         return []
     return [
@@ -172,30 +176,30 @@ def _undetermined(found: Intrinsics) -> list[str]:
     ]
 
 
-def _ill_fitting(found: Intrinsics, views: Sequence[View]) -> list[str]:
+def _ill_fitting(intrinsics: Intrinsics, views: Sequence[View]) -> list[str]:
     limit_px = MOST_RMS_OF_DIAGONAL * views[0].diagonal_px
-    if found.rms_px <= limit_px:
+    if intrinsics.rms_px <= limit_px:
         return []
-    order = sorted(zip(found.rms_of_views_px(), (view.name for view in views), strict=True), reverse=True)
+    order = sorted(zip(intrinsics.rms_of_views_px(), (view.name for view in views), strict=True), reverse=True)
     worst = ", ".join(f"{name} {error:.1f} px" for error, name in order[:3])
     return [
-        f"corners do not fit: RMS {found.rms_px:.2f} px, at most {limit_px:.2f}; worst {worst}: is the print flat, "
-        "is it the board that the options name, was it held still, was zoom and focus fixed? Leave the worst out or "
-        "take them again"
+        f"corners do not fit: RMS {intrinsics.rms_px:.2f} px, at most {limit_px:.2f}; worst {worst}: is the print "
+        "flat, is it the board that the options name, was it held still, was zoom and focus fixed? Leave the worst out "
+        "or take them again"
     ]
 
 
-def calibration_of(found: Intrinsics, date: datetime.date) -> Calibration:
-    """Write a camera down as services read it."""
+def calibration_of(intrinsics: Intrinsics, date: datetime.date) -> Calibration:
+    """Build the calibration that services read."""
     return Calibration(
-        image_size=found.size,
-        K=[round(float(value), 4) for value in found.matrix.ravel()],
-        distortion=[round(float(value), 7) for value in found.distortion],
+        image_size=intrinsics.size,
+        K=[round(float(value), 4) for value in intrinsics.matrix.ravel()],
+        distortion=[round(float(value), 7) for value in intrinsics.distortion],
         intrinsics=IntrinsicsQuality(
             date=date,
-            views=len(found.residuals_px),
-            rms_px=round(found.rms_px, 4),
-            standard_deviations_px=[round(float(value), 3) for value in found.deviations_px],
-            coverage=round(found.coverage, 3),
+            views=len(intrinsics.residuals_px),
+            rms_px=round(intrinsics.rms_px, 4),
+            standard_deviations_px=[round(float(value), 3) for value in intrinsics.deviations_px],
+            coverage=round(intrinsics.coverage, 3),
         ),
     )

@@ -1,4 +1,4 @@
-"""Sheets of single markers to print and cut out."""
+"""The printable sheets of single markers to cut out."""
 
 import math
 from collections.abc import Sequence
@@ -9,27 +9,27 @@ from actum_calibrator.board import PatternError, black_cells, canonical
 from actum_calibrator.printed_sheet import BOLD, EDGE_MM, REGULAR, Sheet, document, points_that_fit
 from actum_calibrator.sheet_sizes import SheetSize
 
-SMALLEST_MM = 10.0  # side of a marker: smaller ones are found at arm's length at best
-WHITE_SHARE = 1 / 8  # of a marker's side, white around it: a cell or so, without which it is not found
-LEAST_WHITE_MM = 3.0  # the same of a small marker: what scissors need
+SMALLEST_MM = 10.0  # side of a marker: smaller ones are detected at arm's length at best
+WHITE_SHARE = 1 / 8  # width of the white margin, as a share of a marker's side: about a cell, needed for detection
+LEAST_WHITE_MM = 3.0  # least width of the white margin: needed for cutting with scissors
 LABEL_MM = 8.0  # height of the two lines below a marker
-HEAD_MM = 13.0  # kept free above the markers for the heading
-FOOT_MM = 22.0  # kept free below them for the ruler
-RULER_BOTTOM_MM = 12.0  # leaves room for the ruler's numbers above what printers cannot reach
-LEFT_MM = 10.0  # where heading and ruler begin
+HEAD_MM = 13.0  # kept free above the markers, for the heading
+FOOT_MM = 22.0  # kept free below the markers, for the ruler
+RULER_BOTTOM_MM = 12.0  # leaves room for the ruler's numbers above the edge that printers cannot reach
+LEFT_MM = 10.0  # left end of heading and ruler
 CUT_MM = 2.5  # length of a cut mark
 CUT_LINE_MM = 0.15  # its thickness: a hair line
 
 
 @dataclass(frozen=True)
 class Tile:
-    """What is cut out: a marker with its white edge, and its label below."""
+    """The piece to cut out: a marker with its white margin, and its label below."""
 
     size_mm: float
 
     @property
     def white_mm(self) -> float:
-        """White around the marker, without which it is not found."""
+        """Width of the white margin around the marker, which detection needs."""
         return max(LEAST_WHITE_MM, self.size_mm * WHITE_SHARE)
 
     @property
@@ -86,10 +86,10 @@ def marker_sheet(family: str, ids: Sequence[int], size_mm: float, sheet_size: Sh
 
 
 def _grid(tile: Tile, sheet_size: SheetSize) -> tuple[int, int]:
-    """Return how many columns and rows of tiles a sheet has.
+    """Return the numbers of columns and rows of tiles on a sheet.
 
     Raises:
-        PatternError: it has none of this size, or the markers would be too small to be found.
+        PatternError: no tile fits the sheet, or the markers would be too small to be detected.
     """
     width, height = sheet_size.portrait_mm
     is_printable = math.isfinite(tile.size_mm) and tile.size_mm >= SMALLEST_MM

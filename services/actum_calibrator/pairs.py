@@ -1,4 +1,4 @@
-"""Which pictures of two cameras were taken at once."""
+"""Pairs of pictures that two cameras took at the same time."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -7,19 +7,19 @@ from pathlib import Path
 from actum_calibrator.board_views import View
 
 SUFFIXES = ("_a", "_b")
-"""How the names of a pair's pictures end: of the camera that sees markers, and of the one that sees people."""
+"""Endings of the names of a pair's pictures: of the marker camera, and of the people camera."""
 
 PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff")
-"""Endings of the files in a folder that are taken for pictures."""
+"""File name extensions of pictures in a folder."""
 
 
 class PairingError(ValueError):
-    """Files that make no pairs: which, and how to name them."""
+    """Files that form no pairs; the message tells which, and how to name them."""
 
 
 @dataclass(frozen=True)
 class Pair:
-    """The board as the camera that sees markers and the one that sees people see it at one time."""
+    """Views of the board from the marker camera and from the people camera at the same time."""
 
     name: str
     markers: View
@@ -27,7 +27,9 @@ class Pair:
 
 
 def pair_files(paths: Sequence[Path]) -> list[tuple[str, Path, Path]]:
-    """Pair two folders by file name, or files by name before `_a` (sees markers) and `_b` (sees people).
+    """Pair the files of two folders by name, or files by their name before `_a` (markers) and `_b` (people).
+
+    Returns (name, the marker camera's file, the people camera's file) of each pair.
 
     Raises:
         PairingError: a picture has no partner or several.

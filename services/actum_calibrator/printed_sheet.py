@@ -1,4 +1,4 @@
-"""What every printed sheet shares: text, a ruler to measure, cells as vector rectangles. Lengths are in mm."""
+"""Drawing on printed sheets: text, a ruler to check the scale, cells as vector rectangles. Lengths are in mm."""
 
 import io
 from collections.abc import Callable, Iterable, Sequence
@@ -9,16 +9,16 @@ from reportlab.pdfgen.canvas import Canvas
 
 from actum.arrays import Mask
 
-EDGE_MM = 5.0  # what common printers cannot reach
-RULER_MM = 100  # long enough that half a millimetre, which the eye can tell, is half a per cent
+EDGE_MM = 5.0  # margin that common printers cannot reach
+RULER_MM = 100  # half a millimetre, which is visible, is half a per cent of it
 ADVICE = ("Print at 100 % (“actual size”),", "without “fit to page”.")
-REGULAR = "Helvetica"  # of the fonts that every PDF viewer has
+REGULAR = "Helvetica"  # one of the fonts that every PDF viewer has
 BOLD = "Helvetica-Bold"
 TICK_MM = 0.1  # thickness of the ruler's lines
 
 
 class Sheet:
-    """One page to draw on; y counts from the paper's lower edge."""
+    """One page to draw on; y points up from the paper's lower edge."""
 
     def __init__(self, canvas: Canvas, width_mm: float, height_mm: float) -> None:
         self._canvas = canvas
@@ -36,7 +36,7 @@ class Sheet:
         self._canvas.drawString(left * mm, bottom * mm, text)
 
     def centred(self, text: str, middle: float, bottom: float, points: float) -> None:
-        """Write one line around a middle."""
+        """Write one line, centred at a horizontal position."""
         self._canvas.setFont(REGULAR, points)
         self._canvas.drawCentredString(middle * mm, bottom * mm, text)
 
@@ -50,7 +50,7 @@ class Sheet:
         self._canvas.drawPath(path, stroke=0, fill=1)
 
     def ruler(self, left: float, bottom: float) -> None:
-        """Draw 100 mm to measure, numbered below, with the advice to the right of it."""
+        """Draw a ruler of 100 mm, numbered below, with advice on printing to its right."""
         for tick in range(RULER_MM + 1):
             height = 4.0 if tick % 10 == 0 else 2.8 if tick % 5 == 0 else 1.8
             self.line((left + tick, bottom), (left + tick, bottom + height), TICK_MM)
@@ -65,7 +65,7 @@ class Sheet:
 
 
 def document(size_mm: tuple[float, float], title: str, drawers: Sequence[Callable[[Sheet], None]]) -> bytes:
-    """Write a PDF, one page for each drawer; viewers are told not to scale it. The same pages give the same bytes."""
+    """Write a PDF, one page for each drawer; viewers are told not to scale it. The output is reproducible."""
     file = io.BytesIO()
     canvas = Canvas(file, pagesize=(size_mm[0] * mm, size_mm[1] * mm), invariant=1)
     canvas.setTitle(title)
@@ -79,12 +79,12 @@ def document(size_mm: tuple[float, float], title: str, drawers: Sequence[Callabl
 
 
 def points_that_fit(text: str, width_mm: float, font: str, largest: float) -> float:
-    """Return the type size, at most the largest, at which a text is no wider than this."""
+    """Return the font size, at most `largest`, at which a text is at most `width_mm` wide."""
     return float(min(largest, largest * width_mm * mm / stringWidth(text, font, largest)))
 
 
 def _runs(cells: list[bool]) -> Iterable[tuple[int, int]]:
-    """Yield where runs of True start and end."""
+    """Yield the start and the end, exclusive, of each run of True."""
     start = None
     for place, black in enumerate([*cells, False]):
         if black and start is None:

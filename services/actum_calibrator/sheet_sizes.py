@@ -1,4 +1,4 @@
-"""The sizes of paper that sheets are printed on."""
+"""The paper sizes of printed sheets."""
 
 from enum import StrEnum
 

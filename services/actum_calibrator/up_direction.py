@@ -1,4 +1,4 @@
-"""Which way is up for a camera, from one person who stands upright before it."""
+"""Estimates the up direction in the camera frame from one person who stands upright."""
 
 import math
 from collections import deque
@@ -11,11 +11,11 @@ from actum.messages import Joint, Skeleton
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 
-SPAN_S = 2  # how long one stands: longer than a slow sway of the body
+SPAN_S = 2  # duration of standing still: longer than a slow sway of the body
 SPAN_NS = SPAN_S * SECOND_NS
-FEWEST_FRAMES = 10  # in these two seconds: from fewer the sway cannot be told
-LONGEST_GAP_NS = SECOND_NS // 2  # without a frame: after it one may have moved
-MOST_SWAY_DEG = 1.5  # root mean square; who stands still sways by less, who shifts their weight by more
+FEWEST_FRAMES = 10  # in that time: from fewer the sway cannot be estimated
+LONGEST_GAP_NS = SECOND_NS // 2  # between two frames: the person may move in a longer one
+MOST_SWAY_DEG = 1.5  # root mean square; people who stand still sway by less, people who shift their weight by more
 MOST_BEND_DEG = 20.0  # between shins, thighs and trunk; a straight body with the noise of joints has less
 STAY = f"stay like that for {SPAN_S} seconds"
 _LEGS = ("left_hip", "right_hip", "left_knee", "right_knee", "left_foot", "right_foot")
@@ -23,38 +23,38 @@ _LEGS = ("left_hip", "right_hip", "left_knee", "right_knee", "left_foot", "right
 
 @dataclass(frozen=True)
 class UpDirection:
-    """Up as a unit vector (3) in the camera's frame, and by how much the body swayed about it (RMS)."""
+    """The up direction as a unit vector (3) in the camera frame, and the RMS sway of the body about it."""
 
     in_camera: tuple[float, float, float]
     sway_deg: float
 
     @property
     def pitch_deg(self) -> float:
-        """By how much the camera looks up; negative is down."""
+        """Pitch of the camera; positive looks up."""
         return math.degrees(math.asin(self.in_camera[2]))
 
     @property
     def roll_deg(self) -> float:
-        """By how much the camera is turned clockwise about its line of sight."""
+        """Rotation of the camera about its optical axis, clockwise."""
         return math.degrees(math.atan2(-self.in_camera[0], -self.in_camera[1]))
 
 
 class UpDirectionEstimator:
-    """Takes skeletons until one person has stood straight and still for `SPAN_S`, by their stamps, without a gap.
+    """Estimates the up direction once one person has stood straight and still for `SPAN_S` by stamps, without a gap.
 
     Attributes:
-        instruction: what is still to be done, until then.
-        found: which way is up, then.
+        instruction: what the person has to do next, until the estimate is complete.
+        up: the estimated up direction, None until it is complete.
     """
 
     def __init__(self) -> None:
         self.instruction = "stand upright, arms down, the whole body in view"
-        self.found: UpDirection | None = None
+        self.up: UpDirection | None = None
         self._axes: deque[tuple[int, Array]] = deque()
         self._who: tuple[str, int] | None = None
 
     def offer(self, frame: Skeleton) -> None:
-        """Take the next frame."""
+        """Process the next skeleton."""
         problem, axis = _axis(frame)
         if axis is None:
             self.instruction = problem
@@ -66,7 +66,7 @@ class UpDirectionEstimator:
             self._judge()
 
     def _keep(self, stamp_ns: int, who: tuple[str, int], axis: Array) -> None:
-        """Add a body's axis (3,), after a gap or of somebody else as the first; drop those older than the span."""
+        """Add a body's axis (3,); start anew after a gap or with another person; drop axes older than the span."""
         if self._axes and not (who == self._who and 0 < stamp_ns - self._axes[-1][0] <= LONGEST_GAP_NS):
             self._axes.clear()
         self._who = who
@@ -75,7 +75,7 @@ class UpDirectionEstimator:
             self._axes.popleft()
 
     def _judge(self) -> None:
-        """Average the axes, where the body was still."""
+        """Set the up direction to the mean axis if the body was still, else the instruction."""
         axes = np.array([axis for _, axis in self._axes])
         mean = axes.mean(axis=0)
         up = mean / np.linalg.norm(mean)
@@ -83,11 +83,11 @@ class UpDirectionEstimator:
         if sway_deg > MOST_SWAY_DEG:
             self.instruction = f"stand still: the body sways by more than {MOST_SWAY_DEG:g} degrees"
         else:
-            self.found = UpDirection((float(up[0]), float(up[1]), float(up[2])), sway_deg)
+            self.up = UpDirection((float(up[0]), float(up[1]), float(up[2])), sway_deg)
 
 
 def _axis(frame: Skeleton) -> tuple[str, Array | None]:
-    """Return the direction from the feet to the neck (3,), or why there is none."""
+    """Return "" and the direction (3,) from the feet to the neck, or an instruction and None."""
     if not frame.valid or not frame.agents:
         return f"nobody is seen{f': {frame.reason}' if frame.reason else ''}", None
     if len(frame.agents) > 1:
@@ -101,7 +101,7 @@ def _axis(frame: Skeleton) -> tuple[str, Array | None]:
 
 
 def _straight(points: dict[str, Array]) -> tuple[str, Array | None]:
-    """Return the direction from the feet to the neck (3,), or why it is not that of a straight body."""
+    """Return "" and the direction (3,) from the feet to the neck, or an instruction and None if the body is bent."""
     hips, knees, feet = ((points[f"left_{name}"] + points[f"right_{name}"]) / 2 for name in ("hip", "knee", "foot"))
     parts = [_unit(to - start) for start, to in ((feet, knees), (knees, hips), (hips, points["neck"]))]
     bend_deg = max(_angle_deg(parts[0], parts[1]), _angle_deg(parts[1], parts[2]))

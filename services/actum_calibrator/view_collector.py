@@ -1,4 +1,4 @@
-"""Chooses views from a live stream: those held still that differ enough from the ones already taken."""
+"""Collects views from a live stream in which the board is held still and differs enough from earlier views."""
 
 from collections.abc import Sequence
 
@@ -17,24 +17,24 @@ from actum_calibrator.view_set import (
     shortcomings,
 )
 
-STILL_OF_DIAGONAL = 0.003  # of the image's diagonal from one image to the next: 2.4 px in 640x480, a hand's tremor
-NEW_OF_DIAGONAL = 0.08  # of the image's diagonal: views nearer to each other tell much the same
-ENOUGH_VIEWS = 15  # from here on the deviations hardly shrink, where the image is covered
-MOST_VIEWS = 40  # more take long to compute and tell nothing new
-TILTED_SHARE = 0.5  # of the views: frontal ones tell the distortion, tilted ones the focal length
-ENOUGH_PAIRS = 8  # in the middle of the 6 to 10 that are advised
+STILL_OF_DIAGONAL = 0.003  # share of the image's diagonal between two images: 2.4 px in 640x480, a hand's tremor
+NEW_OF_DIAGONAL = 0.08  # share of the image's diagonal: views nearer to each other add little information
+ENOUGH_VIEWS = 15  # with more, the standard deviations hardly shrink if the image is covered
+MOST_VIEWS = 40  # more take long to compute and add little information
+TILTED_SHARE = 0.5  # share of the views: frontal ones determine the distortion, tilted ones the focal length
+ENOUGH_PAIRS = 8  # within the recommended 6 to 10
 ROWS = ("top", "middle", "bottom")
 COLUMNS = ("left", "centre", "right")
 
 
 class Stillness:
-    """Tells whether the board rests: its outline moved by no more than 0.3 % of the diagonal since the last picture."""
+    """Tells whether the board rests: its outline has moved by at most 0.3 % of the diagonal since the last picture."""
 
     def __init__(self) -> None:
         self._last_px: Array | None = None
 
     def judge(self, view: View | None) -> bool:
-        """Take the next picture's view, None where the board was not found."""
+        """Judge the next picture's view, None if no board was found; return whether the board rests."""
         last_px, self._last_px = self._last_px, None if view is None else view.outline_px()
         if view is None or last_px is None or self._last_px is None:
             return False
@@ -42,14 +42,14 @@ class Stillness:
 
 
 class ViewCollector:
-    """Gathers views of one camera until they can calibrate it."""
+    """Collects views of one camera until they suffice for calibration."""
 
     def __init__(self) -> None:
         self.views: list[View] = []
         self._stillness = Stillness()
 
     def offer(self, view: View | None) -> bool:
-        """Take the next picture's view, None where there is none; tell whether it was kept."""
+        """Offer the next picture's view, None if no board was found; return whether it was kept."""
         if not self._stillness.judge(view) or view is None or not is_new(view, self.views):
             return False
         self.views.append(view)
@@ -57,12 +57,12 @@ class ViewCollector:
 
     @property
     def complete(self) -> bool:
-        """Whether there is no instruction left, or there are so many views that more would not help."""
+        """Whether there is no instruction left, or the largest number of views is reached."""
         return self.instruction is None or len(self.views) >= MOST_VIEWS
 
     @property
     def instruction(self) -> str | None:
-        """What to show next."""
+        """How to show the board next; None if the views suffice."""
         if not self.views:
             return "show the board and hold it still for a moment"
         tilted = sum(tilt >= TILT_DEG for tilt in nominal_tilts_deg(self.views))
@@ -77,7 +77,7 @@ class ViewCollector:
 
 
 class PairCollector:
-    """Gathers views of two cameras while the board rests before both."""
+    """Collects pairs of views of two cameras, taken while the board rests in both images."""
 
     def __init__(self) -> None:
         self.pairs: list[Pair] = []
@@ -85,7 +85,7 @@ class PairCollector:
         self._resting: list[View | None] = [None, None]
 
     def offer(self, camera: int, view: View | None) -> bool:
-        """Take the next picture's view of camera 0 (sees markers) or 1 (sees people); tell whether a pair was kept."""
+        """Offer the next view of camera 0 (sees markers) or 1 (sees people); return whether a pair was kept."""
         resting = self._stillness[camera].judge(view)
         self._resting[camera] = view if resting else None
         if not resting:
@@ -103,13 +103,13 @@ class PairCollector:
 
 
 def is_new(view: View, taken: Sequence[View]) -> bool:
-    """Whether some outer corner of the board is farther than 8 % of the diagonal from where each taken view has it."""
+    """Whether, compared with each taken view, some outer corner of the board has moved by over 8 % of the diagonal."""
     least_px = NEW_OF_DIAGONAL * view.diagonal_px
     return all(_moved_px(view.outline_px(), other.outline_px()) > least_px for other in taken)
 
 
 def _moved_px(one_px: Array, other_px: Array) -> float:
-    """Return the farthest that one of the board's outer corners (4, 2) has moved."""
+    """Return the largest motion of the board's outer corners (4, 2) between two views."""
     return float(np.linalg.norm(one_px - other_px, axis=1).max())
 
 

@@ -1,4 +1,4 @@
-"""What a set of views lacks before any camera is known: their number, one size, coverage of the image, tilt."""
+"""Checks of a set of views before calibration: number, image size, coverage of the image, tilt."""
 
 import math
 from collections.abc import Sequence
@@ -9,16 +9,16 @@ import numpy as np
 from actum.arrays import Array, Mask
 from actum_calibrator.board_views import View
 
-FEWEST_VIEWS = 8  # with fewer, one bad view decides
-TILT_DEG = 15.0  # from here on foreshortening tells the focal length; a frontal view tells nothing of it
-FEWEST_TILTED = 3  # the least with tilts about both axes and one to check them
-CELLS = (16, 12)  # columns and rows of the grid that coverage is counted in: as fine as a board's squares
-LEAST_COVERAGE = 0.3  # share of the image; with less the distortion is extrapolated to most of it
-GOOD_COVERAGE = 0.6  # share of the image; what is left is the margin where a board cannot be whole
+FEWEST_VIEWS = 8  # with fewer, one bad view dominates
+TILT_DEG = 15.0  # least tilt with which foreshortening determines the focal length; a frontal view does not
+FEWEST_TILTED = 3  # one for tilt about each axis, and one to check them
+CELLS = (16, 12)  # columns and rows of the grid of coverage: as fine as a board's squares
+LEAST_COVERAGE = 0.3  # share of the image; with less, the distortion is extrapolated over most of it
+GOOD_COVERAGE = 0.6  # share of the image; the rest is the margin, where a board is not wholly visible
 
 
 class PoorSetError(ValueError):
-    """A set of pictures that cannot calibrate: all `reasons`, each with what to do."""
+    """A set of pictures that does not suffice for calibration: `reasons`, each with what to do."""
 
     def __init__(self, reasons: Sequence[str]) -> None:
         super().__init__("\n".join(reasons))
@@ -26,7 +26,7 @@ class PoorSetError(ValueError):
 
 
 def shortcomings(views: Sequence[View]) -> list[str]:
-    """Say what a set lacks before any camera is known: views, one size, coverage."""
+    """List what a set lacks for calibration: views, a common size, coverage; empty if nothing."""
     sizes = sorted({view.size for view in views})
     if len(sizes) > 1:
         listed = ", ".join(f"{width}x{height}" for width, height in sizes)
@@ -45,7 +45,7 @@ def shortcomings(views: Sequence[View]) -> list[str]:
 
 
 def covered_cells(views: Sequence[View]) -> Mask:
-    """Tell which cells of the image some view's corners enclose: (rows, columns)."""
+    """Return a mask (rows, columns) of the image's cells that lie within the corners of some view."""
     columns, rows = CELLS
     cells = np.zeros((rows, columns), dtype=bool)
     for view in views:
@@ -58,9 +58,9 @@ def covered_cells(views: Sequence[View]) -> Mask:
 
 
 def nominal_tilts_deg(views: Sequence[View]) -> list[float]:
-    """Estimate each view's tilt before the camera is known.
+    """Estimate each view's tilt before calibration.
 
-    The focal length is taken to be the image's longer side, as of an ordinary lens: the tilt hardly depends on it.
+    The focal length is assumed to be the image's longer side, as with an ordinary lens; the tilt hardly depends on it.
     """
     tilts = []
     for view in views:
@@ -73,12 +73,12 @@ def nominal_tilts_deg(views: Sequence[View]) -> list[float]:
 
 
 def tilt_deg(rotation: Array) -> float:
-    """Return the angle between the board and the image plane, by a rotation vector (3,)."""
+    """Return the angle between the board and the image plane, from the board's rotation vector (3,)."""
     return math.degrees(math.acos(min(1.0, abs(float(cv2.Rodrigues(rotation)[0][2, 2])))))
 
 
 def tilt_shortcomings(tilts_deg: Sequence[float]) -> list[str]:
-    """Say that too few views are tilted for the focal length to be determined."""
+    """Return a complaint if too few views are tilted to determine the focal length; empty if enough are."""
     tilted = sum(tilt >= TILT_DEG for tilt in tilts_deg)
     if tilted >= FEWEST_TILTED or not tilts_deg:
         return []

@@ -50,7 +50,7 @@ def playable_topics(recording: Recording) -> frozenset[keys.Topic]:
 
 
 class _Names:
-    """Renames one recording's sensor, sessions and segments. `taken` holds the segment ids used in this playback so far."""
+    """Renames one recording's sensor, sessions and segments. `taken` holds the segment ids used in this playback."""
 
     def __init__(self, session_id: str, sensor: str | None, taken: set[str]) -> None:
         self._session_id = session_id

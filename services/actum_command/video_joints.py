@@ -41,7 +41,10 @@ def _with_joints(picture: Picture, skeleton: Skeleton, optics: Optics) -> Pixels
         raise ValueError(skeleton.reason)
     distances = ", ".join(f"{_distance_m(agent.joints):.2f} m" for agent in skeleton.agents) or "nobody"
     return drawn(
-        optics.seen(picture).image_bgr, skeleton.agents, lens, f"{picture.stamp_ns / SECOND_NS:.2f} s: {distances}"
+        optics.unmirrored(picture).image_bgr,
+        skeleton.agents,
+        lens,
+        f"{picture.stamp_ns / SECOND_NS:.2f} s: {distances}",
     )
 
 

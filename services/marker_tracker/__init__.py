@@ -1,6 +1,6 @@
-"""The marker tracker: objects by the fiducial markers on them.
+"""The marker tracker: estimates the poses of objects from the fiducial markers on them.
 
-Each image flows through three steps, each a sub-package: `detection` of markers, `occlusion`, which adds covered ones,
-and `pose` of the objects. `node` strings them together; `scene_file` and `settings` say what carries which marker. No
-step imports a later one.
+Each image passes three steps, each a sub-package: `detection` finds markers, `occlusion` adds covered ones, and `pose`
+estimates the objects' poses. `node` calls them in turn; `scene_file` and `settings` tell which object carries which
+marker. No step imports a later one.
 """

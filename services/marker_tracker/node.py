@@ -43,7 +43,7 @@ class MarkerTracker:
         self._tracks = Tracks(round(settings.memory_s * SECOND_NS))
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
-        """Answer each colour image with one `Objects` of its stamp, invalid where the image cannot be used."""
+        """Return one `Objects` with the stamp of each colour image, invalid where the image cannot be used."""
         if not isinstance(message, Image) or message.format == "depth16_mm":
             return []
         order = self._order.judge(message.stamp_ns, message.session_id)
@@ -79,7 +79,7 @@ class MarkerTracker:
         return self._tracks.listed(stamp_ns)
 
     def _forget_images(self) -> None:
-        """Forget where markers were in the images before: the next one is of another session or size."""
+        """Forget the markers of previous images: the next image has another session or size."""
         self._detector.clear()
         self._partial_occlusion.clear()
         self._occluders.clear()

@@ -1,6 +1,6 @@
 """The scene: which object carries which markers, from `objects.yaml` or the plain settings.
 
-Whatever is wrong with the file is named with its line.
+Errors name the file, the line and the field.
 """
 
 from collections.abc import Iterator
@@ -39,7 +39,7 @@ class _Part(BaseModel):
 
 
 class Placement(_Part):
-    """Where a marker is on its object: its centre from the object's, and rotations about fixed x, then y, then z."""
+    """Pose of a marker in its object's frame: position of its centre, and rotations about fixed x, then y, then z."""
 
     translation_m: Annotated[list[Metres], Field(min_length=3, max_length=3)] = [0.0, 0.0, 0.0]
     rotation_deg: Annotated[list[Degrees], Field(min_length=3, max_length=3)] = [0.0, 0.0, 0.0]
@@ -54,7 +54,7 @@ class Placement(_Part):
 
 
 class MarkerEntry(_Part):
-    """One marker of an object; family and size are the object's or the file's where they are left out."""
+    """One marker of an object; family and size default to the object's, then to the file's."""
 
     id: int = Field(ge=0)
     family: FamilyName | None = None
@@ -72,7 +72,7 @@ class ObjectEntry(_Part):
 
 
 class SceneFile(_Part):
-    """The whole file."""
+    """Content of a scene file; family and size are defaults for all markers."""
 
     family: FamilyName | None = None
     size_m: Size | None = None
@@ -80,7 +80,7 @@ class SceneFile(_Part):
 
 
 def catalogue(settings: Settings) -> Catalogue:
-    """Read what carries which marker, from the scene file if there is one, else from the settings.
+    """Build the catalogue of markers and objects, from the scene file if the settings name one, else from the settings.
 
     Raises:
         SceneFileError: the scene file cannot be read or used, or the settings describe objects as well.
@@ -94,7 +94,7 @@ def catalogue(settings: Settings) -> Catalogue:
 
 
 def load(path: Path) -> Catalogue:
-    """Read a scene file.
+    """Read a scene file into a catalogue.
 
     Raises:
         SceneFileError: it cannot be read or used.
@@ -119,7 +119,7 @@ def load(path: Path) -> Catalogue:
 
 
 def _from_settings(settings: Settings) -> Catalogue:
-    """Describe the settings' objects: each carries the marker of its own id, in its centre."""
+    """Build the catalogue of the settings' objects: each carries the marker of its own id, in its centre."""
     name = canonical(settings.dictionary)
     if not settings.objects:
         return Catalogue((name,), {}, {}, settings.marker_size_m)
@@ -153,7 +153,7 @@ def _from_scene(path: Path, root: yaml.Node, scene: SceneFile) -> Catalogue:
 
 
 def _mounted_markers(path: Path, root: yaml.Node, scene: SceneFile) -> Iterator[tuple[Location, Key, MountedMarker]]:
-    """Yield each marker with its location in the file, family and size filled in from the object's or the file's."""
+    """Yield each marker's location in the file, its key and its mounting; fill in default families and sizes."""
     for number, entry in scene.objects.items():
         for index, marker in enumerate(entry.markers or [MarkerEntry(id=number)]):
             location: Location = ("objects", number) + (("markers", index) if entry.markers else ())
@@ -171,7 +171,7 @@ def _mounted_markers(path: Path, root: yaml.Node, scene: SceneFile) -> Iterator[
 
 
 def _refuse_shared_codes(path: Path, families: tuple[str, ...]) -> None:
-    """Refuse two sizes of one dictionary: their markers look the same."""
+    """Refuse dictionaries that hold the same markers, such as DICT_4X4_50 and DICT_4X4_100."""
     for one, other in combinations(families, 2):
         if family(one).cells == family(other).cells and family(one).codes[0, 0] == family(other).codes[0, 0]:
             raise SceneFileError(f"{path}: {one} and {other} hold the same markers: use the larger for both")
@@ -179,12 +179,12 @@ def _refuse_shared_codes(path: Path, families: tuple[str, ...]) -> None:
 
 def _refuse_repeated_keys(path: Path, node: yaml.Node) -> None:
     if isinstance(node, yaml.MappingNode):
-        seen: set[str] = set()
+        names: set[str] = set()
         for key, value in node.value:
-            said = str(yaml.SafeLoader("").construct_object(key)) if key.tag == INTEGER else key.value
-            if said in seen:
-                raise SceneFileError(f"{path}, line {key.start_mark.line + 1}: {said} is given twice: remove one")
-            seen.add(said)
+            name = str(yaml.SafeLoader("").construct_object(key)) if key.tag == INTEGER else key.value
+            if name in names:
+                raise SceneFileError(f"{path}, line {key.start_mark.line + 1}: {name} is given twice: remove one")
+            names.add(name)
             _refuse_repeated_keys(path, value)
     elif isinstance(node, yaml.SequenceNode):
         for value in node.value:
@@ -198,17 +198,17 @@ def _problem(path: Path, root: yaml.Node, error: Any) -> str:
         "dict_type": "needs ids with what they are, as `1: {name: cup}`",
         "model_type": "needs fields, as {name: cup} for an object and {id: 3} for a marker",
     }
-    said = advice.get(error["type"], error["msg"].removeprefix("Value error, "))
-    return str(_refusal(path, root, error["loc"], said))
+    problem = advice.get(error["type"], error["msg"].removeprefix("Value error, "))
+    return str(_refusal(path, root, error["loc"], problem))
 
 
-def _refusal(path: Path, root: yaml.Node, location: Location, said: str) -> SceneFileError:
+def _refusal(path: Path, root: yaml.Node, location: Location, problem: str) -> SceneFileError:
     field = ".".join(str(part) for part in location if part != "[key]")
-    return SceneFileError(f"{path}, line {_line(root, location)}: {field}: {said}")
+    return SceneFileError(f"{path}, line {_line(root, location)}: {field}: {problem}")
 
 
 def _line(node: yaml.Node, location: Location) -> int:
-    """Find the line of a location, or of as much of it as the file has."""
+    """Find the line of a location, or of the deepest part of the location that the file has."""
     for part in location:
         if isinstance(node, yaml.MappingNode):
             inner = [(key, value) for key, value in node.value if key.value == str(part)]

@@ -10,7 +10,7 @@ from marker_tracker.detection.families import canonical
 
 
 class ObjectSpec(BaseModel):
-    """An object that carries a marker: its name, and its marker's side in metres where it is not the usual one."""
+    """An object that carries a marker: its name, and its marker's side in metres if that is not `marker_size_m`."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 

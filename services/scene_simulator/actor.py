@@ -1,4 +1,4 @@
-"""The person: proportions and habits drawn from a seed, and the inverse kinematics of reaching."""
+"""The actor: body proportions and habits drawn from a seed, and the inverse kinematics of reaching."""
 
 from dataclasses import dataclass
 
@@ -26,22 +26,22 @@ FOOT_HEIGHT = 0.04  # floor to the foot joint
 KNEE_SHARE = 0.5  # of the way from hip to foot
 
 FULL_STRETCH = 0.995
-"""Of the arm's length: at 1 the elbow's direction is undefined."""
+"""Largest distance from shoulder to palm, as a share of the arm's length: at 1 the elbow's direction is undefined."""
 COMFORTABLE_STRETCH = 0.93
-"""Of the arm's length: people lean rather than stretch their arm further."""
+"""Share of the arm's length up to which people stretch it; further away they lean instead."""
 STRETCH_SOFTNESS = 0.05
-"""Of the arm's length: the width of the transition to that limit, so that the trunk starts to lean smoothly."""
+"""Width of the transition to that limit, as a share of the arm's length: makes the trunk start to lean smoothly."""
 LEAN_LIMIT_RAD = np.deg2rad(60.0)
-"""Nobody leans further; the hand then stays short of its goal."""
+"""Largest lean; a hand's goal beyond it is not reached."""
 LEAST_AHEAD_M = 0.1
-"""A hand beside or behind the hips is treated as this far ahead: the trunk never turns round."""
+"""Least distance ahead of the hips at which a hand is assumed, so that the trunk never turns round."""
 BISECTIONS = 30
-"""Halvings of 60°: the lean is then exact to less than a millionth of a degree."""
+"""Halvings of the 60° range: the lean is then exact to less than a millionth of a degree."""
 
 
 @dataclass(frozen=True)
 class Actor:
-    """One person.
+    """The proportions and habits of one person.
 
     Attributes:
         bias_rad: (2,), the constant error of pointing, azimuth and elevation.
@@ -69,18 +69,18 @@ class Actor:
 
     @property
     def arm_m(self) -> float:
-        """Shoulder to palm, stretched."""
+        """Length of the stretched arm from shoulder to palm."""
         return (UPPER_ARM + FOREARM) * self.height_m
 
     @property
     def finger_m(self) -> float:
-        """Palm to the tip of the stretched index finger."""
+        """Length from the palm to the tip of the stretched index finger."""
         return FINGER * self.height_m
 
 
 @dataclass(frozen=True)
 class Stance:
-    """How the person stands over T frames: pelvis_m (T, 3), heading_rad (T,), lean_rad (T,) of the trunk."""
+    """The stance over T frames: pelvis_m (T, 3) in the camera frame, heading_rad (T,), lean_rad (T,) of the trunk."""
 
     pelvis_m: Array
     heading_rad: Array
@@ -95,7 +95,7 @@ class Stance:
 
 
 def draw_actor(parameters: ActorParameters, actor_seed: int) -> Actor:
-    """Draw a person; the same seed is always the same person."""
+    """Draw a person at random; the same seed always gives the same person."""
     rng = random_stream("actor", actor_seed)
     return Actor(
         height_m=draw_normal(rng, parameters.height_mean_sd_m),
@@ -117,8 +117,8 @@ def draw_actor(parameters: ActorParameters, actor_seed: int) -> Actor:
 def pose(actor: Actor, stance: Stance, hands_m: Array) -> Array:
     """Return the joints (T, 15, 3) of a person whose left and right palm are at `hands_m` (T, 2, 3).
 
-    The trunk turns and leans after the acting hand; the elbows hang. A hand beyond the arm's reach is
-    drawn back into it.
+    The trunk turns and leans towards the acting hand; the elbows point down. A hand beyond the arm's reach is moved
+    back along the arm into reach.
     """
     trunk = _Trunk(actor, stance, hands_m[:, 0 if actor.hand == "left" else 1])
     joints = np.empty((len(hands_m), len(JOINTS), 3))
@@ -135,7 +135,7 @@ def pose(actor: Actor, stance: Stance, hands_m: Array) -> Array:
 
 
 def fingertip(actor: Actor, joints_m: Array) -> Array:
-    """Return where the acting hand's stretched index finger ends (T, 3): it continues the forearm."""
+    """Return the tip (T, 3) of the acting hand's stretched index finger, which continues the forearm."""
     hand, elbow = joints_m[:, INDEX[f"{actor.hand}_hand"]], joints_m[:, INDEX[f"{actor.hand}_elbow"]]
     return hand + actor.finger_m * _unit(hand - elbow)
 
@@ -146,7 +146,7 @@ def eye(actor: Actor, stance: Stance, joints_m: Array) -> Array:
 
 
 class _Trunk:
-    """The upper body over T frames: turned after the acting hand, and leant towards it until the arm reaches."""
+    """The upper body over T frames: turned towards the acting hand, and leaning until the arm reaches it."""
 
     def __init__(self, actor: Actor, stance: Stance, hand_m: Array) -> None:
         self._height_m = actor.height_m
@@ -164,7 +164,7 @@ class _Trunk:
         self._lean_to(stance.lean_rad + self._needed_lean(actor, stance.lean_rad, hand_m))
 
     def along(self, share: float) -> Array:
-        """Return the point (T, 3) that far up the spine from the hips, as a share of stature."""
+        """Return the point (T, 3) of the spine at a distance from the hips, given as a share of stature."""
         return np.asarray(self._pelvis + share * self._height_m * self.up)
 
     def shoulder(self, side: int) -> Array:
@@ -173,21 +173,21 @@ class _Trunk:
         return np.asarray(self.along(TRUNK - SHOULDER_DROP) + across)
 
     def _lean_to(self, lean_rad: Array) -> None:
-        """Rotate the spine and the shoulder line from upright towards the hand."""
+        """Rotate the spine and the shoulder line from upright towards the hand by angles (T,)."""
         sin, cos = np.sin(lean_rad)[:, None], np.cos(lean_rad)[:, None]
         self.up = cos * self.vertical + sin * self._towards
         share = (self._across * self._towards).sum(-1, keepdims=True)
         self._leant_across = self._across + share * ((cos - 1) * self._towards - sin * self.vertical)
 
     def _level(self, offset_m: Array) -> tuple[Array, Array]:
-        """Split offsets (T, 3) into the level components left and forward, each (T, 1)."""
+        """Return the horizontal components of offsets (T, 3), leftward and forward, each (T, 1)."""
         return (offset_m * self.left).sum(-1, keepdims=True), (offset_m * self.forward).sum(-1, keepdims=True)
 
     def _distance(self, hand_m: Array) -> Array:
         return np.asarray(np.linalg.norm(hand_m - self.shoulder(self._side), axis=-1))
 
     def _needed_lean(self, actor: Actor, lean_rad: Array, hand_m: Array) -> Array:
-        """Find by bisection how much further to lean (T,) so that the arm is stretched comfortably at most."""
+        """Find by bisection the additional lean (T,; rad) with which the arm is stretched comfortably at most."""
         wanted = _soft_minimum(self._distance(hand_m) / actor.arm_m) * actor.arm_m
         low, high = np.zeros_like(lean_rad), np.full_like(lean_rad, LEAN_LIMIT_RAD)
         for _ in range(BISECTIONS):
@@ -199,13 +199,13 @@ class _Trunk:
 
 
 def _soft_minimum(stretch: Array) -> Array:
-    """Limit a stretch (T,) smoothly to the comfortable one: min(x, c) with softplus in place of the kink."""
+    """Limit a stretch (T,) smoothly to the comfortable one c: min(x, c) with softplus in place of the kink."""
     excess = (stretch - COMFORTABLE_STRETCH) / STRETCH_SOFTNESS
     return np.asarray(stretch - STRETCH_SOFTNESS * np.logaddexp(0.0, excess))
 
 
 def _bend_arm(actor: Actor, trunk: _Trunk, side: int, shoulder: Array, hand: Array) -> tuple[Array, Array]:
-    """Solve the two-link arm: elbow and hand (T, 3); the elbow points down, out and a little back."""
+    """Solve the inverse kinematics of the two-link arm: elbow and hand (T, 3); the elbow points down, out and back."""
     upper, fore = UPPER_ARM * actor.height_m, FOREARM * actor.height_m
     along = _unit(hand - shoulder)
     distance = np.minimum(np.linalg.norm(hand - shoulder, axis=-1), FULL_STRETCH * actor.arm_m)[:, None]

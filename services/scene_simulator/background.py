@@ -1,4 +1,4 @@
-"""Draws what never moves: the room, and the table with a name plate before each object's lane."""
+"""Draws the static background: the room, and the table with a name plate in front of each object."""
 
 from collections.abc import Sequence
 
@@ -16,11 +16,11 @@ WOOD: Colour = (108, 150, 190)
 PLATE: Colour = (236, 240, 242)
 INK: Colour = (60, 60, 60)
 WALL_Z_M = 3.6
-"""Behind wherever the person may stand."""
+"""Depth of the wall, behind every place where the person may stand."""
 LEG_SIDE_M = 0.05
-"""Of the table."""
+"""Side of the table's square legs."""
 PLANKS = 5
-"""Whose seams cross the table top."""
+"""Number of planks of the table top; the seams between them are drawn."""
 
 
 def draw_room(camera: Pinhole, camera_height_m: float) -> Canvas:
@@ -41,7 +41,7 @@ def draw_table(
 ) -> tuple[Canvas, Canvas]:
     """Draw the table by itself; return the picture (height, width, 3) and its mask (height, width).
 
-    `lanes_x_m` (n,) are where the named objects stand.
+    `lanes_x_m` (n,) are the x positions of the named objects.
     """
     picture = np.full((camera.height, camera.width, 3), shade(WOOD, 0.9), dtype=np.uint8)
     mask = np.zeros((camera.height, camera.width), dtype=np.uint8)

@@ -1,4 +1,4 @@
-"""A busy background: shapes, textures, edges, and squares that look like markers and are none."""
+"""Background clutter: shapes, textures, edges, and false markers that no dictionary contains."""
 
 from collections.abc import Callable
 
@@ -10,15 +10,15 @@ from scene_simulator.drawing_primitives import Canvas, Colour, Pinhole
 from scene_simulator.props import DICTIONARY
 
 CELLS = 4
-"""Along each side of the dictionary's markers."""
+"""Cells along each side of the dictionary's markers."""
 FEWEST_WRONG_CELLS = 3
-"""By which a false marker differs from every marker: more than a detector corrects."""
+"""Least number of cells in which a false marker differs from every marker: more than a detector corrects."""
 SIZE_RANGE_M = (0.06, 0.22)
-"""Sides of the things: about those of the markers and the objects."""
+"""Range of the squares' sides: about those of the markers and the objects."""
 TEXTURE_PX = 48
 """Side of a texture before it is drawn in perspective."""
 UNIT_SQUARE = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
-"""Its corners (4, 2)."""
+"""Corners (4, 2) of a unit square around the origin."""
 
 
 def draw_clutter(canvas: Canvas, camera: Pinhole, origin_m: Array, sides_m: Array, count: int, seed: int) -> None:
@@ -58,7 +58,7 @@ def _plain(rng: np.random.Generator) -> Canvas:
 
 
 def _framed(rng: np.random.Generator) -> Canvas:
-    """A bright picture in a black frame: the outline of a marker."""
+    """Draw a bright picture in a black frame, with the outline of a marker."""
     texture = _plain(rng)
     cv2.rectangle(texture, (0, 0), (TEXTURE_PX - 1, TEXTURE_PX - 1), (235, 235, 235), 6)
     cv2.rectangle(texture, (6, 6), (TEXTURE_PX - 7, TEXTURE_PX - 7), (25, 25, 25), 6)
@@ -83,7 +83,7 @@ def _checked(_: np.random.Generator) -> Canvas:
 
 
 def _false_marker(rng: np.random.Generator) -> Canvas:
-    """A black square with a pattern of cells that is far from every marker's."""
+    """Draw a black square with a code that differs from every marker's."""
     cells = np.full((CELLS + 4, CELLS + 4), 235)
     cells[1:-1, 1:-1] = 25
     cells[2:-2, 2:-2] = np.where(_false_code(rng), 235, 25)

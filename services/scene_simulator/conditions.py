@@ -1,4 +1,4 @@
-"""Conditions that make a scene harder: where the objects stand, and what the camera sees of them."""
+"""Conditions that make a scene harder: the arrangement of the objects, and the quality of the images."""
 
 import tomllib
 from collections.abc import Mapping
@@ -11,30 +11,30 @@ from pydantic import Field
 from scene_simulator.parameters import ObjectParameters, Parameters, Section, TableParameters
 
 SIZE_TO_SPACING = 0.875
-"""Width of the widest object as a share of the spacing, at most: objects in a closer row are scaled down."""
+"""Largest width of an object as a share of the spacing: objects in a closer row are scaled down."""
 
 ROW_BEHIND_EDGE_M = 0.05
-"""From the table's near edge to a row of objects."""
+"""Distance from the table's near edge to a row of objects."""
 ROW_DEPTH_M = 0.02
-"""How much the objects of a row may stand before one another."""
+"""Range of depths of the objects in a row."""
 PANTOMIME_RANGE_M = 0.05
-"""How much further than `pantomime_m` a pantomime may stay from the nearest object."""
+"""Range of distances above `pantomime_m` between a pantomime and the nearest object."""
 
 Length = Annotated[float, Field(gt=0, le=5)]
 
 
 class Conditions(Section):
-    """What is made harder in one scene; by default nothing, and the scene is as its parameters have it.
+    """The conditions of one scene; by default it is as its parameters describe it.
 
     Attributes:
-        spacing_m: between the middles of neighbouring objects, which then stand in a row.
-        distance_m: how far behind the row, which then is at the table's near edge, the person stands.
-        pantomime_m: how near a pantomime comes to the nearest object's middle, or up to 5 cm further from it.
-        clutter: how many shapes, edges and false squares are on the wall, and again on the table.
-        defocus_sd_px: the width of the camera's blur.
-        exposure_s: how long the shutter is open, at most a frame interval; it blurs what moves.
-        unread_share: the share of images in which a marker cannot be read, drawn independently for each marker.
-        covers_marker: whether the hand hides the marker of what it holds.
+        spacing_m: distance between the middles of neighbouring objects, which then stand in a row.
+        distance_m: distance of the person from the row of objects, which then is at the table's near edge.
+        pantomime_m: distance of a pantomime's path from the nearest object's middle; up to 5 cm more.
+        clutter: number of shapes, edges and false markers on the wall, and the same number on the table.
+        defocus_sd_px: standard deviation of the camera's blur.
+        exposure_s: exposure time, at most a frame interval; causes motion blur.
+        unread_share: share of images in which a marker cannot be read, drawn independently for each marker.
+        covers_marker: whether the hand hides the marker of the object that it holds.
     """
 
     spacing_m: Length | None = None
@@ -47,7 +47,7 @@ class Conditions(Section):
     covers_marker: bool = False
 
     def arranged(self, parameters: Parameters) -> Parameters:
-        """Return the parameters with objects, person and pantomime placed as the conditions say."""
+        """Return the parameters with objects, person and pantomime placed by the conditions."""
         objects = parameters.objects if self.spacing_m is None else _in_a_row(parameters.objects, self.spacing_m)
         pantomime = parameters.pantomime
         if self.pantomime_m is not None:
@@ -77,7 +77,7 @@ def load_conditions() -> Mapping[str, Conditions]:
 
 
 def _in_a_row(objects: ObjectParameters, spacing_m: float) -> ObjectParameters:
-    """Return the objects side by side, scaled down where they would touch."""
+    """Return the parameters of objects side by side, scaled down where they would touch."""
     widest_m = max(item.size_m[0] for item in objects.items)
     scale = min(1.0, SIZE_TO_SPACING * spacing_m / widest_m)
     middle_m = sum(objects.place_z_range_m) / 2

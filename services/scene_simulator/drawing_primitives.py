@@ -1,4 +1,4 @@
-"""The pinhole camera and the shapes everything is drawn with: anti-aliased, at subpixel positions."""
+"""The pinhole camera and the drawing of shapes, anti-aliased and at subpixel positions."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ Canvas = NDArray[np.uint8]
 Colour = tuple[int, int, int]
 
 SUBPIXEL_BITS = 4
-"""OpenCV draws at sixteenths of a pixel: slow movements do not jump."""
+"""Fractional bits of OpenCV's coordinates: at sixteenths of a pixel slow motion looks smooth."""
 CIRCLE = np.stack([np.cos(a := np.linspace(0, 2 * np.pi, 24, endpoint=False)), np.sin(a)], axis=-1)
 """Points (24, 2) of the unit circle."""
 
@@ -43,7 +43,7 @@ class Pinhole:
         return centre + self.focal_px * points_m[..., :2] / points_m[..., 2:]
 
     def pixels(self, length_m: float, depth_m: float) -> float:
-        """Return how many pixels long something of a length is at a depth."""
+        """Return the length in pixels of a length in metres at a depth."""
         return self.focal_px * length_m / depth_m
 
 

@@ -1,4 +1,4 @@
-"""The simulator that the settings describe: one scene of so many repetitions, or one scene after another for ever."""
+"""The simulator that the settings describe: one scene, or an endless sequence of scenes."""
 
 from collections.abc import Iterator
 
@@ -9,7 +9,7 @@ from scene_simulator.settings import Settings
 from scene_simulator.simulator import GATEWAY, Simulator
 
 REPETITIONS = 4
-"""How often each action is done before the next scene, with another seed, follows."""
+"""Repetitions of each action in one scene of an endless sequence; the next scene has another seed."""
 DESCRIPTION = "simulated scene, no camera"
 
 
@@ -22,7 +22,7 @@ def simulator_of(settings: Settings, start_ns: int) -> Source:
 
 
 class EndlessSimulator:
-    """One simulated scene after another, as one stream."""
+    """An endless sequence of simulated scenes as one stream."""
 
     name = GATEWAY
     paced = True

@@ -1,4 +1,4 @@
-"""Motion blur: the mean of what a camera sees while its shutter is open."""
+"""Motion blur: the mean of images drawn at several instants of an exposure."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,12 +10,12 @@ from scene_simulator.drawing_primitives import Canvas
 from scene_simulator.simulated_scene import SceneState
 
 INSTANTS = 3
-"""Of one exposure: enough for a smear, each costs the drawing of an image."""
+"""Instants of one exposure: enough for visible blur; each costs the drawing of an image."""
 MOVING = ("joints_m", "fingertip_m", "positions_m", "yaw_rad", "riser_tops_m", "grip", "pointing")
 
 
 def states_while_open(before: SceneState, state: SceneState, share: float) -> list[SceneState]:
-    """Return instants of the last `share` (0 to 1) of the interval between two frames; the last is the second frame."""
+    """Interpolate states over the last `share` (0 to 1) of the interval between two frames; the last one is `state`."""
     if share == 0:
         return [state]
     return [_interpolated(before, state, 1 - share * (1 - step)) for step in np.linspace(0, 1, INSTANTS)]

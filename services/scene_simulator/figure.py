@@ -1,4 +1,4 @@
-"""Draws the person from joints: trunk, head, limbs and hands."""
+"""Draws the actor's body from joints: trunk, head, limbs and hands."""
 
 from collections.abc import Callable, Iterator
 
@@ -24,23 +24,23 @@ from scene_simulator.simulated_scene import SceneState
 Stroke = tuple[float, Callable[[Canvas], None]]
 """The depth of a part (m), and the function that draws it: far parts are drawn first."""
 
-# Colours (BGR), of which a person's seed chooses.
+# Colours (BGR), chosen by a person's seed.
 SHIRTS: tuple[Colour, ...] = ((160, 120, 70), (90, 140, 90), (120, 80, 130), (70, 110, 170), (140, 140, 80))
 SKINS: tuple[Colour, ...] = ((165, 195, 232), (130, 165, 208), (90, 125, 175), (70, 95, 140))
 HAIRS: tuple[Colour, ...] = ((35, 45, 60), (45, 75, 115), (70, 130, 175), (60, 60, 60))
 TROUSERS: Colour = (92, 78, 70)
 USUAL_HEIGHT_M = 1.70
-"""The stature whose limbs have the radii below; others are scaled."""
+"""Stature to which the limbs' radii refer; for other statures they are scaled."""
 FINGER_SIDES_M = (-0.027, -0.009, 0.009, 0.027)
-"""Where the four fingers begin, across the palm."""
+"""Positions of the four fingers across the palm."""
 FINGER_RADII_M = (0.011, 0.009)
-"""At the knuckle and at the tip."""
+"""Radii of a finger at the knuckle and at the tip."""
 SLEEVE = 0.35
-"""Of the forearm, covered by the shirt."""
+"""Share of the forearm that the shirt covers."""
 
 
 class Figure:
-    """Draws one person, in colours from the person's seed."""
+    """Draws one actor, in colours from the actor's seed."""
 
     def __init__(self, actor: Actor) -> None:
         rng = np.random.default_rng(actor.appearance_seed)
@@ -49,7 +49,7 @@ class Figure:
         self._shirt, self._skin, self._hair = (tones[rng.integers(len(tones))] for tones in (SHIRTS, SKINS, HAIRS))
 
     def draw_below(self, canvas: Canvas, camera: Pinhole, joints_m: Array) -> None:
-        """Draw what is behind and below the table, the legs and the hips, from joints (15, 3; m)."""
+        """Draw the parts behind and below the table, legs and hips, from joints (15, 3; m)."""
         for side in ("left", "right"):
             hip, knee, foot = (joints_m[INDEX[f"{side}_{part}"]] for part in ("hip", "knee", "foot"))
             limb(canvas, camera, np.stack([knee, foot]), self._radii(0.06, 0.045), TROUSERS)
@@ -58,7 +58,7 @@ class Figure:
         hull(canvas, blob(camera, hips, self._sized(0.14, 0.085, 0.085)), shade(self._shirt, 0.92))
 
     def strokes(self, camera: Pinhole, state: SceneState) -> Iterator[Stroke]:
-        """Yield the parts above the table."""
+        """Yield the drawing of each part above the table."""
         joints = state.joints_m
         trunk = joints[[INDEX["neck"], INDEX["torso"]]]
         yield trunk[:, 2].max() + 0.1, lambda canvas: self._draw_trunk(canvas, camera, joints)
@@ -67,9 +67,9 @@ class Figure:
             yield from self._arm_strokes(camera, state, side)
 
     def draw_fingers(self, canvas: Canvas, camera: Pinhole, state: SceneState, over_m: tuple[Array, Array]) -> None:
-        """Draw the acting hand's fingers around what it holds: from the palm over an edge point to the tips.
+        """Draw the acting hand's fingers around the held object: from the palm over the object's edge to the tips.
 
-        `over_m` is the middle (3,) of the held face's upper edge, and how far (3,) the fingers go down from it.
+        `over_m` is the middle (3,) of the held face's upper edge, and the vector (3,) by which the fingers go below it.
         """
         palm = state.joints_m[INDEX[f"{self._actor.hand}_hand"]]
         edge, down = over_m
@@ -81,7 +81,7 @@ class Figure:
                 limb(canvas, camera, np.stack(ends), FINGER_RADII_M, self._skin)
 
     def draw_palm_over(self, canvas: Canvas, camera: Pinhole, middle_m: Array, radius_m: float) -> None:
-        """Draw the hand laid flat over something around `middle_m` (3,), with its fingers side by side."""
+        """Draw the hand laid flat over an area around `middle_m` (3,), with its fingers side by side."""
         ends = np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]) * radius_m
         limb(canvas, camera, middle_m + ends, (radius_m, radius_m), self._skin)
         for side in FINGER_SIDES_M:

@@ -1,4 +1,4 @@
-"""The skeleton tracker's noise, correlated in time, with outliers of the hands; and the sway of standing."""
+"""Noise of a skeleton tracker, correlated in time and with outliers of the hands; and the sway of standing people."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ HANDS = (INDEX["left_hand"], INDEX["right_hand"])
 TONES = 4
 """Sinusoids in each direction of the sway: enough that it does not look periodic."""
 UNSURE = 0.5
-"""Confidence of a hand during an excursion: the tracker is guessing."""
+"""Confidence of a hand during an excursion, when its measured position is wrong."""
 
 
 class CorrelatedNoise:
@@ -30,7 +30,7 @@ class CorrelatedNoise:
 
 
 class Excursions:
-    """Moments in which one point is measured far off: a raised cosine in a random direction."""
+    """Temporary outliers of one point: an offset in a random direction that follows a raised cosine."""
 
     def __init__(self, rng: np.random.Generator, parameters: NoiseParameters, frame_rate_hz: float) -> None:
         self._rng = rng
@@ -42,7 +42,7 @@ class Excursions:
         self._peak: Array = np.zeros(3)
 
     def step(self) -> Array | None:
-        """Return this frame's offset (3,; m), or None while the point is measured well."""
+        """Return this frame's offset (3,; m), or None outside of excursions."""
         if self._frames_left == 0 and self._rng.random() < self._chance:
             self._frames_left = len(self._window)
             self._peak = self._sd_m * self._rng.standard_normal(3)
@@ -53,7 +53,7 @@ class Excursions:
 
 
 class SkeletonNoise:
-    """The measurement of joints by a tracker like the Kinect's."""
+    """Measurement noise of joints, as of a tracker like the Kinect's."""
 
     def __init__(
         self, rng: np.random.Generator, parameters: NoiseParameters, scale: float, frame_rate_hz: float
@@ -66,7 +66,7 @@ class SkeletonNoise:
         self._excursions = [Excursions(rng, parameters, frame_rate_hz) for _ in HANDS]
 
     def measure(self, joints_m: Array) -> tuple[Array, list[float]]:
-        """Return the measurement of one frame's joints (15, 3; m), and the confidence (15) in each."""
+        """Return noisy joints (15, 3; m) for one frame's true ones (15, 3; m), and their confidence (15)."""
         measured = joints_m + self._joints.step() + self._common.step()
         confidence = [1.0] * len(JOINTS)
         for hand, excursion in zip(HANDS, self._excursions, strict=True):

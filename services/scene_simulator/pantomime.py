@@ -1,4 +1,4 @@
-"""An action done in empty space, as if an object were there."""
+"""Pantomimes: actions done in empty space, as if an object were there."""
 
 import numpy as np
 
@@ -10,11 +10,11 @@ from scene_simulator.random_streams import draw_uniform
 from scene_simulator.trial import Layout, Trial, draw_bulge, draw_displacement, draw_layout, draw_timing
 
 TRIES = 10_000
-"""Places drawn before a scene counts as too full: a small corner of empty space is still found."""
+"""Positions drawn before a scene counts as too full: a small empty region is still found."""
 
 
 def draw_pantomime(parameters: Parameters, actor: Actor, task: Task, places: Array, rng: np.random.Generator) -> Trial:
-    """Draw one repetition of an action without its object; `places` (3,) are the objects' lanes, x in metres.
+    """Draw one repetition of an action without its object; `places` (3,) are the objects' x positions in metres.
 
     Raises:
         ValueError: there is no empty space within the person's reach.
@@ -40,22 +40,22 @@ def draw_pantomime(parameters: Parameters, actor: Actor, task: Task, places: Arr
 def _draw_empty_place(
     parameters: Parameters, actor: Actor, layout: Layout, displacement_m: Array, rng: np.random.Generator
 ) -> Array:
-    """Draw where the palm (3,) grasps nothing, by rejection: far enough from all objects."""
-    where = parameters.pantomime
-    lowest_y_m = parameters.table_y_m - where.above_range_m[0]
+    """Draw the palm's position (3,) at the imagined grasp, far enough from all objects, by rejection sampling."""
+    region = parameters.pantomime
+    lowest_y_m = parameters.table_y_m - region.above_range_m[0]
     for _ in range(TRIES):
-        ranges_m = (where.aside_range_m, where.above_range_m, where.ahead_range_m)
+        ranges_m = (region.aside_range_m, region.above_range_m, region.ahead_range_m)
         aside, above, ahead = (draw_uniform(rng, one) for one in ranges_m)
         x, z = layout.pelvis_m[0] + actor.side * aside, layout.pelvis_m[2] - ahead
         place = np.array([x, parameters.table_y_m - above, z])
         nearest_m = _nearest_m(place, displacement_m, layout.positions_m)
-        is_there = where.clear_range_m[0] <= nearest_m <= where.clear_range_m[1]
-        if is_there and place[1] + displacement_m[1] <= lowest_y_m:
+        is_clear = region.clear_range_m[0] <= nearest_m <= region.clear_range_m[1]
+        if is_clear and place[1] + displacement_m[1] <= lowest_y_m:
             return place
     raise ValueError("no empty space for a pantomime: put the objects closer together, or the pantomime nearer")
 
 
 def _nearest_m(place: Array, displacement_m: Array, positions_m: Array) -> float:
-    """Return the palm's least distance from any object's middle between the imagined grasp and release."""
-    way = place + np.linspace(0, 1, 8)[:, None] * displacement_m
-    return float(np.linalg.norm(way[:, None] - positions_m, axis=2).min())
+    """Return the palm's smallest distance from any object's middle between the imagined grasp and release."""
+    path = place + np.linspace(0, 1, 8)[:, None] * displacement_m
+    return float(np.linalg.norm(path[:, None] - positions_m, axis=2).min())

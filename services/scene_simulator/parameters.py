@@ -28,7 +28,7 @@ class CameraParameters(Section):
 
 
 class TableParameters(Section):
-    """The table top, in distances from the camera and above the floor."""
+    """The table: its top's height above the floor, distances from the camera, and size."""
 
     height_m: float
     near_z_m: float
@@ -48,7 +48,7 @@ class ObjectItem(Section):
 
 
 class ObjectParameters(Section):
-    """The objects and where they may stand."""
+    """The objects and their possible positions."""
 
     marker_size_m: float
     place_x_m: Triple
@@ -59,7 +59,7 @@ class ObjectParameters(Section):
 
 
 class ActorParameters(Section):
-    """How people differ."""
+    """Distributions of people's proportions and habits."""
 
     height_mean_sd_m: Pair
     left_handed_probability: float
@@ -76,7 +76,7 @@ class ActorParameters(Section):
 
 
 class TrialParameters(Section):
-    """How one person's repetitions differ."""
+    """Distributions over one person's repetitions."""
 
     duration_mean_sd_s: Pair
     duration_range_s: Pair
@@ -107,7 +107,7 @@ class TrialParameters(Section):
 
 
 class PantomimeParameters(Section):
-    """Where an action is done without its object."""
+    """The region in which pantomimes are done, relative to the person and the table."""
 
     clear_range_m: Pair
     aside_range_m: Pair
@@ -116,7 +116,7 @@ class PantomimeParameters(Section):
 
 
 class PauseParameters(Section):
-    """What happens between two repetitions."""
+    """The pause between two repetitions."""
 
     lead_in_s: float
     reset_range_s: Pair
@@ -152,7 +152,7 @@ class ImageParameters(Section):
 
 
 class Parameters(Section):
-    """Everything in `scene.toml`."""
+    """The content of `scene.toml`."""
 
     camera: CameraParameters
     table: TableParameters
@@ -167,12 +167,12 @@ class Parameters(Section):
 
     @property
     def table_y_m(self) -> float:
-        """Where the table top lies in the camera frame (y down)."""
+        """Position of the table top in the camera frame (y down)."""
         return self.camera.height_m - self.table.height_m
 
 
 @cache
 def load_parameters() -> Parameters:
-    """Read the file that is part of the package."""
+    """Read the package's `scene.toml`."""
     text = files(__package__).joinpath("scene.toml").read_text(encoding="utf-8")
     return Parameters.model_validate(tomllib.loads(text))

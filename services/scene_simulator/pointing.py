@@ -1,4 +1,4 @@
-"""Where the palm is when somebody points: the fingertip lies on the line from the eye to the object."""
+"""The palm's position in pointing: the fingertip lies on the line from the eye to the object."""
 
 import numpy as np
 
@@ -7,18 +7,18 @@ from actum.skeletons import INDEX
 from scene_simulator.actor import Actor, Stance, eye, fingertip, pose
 
 STRETCH = 0.97
-"""Of the length of arm and finger: people point with an arm that is not quite straight."""
+"""Share of the length of arm and finger: people point with an arm that is not quite straight."""
 ITERATIONS = 25
-"""Of the fixed point, which is then found to within rounding."""
+"""Fixed-point iterations: enough to converge to within rounding."""
 
 
 def pointing_palm(
     actor: Actor, stance: Stance, hands_m: Array, target_m: Array, error_rad: Array, stand_off_m: float
 ) -> Array:
-    """Return the pointing palm (3,) for a target (3,), the other palm staying as in `hands_m` (1, 2, 3).
+    """Return the palm's position (3,) in pointing at a target (3,); the other palm stays as in `hands_m` (1, 2, 3).
 
-    The line from eye to fingertip misses the target by `error_rad` (azimuth, elevation); the fingertip ends
-    `stand_off_m` before the target, or where the arm is stretched. Trunk and eye follow the hand, so the place
+    The line from eye to fingertip misses the target by `error_rad` (azimuth, elevation); the fingertip stops
+    `stand_off_m` before the target, or where the arm is stretched. Trunk and eye move with the hand, so the position
     is found by fixed-point iteration.
     """
     column = 0 if actor.hand == "left" else 1

@@ -10,12 +10,12 @@ from scene_simulator.random_streams import random_stream
 ACTIONS: tuple[str, ...] = ("push", "pull", "put", "lift", "point")
 
 NO_OBJECT = -1
-"""In place of an object's id: a pantomime, done in empty space as if an object were there."""
+"""Object id of a pantomime, which is done in empty space as if an object were there."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """What one repetition does: an action of `ACTIONS` on the object with that id, or a pantomime (`NO_OBJECT`).
+    """The task of one repetition: an action of `ACTIONS` on the object with that id, or a pantomime (`NO_OBJECT`).
 
     Raises:
         ValueError: there is no such action or object, or pointing is to be pantomimed.
@@ -34,7 +34,7 @@ class Task:
 
     @property
     def is_pantomime(self) -> bool:
-        """Whether there is no object where the action is done."""
+        """Whether the action is done without an object."""
         return self.object_id == NO_OBJECT
 
 
@@ -44,10 +44,10 @@ def object_ids() -> tuple[int, ...]:
 
 
 def balanced_programme(repetitions: int, seed: int, actor_seed: int = 0) -> list[Task]:
-    """Return `repetitions` of each action in random order; the objects take turns in each action and among actors.
+    """Return `repetitions` of each action in random order, with the objects in turn within each action.
 
-    Any three actors with successive numbers do each action to each object equally often, so that no action tells its
-    object.
+    Any three actors with successive seeds apply each action to each object equally often, so that the object cannot be
+    inferred from the action.
     """
     rng = random_stream("programme", seed)
     ids = rng.permutation(object_ids())

@@ -8,28 +8,28 @@ from scene_simulator.drawing_primitives import Canvas, Colour, Pinhole, hull, li
 from scene_simulator.parameters import ObjectItem
 
 DICTIONARY = cv2.aruco.DICT_4X4_50
-"""The marker tracker's default: an object's id is its marker's."""
+"""The marker tracker's default dictionary; an object's id is that of its marker."""
 MARKER_CELLS = 6
-"""Along each side of a marker, with its black border."""
+"""Cells along each side of a marker, with its black border."""
 QUIET_CELLS = 1
-"""Of white around a marker, which detectors need."""
+"""Width in cells of the white margin around a marker, which detectors need."""
 CELL_PX = 8
-"""Side of a cell in the card's texture: more than it has in any image."""
+"""Side of a cell in the card's texture: larger than in any image."""
 OVERSAMPLING = 3
-"""Texture lookups along each side of a pixel, averaged: edges are as soft as a lens makes them."""
+"""Texture samples along each side of a pixel, which are averaged to make edges as soft as a lens does."""
 FACES = (
     ((0, 1, 5, 4), 1.18),  # top
     ((1, 3, 7, 5), 0.78),  # right
     ((2, 0, 4, 6), 0.86),  # left
     ((0, 1, 3, 2), 1.0),  # front
 )
-"""Corners of a cuboid's visible faces, and how bright each is."""
+"""Corners of a cuboid's visible faces, and the brightness of each face."""
 RISER_COLOUR: Colour = (150, 160, 170)
-"""Unlike the table's and the objects'."""
+"""Colour of risers, unlike the table's and the objects'."""
 GLARE: Colour = (250, 250, 250)
-"""Of a card that reflects a light: as bright as its white."""
+"""Colour of a card that reflects a light, as bright as its white."""
 TURN = np.linspace(0, 2 * np.pi, 32, endpoint=False)
-"""Angles (32,; rad) at which round things are drawn."""
+"""Angles (32,; rad) at which round outlines are sampled."""
 
 
 class MarkerCard:
@@ -49,7 +49,7 @@ class MarkerCard:
         return float(np.linalg.norm(self._corners_m[0]))
 
     def draw_with_glare(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
-        """Draw the card at a pose (4, 4) with glare on it, which hides the print."""
+        """Draw the card at a pose (4, 4) with glare that hides the marker."""
         polygon(canvas, camera.project(_transformed(camera_from_object, self._corners_m)), GLARE)
 
     def draw(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
@@ -76,7 +76,7 @@ class MarkerCard:
 
 
 class Prop:
-    """One object as it is drawn: its body, the shadow and riser under it, its card."""
+    """Draws one object: its body, its marker card, and the shadow and riser under it."""
 
     def __init__(self, item: ObjectItem, marker_size_m: float) -> None:
         self._item = item
@@ -108,7 +108,7 @@ class Prop:
         _darken(canvas, camera.project(centre + ring))
 
     def draw_riser(self, canvas: Canvas, camera: Pinhole, top_m: Array, table_y_m: float) -> None:
-        """Draw the raised plate under the object's place; `top_m` (3,) is below the marked face's middle."""
+        """Draw the riser under the object; `top_m` (3,) is the point of its top below the marked face's middle."""
         width, _, depth = self._item.size_m
         upright = np.eye(4)
         upright[1, 1] = upright[2, 2] = -1

@@ -1,4 +1,4 @@
-"""Seeded random numbers: an independent stream for each purpose, so that no part shifts another's draws."""
+"""Seeded random numbers: an independent stream for each purpose, so that draws for one do not change another's."""
 
 import zlib
 
@@ -7,7 +7,7 @@ import numpy as np
 from actum.arrays import Array
 
 CUT = 2.0
-"""Standard deviations at which normal distributions are clipped: nobody is drawn who could not be."""
+"""Standard deviations at which normal distributions are clipped: avoids impossible people."""
 
 
 def random_stream(purpose: str, *seeds: int) -> np.random.Generator:

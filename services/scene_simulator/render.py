@@ -1,4 +1,4 @@
-"""Draws a frame of the scene as the colour camera sees it, far things first."""
+"""Renders the colour camera's image of the scene, far parts first."""
 
 import cv2
 import numpy as np
@@ -15,13 +15,13 @@ from scene_simulator.random_streams import random_stream
 from scene_simulator.simulated_scene import CLOSED, Scene, SceneState
 
 SLACK_PX = 64
-"""How much larger than the image the grain is drawn: shifted by chance, it differs from image to image."""
+"""Pixels by which the noise pattern is larger than the image: a random offset makes it differ from image to image."""
 VISIBLE_RISER_M = 0.004
-"""A lower riser, as while one grows between two repetitions, is not drawn."""
+"""Least height of a riser that is drawn: between two repetitions risers grow from 0."""
 
 
 class Renderer:
-    """Draws the states of one scene; `rng` draws the sensor's noise."""
+    """Renders the states of one scene; `rng` generates the sensor's noise."""
 
     def __init__(self, scene: Scene, rng: np.random.Generator) -> None:
         parameters = scene.parameters
@@ -41,17 +41,17 @@ class Renderer:
         self._grain = np.round(rng.normal(0, parameters.image.grey_noise_sd, size)).astype(np.int16)
 
     def image(self, *states: SceneState) -> Canvas:
-        """Draw one frame (height, width, 3; BGR) with blur and grain, from its instants while the shutter is open."""
-        taken = mean_image([self.clean_image(state) for state in states])
+        """Render one image (height, width, 3; BGR) with blur and noise, from the states during the exposure."""
+        exposed = mean_image([self.clean_image(state) for state in states])
         if self._conditions.defocus_sd_px:
-            taken = np.asarray(cv2.GaussianBlur(taken, (0, 0), self._conditions.defocus_sd_px), dtype=np.uint8)
-        blurred = cv2.GaussianBlur(taken, (3, 3), self._blur_sd_px)
+            exposed = np.asarray(cv2.GaussianBlur(exposed, (0, 0), self._conditions.defocus_sd_px), dtype=np.uint8)
+        blurred = cv2.GaussianBlur(exposed, (3, 3), self._blur_sd_px)
         x, y = self._rng.integers(SLACK_PX, size=2)
         grain = self._grain[y : y + self.camera.height, x : x + self.camera.width]
         return np.asarray(cv2.add(blurred, grain, dtype=cv2.CV_8U), dtype=np.uint8)
 
     def clean_image(self, state: SceneState) -> Canvas:
-        """Draw one frame (height, width, 3; BGR) without blur and grain."""
+        """Render one image (height, width, 3; BGR) without blur and noise."""
         canvas = self._room.copy()
         self._figure.draw_below(canvas, self.camera, state.joints_m)
         cv2.copyTo(self._table, self._table_mask, canvas)
@@ -77,7 +77,7 @@ class Renderer:
         return strokes
 
     def _has_glare(self, frame: int) -> NDArray[np.bool_]:
-        """Return on which objects' cards there is glare in a frame (n,), for `unread_share` of all frames."""
+        """Draw a mask (n,) of the objects whose cards have glare in a frame, with probability `unread_share`."""
         share, count = self._conditions.unread_share, len(self._props)
         return (
             random_stream("unread", *self._seeds, frame).random(count) < share if share else np.zeros(count, dtype=bool)
@@ -93,7 +93,7 @@ class Renderer:
         return float(top_m[2]) + 0.005, lambda canvas: prop.draw_riser(canvas, self.camera, top_m, self._table_y_m)
 
     def _finger_stroke(self, state: SceneState, target: int) -> Stroke:
-        """Draw the closed hand's fingers before the face they hold."""
+        """Return the drawing of the closed hand's fingers in front of the face that they hold."""
         position = state.positions_m[target]
         edge = position - (0.0, self._items[target].size_m[1] / 2, 0.0)
         down = np.array([0.0, max(state.finger_overlap_m, 0.0), 0.0])
@@ -101,7 +101,7 @@ class Renderer:
         return depth, lambda canvas: self._figure.draw_fingers(canvas, self.camera, state, (edge, down))
 
     def _palm_stroke(self, state: SceneState, target: int) -> Stroke:
-        """Draw the hand over the card of what it holds."""
+        """Return the drawing of the hand over the marker card of the held object."""
         middle, radius_m = state.positions_m[target] - (0.0, 0.0, 0.02), self._props[target].card_reach_m
         return float(middle[2]), lambda canvas: self._figure.draw_palm_over(canvas, self.camera, middle, radius_m)
 

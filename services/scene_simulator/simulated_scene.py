@@ -1,4 +1,4 @@
-"""The scene over time: the ground truth of each frame, without noise."""
+"""The simulated scene over time: the ground truth of each frame, without noise."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from scene_simulator.trial import Trial, draw_trial
 
 Mark = Literal["start", "end"]
 CLOSED = 0.5
-"""A hand closed further than this holds what it grasps."""
+"""Grip above which the hand holds the object."""
 
 
 @dataclass(frozen=True)
@@ -28,15 +28,16 @@ class SceneState:
 
     Attributes:
         joints_m: (15, 3).
-        fingertip_m: (3,), of the acting hand.
+        joints_m: (15, 3).
+        fingertip_m: (3,), tip of the acting hand's index finger.
         positions_m: (n, 3), the centres of the markers.
-        yaw_rad: (n,).
-        riser_tops_m: (n, 3), the top of the riser at each object's place.
-        grip: how far the hand is closed, 0 to 1.
-        pointing: how far the index finger is stretched, 0 to 1.
-        target: the row of the object acted on; None in a pantomime.
-        segment: the number of the repetition going on; None in a pause.
-        mark: whether that repetition starts or ends with this frame.
+        yaw_rad: (n,), rotations of the objects about the vertical.
+        riser_tops_m: (n, 3), the top of the riser under each object.
+        grip: closure of the acting hand, 0 (open) to 1.
+        pointing: extension of the index finger, 0 to 1.
+        target: index of the object acted on; None in a pantomime.
+        segment: number of the current repetition; None in a pause.
+        mark: whether the repetition starts or ends with this frame.
     """
 
     frame: int
@@ -54,7 +55,7 @@ class SceneState:
 
     @property
     def held(self) -> int | None:
-        """The row of the object in the hand, or None."""
+        """Index of the object in the hand, or None."""
         return self.target if self.segment is not None and self.grip > CLOSED else None
 
     def camera_from_object(self, row: int) -> Array:
@@ -67,7 +68,7 @@ class SceneState:
 
 
 class Scene:
-    """An actor at a table with three marked objects, doing a programme; the same arguments, the same scene.
+    """An actor at a table who does a programme with three marked objects; the same arguments give the same scene.
 
     Raises:
         ValueError: the programme is empty.
@@ -92,7 +93,7 @@ class Scene:
         self.trials = tuple(self._trial(number, task) for number, task in enumerate(programme))
 
     def states(self, tail_s: float = 3.0) -> Iterator[SceneState]:
-        """Yield every frame: a lead-in, the programme with its pauses, and `tail_s` of returning to rest."""
+        """Yield the state of every frame: a lead-in, the programme with its pauses, and `tail_s` of return to rest."""
         sway = Sway(random_stream("sway", *self.seeds), self.parameters.sway)
         frame = 0
         for episode in self._episodes(tail_s):
@@ -115,7 +116,7 @@ class Scene:
             yield resetting(self.parameters, done, following[number], pauses[number])
 
     def _posed(self, episode: Episode, first: int, sway: Sway) -> Iterator[SceneState]:
-        """Yield an episode's frames with the person's posture, swaying."""
+        """Yield the states of an episode, with the swaying person's joints."""
         shift = sway.at(np.arange(first, first + len(episode)) / self.parameters.camera.frame_rate_hz)
         pelvis = episode.pelvis_m + np.insert(shift[:, :2], 1, 0.0, axis=1)
         stance = Stance(pelvis, episode.heading_rad, self.actor.lean_rad + shift[:, 2])

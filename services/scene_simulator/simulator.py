@@ -1,4 +1,4 @@
-"""The scene as a sensor: noisy skeletons, colour images and the truth, stamped and in order."""
+"""The simulated scene as a source: noisy skeletons, colour images and the truth, stamped and in order."""
 
 from collections.abc import Iterator, Sequence
 
@@ -17,17 +17,17 @@ from scene_simulator.render import Renderer
 from scene_simulator.simulated_scene import Scene, SceneState
 
 AGENT = 1
-"""The one person of a scene."""
+"""Number of the only person in a scene."""
 GATEWAY = "sensor_gateway"
-"""The service whose messages the simulator puts: consumers need not know which of the two a sensor has."""
+"""Name of the service that the simulator stands in for: consumers need not know which of the two a sensor has."""
 
 
 class Simulator:
     """A source of skeletons, images and truth; the same arguments give the same messages, bit for bit.
 
     `image_hz` must divide the frame rate; 0 means no images. The first and the last frame of each action have a
-    `Truth`; the one at the end tells the object's displacement, in the camera frame. That of a pantomime has the
-    object id `NO_OBJECT`, an empty name and no displacement.
+    `Truth`; the last one tells the object's displacement in the camera frame. The truth of a pantomime has the object
+    id `NO_OBJECT`, an empty name and no displacement.
 
     Raises:
         ValueError: the programme is empty, `image_hz` does not divide the frame rate, or there is no room for a
@@ -63,7 +63,7 @@ class Simulator:
         self._session_id = session_id or f"simulator-{actor_seed}-{seed}"
 
     def frames(self) -> Iterator[list[Message]]:
-        """Yield the messages of one frame after the other, from the beginning."""
+        """Yield the messages of each frame, from the beginning of the scene."""
         noise = SkeletonNoise(
             random_stream("skeleton noise", *self._seeds),
             self.scene.parameters.noise,
@@ -89,7 +89,7 @@ class Simulator:
         return self._start_ns + (frame * SECOND_NS + self._rate_hz // 2) // self._rate_hz
 
     def segment_id(self, number: int) -> str:
-        """Name the programme's repetition of that number; the name does not tell the action."""
+        """Return the segment id of a repetition by its number; the id does not tell the action."""
         actor_seed, seed = self._seeds
         return f"s{actor_seed}-{seed}-{number:03d}"
 
@@ -117,9 +117,9 @@ class Simulator:
             displacement_m=moved if state.mark == "end" else None,
         )
 
-    def _image(self, state: SceneState, taken: Canvas, camera: Pinhole) -> Image:
+    def _image(self, state: SceneState, rendered: Canvas, camera: Pinhole) -> Image:
         quality = self.scene.parameters.image.jpeg_quality
-        done, data = cv2.imencode(".jpg", taken, [cv2.IMWRITE_JPEG_QUALITY, quality])
+        done, data = cv2.imencode(".jpg", rendered, [cv2.IMWRITE_JPEG_QUALITY, quality])
         assert done
         return Image(
             stamp_ns=self.stamp_ns(state.frame),
@@ -136,7 +136,7 @@ class Simulator:
 
 
 def labelled_stream(simulator: Simulator) -> Iterator[Message]:
-    """Yield a simulator's messages with a labelled mark after each truth, as a recording to learn from has them."""
+    """Yield a simulator's messages with a labelled mark after each truth, as in a training recording."""
     for messages in simulator.frames():
         for message in messages:
             yield message

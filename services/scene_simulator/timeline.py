@@ -18,9 +18,9 @@ from scene_simulator.trajectories import (
 from scene_simulator.trial import Trial
 
 CLOSING_S = 0.2
-"""How long the hand takes to close or to open."""
+"""Seconds in which the hand closes or opens."""
 OPENING_SHARE = 0.3
-"""Of the way back to rest, during which what is still held is let go."""
+"""First share of the return to rest, in which the hand releases a held object."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Episode:
 
 
 def still(parameters: Parameters, trial: Trial, seconds: float) -> Episode:
-    """Return an episode in which everything stands still as a repetition's layout has it."""
+    """Return an episode of a number of seconds in which everything rests in a repetition's layout."""
     layout = trial.layout
     count = round(seconds * parameters.camera.frame_rate_hz)
     tops = layout.positions_m.copy()
@@ -67,7 +67,7 @@ def still(parameters: Parameters, trial: Trial, seconds: float) -> Episode:
 
 
 def acting(parameters: Parameters, trial: Trial, segment: int, column: int) -> Episode:
-    """Return one repetition: reach, grasp, effect, hold; `column` is the acting hand's, 0 left and 1 right."""
+    """Return the episode of one repetition: reach, grasp, effect, hold; `column` is 0 if the left hand acts, else 1."""
     rate = parameters.camera.frame_rate_hz
     base = still(parameters, trial, trial.timing.duration_s + 1 / rate)
     time = np.arange(len(base)) / rate
@@ -84,7 +84,7 @@ def acting(parameters: Parameters, trial: Trial, segment: int, column: int) -> E
 
 
 def resetting(parameters: Parameters, done: Episode, following: Trial, seconds: float) -> Episode:
-    """Return the pause: the hand returns to rest, everything moves to where the next repetition starts."""
+    """Return the episode of a pause: hands and objects move to the layout of the following repetition."""
     goal = still(parameters, following, seconds)
     time = np.arange(1, len(goal) + 1) / parameters.camera.frame_rate_hz
     share = elapsed_share(time, 0.0, parameters.pause.return_share * done.trial.pause_s)
@@ -105,7 +105,7 @@ def resetting(parameters: Parameters, done: Episode, following: Trial, seconds: 
 
 
 def _moved(trial: Trial, time_s: Array) -> Array:
-    """Return the object's displacement (T, 3; m) at times (T,); the hand goes with it."""
+    """Return the displacement (T, 3; m) of the object, and of the hand that moves it, at times (T,)."""
     timing = trial.timing
     if trial.task.action == "point":
         return np.zeros((len(time_s), 3))
@@ -115,7 +115,7 @@ def _moved(trial: Trial, time_s: Array) -> Array:
 
 
 def _grip(trial: Trial, time_s: Array) -> Array:
-    """Return how far the hand is closed (T,; 0 to 1): from its arrival to after the effect, or to a lift's end."""
+    """Return the hand's grip (T,; 0 to 1): closed from its arrival until after the effect, or until a lift's end."""
     timing = trial.timing
     if trial.task.action == "point":
         return np.zeros_like(time_s)

@@ -6,7 +6,7 @@ from actum.arrays import Array
 
 
 def elapsed_share(time_s: Array, start_s: float, duration_s: float) -> Array:
-    """Return which share of a movement's time has passed (T,) at each time (T,): 0 before it, 1 after it."""
+    """Return the elapsed share (T,) of a movement's duration at times (T,): 0 before it, 1 after it."""
     return np.clip((time_s - start_s) / duration_s, 0.0, 1.0)
 
 
@@ -41,6 +41,6 @@ def set_down_displacement(displacement: Array, share: Array) -> Array:
 
 
 def interpolated(start: Array | float, end: Array, share: Array) -> Array:
-    """Return values (T, ...) that go from one value (...) to the values `end` (T, ...) at minimum jerk."""
+    """Return values (T, ...) interpolated from `start` (...) to `end` (T, ...) at minimum jerk."""
     weight = minimum_jerk(share).reshape(-1, *[1] * (end.ndim - 1))
     return np.asarray((1 - weight) * start + weight * end)

@@ -1,4 +1,4 @@
-"""One repetition of an action, as drawn: where things stand, how long the phases last, what the hand does."""
+"""Random trials: the layout, the durations of the phases and the hand's path in one repetition of an action."""
 
 from dataclasses import dataclass
 
@@ -12,12 +12,12 @@ from scene_simulator.programme import Task
 from scene_simulator.random_streams import draw_normal, draw_normals, draw_uniform
 
 RISER_PROBABILITY = {"put": 1.0, "push": 0.0, "pull": 0.0}
-"""That the target stands on a riser, where the action decides it."""
+"""Probability that the target stands on a riser, for actions that determine it."""
 
 
 @dataclass(frozen=True)
 class Timing:
-    """How long the phases last, in seconds; the rest of the duration is a hold."""
+    """Durations of the phases in seconds; the rest of the whole duration is a hold."""
 
     duration_s: float
     reach_s: float
@@ -27,14 +27,14 @@ class Timing:
 
 @dataclass(frozen=True)
 class Layout:
-    """Where things stand at the start; camera frame, the three objects in their order.
+    """Positions of the three objects, in their order, and of the person at the start, in the camera frame.
 
     Attributes:
         positions_m: (3, 3), the centres of the markers.
-        yaw_rad: (3,).
-        riser_heights_m: (3,), how far each place is raised above the table.
-        pelvis_m: (3,).
-        heading_rad: where the person faces.
+        yaw_rad: (3,), rotations of the objects about the vertical.
+        riser_heights_m: (3,), heights of the risers under the objects, 0 for none.
+        pelvis_m: (3,), the person's pelvis.
+        heading_rad: the person's heading; 0 faces the camera.
         rest_m: (2, 3), the resting palms, left and right.
     """
 
@@ -48,15 +48,15 @@ class Layout:
 
 @dataclass(frozen=True)
 class Trial:
-    """One drawn repetition.
+    """The random parameters of one repetition.
 
     Attributes:
-        target: the object's row; None in a pantomime.
-        hand_m: (3,), where the palm's reach ends.
-        bulge_m: (3,), how far the reach is bent from a straight line.
-        displacement_m: (3,), how far the effect moves the object.
-        finger_overlap_m: how far the fingers come down over the marked face.
-        pause_s: how long the pause after it lasts.
+        target: the object's index; None in a pantomime.
+        hand_m: (3,), the palm's position at the end of the reach.
+        bulge_m: (3,), deviation of the reach from a straight line.
+        displacement_m: (3,), displacement of the object by the effect.
+        finger_overlap_m: length of the fingers over the marked face.
+        pause_s: duration of the pause after the repetition.
     """
 
     task: Task
@@ -71,7 +71,7 @@ class Trial:
 
 
 def draw_trial(parameters: Parameters, actor: Actor, task: Task, places: Array, rng: np.random.Generator) -> Trial:
-    """Draw one repetition; `places` (3,) are the objects' lanes, x in metres."""
+    """Draw one repetition; `places` (3,) are the objects' x positions in metres."""
     items = parameters.objects.items
     target = [item.id for item in items].index(task.object_id)
     layout = draw_layout(parameters, actor, task.action, places, target, rng)
@@ -90,7 +90,7 @@ def draw_trial(parameters: Parameters, actor: Actor, task: Task, places: Array, 
 
 
 def draw_timing(parameters: TrialParameters, actor: Actor, action: str, rng: np.random.Generator) -> Timing:
-    """Draw how long the phases last."""
+    """Draw the durations of the phases."""
     duration = float(
         np.clip(actor.tempo * draw_normal(rng, parameters.duration_mean_sd_s), *parameters.duration_range_s)
     )
@@ -103,7 +103,7 @@ def draw_timing(parameters: TrialParameters, actor: Actor, action: str, rng: np.
 def draw_layout(
     parameters: Parameters, actor: Actor, action: str, places: Array, target: int | None, rng: np.random.Generator
 ) -> Layout:
-    """Draw where things stand, the target (none in a pantomime) perhaps on a riser; `places` (3,) are the lanes."""
+    """Draw the layout; the target, None in a pantomime, may stand on a riser; `places` (3,) are the objects' x in m."""
     objects, items = parameters.objects, parameters.objects.items
     risers = np.zeros(len(items))
     if rng.random() < RISER_PROBABILITY.get(action, parameters.trial.riser_probability) and target is not None:
@@ -130,7 +130,7 @@ def _draw_pelvis(parameters: Parameters, actor: Actor, rng: np.random.Generator)
 
 
 def _draw_rest(parameters: Parameters, middle_x_m: float, side: int, rng: np.random.Generator) -> Array:
-    """Draw where a palm (3,) rests: on the table, by its far edge."""
+    """Draw the position (3,) of a resting palm: on the table, near its far edge."""
     trial = parameters.trial
     x, height = draw_normals(rng, trial.rest_sd_m, 2)
     inset = draw_uniform(rng, trial.rest_inset_range_m)
@@ -139,13 +139,13 @@ def _draw_rest(parameters: Parameters, middle_x_m: float, side: int, rng: np.ran
 
 
 def draw_bulge(parameters: TrialParameters, actor: Actor, rng: np.random.Generator) -> Array:
-    """Draw how the reach is bent, (3,) metres in the camera frame: upward, and a little to a side."""
+    """Draw the deviation (3,; m, camera frame) of the reach from a straight line: upward, and a little to a side."""
     up = actor.arc_scale * draw_uniform(rng, parameters.arc_height_range_m)
     return np.array([draw_normal(rng, (0.0, parameters.arc_side_sd_m)), -up, 0.0])
 
 
 def _draw_grasp(parameters: Parameters, actor: Actor, layout: Layout, target: int, rng: np.random.Generator) -> Array:
-    """Draw where the palm (3,) grasps the object: on its top, more or less towards the acting hand's side."""
+    """Draw the position (3,) at which the palm grasps the object: on its top, towards the acting hand's side."""
     trial = parameters.trial
     width, height, depth = parameters.objects.items[target].size_m
     angle = np.deg2rad(draw_uniform(rng, trial.grasp_side_range_deg))
@@ -156,7 +156,7 @@ def _draw_grasp(parameters: Parameters, actor: Actor, layout: Layout, target: in
 
 
 def _draw_aim(parameters: Parameters, actor: Actor, layout: Layout, target: int, rng: np.random.Generator) -> Array:
-    """Draw where the palm (3,) ends when pointing, with the person's own error and this repetition's."""
+    """Draw the palm's final position (3,) in pointing, with the person's constant error and a random one."""
     trial = parameters.trial
     stance = Stance(layout.pelvis_m[None], np.array([layout.heading_rad]), np.array([actor.lean_rad]))
     error = actor.bias_rad + np.deg2rad(draw_normals(rng, trial.pointing_sd_deg, 2))
@@ -167,7 +167,7 @@ def _draw_aim(parameters: Parameters, actor: Actor, layout: Layout, target: int,
 def draw_displacement(
     parameters: Parameters, action: str, layout: Layout, item: ObjectItem, rng: np.random.Generator
 ) -> Array:
-    """Draw how far the action moves its object, (3,) metres in the camera frame; the directions are the person's."""
+    """Draw the displacement (3,; m, camera frame) of the object by the action, in the person's directions."""
     trial = parameters.trial
     angle = layout.heading_rad + np.deg2rad(draw_normal(rng, (0.0, trial.effect_direction_sd_deg)))
     away = np.array([-np.sin(angle), 0.0, -np.cos(angle)])

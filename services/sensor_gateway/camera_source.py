@@ -1,4 +1,4 @@
-"""A webcam, a stream, a depth camera or a file of pictures as a sensor."""
+"""The source of a camera: a webcam, a stream, a depth camera or a file of pictures, with reconnection."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -15,20 +15,20 @@ from sensor_gateway.people.pose_estimator import Estimator
 from sensor_gateway.perceiver import Perceiver
 
 PATIENCE_S = 0.1
-"""How long one wait for a picture may take, and so how long a stop is delayed."""
+"""Longest single wait for a picture, and so the longest delay of a stop."""
 
 REMINDER_NS = SECOND_NS
-"""How often a lost camera is reported again."""
+"""Interval at which a lost camera is reported again."""
 
-Seen = Picture | str | None
-"""A usable picture, why there is none, or None: it only takes longer."""
+Captured = Picture | str | None
+"""A usable picture, or the reason why the camera gives none, or None while waiting."""
 
 
 class CameraSource:
-    """Images and skeletons of a camera; while it is lost, invalid skeletons that say why, and attempts to reopen it.
+    """Yields images and skeletons of a camera; while it is lost, invalid skeletons with the reason.
 
     A device, a stream or a file that cannot be read, or whose pictures are frozen or stay black, is opened again after
-    ever longer waits. A file that is over ends the source.
+    increasing waits. The end of a file ends the source.
     """
 
     name = "sensor_gateway"
@@ -56,21 +56,22 @@ class CameraSource:
         self._reported: tuple[str, int] | None = None
 
     def frames(self) -> Iterator[list[Message]]:
-        """Yield images and their skeletons; empty frames while there are none, so that the source can be stopped."""
+        """Yield images and their skeletons; without a picture, empty frames, so that the source can be stopped."""
         with self._open_estimator() as estimator:
             perceiver = self._perceiver(estimator, self._optics, self._sensor, self._session_id, self.counters)
-            for seen in self._seen():
-                yield from self._messages(seen, perceiver)
+            for captured in self._captured():
+                yield from self._messages(captured, perceiver)
 
-    def _seen(self) -> Iterator[Seen]:
+    def _captured(self) -> Iterator[Captured]:
+        """Yield the pictures of a camera that is opened again whenever it is lost."""
         back_off = BackOff()
         while True:
             capture = self._open_capture()
             try:
-                for seen in self._watched(capture):
-                    if isinstance(seen, Picture):
+                for captured in self._watched(capture):
+                    if isinstance(captured, Picture):
                         back_off.worked()
-                    yield seen
+                    yield captured
             except CaptureEndedError:
                 return
             except CameraLostError as error:
@@ -79,8 +80,8 @@ class CameraSource:
                 capture.close()
             yield from self._waiting(back_off.failed())
 
-    def _watched(self, capture: Capture) -> Iterator[Seen]:
-        """Yield what a capture gives, until it is lost, frozen or stays black; a file's pictures may be both."""
+    def _watched(self, capture: Capture) -> Iterator[Captured]:
+        """Yield a capture's pictures until it is lost; frozen or black pictures count as lost unless from a file."""
         self._watch.opened()
         while True:
             picture = capture.next(PATIENCE_S)
@@ -95,23 +96,23 @@ class CameraSource:
             yield None
             self._pause(min(left_ns / SECOND_NS, PATIENCE_S))
 
-    def _messages(self, seen: Seen, perceiver: Perceiver) -> Iterator[list[Message]]:
-        if seen is None and self._reported is not None:
-            seen = self._reported[0]
-        if seen is None:
+    def _messages(self, captured: Captured, perceiver: Perceiver) -> Iterator[list[Message]]:
+        if captured is None and self._reported is not None:
+            captured = self._reported[0]
+        if captured is None:
             yield []
-        elif isinstance(seen, str):
-            yield self._lost(seen, perceiver)
+        elif isinstance(captured, str):
+            yield self._lost(captured, perceiver)
         else:
             if self._reported is not None:
                 self._reported = None
                 self.counters.state = "running"
-            stamp_ns = self._rising(seen.stamp_ns)
-            for message in perceiver.messages(replace(seen, stamp_ns=stamp_ns)):
+            stamp_ns = self._rising(captured.stamp_ns)
+            for message in perceiver.messages(replace(captured, stamp_ns=stamp_ns)):
                 yield [message]
 
     def _lost(self, reason: str, perceiver: Perceiver) -> list[Message]:
-        """Report a new reason at once, the same one again every second."""
+        """Report that the camera is lost: a new reason at once, the same one every second."""
         now_ns = self._now_ns()
         if self._reported is None or self._reported[0] != reason:
             self.counters.reject("camera_lost", reason)
@@ -122,7 +123,7 @@ class CameraSource:
         return perceiver.lost(self._rising(now_ns), f"camera lost: {reason}")
 
     def _rising(self, stamp_ns: int) -> int:
-        """Shift stamps by a constant from where the host's clock was set back, so that they rise and intervals stay."""
+        """Make a stamp rise: once the host's clock is set back, all later stamps are shifted by one constant."""
         self._shift_ns = max(self._shift_ns, self._newest_ns + 1 - stamp_ns)
         self._newest_ns = stamp_ns + self._shift_ns
         return self._newest_ns

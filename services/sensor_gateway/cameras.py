@@ -1,4 +1,4 @@
-"""The cameras that the settings can name, as sources."""
+"""Builds the sources of the cameras that the settings can name."""
 
 from collections.abc import Callable, Generator
 from contextlib import nullcontext
@@ -19,24 +19,24 @@ from sensor_gateway.perceiver import MarkersPerceiver, UsersPerceiver
 from sensor_gateway.settings import Settings
 
 Recorded = Callable[[Path, int], Generator[Picture, None, None]]
-"""Reads the pictures of a depth camera's recording; the first gets the given stamp (ns)."""
+"""Reads the pictures of a depth camera's recording, from its path and the stamp of the first picture (ns)."""
 
 
 class DepthSourceError(ValueError):
-    """The settings name no usable depth camera: what is wrong and what to do."""
+    """The settings name no usable depth camera; the message tells what is wrong and what to do."""
 
 
 class MarkerCamera(CameraSource):
-    """A camera beside the gateway of the same sensor, and so a service of another name."""
+    """A camera for markers only, run beside the gateway of the same sensor and therefore a service of another name."""
 
     name = "marker_camera"
 
 
 def optics_of(settings: Settings) -> Optics:
-    """Return what the settings say of a camera that sees the people.
+    """Build the optics of a camera that sees the people, from the settings.
 
     Raises:
-        CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
+        CalibrationError: the calibration file is missing, no calibration, or that of a marker camera.
     """
     path = settings.calibration
     calibration = None if path is None else Calibration.load(path)
@@ -59,7 +59,7 @@ def estimator_of(settings: Settings) -> PoseEstimator:
 
 
 def capture_of(camera: str, size: tuple[int, int] | None, loop: bool = False) -> Capture:
-    """Open what a setting names: a file that is there, a device's number or path, or a URL; `size` is in px."""
+    """Open a camera by its setting: an existing file, a device's number or path, or a URL; `size` is in px."""
     path = Path(camera)
     if path.is_file():
         return FileCapture(path, loop=loop)
@@ -71,7 +71,7 @@ def camera_of(settings: Settings, start_ns: int) -> CameraSource:
 
     Raises:
         PoseModelError: MediaPipe is not installed, or the file is missing or no pose model.
-        CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
+        CalibrationError: the calibration file is missing, no calibration, or that of a marker camera.
     """
     _check_pose_model(settings)
     source = CameraSource(
@@ -89,7 +89,7 @@ def marker_camera_of(settings: Settings, start_ns: int) -> MarkerCamera:
     """Build the source of a camera that sees markers only.
 
     Raises:
-        CalibrationError: the calibration file is missing, or does not say where the people's camera is.
+        CalibrationError: the calibration file is missing, or lacks the transform to the camera that sees the people.
     """
     calibration = None if settings.calibration is None else Calibration.load(settings.calibration)
     if calibration is None or calibration.skeleton_from_image is None:
@@ -113,8 +113,8 @@ def realsense_of(settings: Settings, start_ns: int) -> CameraSource:
     Raises:
         RealSenseError: pyrealsense2 is not installed.
         DepthSourceError: there is no such recording.
-        PoseModelError: MediaPipe is not installed, or the pose model is missing or none.
-        CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
+        PoseModelError: MediaPipe is not installed, or the file is missing or no pose model.
+        CalibrationError: the calibration file is missing, no calibration, or that of a marker camera.
     """
     realsense.library()
     live = partial(realsense.RealSenseCapture, _size_of(settings))
@@ -124,13 +124,13 @@ def realsense_of(settings: Settings, start_ns: int) -> CameraSource:
 def openni2_of(settings: Settings, start_ns: int) -> CameraSource:
     """Build the source of a camera that OpenNI 2 has a driver for, or of the recording that `path` names.
 
-    Where NiTE 2 is installed, a camera's people are those that it tracks.
+    If NiTE 2 is installed, it tracks the people in place of the pose model.
 
     Raises:
         OpenNiError: OpenNI 2 or its bindings are not installed.
         DepthSourceError: there is no such recording.
-        PoseModelError: MediaPipe is not installed, or the pose model is missing or none.
-        CalibrationError: the calibration file is missing, no calibration, or that of a camera beside this one.
+        PoseModelError: MediaPipe is not installed, or the file is missing or no pose model.
+        CalibrationError: the calibration file is missing, no calibration, or that of a marker camera.
     """
     openni2_library.library()
     nite2 = nite.nite() if settings.path is None else None
@@ -168,7 +168,7 @@ def _depth_source(settings: Settings, session_id: str, live: Callable[[], Captur
 
 
 def _depth_optics(settings: Settings) -> DepthOptics:
-    """Return what the settings say of a depth camera; its images are not mirrored."""
+    """Build the optics of a depth camera, whose images are never mirrored, from the settings."""
     optics = optics_of(settings)
     return DepthOptics(optics.field_of_view_deg, optics.calibration, optics.person_height_m)
 

@@ -1,4 +1,4 @@
-"""What a device captures: a colour image with its stamp, and perhaps depth, or people that the device itself tracks."""
+"""A captured picture: a stamped colour image, and perhaps depth, or people whom the device's software tracks."""
 
 from dataclasses import dataclass, replace
 
@@ -9,7 +9,7 @@ from actum.messages import Agent
 from sensor_gateway.lens import Lens
 
 DepthImage = NDArray[np.float32]
-"""Distances along the optical axis (height, width; m), 0 where there is none."""
+"""Depth along the optical axis (height, width; m), 0 where it is unknown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +22,7 @@ class Picture:
 
 @dataclass(frozen=True, eq=False)
 class DepthPicture(Picture):
-    """A picture, the depth (height, width; m, 0 where there is none) of each of its pixels, and the device's lens."""
+    """A picture with registered depth (height, width; m, 0 where it is unknown), and the device's lens."""
 
     depth_m: DepthImage
     lens: Lens
@@ -36,5 +36,5 @@ class UsersPicture(DepthPicture):
 
 
 def unmirrored(picture: Picture) -> Picture:
-    """Flip a mirror image back: in it the actor's left would be their right, and no marker could be read."""
+    """Flip a mirror image back: mirrored, left and right hands would be exchanged and markers could not be read."""
     return replace(picture, image_bgr=np.ascontiguousarray(picture.image_bgr[:, ::-1]))

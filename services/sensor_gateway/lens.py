@@ -1,4 +1,4 @@
-"""A camera's intrinsics: calibrated, told by the device, or assumed from a field of view."""
+"""A camera's intrinsics: calibrated, reported by the device, or assumed from a field of view."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -14,7 +14,7 @@ from actum.calibration import Calibration
 class Lens:
     """Intrinsics: `matrix` K (3, 3; px) and OpenCV's `distortion` (n,).
 
-    `assumed` is true where nobody has measured them for this very camera.
+    `assumed` is true if they were not measured for this individual camera.
     """
 
     matrix: Array
@@ -23,10 +23,9 @@ class Lens:
 
     @classmethod
     def of_field_of_view(cls, width: int, height: int, long_side_deg: float) -> Self:
-        """Assume an ideal camera of this field of view along the longer side, square pixels and no distortion.
+        """Assume an ideal camera with this field of view along the longer side, square pixels and no distortion.
 
-        The longer side, because a phone held upright sees as much from top to bottom as it does from left to right
-        where it lies.
+        The longer side is used because a phone has the same field of view along it in portrait and landscape.
         """
         focal_px = max(width, height) / 2 / np.tan(np.radians(long_side_deg) / 2)
         matrix = np.array([[focal_px, 0, (width - 1) / 2], [0, focal_px, (height - 1) / 2], [0, 0, 1]])

@@ -7,9 +7,9 @@ from actum.messages import Image, Message, Skeleton
 from actum.node import Counters, Source
 
 Mapping = Callable[[Message], Message | None]
-"""What is put in place of a message; None for nothing."""
+"""Returns the message to put in place of a message; None drops it."""
 LONGEST_SESSION = 150
-"""Characters kept of a recorded session's name: with the run's it has to fit its field."""
+"""Characters kept of a recorded session id, so that it fits its field together with the run's id."""
 
 
 class MappedSource:
@@ -26,7 +26,7 @@ class MappedSource:
 
 
 def with_up(up_in_camera: list[float]) -> Mapping:
-    """Let skeletons say which way is up (3,), in the camera's frame."""
+    """Set the up direction (3,) of skeletons, in the camera frame."""
     up = {"up_in_camera": up_in_camera}
     return lambda message: message.model_copy(update=up) if isinstance(message, Skeleton) else message
 
@@ -37,7 +37,7 @@ def without_image(message: Message) -> Message | None:
 
 
 def with_session_of(run: str) -> Mapping:
-    """Add this run to the session ids of skeletons and images: the stamps of a file played again begin again."""
+    """Add this run to the session ids of skeletons and images: stamps start again when a file is played again."""
 
     def mapping(message: Message) -> Message:
         if not isinstance(message, Skeleton | Image):
@@ -50,7 +50,7 @@ def with_session_of(run: str) -> Mapping:
 def with_calibration(calibration: Calibration, counters: Counters) -> Mapping:
     """Replace the intrinsics and `skeleton_from_image` of colour images by those of a calibration file.
 
-    An image of another size than was calibrated is counted and marked invalid.
+    An image whose size differs from the calibrated one is counted and marked invalid.
     """
 
     def mapping(message: Message) -> Message:

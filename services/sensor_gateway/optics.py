@@ -1,4 +1,4 @@
-"""What is known of a camera, and by it where the people in its pictures are."""
+"""The optics of a camera: its intrinsics, and the placing of people in its camera frame."""
 
 from dataclasses import dataclass
 
@@ -12,14 +12,14 @@ from sensor_gateway.people.landmarks import Landmarks
 from sensor_gateway.people.placing import Placed, placed
 
 SAME_CAMERA = np.eye(4).ravel().tolist()
-"""`skeleton_from_image` of images in which the people are found themselves."""
+"""`skeleton_from_image` of a camera that sees both people and markers: the identity, row by row."""
 
 
 @dataclass(frozen=True)
 class Optics:
-    """A colour camera: its calibration, or else its field of view; and the stature of the people it sees.
+    """A colour camera: its calibration, or else its field of view; and the stature of the people, if known.
 
-    `mirrored` tells that the camera gives mirror images, as some do for people who watch themselves.
+    `mirrored` tells that the camera gives mirror images, as some webcams do.
     """
 
     field_of_view_deg: float = 60.0
@@ -28,7 +28,7 @@ class Optics:
     mirrored: bool = False
 
     def lens(self, width: int, height: int) -> Lens | None:
-        """Return the lens for images of a size; None where another size was calibrated."""
+        """Return the lens for images of a size; None if the calibration is for another size."""
         if self.calibration is None:
             return Lens.of_field_of_view(width, height, self.field_of_view_deg)
         return Lens.of_calibration(self.calibration) if (width, height) == self.calibration.image_size else None
@@ -36,11 +36,11 @@ class Optics:
     @property
     def skeleton_from_image(self) -> list[float]:
         """The rigid transform (4, 4), row by row, to the frame of the camera that sees the people."""
-        known = None if self.calibration is None else self.calibration.skeleton_from_image
-        return SAME_CAMERA if known is None else known
+        calibrated = None if self.calibration is None else self.calibration.skeleton_from_image
+        return SAME_CAMERA if calibrated is None else calibrated
 
-    def seen(self, picture: Picture) -> Picture:
-        """Return a picture as it would be without a mirror."""
+    def unmirrored(self, picture: Picture) -> Picture:
+        """Return a picture flipped back if the camera mirrors its images."""
         return unmirrored(picture) if self.mirrored else picture
 
     def lens_of(self, picture: Picture) -> Lens | None:
@@ -49,7 +49,7 @@ class Optics:
         return self.lens(width, height)
 
     def placed(self, landmarks: Landmarks, lens: Lens, picture: Picture) -> Placed:
-        """Put one person's landmarks into the camera frame, at the distance that a body's size tells.
+        """Place one person's landmarks in the camera frame, at the distance estimated from the body's size.
 
         Raises:
             PlacingError: the landmarks fit no place in front of the camera.
@@ -65,7 +65,7 @@ class Optics:
 
 @dataclass(frozen=True)
 class DepthOptics(Optics):
-    """A depth camera: it tells its intrinsics, unless a calibration does, and measures how far away people are."""
+    """A depth camera: it reports its intrinsics, which a calibration overrides, and measures the distance of people."""
 
     def lens_of(self, picture: Picture) -> Lens | None:
         """Return the lens a picture was taken with; None where another size was calibrated."""
@@ -74,7 +74,7 @@ class DepthOptics(Optics):
         return super().lens_of(picture)
 
     def placed(self, landmarks: Landmarks, lens: Lens, picture: Picture) -> Placed:
-        """Put one person's landmarks into the camera frame by the measured depth.
+        """Place one person's landmarks in the camera frame by the measured depth.
 
         Raises:
             PlacingError: the landmarks fit no place in front of the camera.

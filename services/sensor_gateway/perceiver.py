@@ -13,13 +13,13 @@ from sensor_gateway.people.people_tracker import PeopleTracker
 from sensor_gateway.people.pose_estimator import Estimator
 
 JPEG_QUALITY = 90
-"""Of 100; much less would blur the corners of markers."""
+"""JPEG quality, of 100; much less would blur the corners of markers."""
 OTHER_SIZE = "image_size_mismatch"
-"""Counted for each picture of another size than was calibrated."""
+"""Counter of pictures whose size differs from the calibrated one."""
 
 
 class Perceiver:
-    """Makes an image and a skeleton of each picture; the image comes first, so that markers are sought meanwhile."""
+    """Makes an image and a skeleton of each picture; the image first, so that markers are detected meanwhile."""
 
     def __init__(self, estimator: Estimator, optics: Optics, sensor: str, session_id: str, counters: Counters) -> None:
         self._people = PeopleTracker(estimator)
@@ -30,21 +30,21 @@ class Perceiver:
 
     def messages(self, picture: Picture) -> Iterator[Message]:
         """Yield a picture's image, then its skeletons; stamps rise."""
-        picture, lens = self._optics.seen(picture), self._optics.lens_of(picture)
+        picture, lens = self._optics.unmirrored(picture), self._optics.lens_of(picture)
         if lens is not None:
             yield self._image(picture, lens)
         yield self._skeleton(picture, lens)
 
     def skeleton(self, picture: Picture) -> Skeleton:
-        """Return everybody in a picture; stamps rise."""
-        return self._skeleton(self._optics.seen(picture), self._optics.lens_of(picture))
+        """Return the skeletons of all people in a picture; stamps rise."""
+        return self._skeleton(self._optics.unmirrored(picture), self._optics.lens_of(picture))
 
     def lost(self, stamp_ns: int, reason: str) -> list[Message]:
-        """Say that the camera is lost."""
+        """Return the messages that report a lost camera."""
         return [self.nobody(stamp_ns, reason)]
 
     def nobody(self, stamp_ns: int, reason: str) -> Skeleton:
-        """Return an invalid frame, and why nobody can be seen in it."""
+        """Return an invalid skeleton message with the reason why nobody can be detected."""
         return Skeleton(
             stamp_ns=stamp_ns,
             sensor=self._sensor,
@@ -89,23 +89,23 @@ class Perceiver:
 
 
 class MarkersPerceiver(Perceiver):
-    """Makes an image of each picture of a camera beside the people's, and no skeleton."""
+    """Makes an image of each picture of a marker camera, and no skeleton."""
 
     def messages(self, picture: Picture) -> Iterator[Message]:
-        """Yield a picture's image; one of another size than was calibrated is counted."""
-        picture, lens = self._optics.seen(picture), self._optics.lens_of(picture)
+        """Yield a picture's image; count a picture whose size differs from the calibrated one."""
+        picture, lens = self._optics.unmirrored(picture), self._optics.lens_of(picture)
         if lens is None:
             self._of_another_size(picture)
         else:
             yield self._image(picture, lens)
 
     def lost(self, stamp_ns: int, reason: str) -> list[Message]:
-        """Leave the people to the other camera; `status` says that this one is lost."""
+        """Return no message: skeletons come from the other camera, and `status` reports this one as lost."""
         return []
 
 
 class UsersPerceiver(Perceiver):
-    """Makes an image and a skeleton of each picture with which the device tells the people whom it tracks."""
+    """Makes an image and a skeleton of each picture of a device whose own software tracks people."""
 
     def _skeleton(self, picture: Picture, lens: Lens | None) -> Skeleton:
         assert isinstance(picture, UsersPicture)

@@ -1,4 +1,4 @@
-"""Recordings as a sensor: their skeletons and images again, at their own pace."""
+"""The source of recordings: puts their skeletons and images at the recorded pace."""
 
 from collections.abc import Iterable, Iterator
 from itertools import chain, groupby
@@ -15,7 +15,7 @@ TOPICS = (keys.SKELETON, keys.COLOR, keys.DEPTH)
 
 
 class RecordingSource:
-    """Plays the skeletons and images of one recording, or of a folder's in order of name, as the given sensor's.
+    """Plays the skeletons and images of one recording, or of a folder's recordings by name, as those of a sensor.
 
     Stamps, numbers and session ids are the recorded ones; from a folder's second recording on, stamps and numbers are
     shifted so that they continue to rise. A damaged recording is played up to the damage.
@@ -33,7 +33,7 @@ class RecordingSource:
         self._recordings = [Recording(file) for file in _files(path)]
 
     def frames(self) -> Iterator[list[Message]]:
-        """Yield the messages of one stamp after another."""
+        """Yield lists of messages with the same stamp, in order."""
         return _by_stamp(joined(self._messages(recording) for recording in self._recordings))
 
     def _messages(self, recording: Recording) -> Iterator[Message]:

@@ -17,7 +17,7 @@ POSE_MODEL = "pose_landmarker_full.task"
 
 
 def default_pose_model() -> Path:
-    """Return where `actum models fetch` puts the pose model: among the program data of this system's user."""
+    """Return the path at which `actum models fetch` stores the pose model, in the user's data folder."""
     home = Path.home()
     if sys.platform == "win32":
         base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")

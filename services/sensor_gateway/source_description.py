@@ -1,4 +1,4 @@
-"""What a gateway reads, in words for `info`: so that somebody whose camera is not read sees what is instead."""
+"""The description of a gateway's source in `info`, by which a user notices that the wrong camera or file is read."""
 
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -8,7 +8,7 @@ from sensor_gateway.settings import Settings
 
 
 def description(settings: Settings) -> str:
-    """Name what the gateway reads by its settings: a file or folder, or which camera."""
+    """Describe the source that the settings name: a file, a folder or a camera."""
     if settings.source in ("camera", "marker-camera"):
         return _camera_description(settings.source.replace("-", " "), settings.camera)
     if settings.path is None:

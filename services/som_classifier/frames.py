@@ -95,7 +95,7 @@ def _usable_arrays(posture: Posture) -> tuple[Array, Array, Array] | None:
 
 
 def _is_usable(joints: Sequence[Joint], array: Array) -> bool:
-    """Tell whether some joint is known, and all known ones are finite and in bounds; `array` holds the same joints."""
+    """Tell whether some joint is known and all known ones are finite and within bounds; `array` holds the same ones."""
     missing = joints.count(None)
     return missing < len(joints) and np.count_nonzero(np.abs(array) < MAX_COORDINATE_M) == array.size - 3 * missing
 

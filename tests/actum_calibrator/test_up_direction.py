@@ -48,7 +48,7 @@ def plumb() -> Array:
 @given(st.floats(-60, 60), st.floats(-60, 60))
 def test_the_tilt_is_the_cameras(pitch_deg: float, roll_deg: float) -> None:
     camera_from_level = rotation(2, -roll_deg) @ rotation(0, -pitch_deg)
-    found = asked(plumb() @ camera_from_level.T).found
+    found = asked(plumb() @ camera_from_level.T).up
     assert found is not None
     assert found.in_camera == pytest.approx(camera_from_level @ [0, -1, 0], abs=1e-9)
 
@@ -56,7 +56,7 @@ def test_the_tilt_is_the_cameras(pitch_deg: float, roll_deg: float) -> None:
 @pytest.mark.parametrize("degrees", [-20.0, 0.0, 12.0])
 def test_pitch_is_up_and_roll_is_clockwise(degrees: float) -> None:
     """A camera that looks up sees who stands upright lean away; one turned clockwise, to the left."""
-    looking_up, clockwise = (asked(plumb() @ rotation(axis, -degrees).T).found for axis in (0, 2))
+    looking_up, clockwise = (asked(plumb() @ rotation(axis, -degrees).T).up for axis in (0, 2))
     assert looking_up is not None
     assert clockwise is not None
     assert (looking_up.pitch_deg, looking_up.roll_deg) == pytest.approx((degrees, 0.0), abs=1e-9)
@@ -66,7 +66,7 @@ def test_pitch_is_up_and_roll_is_clockwise(degrees: float) -> None:
 
 
 def test_a_trackers_noise_averages_out() -> None:
-    found = asked(plumb(), noise_m=0.015).found
+    found = asked(plumb(), noise_m=0.015).up
     assert found is not None
     assert found.in_camera == pytest.approx([0, -1, 0], abs=0.01)
     assert 0 < found.sway_deg < MOST_SWAY_DEG
@@ -78,7 +78,7 @@ def seconds_until_found(rate_hz: float, joints: Array, longest_s: float = 20.0) 
     for k in range(round(longest_s * rate_hz)):
         stamp_ns = round(k * SECOND_NS / rate_hz)
         estimator.offer(skeleton(stamp_ns, joints))
-        if estimator.found is not None:
+        if estimator.up is not None:
             return stamp_ns / SECOND_NS
     return None
 
@@ -104,11 +104,11 @@ def test_who_comes_to_rest_is_judged_by_the_last_two_seconds_alone() -> None:
     for k in range(1000):
         moving = k < 900
         estimator.offer(skeleton(k * FRAME_NS, plumb() @ rotation(2, 20 * np.sin(k / 5) if moving else 0).T))
-        if estimator.found is not None:
+        if estimator.up is not None:
             break
-    assert estimator.found is not None
+    assert estimator.up is not None
     assert 900 + 45 < k <= 900 + FRAMES
-    assert estimator.found.in_camera == pytest.approx([0, -1, 0], abs=0.03)
+    assert estimator.up.in_camera == pytest.approx([0, -1, 0], abs=0.03)
 
 
 @pytest.mark.parametrize("change", ["session_id", "agent", "gap", "clock set back"])
@@ -116,18 +116,18 @@ def test_what_went_before_a_change_does_not_count(change: str) -> None:
     estimator = asked(plumb(), frames=FRAMES - 1)
     first_ns = {"gap": FRAMES * FRAME_NS + SECOND_NS // 2, "clock set back": 0}.get(change, FRAMES * FRAME_NS)
     for k in range(FRAMES):
-        assert estimator.found is None
+        assert estimator.up is None
         frame = skeleton(first_ns + k * FRAME_NS, plumb(), session_id="other" if change == "session_id" else "test")
         agents = [agent.model_copy(update={"agent": 2}) for agent in frame.agents]
         estimator.offer(frame.model_copy(update={"agents": agents}) if change == "agent" else frame)
-    assert estimator.found is not None
+    assert estimator.up is not None
 
 
 def test_it_takes_its_time() -> None:
     estimator = asked(plumb(), frames=FRAMES - 1)
-    assert estimator.found is None
+    assert estimator.up is None
     estimator.offer(skeleton(FRAMES * FRAME_NS, plumb()))
-    assert estimator.found is not None
+    assert estimator.up is not None
 
 
 def test_who_stands_right_is_told_to_stay_whatever_was_wrong_before() -> None:
@@ -159,7 +159,7 @@ def bent(degrees: float) -> Array:
 )
 def test_what_is_wrong_is_said(people: tuple[Array, ...], instruction: str) -> None:
     estimator = asked(*people)
-    assert estimator.found is None
+    assert estimator.up is None
     assert instruction in estimator.instruction
 
 
@@ -167,7 +167,7 @@ def test_who_moves_is_asked_to_stand_still() -> None:
     estimator = UpDirectionEstimator()
     for k in range(2 * FRAMES):
         estimator.offer(skeleton(k * FRAME_NS, plumb() @ rotation(2, 5 * np.sin(k / 5)).T))
-    assert estimator.found is None
+    assert estimator.up is None
     assert "the body sways by more than 1.5 degrees" in estimator.instruction
 
 
@@ -178,4 +178,4 @@ def test_an_interruption_begins_it_anew() -> None:
     )
     assert estimator.instruction == "nobody is seen: camera lost"
     estimator.offer(skeleton((FRAMES + 1) * FRAME_NS, plumb()))
-    assert estimator.found is None
+    assert estimator.up is None

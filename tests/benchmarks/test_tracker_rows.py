@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from benchmarks.tracker.marker_scenes import Scene
 from benchmarks.tracker.rows import OURS, ROWS
-from benchmarks.tracker.scenes import Scene
 
 SCENE = Scene("DICT_4X4_50", 40, "plain", 1)
 

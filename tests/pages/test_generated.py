@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from docs.generate import fields, settings
 from docs.generate.pages import PAGES, renewed
-from docs.generate.processes import DIAGRAM, diagram
+from docs.generate.process_diagram import DIAGRAM, diagram
 from docs.generate.reasons import REASONS
 from docs.generate.rejects import COUNTED_BY, REJECTS
 

@@ -28,8 +28,8 @@ def up(
     estimator, instruction, instructed_ns = UpDirectionEstimator(), "", -PAUSE_NS
     for frame in frames:
         estimator.offer(frame)
-        if estimator.found is not None:
-            _report(estimator.found)
+        if estimator.up is not None:
+            _report(estimator.up)
             return
         is_new = estimator.instruction != instruction and abs(frame.stamp_ns - instructed_ns) >= PAUSE_NS
         if recording is None and is_new:

@@ -1,7 +1,7 @@
-"""Corners of small markers from their whole pattern: photometric alignment of the known code with the grey levels.
+"""Photometric alignment: refine the corners of small markers by fitting their known pattern to the grey levels.
 
-A small marker's sides are too short, and its cells too narrow, for edges to be located one by one, and a finger across
-an edge would pull it along.
+A small marker's sides are too short and its cells too narrow to locate edges one by one, and a finger across an edge
+would shift the located edge.
 """
 
 import math
@@ -15,29 +15,29 @@ from actum.arrays import Array, Mask, Pixels
 from marker_tracker.detection.families import Cells
 
 SAMPLES_PER_CELL = 3
-"""Along each side: the least that show where within a cell an edge lies."""
+"""Along each side of a cell: the fewest samples that locate an edge within the cell."""
 QUIET_ZONE_CELLS = 0.5
 """Cells of the white around the black border that are sampled, for the border's outer edge."""
 MAX_ITERATIONS = 3
-"""Gauss-Newton steps: starts are within a pixel, where the steps converge quadratically."""
+"""Gauss-Newton steps: initial corners are within a pixel, where the steps converge quadratically."""
 SUFFICIENT_STEP_PX = 0.05
-"""Pixels: after a smaller step of the corners the next would be lost in noise."""
+"""Pixels: iteration stops after a smaller step of the corners, as the next one would be below the noise."""
 CONVERGED_STEP_PX = 0.15
-"""Pixels: a last step up to this shows that the corners do not diverge."""
+"""Pixels: an alignment has converged if its last step of the corners is at most this."""
 INITIAL_BLUR_PX = 0.8
 """Standard deviation in pixels: a usual lens with a usual sensor."""
 BLUR_RANGE_PX = np.array([0.35, 2.5])
-"""Standard deviations in pixels: from a pixel's own width to a blur that leaves nothing of small cells."""
+"""Standard deviations in pixels: from the blur of a pixel's own area to one that erases small cells."""
 CAUCHY_SCALE = 0.12
-"""Of residuals, as a share of the contrast: a grey level beyond it is of what covers the marker, and counts little."""
+"""Scale of residuals, as a share of the contrast: larger ones come from what covers the marker and weigh little."""
 MAX_CORNER_MOTION_PX = 1.5
-"""Pixels in each axis: starts are nearer than this, so that what goes further has diverged."""
+"""Pixels in each axis: initial corners are off by less, so a corner that moves further has diverged."""
 MIN_CONTRAST = 10.0
 """Grey levels between black and white: below it noise would be taken for cells."""
 OUTLIER_WEIGHT = 0.2
 """Robust weight below which a grey level counts as covered: its residual is twice the Cauchy scale."""
 RELATIVE_DAMPING = 1e-3
-"""Of the normal matrix, as a share of its diagonal (Levenberg-Marquardt)."""
+"""Damping of the normal matrix, as a share of its diagonal (Levenberg-Marquardt)."""
 ABSOLUTE_DAMPING = 1e-3
 """Added to the diagonal, which keeps the normal matrix of a flat image invertible."""
 TANH_SLOPE = math.sqrt(2 / math.pi)
@@ -54,7 +54,7 @@ class Alignment:
         corners_px: (n, 4, 2), clockwise from each marker's own top left.
         covered: (n,) share of each marker, 0 to 1, whose grey levels are not of its pattern.
         photometric: (n, 3) blur (standard deviation in cells), black level and contrast (grey levels) of each.
-        converged: (n,) whose last step was small.
+        converged: (n,) whether the last step was small and the corners did not diverge.
     """
 
     corners_px: Array
@@ -68,20 +68,20 @@ def align(pixels: Pixels, corners_px: Array, patterns: Cells, photometric: Array
 
     Robust Gauss-Newton steps decrease sum rho(I(H u) - black - contrast T(u)) over points u of the marker, where H maps
     the unit square to the corners, T is the pattern blurred like the image, and rho is Cauchy's. Corners that move
-    further than `MAX_CORNER_MOTION_PX` are given back as they were.
+    further than `MAX_CORNER_MOTION_PX` keep their initial values.
 
     Args:
         pixels: (height, width).
-        corners_px: (n, 4, 2) from which the steps begin.
-        patterns: (n, across, across), the cells of each with its border.
-        photometric: (n, 3) from which the steps begin; by default estimated from the image.
+        corners_px: (n, 4, 2), initial corners.
+        patterns: (n, across, across), the cells of each marker with its border.
+        photometric: (n, 3), initial photometric parameters; by default estimated from the image.
     """
     directions = np.broadcast_to(np.eye(8), (len(corners_px), 8, 8))
     return _align(pixels, corners_px, patterns, directions, photometric)
 
 
 def align_by_similarity(pixels: Pixels, corners_px: Array, patterns: Cells) -> Alignment:
-    """Align as `align` does, but by shift, rotation and scale alone: these are known also where half is covered."""
+    """Align as `align` does, but by shift, rotation and scale alone, which half of a marker suffices to determine."""
     around = corners_px - corners_px.mean(axis=1, keepdims=True)
     turned = np.stack([-around[..., 1], around[..., 0]], axis=-1)
     across, down = np.broadcast_to([1.0, 0.0], around.shape), np.broadcast_to([0.0, 1.0], around.shape)
@@ -104,25 +104,25 @@ def sample_squares(pixels: Pixels, corners_px: Array, unit_points: Array) -> Arr
 def _align(
     pixels: Pixels, corners_px: Array, patterns: Cells, directions: Array, photometric: Array | None = None
 ) -> Alignment:
-    """Align along directions (n, 8, k): each column moves the corners' coordinates x0, y0, ... y3."""
+    """Align along k directions (n, 8, k): each column is a motion of the corners' coordinates x0, y0, ... y3."""
     white = np.pad(patterns, ((0, 0), (1, 1), (1, 1)), constant_values=True).astype(np.float64)
     initial = _initial_photometric(pixels, corners_px, white) if photometric is None else photometric
-    found, photometric = corners_px.copy(), initial.copy()
+    aligned_px, photometric = corners_px.copy(), initial.copy()
     blurs = BLUR_RANGE_PX / (_mean_sides_px(corners_px) / patterns.shape[1])[:, None]
-    covered, stepped_px = np.zeros(len(found)), np.full(len(found), np.inf)
+    covered, last_step_px = np.zeros(len(aligned_px)), np.full(len(aligned_px), np.inf)
     for _ in range(MAX_ITERATIONS):
-        (on,) = np.nonzero(stepped_px > SUFFICIENT_STEP_PX)
-        if not len(on):
+        (active,) = np.nonzero(last_step_px > SUFFICIENT_STEP_PX)
+        if not len(active):
             break
-        step, change, weight = _step(pixels, found[on], white[on], photometric[on], directions[on])
-        found[on] += np.clip(step, -MAX_CORNER_MOTION_PX, MAX_CORNER_MOTION_PX)
-        blur, black, contrast = (photometric[on] + change).T
-        blur = np.clip(blur, blurs[on, 0], blurs[on, 1])
-        photometric[on] = np.stack([blur, black, np.maximum(contrast, MIN_CONTRAST)], axis=1)
-        covered[on], stepped_px[on] = (weight < OUTLIER_WEIGHT).mean(axis=1), np.abs(step).max(axis=(1, 2))
-    diverged = np.abs(found - corners_px).max(axis=(1, 2)) > MAX_CORNER_MOTION_PX
-    found[diverged] = corners_px[diverged]
-    return Alignment(found, covered, photometric, (stepped_px <= CONVERGED_STEP_PX) & ~diverged)
+        step, change, weight = _step(pixels, aligned_px[active], white[active], photometric[active], directions[active])
+        aligned_px[active] += np.clip(step, -MAX_CORNER_MOTION_PX, MAX_CORNER_MOTION_PX)
+        blur, black, contrast = (photometric[active] + change).T
+        blur = np.clip(blur, blurs[active, 0], blurs[active, 1])
+        photometric[active] = np.stack([blur, black, np.maximum(contrast, MIN_CONTRAST)], axis=1)
+        covered[active], last_step_px[active] = (weight < OUTLIER_WEIGHT).mean(axis=1), np.abs(step).max(axis=(1, 2))
+    diverged = np.abs(aligned_px - corners_px).max(axis=(1, 2)) > MAX_CORNER_MOTION_PX
+    aligned_px[diverged] = corners_px[diverged]
+    return Alignment(aligned_px, covered, photometric, (last_step_px <= CONVERGED_STEP_PX) & ~diverged)
 
 
 def _mean_sides_px(corners_px: Array) -> Array:
@@ -132,7 +132,7 @@ def _mean_sides_px(corners_px: Array) -> Array:
 
 
 def _initial_photometric(pixels: Pixels, corners_px: Array, white: Array) -> Array:
-    """Estimate black level and contrast (n, 3) by the medians of the quarters that should be darkest and lightest."""
+    """Estimate blur, black level and contrast (n, 3) by the medians where the pattern is darkest and lightest."""
     across = white.shape[1] - 2
     blur = INITIAL_BLUR_PX / (_mean_sides_px(corners_px) / across)
     levels, blurred = sample_squares(pixels, corners_px, _sample_points(across)), _blurred(white, blur, across)[0]
@@ -166,7 +166,7 @@ def _step(
     weight = 1 / (1 + (residual / (CAUCHY_SCALE * contrast)) ** 2)
     jacobian = np.empty((len(levels), directions.shape[2] + 3, levels.shape[1]))
     gradient = contrast[..., None] * _slopes_per_px(slopes, corners_px)
-    by_corner = (_corner_shares(across)[:, None] * gradient[:, None]).reshape(len(levels), 8, -1)
+    by_corner = (_corner_weights(across)[:, None] * gradient[:, None]).reshape(len(levels), 8, -1)
     np.matmul(np.swapaxes(directions, 1, 2), by_corner, out=jacobian[:, :-3])
     jacobian[:, -3], jacobian[:, -2], jacobian[:, -1] = -contrast * by_blur, -1.0, -blurred
     weighted = jacobian * weight[:, None]
@@ -191,18 +191,18 @@ def _ticks(across: int) -> Array:
 
 
 @cache
-def _corner_shares(across: int) -> Array:
-    """How far each sampled point follows each corner, bilinearly: (4, m)."""
+def _corner_weights(across: int) -> Array:
+    """Bilinear weights (4, m) of the corners at the sampled points."""
     u, v = _sample_points(across).T
     return np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v])
 
 
 def _blurred(white: Array, blur: Array, across: int) -> tuple[Array, Array, Array]:
-    """Blur patterns (n, across + 2, across + 2), with a ring of white, by normal distributions of deviation (n,).
+    """Blur patterns (n, across + 2, across + 2), with a ring of white, by Gaussians of deviation (n,) in cells.
 
     Returns:
-        T (n, m) at the sampled points, its slopes (n, 2, m) along the unit square's sides, and its derivative (n, m) by
-        the blur.
+        T (n, m) at the sampled points, its gradient (n, 2, m) along the unit square's sides, and its derivative (n, m)
+        with respect to the blur.
     """
     x = (_ticks(across)[:, None] - np.arange(-1, across + 2))[None] / blur[:, None, None]
     squared = x * x

@@ -1,7 +1,8 @@
-"""Corners of black squares to a fraction of a pixel.
+"""Sub-pixel refinement of the corners of black squares.
 
-Of small squares, by the intersections of lines fitted to the four edges, which have no bias. Of large ones, by the
-gradients around each corner (OpenCV's `cornerSubPix`): lens and paper bend long sides by more than its bias.
+Corners of small squares are the intersections of lines fitted to the four sides, which are unbiased. Corners of large
+squares come from the gradients around them (OpenCV's `cornerSubPix`), since lens and paper bend long sides by more than
+its bias.
 """
 
 import cv2
@@ -10,47 +11,47 @@ import numpy as np
 from actum.arrays import Array, Pixels
 
 NEXT = [1, 2, 3, 0]
-"""Index of the corner that ends the side which begins at a corner."""
+"""For each corner, the index of the next one, clockwise: side i runs from corner i to corner `NEXT[i]`."""
 PREVIOUS = [3, 0, 1, 2]
-"""Index of the side that ends at the corner where a side begins."""
+"""For each side, the index of the previous one, which ends where the side begins."""
 PROFILES = 16
-"""Across each side: a line through so many edges is some four times as exact as one edge."""
+"""Intensity profiles across each side: a line fitted to 16 edge points has about a quarter of the error of one."""
 PROFILE_SAMPLES = 9
 """Grey levels of a profile, from inside to outside: about one per pixel of the longest."""
 ALONG_SIDE = np.linspace(-1, 1, PROFILES)
-"""Places of the profiles between the margins of a side, from its start to its end."""
+"""Positions of the profiles along a side, -1 at its first and 1 at its last margin."""
 ACROSS_SIDE = np.linspace(-1, 1, PROFILE_SAMPLES)
-"""Places of the samples in a profile, in parts of its reach, from inside to outside."""
+"""Positions of the samples in a profile, as shares of its half length, from inside to outside."""
 MARGIN_PX = 2.0
-"""Pixels left out at both ends of a side: there the next side blurs in."""
+"""Pixels left out at both ends of a side: the blur of the neighbouring sides reaches that far."""
 MAX_MARGIN_SHARE = 0.2
-"""Of a side, most that is left out at each end: short sides keep three fifths."""
+"""Largest share of a side left out at each end: short sides keep three fifths."""
 SMALLEST_CELLS = 8
-"""Along a side where cells are smallest (6x6 with border): the black border is one cell wide."""
+"""Cells along a side of a 6x6 marker with its border: a profile reaches half a cell to either side of the edge."""
 MIN_REACH_PX = 1.5
-"""Pixels of a profile to either side, at least: the blur of an edge."""
+"""Smallest half length of a profile, in pixels: the blur of an edge."""
 MAX_REACH_PX = 4.0
-"""Pixels of a profile to either side, at most, with half a cell between the two: rough corners are nearer."""
+"""Largest half length of a profile, in pixels: rough corners are off by less."""
 FITS_PER_ROUND = (1, 1, 2)
-"""Line fits in each round; each round centres the profiles on the edge found before; the last fit is robust."""
+"""Line fits in each round. Each round centres the profiles on the lines of the previous one; the last fit is robust."""
 EDGE_NOISE_PX = 0.15
-"""Standard deviation in pixels of the edge in one profile; what lies much further from the line counts little."""
+"""Standard deviation in pixels of the edge in one profile; edges much further from the line weigh little."""
 BOW_PER_PX = 1e-5
-"""Standard deviation of a side's bow, as a share of its squared length in pixels: lenses bend long sides only."""
+"""Prior standard deviation of a side's bow c2 over its squared length, in 1/pixel: lenses bend long sides only."""
 MAX_CONTRAST_WEIGHT = 64.0
-"""Grey levels of contrast beyond which an edge is no more exact."""
+"""Grey levels of contrast beyond which an edge is located no better, so that its weight grows no further."""
 MIN_MOTION_PX = 2.0
-"""Pixels by which any corner may move: so rough may initial corners be."""
+"""Pixels by which any corner may move: the error of rough initial corners."""
 MAX_MOTION_SHARE = 0.2
-"""Of the shortest side, by which a corner may move if that is more; beyond it the fit has diverged."""
+"""Share of the shortest side by which a corner may move, if that is more; beyond it the fit has diverged."""
 EDGES_ONLY_PX = 140.0
-"""Shortest side in pixels up to which edges alone count."""
+"""Shortest side in pixels up to which only the fitted lines are used."""
 GRADIENTS_ONLY_PX = 180.0
-"""Shortest side in pixels from which gradients alone count, whose bias is below 0.2 pixels; blended in between."""
+"""Shortest side in pixels from which only gradients are used: their bias is below 0.2 pixels. Blended in between."""
 GRADIENT_WINDOW_PX = 5
 """Half the width in pixels of the window around a corner: within the border of a large marker."""
 MAX_DISAGREEMENT_PX = 1.0
-"""Pixels between edges and gradients: further apart, the gradients are of something else."""
+"""Pixels between the corners of both methods: further apart, the gradients belong to something else."""
 GRADIENT_STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 30, 0.01)
 """Iterations and pixels at which `cornerSubPix` stops: a tenth of the accuracy wanted."""
 SINGULAR = 1e-6
@@ -60,7 +61,7 @@ RIDGE = 1e-6
 
 
 def refine(pixels: Pixels, corners_px: Array) -> Array:
-    """Refine the corners of black squares on white; corners that would diverge stay as they are.
+    """Refine the corners of black squares on white; squares whose corners would diverge stay as they are.
 
     Args:
         pixels: grey image (height, width).
@@ -72,8 +73,8 @@ def refine(pixels: Pixels, corners_px: Array) -> Array:
     refined = corners_px
     for fits in FITS_PER_ROUND:
         moved = _by_edges(pixels, refined, fits)
-        stays = (np.abs(moved - corners_px) <= allowed).all(axis=(1, 2), keepdims=True)
-        refined = np.where(stays, moved, refined)
+        plausible = (np.abs(moved - corners_px) <= allowed).all(axis=(1, 2), keepdims=True)
+        refined = np.where(plausible, moved, refined)
     return _by_gradients_if_large(pixels, refined)
 
 
@@ -102,27 +103,27 @@ def _by_edges(pixels: Pixels, corners: Array, fits: int) -> Array:
     inner = 1 - 2 * np.minimum(MAX_MARGIN_SHARE, MARGIN_PX / length)
     s = inner[..., None] * ALONG_SIDE
     middle = (corners[:, NEXT] + corners) / 2
-    feet = middle[:, :, None] + (s * length[..., None] / 2)[..., None] * along[:, :, None]
-    reach = np.clip(length / SMALLEST_CELLS / 2, MIN_REACH_PX, MAX_REACH_PX)
-    offset, weight = _edge_offsets(pixels, feet, outward, reach)
+    centres = middle[:, :, None] + (s * length[..., None] / 2)[..., None] * along[:, :, None]
+    half_length = np.clip(length / SMALLEST_CELLS / 2, MIN_REACH_PX, MAX_REACH_PX)
+    offset, weight = _edge_offsets(pixels, centres, outward, half_length)
     fitted = _fitted(s, offset, weight, length, fits)
     return _intersections(middle, along, outward, length, fitted)
 
 
-def _edge_offsets(pixels: Pixels, feet: Array, outward: Array, reach: Array) -> tuple[Array, Array]:
+def _edge_offsets(pixels: Pixels, centres: Array, outward: Array, half_length: Array) -> tuple[Array, Array]:
     """Locate the edge in each profile, as the centroid of the squared rise from inside to outside.
 
     Args:
         pixels: (height, width).
-        feet: (n, 4, PROFILES, 2), the middles of the profiles.
+        centres: (n, 4, PROFILES, 2), the centres of the profiles.
         outward: (n, 4, 2), unit vectors.
-        reach: (n, 4), of the profiles to either side in pixels.
+        half_length: (n, 4), half lengths of the profiles in pixels.
 
     Returns:
         Offsets outwards in pixels and weights, both (n, 4, PROFILES).
     """
-    t = reach[..., None] * ACROSS_SIDE
-    points = (feet[..., None, :] + t[:, :, None, :, None] * outward[:, :, None, None]).astype(np.float32)
+    t = half_length[..., None] * ACROSS_SIDE
+    points = (centres[..., None, :] + t[:, :, None, :, None] * outward[:, :, None, None]).astype(np.float32)
     x, y = np.moveaxis(points.reshape(-1, PROFILE_SAMPLES, 2), -1, 0)
     sampled = cv2.remap(pixels, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     levels = sampled.astype(np.float64).reshape(points.shape[:-1])
@@ -162,14 +163,14 @@ def _intersections(middle: Array, along: Array, outward: Array, length: Array, f
         for sign in (-1, 1)
     )
     point, direction = first
-    other, towards = (part[:, PREVIOUS] for part in last)
-    cross = direction[..., 0] * towards[..., 1] - direction[..., 1] * towards[..., 0]
-    gap = other - point
-    reach = (gap[..., 0] * towards[..., 1] - gap[..., 1] * towards[..., 0]) / np.where(
+    previous_point, previous_direction = (part[:, PREVIOUS] for part in last)
+    cross = direction[..., 0] * previous_direction[..., 1] - direction[..., 1] * previous_direction[..., 0]
+    gap = previous_point - point
+    distance = (gap[..., 0] * previous_direction[..., 1] - gap[..., 1] * previous_direction[..., 0]) / np.where(
         np.abs(cross) < SINGULAR, np.nan, cross
     )
-    crossed: Array = point + reach[..., None] * direction
-    return crossed
+    corners: Array = point + distance[..., None] * direction
+    return corners
 
 
 def _sides_px(corners: Array) -> Array:

@@ -1,4 +1,4 @@
-"""From squares to markers: which code the cells of each square show, and exact corners where the marker is small."""
+"""Decode squares: read the code in the cells of each, and align the markers that are small."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,25 +13,25 @@ from marker_tracker.detection.families import Cells, Family
 from marker_tracker.detection.marker import AlignmentStart, Marker
 
 SAMPLES_PER_CELL = 3
-"""Along each side of a cell; a cell is read by their mean."""
+"""Samples along each side of a cell; their mean is the cell's grey level."""
 SAMPLED_SHARE = 0.6
-"""Of a cell's width, in which the samples lie: its rim is blurred."""
+"""Share of a cell's width in which the samples lie: its rim is blurred."""
 SHADOW_THRESHOLD = 0.25
-"""Between black (0) and white (1), instead of the middle: in a shadow white is darker than the middle."""
+"""Binarisation threshold in a shadow, between black (0) and white (1): there white is darker than the usual 0.5."""
 MAX_WHITE_BORDER_SHARE = 0.1
-"""Of the border's cells that may be read as white: with refined corners hardly one is."""
+"""Share of the border's cells that may be read as white: with refined corners hardly any is."""
 NARROW_CELL_PX = 3.5
-"""Pixels per cell along the shortest side up to which neighbouring cells blur into one another."""
+"""Largest width of a narrow cell, in pixels along the shortest side: neighbouring cells blur into one another."""
 SHARPENING = 0.25
-"""Of the Laplacian of a marker's cells, where it cannot be read otherwise: as the AprilTag library does."""
+"""Weight of the Laplacian that sharpens narrow cells which cannot be read otherwise: the AprilTag library's."""
 MIN_CORRELATION = 0.72
-"""Normalised cross-correlation with the pattern: cells of other things are read as some code, too."""
+"""Least normalised cross-correlation with the pattern: squares that are no markers may be read as a code, too."""
 SMALL_CELL_PX = 6.5
 """Pixels per cell up to which markers are aligned; the sides of larger ones are located well enough."""
 MAX_COVERED_ALIGNED = 0.1
-"""Share of a marker; where more is covered, or in shadow, its sides tell more than its pattern."""
+"""Largest covered or shadowed share of a marker that is aligned; above it, corners fitted to the sides are better."""
 MAX_COVERED_CLEAR = 0.02
-"""Share of a marker up to which it is clear: what covers more would drag the alignment along from image to image."""
+"""Largest covered share of a clear marker, which is aligned from image to image: more would drag its corners along."""
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,8 @@ class Candidates:
 
     Attributes:
         family: the family.
-        corners_px: (n, 4, 2), refined, clockwise.
-        initial_px: (n, 4, 2), from which they were refined.
+        corners_px: (n, 4, 2), refined corners, clockwise.
+        initial_px: (n, 4, 2), the same corners before refinement.
     """
 
     family: Family
@@ -51,9 +51,13 @@ class Candidates:
 
 @dataclass(frozen=True)
 class _Readings:
-    """Markers read in squares.
+    """The n markers read in a family's candidate squares.
 
-    `index` (n,) is of the square, `corners_px` (n, 4, 2) begin at the marker's own top left; `wrong` counts cells.
+    Attributes:
+        index: (n,) of each marker's square among the candidates.
+        corners_px: (n, 4, 2), clockwise from the marker's own top left.
+        ids: of the markers in the family.
+        wrong: number of misread cells of each.
     """
 
     index: Indices
@@ -68,15 +72,15 @@ def decode(pixels: Pixels, candidates: Sequence[Candidates]) -> list[Marker]:
 
 
 def read_in_place(pixels: Pixels, markers: Sequence[Marker], families: Sequence[Family]) -> list[Marker]:
-    """Align and read the small clear markers of the image before, from where their last motion would bring them.
+    """Align and read the small clear markers of the previous image again, starting where their last motion leads.
 
-    Left out are markers whose alignment does not converge, that are covered, or that no longer show their code.
+    Markers are left out if their alignment does not converge, they are covered, or their code cannot be read.
     """
     return [marker for family in families for marker in _read_in_place(pixels, markers, family)]
 
 
 def wrong_cells(pixels: Pixels, corners_px: Array, pattern: Cells) -> Cells:
-    """Compare a square (4, 2) with a marker (across, across), its border included: True where it shows another."""
+    """Compare a square's cells (4, 2) with a pattern (across, across), border included: True where they differ."""
     wrong: Cells = _binarised(_sampled_cells(pixels, corners_px[None], len(pattern) - 2))[0] != pattern
     return wrong
 
@@ -94,44 +98,44 @@ def _decoded(pixels: Pixels, candidates: Candidates) -> list[Marker]:
 
 
 def _read(levels: Array, corners_px: Array, family: Family) -> _Readings:
-    """Match grey levels, as of `_sampled_cells`, with a family's codes.
+    """Match levels, as `_sampled_cells` returns them, with a family's codes.
 
-    What cannot be read as it is, is read as if in a shadow, and, where cells are narrow, sharpened.
+    Squares that cannot be read are read again with the threshold for shadows and, if their cells are narrow, sharpened.
     """
     sides_px = np.linalg.norm(corners_px - corners_px[:, [3, 0, 1, 2]], axis=2)
     narrow = sides_px.min(axis=1) <= NARROW_CELL_PX * (family.cells + 2)
     ids, turns, wrong = np.zeros((3, len(levels)), dtype=np.intp)
-    any_width, matched = np.ones(len(levels), dtype=bool), np.zeros(len(levels), dtype=bool)
-    for tried, threshold, tolerated, width in (
-        (levels, 0.5, family.corrected, any_width),
-        (levels, SHADOW_THRESHOLD, 0, any_width),
+    all_squares, matched = np.ones(len(levels), dtype=bool), np.zeros(len(levels), dtype=bool)
+    for attempted, threshold, tolerated, applies in (
+        (levels, 0.5, family.corrected, all_squares),
+        (levels, SHADOW_THRESHOLD, 0, all_squares),
         (_sharpened(levels), 0.5, family.corrected, narrow),
     ):
-        (unread,) = np.nonzero(width & ~matched)
+        (unread,) = np.nonzero(applies & ~matched)
         if len(unread):
-            found = _matched(tried[unread], threshold, family, tolerated)
-            ids[unread], turns[unread], wrong[unread], matched[unread] = found
+            result = _matched(attempted[unread], threshold, family, tolerated)
+            ids[unread], turns[unread], wrong[unread], matched[unread] = result
     (index,) = np.nonzero(matched)
     upright = [np.roll(corners_px[at], turns[at], axis=0) for at in index]
     return _Readings(index, np.array(upright).reshape(-1, 4, 2), ids[index].tolist(), wrong[index].tolist())
 
 
 def _sharpened(levels: Array) -> Array:
-    """Undo blur between the cells of levels, as of `_sampled_cells`, by a Laplacian: (n, across, 1, across, 1)."""
+    """Sharpen levels, as from `_sampled_cells`, by the Laplacian of the cells' means: (n, across, 1, across, 1)."""
     cells = levels.mean(axis=(2, 4))
-    around = np.pad(cells, ((0, 0), (1, 1), (1, 1)), mode="edge")
-    beside = around[:, :-2, 1:-1] + around[:, 2:, 1:-1] + around[:, 1:-1, :-2] + around[:, 1:-1, 2:]
-    sharpened: Array = cells + SHARPENING * (4 * cells - beside)
+    padded = np.pad(cells, ((0, 0), (1, 1), (1, 1)), mode="edge")
+    neighbours = padded[:, :-2, 1:-1] + padded[:, 2:, 1:-1] + padded[:, 1:-1, :-2] + padded[:, 1:-1, 2:]
+    sharpened: Array = cells + SHARPENING * (4 * cells - neighbours)
     return sharpened[:, :, None, :, None]
 
 
 def _matched(
     levels: Array, threshold: float, family: Family, tolerated: int
 ) -> tuple[Indices, Indices, NDArray[np.int64], Mask]:
-    """Find the marker nearest to each reading of levels, as of `_sampled_cells`, with its border.
+    """Binarise levels, as from `_sampled_cells`, and find the marker nearest to each square, border included.
 
     Returns:
-        Ids (n,), quarter turns (n,), wrong cells (n,), and whether code, border and levels fit as they must (n,).
+        Ids (n,), quarter turns (n,), wrong cells (n,), and whether code, border and levels fit well enough (n,).
     """
     cells = _binarised(levels, threshold)
     inner = cells[:, 1:-1, 1:-1]
@@ -147,10 +151,10 @@ def _matched(
 def _aligned_if_small(
     pixels: Pixels, corners_px: Array, patterns: Cells
 ) -> tuple[Array, list[float], list[AlignmentStart | None]]:
-    """Align small markers (n, 4, 2); where more than a little is covered, corners stay as they were refined.
+    """Align small markers (n, 4, 2), except those that are covered by more than `MAX_COVERED_ALIGNED`.
 
     Returns:
-        Corners (n, 4, 2), the covered share of each, and where alignment begins in the next image.
+        Corners (n, 4, 2), the covered share of each marker, and the initial values of its alignment in the next image.
     """
     exact, covered = corners_px.copy(), [0.0] * len(corners_px)
     starts: list[AlignmentStart | None] = [None] * len(corners_px)
@@ -158,13 +162,13 @@ def _aligned_if_small(
     (small,) = np.nonzero(sides_px <= SMALL_CELL_PX * patterns.shape[1])
     if not len(small):
         return exact, covered, starts
-    found = align(pixels, corners_px[small], patterns[small])
+    aligned = align(pixels, corners_px[small], patterns[small])
     for i, at in enumerate(small):
-        covered[at] = float(found.covered[i])
+        covered[at] = float(aligned.covered[i])
         if covered[at] <= MAX_COVERED_ALIGNED:
-            exact[at] = found.corners_px[i]
+            exact[at] = aligned.corners_px[i]
         if covered[at] <= MAX_COVERED_CLEAR:
-            starts[at] = AlignmentStart(corners_px[at], found.photometric[i], np.zeros(2))
+            starts[at] = AlignmentStart(corners_px[at], aligned.photometric[i], np.zeros(2))
     return exact, covered, starts
 
 
@@ -174,23 +178,23 @@ def _read_in_place(pixels: Pixels, markers: Sequence[Marker], family: Family) ->
         return []
     expected_px = np.stack([start.corners_px + start.motion_px for _, start in before])
     patterns = family.patterns[[marker.id for marker, _ in before]]
-    found = align(pixels, expected_px, patterns, np.stack([start.photometric for _, start in before]))
-    levels = _sampled_cells(pixels, found.corners_px, family.cells)
+    aligned = align(pixels, expected_px, patterns, np.stack([start.photometric for _, start in before]))
+    levels = _sampled_cells(pixels, aligned.corners_px, family.cells)
     wrong = (_binarised(levels) != patterns).sum(axis=(1, 2))
     shows_code = (wrong <= family.corrected) & (_correlation(levels, patterns) >= MIN_CORRELATION)
-    (index,) = np.nonzero(shows_code & found.converged & (found.covered <= MAX_COVERED_CLEAR))
-    return [_moved(before[at][0], before[at][1], found, at, int(wrong[at])) for at in index.tolist()]
+    (index,) = np.nonzero(shows_code & aligned.converged & (aligned.covered <= MAX_COVERED_CLEAR))
+    return [_moved(before[at][0], before[at][1], aligned, at, int(wrong[at])) for at in index.tolist()]
 
 
-def _moved(marker: Marker, start: AlignmentStart, found: Alignment, at: int, wrong: int) -> Marker:
-    corners_px = found.corners_px[at]
+def _moved(marker: Marker, start: AlignmentStart, aligned: Alignment, at: int, wrong: int) -> Marker:
+    corners_px = aligned.corners_px[at]
     motion_px = corners_px.mean(axis=0) - marker.centre_px
     return replace(
         marker,
         corners_px=corners_px,
         wrong=wrong,
-        covered=float(found.covered[at]),
-        start=AlignmentStart(start.corners_px + motion_px, found.photometric[at], motion_px),
+        covered=float(aligned.covered[at]),
+        start=AlignmentStart(start.corners_px + motion_px, aligned.photometric[at], motion_px),
     )
 
 
@@ -210,9 +214,9 @@ def _sample_points(across: int) -> Array:
 
 
 def _binarised(levels: Array, threshold: float = 0.5) -> Cells:
-    """Binarise cells by a threshold between the border's median (0) and the mean of the bright ones (1).
+    """Binarise cells by a threshold between the border's median (0) and the mean of the bright cells (1).
 
-    From levels as of `_sampled_cells` to (n, across, across), True where white.
+    Takes levels as `_sampled_cells` returns them; returns (n, across, across), True where white.
     """
     levels = levels.sum(axis=(2, 4))
     rim = (levels[:, 0], levels[:, -1], levels[:, 1:-1, 0], levels[:, 1:-1, -1])
@@ -225,7 +229,7 @@ def _binarised(levels: Array, threshold: float = 0.5) -> Cells:
 
 
 def _correlation(levels: Array, patterns: Cells) -> Array:
-    """Normalised cross-correlation (n,) of levels, as of `_sampled_cells`, with patterns (n, across, across)."""
+    """Normalised cross-correlation (n,) of levels, as from `_sampled_cells`, with patterns (n, across, across)."""
     mean = levels.mean(axis=(2, 4))
     light, middle = patterns.mean(axis=(1, 2)), mean.mean(axis=(1, 2))
     covariance = (mean * patterns).mean(axis=(1, 2)) - light * middle

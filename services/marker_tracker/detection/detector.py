@@ -1,4 +1,4 @@
-"""The markers of each image: read again in their places, or searched for in the whole image when that is due."""
+"""Detect the markers of each image: read those of the previous image again in place, and search at intervals."""
 
 import math
 from collections.abc import Collection, Mapping, Sequence
@@ -15,9 +15,9 @@ from marker_tracker.detection.marker import Marker
 from marker_tracker.detection.quads import QuadDetector, inner_squares, rimmed_squares, within
 
 SEARCH_INTERVAL_NS = SECOND_NS // 3
-"""Nanoseconds between whole searches with nothing missing: unknown markers and second copies are to be told, too."""
+"""Nanoseconds between searches while no wanted marker is missing: they find unknown markers and second copies."""
 MISSING_SEARCH_INTERVAL_NS = SECOND_NS // 20
-"""Nanoseconds between whole searches while a wanted marker is missing: every image of a slow camera."""
+"""Nanoseconds between searches while a wanted marker is missing: every image at up to 20 Hz."""
 STATIC_PX = 1.0
 """Pixels in each axis by which a marker may differ from its initial corners and still count as static."""
 SAME_PLACE_SIDES = 0.25
@@ -25,16 +25,16 @@ SAME_PLACE_SIDES = 0.25
 
 
 class MarkerDetector:
-    """Detects markers of several families in images that follow one another.
+    """Detects markers of several families in the successive images of a camera.
 
-    A search of the whole image costs more than all the rest, so that markers are first read again where they were.
-    A search has OpenCV find squares and decode them; the squares' corners are refined, and each code is read again at
-    these corners. What cannot be read again is dropped. While a wanted marker is missing, squares that OpenCV could
-    not decode are read as well, which finds markers that are small or steep.
+    Markers of the previous image are first read again in place, because a search of the whole image is slow. In a
+    search, OpenCV finds squares and decodes them; their corners are refined, and each code is read again at the refined
+    corners or else dropped. While a wanted marker is missing, squares that OpenCV could not decode are read as well,
+    which finds small markers and markers seen at a steep angle.
     """
 
     def __init__(self, wanted: Mapping[str, Collection[int]]) -> None:
-        """Detect these ids of these families, or all of a family where no ids are given."""
+        """Detect the wanted ids of each family by its name; no ids stand for the whole family."""
         self._families = [family(name) for name in wanted]
         self._quads = QuadDetector(self._families, [*wanted.values()])
         self._wanted = {(name, number) for name, ids in wanted.items() for number in ids}
@@ -48,7 +48,7 @@ class MarkerDetector:
         self._searched_ns = 0
 
     def detect(self, stamp_ns: int, pixels: Pixels) -> list[Marker]:
-        """Detect the markers of the next grey image (height, width), of the size of the one before."""
+        """Detect the markers of the next grey image (height, width); all images have the same size."""
         interval_ns = SEARCH_INTERVAL_NS if self._is_complete(self._last) else MISSING_SEARCH_INTERVAL_NS
         due = stamp_ns - self._searched_ns >= interval_ns
         markers = read_in_place(pixels, self._last, self._families)
@@ -61,7 +61,7 @@ class MarkerDetector:
         return markers
 
     def search(self, pixels: Pixels, known: Sequence[Marker] = ()) -> list[Marker]:
-        """Search a grey image (height, width) for markers, of which some may be known already."""
+        """Search a grey image (height, width) for markers; the known ones, already read in it, are returned as well."""
         quads = self._quads.find(pixels, _squares(known))
         markers = [*known, *self._read_decoded(pixels, quads.decoded[quads.new], quads.family[quads.new])]
         if not self._is_complete(markers):
@@ -75,40 +75,40 @@ class MarkerDetector:
         return not self._all_wanted and self._wanted <= {marker.key for marker in markers}
 
     def _read_near(self, pixels: Pixels, in_place: Sequence[Marker]) -> list[Marker]:
-        """Read the other markers of the image before, which may have moved as far as refinement corrects corners."""
-        found = {marker.key for marker in in_place}
-        others = [marker for marker in self._last if marker.key not in found]
-        if not others:
+        """Read the previous image's markers that are not `in_place`, by refining their previous corners."""
+        read_keys = {marker.key for marker in in_place}
+        unread = [marker for marker in self._last if marker.key not in read_keys]
+        if not unread:
             return []
-        rough = np.stack([_initial_px(marker) for marker in others])
-        near = self._read(pixels, rough, np.array([marker.family for marker in others]))
-        known = {marker.key for marker in others}
-        return [marker for marker in near if marker.key in known]
+        rough = np.stack([_initial_px(marker) for marker in unread])
+        near = self._read(pixels, rough, np.array([marker.family for marker in unread]))
+        unread_keys = {marker.key for marker in unread}
+        return [marker for marker in near if marker.key in unread_keys]
 
     def _read_decoded(self, pixels: Pixels, rough: Array, numbers: NDArray[np.int_]) -> list[Marker]:
-        """Read squares (n, 4, 2) that OpenCV decoded, each as of the family with a number (n,).
+        """Read squares (n, 4, 2) that OpenCV decoded, each as a marker of the family of index `numbers` (n,).
 
-        In what cannot be read, a darker square is read: OpenCV may take the outline of the paper for the marker's.
+        In a square that cannot be read, the darker square inside is read: OpenCV may have found the paper's outline.
         """
         names = np.array([each.name for each in self._families])
         markers = self._read(pixels, rough, names[numbers])
         inner: dict[str, Array] = {}
         for number, name in enumerate(names):
-            own, read = rough[numbers == number], [marker for marker in markers if marker.family == name]
-            if len(read) < len(own):
-                inner[name] = inner_squares(pixels, own[~within(own, _squares(read))])
+            squares, read = rough[numbers == number], [marker for marker in markers if marker.family == name]
+            if len(read) < len(squares):
+                inner[name] = inner_squares(pixels, squares[~within(squares, _squares(read))])
         if inner:
             inner_names = np.repeat([*inner], [len(each) for each in inner.values()])
             markers += self._read(pixels, np.concatenate([*inner.values()]), inner_names)
         return sorted(markers, key=lambda marker: names.tolist().index(marker.family))
 
     def _read(self, pixels: Pixels, rough: Array, names: NDArray[np.str_]) -> list[Marker]:
-        """Refine rough squares (n, 4, 2) and read each as of the family with a name (n,)."""
+        """Refine rough squares (n, 4, 2) and read each as a marker of the family with its name (n,)."""
         if not len(rough):
             return []
         refined = refine(pixels, rough)
-        own = [(each, names == each.name) for each in self._families]
-        return decode(pixels, [Candidates(each, refined[of_it], rough[of_it]) for each, of_it in own])
+        members = [(each, names == each.name) for each in self._families]
+        return decode(pixels, [Candidates(each, refined[member], rough[member]) for each, member in members])
 
 
 def _initial_px(marker: Marker) -> Array:

@@ -1,4 +1,4 @@
-"""Marker families: the bit pattern of each marker, and which marker shows given cells."""
+"""Marker families: the bit pattern of each marker, and the marker nearest to a square's cells."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -17,13 +17,13 @@ Codes = NDArray[np.uint64]
 """Cells without the border, packed into one number: the first cell is the lowest bit."""
 
 PREFIX = "DICT_"
-"""What OpenCV's names of families begin with."""
+"""Prefix of OpenCV's names of families."""
 CORRECTED_SHARE = 0.6
-"""Of the wrong cells that a family could correct, those that are corrected: OpenCV's own `errorCorrectionRate`."""
+"""Share of a family's correctable cells that are corrected: OpenCV's default `errorCorrectionRate`."""
 
 
 class UnknownFamilyError(ValueError):
-    """A name that is no family of markers."""
+    """No family of markers has that name."""
 
 
 class UnknownMarkerError(ValueError):
@@ -32,11 +32,11 @@ class UnknownMarkerError(ValueError):
 
 @dataclass(frozen=True)
 class Matches:
-    """The marker nearest to each of n readings of cells.
+    """The marker nearest to each of n squares' binary cells.
 
     Attributes:
         ids: (n,) of the markers.
-        turns: (n,) quarter turns by which a marker's top left is further clockwise than the reading's.
+        turns: (n,) quarter turns from the square's first corner clockwise to the marker's own top left.
         wrong: (n,) cells that differ, the border not counted.
     """
 
@@ -50,9 +50,9 @@ class Family:
     """A predefined dictionary of OpenCV.
 
     Attributes:
-        name: OpenCV's.
+        name: OpenCV's name of it.
         cells: along a side, without the border.
-        corrected: wrong cells up to which a reading counts as a marker.
+        corrected: largest number of wrong cells with which a marker is still recognised.
         codes: (ids, 4) of each marker, as read in each of the four turns.
         dictionary: OpenCV's own object.
     """
@@ -64,7 +64,7 @@ class Family:
     dictionary: Any
 
     def match(self, cells: Cells) -> Matches:
-        """Find the marker with the fewest wrong cells for each reading (n, cells, cells) without border."""
+        """Find the marker with the fewest wrong cells for each square's cells (n, cells, cells), without border."""
         wrong = np.bitwise_count(self.codes.reshape(1, -1) ^ _packed(cells)[:, None])
         nearest = np.argmin(wrong, axis=1)
         fewest = np.take_along_axis(wrong, nearest[:, None], axis=1)[:, 0].astype(np.int64)
@@ -77,24 +77,24 @@ class Family:
         return np.pad(bits.astype(bool).reshape(-1, self.cells, self.cells), ((0, 0), (1, 1), (1, 1)))
 
     def only(self, ids: Collection[int]) -> Any:
-        """Make an OpenCV dictionary of these ids alone, in rising order: others cost no time and no mistakes."""
+        """Make an OpenCV dictionary of these ids alone, in rising order: fewer codes take less time to compare."""
         rows = np.ascontiguousarray(self.dictionary.bytesList[sorted(ids)])
         return cv2.aruco.Dictionary(rows, self.cells, self.dictionary.maxCorrectionBits)
 
 
 def canonical(name: str) -> str:
-    """Turn a family's name, with or without DICT_ and in any case, into OpenCV's.
+    """Return OpenCV's name of a family, from a name in any letter case, with or without DICT_.
 
     Raises:
         UnknownFamilyError: there is no such family.
     """
     known = {entry.upper(): entry for entry in sorted(dir(cv2.aruco), reverse=True) if entry.startswith(PREFIX)}
     upper = name.strip().upper()
-    found = known.get(upper) or known.get(PREFIX + upper)
-    if found is None:
+    official = known.get(upper) or known.get(PREFIX + upper)
+    if official is None:
         names = sorted(set(known))
         raise UnknownFamilyError(f"{name!r} is no marker dictionary: use one of {', '.join(names)}")
-    return found
+    return official
 
 
 @cache
@@ -104,12 +104,12 @@ def family(name: str) -> Family:
     Raises:
         UnknownFamilyError: there is no such family.
     """
-    own = canonical(name)
-    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, own))
+    official = canonical(name)
+    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, official))
     cells, ids = int(dictionary.markerSize), range(len(dictionary.bytesList))
     drawn = [cv2.aruco.generateImageMarker(dictionary, number, cells + 2)[1:-1, 1:-1] > 0 for number in ids]
     codes = np.stack([_packed(np.rot90(drawn, turns, axes=(1, 2))) for turns in range(4)], axis=1)
-    return Family(own, cells, int(dictionary.maxCorrectionBits * CORRECTED_SHARE), codes, dictionary)
+    return Family(official, cells, int(dictionary.maxCorrectionBits * CORRECTED_SHARE), codes, dictionary)
 
 
 def _packed(cells: Cells) -> Codes:

@@ -1,4 +1,4 @@
-"""From an image message to grey levels; what cannot be decoded is refused before memory is taken for it."""
+"""Decode image messages to grey levels; refuse unusable images before memory is allocated for them."""
 
 import io
 import struct
@@ -18,7 +18,7 @@ JPEG_START = b"\xff\xd8"
 
 
 class UnusableImageError(ValueError):
-    """An image that cannot be used; `kind` is the name it is counted under."""
+    """An image that cannot be used; `kind` is the name of the counter of such rejects."""
 
     def __init__(self, kind: str, detail: str) -> None:
         super().__init__(f"{kind}: {detail}")
@@ -38,7 +38,7 @@ def gray(image: Image) -> Pixels:
 
 
 def refuse_black(pixels: Pixels) -> None:
-    """Tell an image (height, width) in which nothing can be seen from one that shows no marker.
+    """Refuse a black image (height, width): its lack of markers does not mean that there are no objects.
 
     Raises:
         UnusableImageError: of kind `black_image`.

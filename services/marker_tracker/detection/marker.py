@@ -8,18 +8,18 @@ import numpy as np
 from actum.arrays import Array
 
 Key = tuple[str, int]
-"""Which marker: its family, by OpenCV's name, and its id there."""
+"""Identifies a marker: OpenCV's name of its family, and its id in the family."""
 
 
 @dataclass(frozen=True)
 class AlignmentStart:
-    """Where the alignment of a small marker begins in the next image.
+    """Initial values for the alignment of a small marker in the next image.
 
     Attributes:
-        corners_px: (4, 2) from which the last alignment began, moved along with the marker: the same start gives a
-            resting marker the same corners in every image.
+        corners_px: (4, 2), the initial corners of the last alignment, moved along with the marker: the same initial
+            corners give a static marker the same result in every image.
         photometric: (3,) blur in cells, black level and contrast, as aligned last.
-        motion_px: (2,) by which the centre moved from the image before.
+        motion_px: (2,) motion of the centre since the previous image.
     """
 
     corners_px: Array
@@ -32,14 +32,14 @@ class Marker:
     """A marker in an image.
 
     Attributes:
-        family: OpenCV's name of it.
+        family: OpenCV's name of the family.
         id: in the family.
         corners_px: (4, 2), clockwise from the marker's own top left.
-        wrong: cells that were misread, the border's included.
-        covered: the share of a small marker, 0 to 1, whose grey levels are not of its pattern.
-        initial_px: (4, 2) from which the corners were refined, clockwise from any of them.
-        start: where alignment begins in the next image, if the marker was aligned and is clear.
-        hidden: it is wholly covered; its corners moved with what covers it.
+        wrong: number of misread cells, the border's included.
+        covered: share of a small marker, 0 to 1, whose grey levels do not fit its pattern.
+        initial_px: (4, 2), the corners before refinement, clockwise from any of them.
+        start: initial values for alignment in the next image, if the marker was aligned and is clear.
+        hidden: whether it is wholly covered; its corners are then inferred from the motion of its occluder.
     """
 
     family: str
@@ -53,7 +53,7 @@ class Marker:
 
     @property
     def key(self) -> Key:
-        """Which marker it is."""
+        """Family and id."""
         return self.family, self.id
 
     @cached_property

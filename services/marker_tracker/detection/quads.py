@@ -1,4 +1,4 @@
-"""Black squares in an image, by OpenCV: those that it decoded, and others that deserve a second look."""
+"""Black squares in an image, found by OpenCV: those it decoded, and undecoded ones that are worth reading again."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -13,27 +13,27 @@ from marker_tracker.detection.alignment import sample_squares
 from marker_tracker.detection.families import Family
 
 SMALL_FAMILY = 50
-"""Markers up to which a family is searched as a whole, at little cost, so that unknown markers are found and told."""
-MAX_SECOND_LOOKS = 16
-"""Squares per image; each costs about a tenth of a millisecond to refine and read."""
+"""Largest family that is searched as a whole: it costs little, and unknown markers are found and reported."""
+MAX_REJECTED_READ = 16
+"""Rejected squares read per image; each costs about a tenth of a millisecond to refine and read."""
 RIM_OFFSET = 0.1
-"""From a side, as a share of it: a black square on white is white so far outside and black so far inside."""
+"""Distance of the samples from a side, as a share of it: outside lies the white margin, inside the black border."""
 RIM_SAMPLES = 8
-"""Along each side: their median is not misled by a finger on less than half of it."""
+"""Samples along each side: their median is not misled by a finger on less than half of it."""
 RIM_EXTENT = (0.15, 0.85)
-"""Of a side, in which the samples lie: nearer to its ends rough corners miss it."""
+"""Part of a side in which the samples lie: near its ends, rough corners miss the side."""
 MIN_CONTRAST = 10.0
-"""Grey levels from inside to outside of a side: less is noise."""
+"""Grey levels by which the outside of a side is brighter than its inside: less is noise."""
 THRESHOLD_WINDOWS_PX = (5, 25, 10)
-"""Least and greatest window of the adaptive threshold, and the step between them. OpenCV begins at 3, where the rise
-across a blurred edge is lost."""
+"""Smallest and largest window of the adaptive threshold, and the step between them. OpenCV's smallest is 3, which is
+too small for a blurred edge."""
 OUTLINE_PX = THRESHOLD_WINDOWS_PX[0] // 2
-"""By which a square that OpenCV found may lie outside of its edge, on what is dark around it."""
+"""Pixels by which OpenCV's squares may extend beyond their edge, onto a dark surface around the paper."""
 MIN_QUAD_DISTANCE = 0.05
-"""Of two squares' corners, as a share of the perimeter, below which OpenCV drops the smaller square: by its own 0.125
-it drops many a marker for the outline of its paper."""
+"""Distance of two squares' corners, as a share of the perimeter, below which OpenCV drops the smaller square. With its
+default of 0.125 it drops many markers in favour of the outline of their paper."""
 POLYGON_TOLERANCE = 0.03
-"""Of an outline from its polygon, as a share of its length: OpenCV's own `polygonalApproxAccuracyRate`."""
+"""Deviation of an outline from its polygon, as a share of the outline's length: OpenCV's default."""
 
 
 @dataclass(frozen=True)
@@ -41,10 +41,10 @@ class Quads:
     """Quadrilaterals in an image, clockwise.
 
     Attributes:
-        decoded: (n, 4, 2) that OpenCV took for markers.
-        family: (n,) which of the searched families each of these is of.
-        new: (n,) whether each of these is not in the place of a known marker.
-        rejected: (m, 4, 2) that OpenCV could not decode.
+        decoded: (n, 4, 2), quadrilaterals that OpenCV decoded as markers.
+        family: (n,) index of each decoded marker's family among the searched ones.
+        new: (n,) whether the decoded marker does not lie on a known one.
+        rejected: (m, 4, 2), quadrilaterals that OpenCV could not decode.
     """
 
     decoded: Array
@@ -57,12 +57,12 @@ class QuadDetector:
     """OpenCV's marker detector for several families."""
 
     def __init__(self, families: Sequence[Family], wanted: Sequence[Collection[int]]) -> None:
-        """Search each family for its wanted ids, or for all where there are none or the family is small."""
+        """Search each family for its wanted ids, or for all ids where none are wanted or the family is small."""
         dictionaries = [_searched(family, ids) for family, ids in zip(families, wanted, strict=True)]
         self._detector = cv2.aruco.ArucoDetector(dictionaries, _parameters())
 
     def find(self, pixels: Pixels, known: Array) -> Quads:
-        """Find the quadrilaterals in a grey image (height, width), of which some (k, 4, 2) are known markers."""
+        """Find the quadrilaterals in a grey image (height, width), given the corners (k, 4, 2) of its known markers."""
         corners, _ids, rejected, families = self._detector.detectMarkersMultiDict(pixels)
         family = np.zeros(0, dtype=int) if families is None else np.ravel(families).astype(int)
         decoded = _array(corners)
@@ -70,7 +70,7 @@ class QuadDetector:
 
 
 def within(squares: Array, others: Array) -> Mask:
-    """Tell which squares (n, 4, 2) have their centre in one of the others (m, 4, 2)."""
+    """Tell which squares (n, 4, 2) have their centre inside one of the others (m, 4, 2): a mask (n,)."""
     outlines = others.astype(np.float32)
     centres = squares.mean(axis=1)
     inside = [
@@ -80,20 +80,20 @@ def within(squares: Array, others: Array) -> Mask:
 
 
 def inner_squares(pixels: Pixels, squares: Array) -> Array:
-    """Find the darker square in each of the squares (n, 4, 2), as a marker on its paper: (up to n, 4, 2)."""
-    found = [inner for square in squares if (inner := _inner_square(pixels, square)) is not None]
-    return np.array(found).reshape(-1, 4, 2)
+    """Find the darker square inside each square (n, 4, 2), such as a marker on its paper: (up to n, 4, 2)."""
+    inner_ones = [inner for square in squares if (inner := _inner_square(pixels, square)) is not None]
+    return np.array(inner_ones).reshape(-1, 4, 2)
 
 
 def rimmed_squares(pixels: Pixels, quads: Quads) -> Array:
-    """Choose rejected squares with a black rim outside the decoded ones, at most `MAX_SECOND_LOOKS`: (n, 4, 2).
+    """Choose the rejected squares with a black rim, the largest first, at most `MAX_REJECTED_READ`: (n, 4, 2).
 
-    Larger ones come first. Cells of a decoded marker are no squares of their own.
+    Squares inside a decoded marker are left out: they are its cells.
     """
     free = quads.rejected[~within(quads.rejected, quads.decoded)]
     rimmed = free[_has_black_rim(pixels, free)] if len(free) else free
     largest: Array = rimmed[np.argsort([-cv2.contourArea(quad.astype(np.float32)) for quad in rimmed])]
-    return largest[:MAX_SECOND_LOOKS]
+    return largest[:MAX_REJECTED_READ]
 
 
 def _parameters() -> Any:
@@ -107,7 +107,7 @@ def _parameters() -> Any:
 
 
 def _searched(family: Family, ids: Collection[int]) -> Any:
-    """Leave out of a large family what is not wanted: time and false markers grow with the codes compared."""
+    """Make the OpenCV dictionary to search: a large family's wanted ids only, as more codes give false markers."""
     return family.only(ids) if ids and len(family.codes) > SMALL_FAMILY else family.dictionary
 
 
@@ -116,7 +116,7 @@ def _array(corners: object) -> Array:
 
 
 def _inner_square(pixels: Pixels, corners_px: Array) -> Array | None:
-    """Find the darker square that a square (4, 2) encloses: (4, 2), clockwise."""
+    """Find the darker square that a square (4, 2) encloses: (4, 2), clockwise; None where there is none."""
     left, top, width, height = cv2.boundingRect(corners_px.astype(np.float32))
     left, top, right, bottom = max(left, 0), max(top, 0), left + width, top + height
     window = pixels[top:bottom, left:right]
@@ -131,15 +131,15 @@ def _inner_square(pixels: Pixels, corners_px: Array) -> Array | None:
     if not outlines:
         return None
     hull = cv2.convexHull(max(outlines, key=cv2.contourArea))
-    found = cv2.approxPolyDP(hull, POLYGON_TOLERANCE * cv2.arcLength(hull, True), True)
-    if len(found) != 4:
+    polygon = cv2.approxPolyDP(hull, POLYGON_TOLERANCE * cv2.arcLength(hull, True), True)
+    if len(polygon) != 4:
         return None
-    square: Array = found[:, 0].astype(np.float64) + np.array([left, top])
-    return square if cv2.contourArea(found, oriented=True) > 0 else square[::-1]
+    square: Array = polygon[:, 0].astype(np.float64) + np.array([left, top])
+    return square if cv2.contourArea(polygon, oriented=True) > 0 else square[::-1]
 
 
 def _has_black_rim(pixels: Pixels, corners_px: Array) -> Mask:
-    """Tell which squares (n, 4, 2) are darker just inside than just outside, on at least three sides.
+    """Tell which squares (n, 4, 2) are darker just inside than just outside, on at least three sides: a mask (n,).
 
     Rough corners may miss a side of a small square by as much as the black border is wide.
     """

@@ -1,4 +1,4 @@
-"""A part of an image, blurred and scaled, with its place in the image."""
+"""A crop of an image, blurred and scaled, and the mapping between its coordinates and the image's."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -9,7 +9,7 @@ import numpy as np
 from actum.arrays import Array, Pixels
 
 BLUR_PX = 0.8
-"""Standard deviation in pixels: takes the noise off slopes, and leaves what a hand shows."""
+"""Standard deviation in pixels: removes noise from gradients, and keeps the texture of a hand."""
 HALF_PX = 0.5 + 0.5j
 """Pixels from a pixel's corner to its centre, as x + i y."""
 
@@ -19,9 +19,9 @@ class Crop:
     """Part of an image.
 
     Attributes:
-        levels: (height, width), blurred grey levels, scaled by `scale`.
-        origin_px: its top left pixel in the image.
-        scale: at most 1.
+        levels: (height, width), blurred grey levels.
+        origin_px: the crop's top left pixel in the image, as x + i y.
+        scale: the crop's pixels per image pixel, at most 1.
     """
 
     levels: Array
@@ -30,7 +30,7 @@ class Crop:
 
     @classmethod
     def around(cls, pixels: Pixels, centre_px: complex, radius_px: float, scale: float) -> Self:
-        """Cut a square out of a grey image (height, width), as far as the image goes."""
+        """Cut a square out of a grey image (height, width), clipped at the image's edges."""
         left, top = max(round(centre_px.real - radius_px), 0), max(round(centre_px.imag - radius_px), 0)
         right, bottom = max(round(centre_px.real + radius_px), 0) + 1, max(round(centre_px.imag + radius_px), 0) + 1
         part = pixels[top:bottom, left:right]
@@ -41,16 +41,16 @@ class Crop:
         return cls(blurred(part), complex(left, top), scale)
 
     def from_image(self, point_px: complex) -> complex:
-        """Map a point of the image into the crop."""
+        """Map a point x + i y of the image into the crop."""
         return (point_px - self.origin_px + HALF_PX) * self.scale - HALF_PX
 
     def to_image(self, point_px: complex) -> complex:
-        """Map a point of the crop into the image."""
+        """Map a point x + i y of the crop into the image."""
         return (point_px + HALF_PX) / self.scale - HALF_PX + self.origin_px
 
 
 def blurred(pixels: Pixels) -> Array:
-    """Take the noise off grey levels (height, width)."""
+    """Smooth grey levels (height, width) by a Gaussian of `BLUR_PX`."""
     if not pixels.size:
         return np.zeros(pixels.shape)
     return np.asarray(cv2.GaussianBlur(pixels.astype(np.float32), (0, 0), BLUR_PX), dtype=np.float64)

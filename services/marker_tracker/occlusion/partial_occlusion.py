@@ -1,4 +1,4 @@
-"""Partly covered markers: one detected a moment ago is followed by the part of it that still shows."""
+"""Partly covered markers: a marker detected a moment ago is followed by its visible part."""
 
 import math
 from collections.abc import Sequence
@@ -23,37 +23,37 @@ REMEMBERED_NS = SECOND_NS // 2
 MAX_FOLLOWED = 4
 """Markers per image: each costs a millisecond or so."""
 CELL_PX = 5.0
-"""Pixels: markers with larger cells are followed in a smaller image, or their edges are too far apart to be aligned."""
+"""Largest cell in pixels: the image is scaled down for larger markers, whose alignment would not converge."""
 QUIET_ZONE_CELLS = 1
-"""White around a marker that belongs to its template, in cells: as much as is printed."""
+"""White around a marker that belongs to its template, in cells: the printed white margin."""
 SEARCH_RADIUS_SIDES = 0.4
-"""How far a marker may have moved at once, in sides of it."""
+"""Search radius around a marker's last position, in sides of the marker."""
 SEARCH_SPEED_SIDES_PER_S = 8.0
-"""How much further it may be for each second since it was seen: 8 cm at 0.6 m/s."""
+"""Growth of the search radius for each second since the last view: an 8 cm marker at 0.6 m/s."""
 MIN_CORRELATION = 0.5
-"""Normalised cross-correlation with the last view from which a place is tried: a finger may cover half of it."""
+"""Least normalised cross-correlation with the last view: a finger may cover half of the marker."""
 TOUCHED_SHARE = 0.015
-"""How much more of a marker than usual must be covered for its shape to be taken from before."""
+"""Covered share above the usual one from which a marker counts as touched, and keeps its last shape."""
 USUAL_TIME_CONSTANT_S = 3.0
-"""Seconds after which what covers a marker, or is misprinted, counts as usual."""
+"""Time constant in seconds with which the usual covered share follows the present one."""
 MIN_RIGHT_CELLS = 0.85
-"""Share of the cells of the code that must be right: by chance half of them are."""
+"""Least share of the code's cells that must be read correctly: by chance half of them are."""
 MAX_COVERED = 0.2
-"""Share of a marker; where more is covered, what shows no longer tells its size."""
+"""Largest covered share of a followed marker: the visible part of one covered further does not tell its scale."""
 MAX_GROWTH = 0.15
-"""Of a side from one image to the next, as a share of it: no hand moves an object towards the camera faster."""
+"""Largest relative change of a marker's side since its last view: no hand moves an object to the camera faster."""
 
 
 @dataclass(frozen=True)
 class LastView:
-    """A marker in the image where it was seen last.
+    """The last view of a marker, detected or followed.
 
     Attributes:
         marker: the marker.
         stamp_ns: of that image.
-        usually_covered: the share of the marker that has been covered for long, or seems so: blurred, or misprinted.
-        template: (height, width), grey levels of the marker with its white, scaled by `scale`.
-        scale: at most 1.
+        usually_covered: smoothed covered share; blur and misprints count as covered, too.
+        template: (height, width), grey levels of the marker with its white margin, scaled by `scale`.
+        scale: of the template, at most 1.
     """
 
     marker: Marker
@@ -64,7 +64,7 @@ class LastView:
 
 
 class PartialOcclusionTracker:
-    """Follows partly covered markers for half a second, in the shape they had when they were clear."""
+    """Follows partly covered markers for half a second, keeping the shape of their last clear view."""
 
     def __init__(self) -> None:
         self._last: dict[Key, LastView] = {}
@@ -76,7 +76,8 @@ class PartialOcclusionTracker:
     def update(self, stamp_ns: int, pixels: Pixels, detected: Sequence[Marker]) -> list[Marker]:
         """Add partly covered markers to those detected in a grey image (height, width).
 
-        A detected marker that is touched is replaced, if it can be followed: its corners are pulled by what touches it.
+        A detected marker that is touched is replaced by the followed one, if it can be followed: a finger that touches
+        a marker shifts its detected corners.
         """
         self._last = {key: it for key, it in self._last.items() if stamp_ns - it.stamp_ns <= REMEMBERED_NS}
         clear = {marker.key for marker in detected if not self._is_touched(marker)}
@@ -97,7 +98,7 @@ class PartialOcclusionTracker:
         return last is not None and marker.covered > last.usually_covered + TOUCHED_SHARE
 
     def _remember(self, stamp_ns: int, pixels: Pixels, marker: Marker) -> None:
-        """Note how a marker looks, unless it reaches the image's edge."""
+        """Keep a marker's view, unless it reaches the image's edge."""
         left, top, right, bottom = _box(marker, 0.0)
         if left < 0 or top < 0 or right > pixels.shape[1] or bottom > pixels.shape[0]:
             return
@@ -115,7 +116,7 @@ class PartialOcclusionTracker:
 
 
 def _follow(stamp_ns: int, pixels: Pixels, last: LastView) -> Marker | None:
-    """Find a marker near its last place: roughly by its template, then by aligning its pattern."""
+    """Find a marker near its last place: roughly by template matching, then by alignment; None where it is lost."""
     marker, scale = last.marker, last.scale
     radius_sides = SEARCH_RADIUS_SIDES + SEARCH_SPEED_SIDES_PER_S * (stamp_ns - last.stamp_ns) / SECOND_NS
     left, top, right, bottom = _box(marker, radius_sides * marker.side_px)
@@ -129,34 +130,34 @@ def _follow(stamp_ns: int, pixels: Pixels, last: LastView) -> Marker | None:
     template_origin_px = np.array(_box(marker, 0.0)[:2])
     start_px = scale * (marker.corners_px - template_origin_px + 0.5) - 0.5 + place_px
     pattern = family(marker.family).patterns[marker.id]
-    found = align_by_similarity(window, start_px[None], pattern[None])
-    if found.covered[0] <= last.usually_covered + TOUCHED_SHARE:
-        found = align(window, found.corners_px, pattern[None])
-    wrong = wrong_cells(window, found.corners_px[0], pattern)
-    corners_px = (found.corners_px[0] + 0.5) / scale - 0.5 + (left, top)
-    moved = Marker(marker.family, marker.id, corners_px, int(wrong.sum()), float(found.covered[0]))
-    shows = wrong[1:-1, 1:-1].mean() <= 1 - MIN_RIGHT_CELLS and moved.covered <= MAX_COVERED
-    return moved if shows and abs(moved.side_px / marker.side_px - 1) <= MAX_GROWTH else None
+    aligned = align_by_similarity(window, start_px[None], pattern[None])
+    if aligned.covered[0] <= last.usually_covered + TOUCHED_SHARE:
+        aligned = align(window, aligned.corners_px, pattern[None])
+    wrong = wrong_cells(window, aligned.corners_px[0], pattern)
+    corners_px = (aligned.corners_px[0] + 0.5) / scale - 0.5 + (left, top)
+    moved = Marker(marker.family, marker.id, corners_px, int(wrong.sum()), float(aligned.covered[0]))
+    is_visible = wrong[1:-1, 1:-1].mean() <= 1 - MIN_RIGHT_CELLS and moved.covered <= MAX_COVERED
+    return moved if is_visible and abs(moved.side_px / marker.side_px - 1) <= MAX_GROWTH else None
 
 
 def _is_taken(marker: Marker, detected: Sequence[Marker]) -> bool:
-    """Tell whether another marker is detected in a marker's place."""
+    """Tell whether another marker is detected in the followed marker's place."""
     return any(
         each.key != marker.key and math.dist(each.centre_px, marker.centre_px) < SAME_PLACE_SIDES * marker.side_px
         for each in detected
     )
 
 
-def _box(marker: Marker, more_px: float) -> Box:
-    """Enclose a marker with its white and a margin."""
-    margin = QUIET_ZONE_CELLS * marker.side_px / (family(marker.family).cells + 2) + more_px
+def _box(marker: Marker, extra_px: float) -> Box:
+    """Enclose a marker with its white margin and extra pixels on each side."""
+    margin = QUIET_ZONE_CELLS * marker.side_px / (family(marker.family).cells + 2) + extra_px
     low = np.floor(marker.corners_px.min(axis=0) - margin).astype(int).tolist()
     high = np.ceil(marker.corners_px.max(axis=0) + margin).astype(int).tolist()
     return low[0], low[1], high[0] + 1, high[1] + 1
 
 
 def _scaled(pixels: Pixels, scale: float) -> Pixels:
-    """Make a grey image smaller; one that would vanish becomes empty."""
+    """Scale a grey image (height, width) down; one of less than a pixel becomes empty."""
     if scale == 1.0:
         return pixels
     if scale * min(pixels.shape) < 1:

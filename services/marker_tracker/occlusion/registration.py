@@ -1,4 +1,4 @@
-"""Registration of a template with an image by a similarity: shift, rotation and scale, from grey levels."""
+"""Registration of a template with a grey image by a similarity: shift, rotation and scale."""
 
 from dataclasses import dataclass
 
@@ -12,13 +12,13 @@ Points = NDArray[np.complex128]
 """Points of an image as x + i y, in pixels."""
 
 MAX_ITERATIONS = 8
-"""Gauss-Newton steps: starts may be as far off as the template's details are wide."""
+"""Gauss-Newton steps: the start may be off by the width of the template's details."""
 CONVERGED_PX = 0.02
-"""Pixels by which no point of the template moves any more in a step: far below the noise."""
+"""Pixels: iteration stops when a step moves every point of the template by less, far below the noise."""
 MAX_STEP = 0.2
-"""Relative scale, and rotation in radians, by which one step may go: beyond it the linear model is wrong."""
+"""Largest change in one step of the relative scale, and of the rotation in radians: the model is linear up to there."""
 MIN_DEVIATION = 4.0
-"""Grey levels by which images differ from noise alone."""
+"""Least scale of residuals in the robust cost, in grey levels: images differ by that from noise alone."""
 DEVIATIONS_PER_MEDIAN = 1.5
 """Standard deviation of normal residuals over the median of their absolute values: 1.4826, rounded."""
 
@@ -35,10 +35,10 @@ class Similarity:
 
 
 class Template:
-    """A disc of a grey image, to be registered with others (Baker and Matthews 2004, inverse compositional)."""
+    """A disc of a grey image that is registered with other images (inverse compositional, Baker and Matthews 2004)."""
 
     def __init__(self, image: Array, centre_px: complex, radius_px: float) -> None:
-        """Cut it out of a blurred image (height, width), whose edge is repeated beyond it."""
+        """Cut the disc out of a blurred image (height, width); beyond its edges, edge pixels are repeated."""
         reach = max(round(radius_px), 2)
         y, x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
         disc = np.hypot(x, y) <= reach
@@ -55,13 +55,13 @@ class Template:
 
     @property
     def width_px(self) -> int:
-        """Width and height of the square around it."""
+        """Width and height of the square around the disc."""
         return len(self._square)
 
     def search(self, image: Array) -> complex:
-        """Find the centre, in whole pixels, where it correlates best with a blurred image (height, width).
+        """Find the centre, in whole pixels, at which the template correlates best with a blurred image (height, width).
 
-        Rotation and scale are those of the template.
+        The template is neither turned nor scaled. The centre is returned as x + i y.
         """
         correlations = cv2.matchTemplate(
             image.astype(np.float32), self._square.astype(np.float32), cv2.TM_CCOEFF_NORMED
@@ -70,13 +70,14 @@ class Template:
         return complex(left, top) + self._reach_px * (1 + 1j)
 
     def register(self, image: Array, start: Similarity) -> tuple[Similarity, float]:
-        """Register it with a blurred image (height, width) from a start nearby.
+        """Register the template with a blurred image (height, width), from a start nearby.
 
-        Robust Gauss-Newton steps decrease the sum of rho(I(W z) - (1 + g) T(z) - o) over its points z, with gain g,
-        offset o and Cauchy's rho.
+        Robust Gauss-Newton steps decrease the sum of rho(I(W z) - (1 + g) T(z) - o) over the template's points z, with
+        gain g, offset o and Cauchy's rho.
 
         Returns:
-            Where it is, and its normalised cross-correlation, weighted by what is not hidden by something else.
+            The similarity, and the normalised cross-correlation weighted by the robust weights, which leave out points
+            that something else hides.
         """
         centre, scale_rotation, weight = start.centre_px, start.scale_rotation, np.ones(len(self._levels))
         for _ in range(MAX_ITERATIONS):
@@ -103,7 +104,7 @@ class Template:
 
 
 def _sampled(image: Array, points_px: Points) -> Array:
-    """Sample at points of any shape."""
+    """Sample grey levels of an image (height, width) at points of any shape: the same shape."""
     x, y = (part.reshape(1, -1).astype(np.float32) for part in (points_px.real, points_px.imag))
     sampled = cv2.remap(image.astype(np.float32), x, y, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
     return np.asarray(sampled, dtype=np.float64).reshape(points_px.shape)

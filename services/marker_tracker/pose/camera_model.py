@@ -11,13 +11,13 @@ from actum.messages import Image
 from marker_tracker.detection.images import UnusableImageError
 
 LARGEST_FOCAL_PX = 1e5
-"""Pixels: a hundred times the focal length of usual cameras; a larger one is a mistake of units."""
+"""Pixels: a hundred times the focal length of usual cameras; a larger one is in the wrong unit."""
 LARGEST_COEFFICIENT = 100.0
-"""Of distortion: rational models have tens; beyond it projection overflows."""
+"""Largest distortion coefficient: rational models reach tens; far above, projection overflows."""
 LARGEST_OFFSET = 0.2
-"""Of the optical axis from the image's centre, as a share of its size: further off, K is for another image size."""
+"""Largest offset of the principal point from the image's centre, as a share of its size: above, K fits another size."""
 ASPECT_TOLERANCE = 0.01
-"""Relative: sizes are whole pixels, so that scaled ones keep their aspect only nearly."""
+"""Relative difference of aspect ratios: sizes are whole pixels, so scaling keeps the ratio only nearly."""
 DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
 """Numbers of distortion coefficients that OpenCV takes."""
 
@@ -29,7 +29,7 @@ class CameraModel:
     Attributes:
         matrix: the intrinsic matrix K (3, 3), in pixels; pixel centres are at whole numbers.
         distortion: OpenCV's coefficients, of one of the `DISTORTION_LENGTHS`.
-        skeleton_from_image: the rigid transform (4, 4), in metres, to the camera frame of the skeletons.
+        skeleton_from_image: rigid transform (4, 4) in metres, from the image's camera frame to the skeletons'.
     """
 
     matrix: Array
@@ -59,7 +59,7 @@ def camera_model(image: Image, calibrated_size_px: tuple[int, int] | None = None
 def _matrix_for_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tuple[int, int] | None) -> Array:
     """Scale K (3, 3) to the image's (width, height), or check that it fits where the calibrated size is unknown.
 
-    Pixel centres are at whole numbers, so that it is (c + 1/2) that scales.
+    Pixel centres are at whole numbers, so the principal point c scales as c + 1/2.
     """
     width, height = size_px
     if calibrated_px is None:

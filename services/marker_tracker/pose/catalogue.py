@@ -1,4 +1,4 @@
-"""Which object carries which marker, and the markers of an image sorted by these objects."""
+"""The catalogue of objects and their markers, and the assignment of an image's markers to the objects."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -13,8 +13,9 @@ from actum.node import Counters
 from marker_tracker.detection.marker import Key, Marker
 
 SQUARE_FROM_MARKER = np.diag([1.0, -1.0, -1.0, 1.0])
-"""Transform (4, 4). With y down a marker that faces the camera is close to the identity. With y up it is a half turn,
-whose rotation vector OpenCV gets wrong, by tens of pixels when the marker is exactly frontal."""
+"""Transform (4, 4) that turns y down. In the square frame, a marker that faces the camera has a rotation near the
+identity. In the marker frame it would be a half turn, whose rotation vector OpenCV gets wrong by tens of pixels when
+the marker is exactly frontal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,19 +37,19 @@ class MountedMarker:
 
     @cached_property
     def square_from_object(self) -> Array:
-        """Rigid transform (4, 4) to the square frame."""
+        """Rigid transform (4, 4) in metres from the object's frame to the square frame."""
         transform: Array = SQUARE_FROM_MARKER @ geometry.invert(self.object_from_marker)
         return transform
 
     @cached_property
     def corners_in_square_m(self) -> Array:
-        """Corners (4, 3) in the square frame, in the order in which they are detected."""
+        """Corners (4, 3) in the square frame, in metres and in the order of `Marker.corners_px`."""
         half = self.size_m / 2
         return np.array([[-half, -half, 0], [half, -half, 0], [half, half, 0], [-half, half, 0]])
 
     @cached_property
     def corners_in_object_m(self) -> Array:
-        """Corners (4, 3) in the object's frame."""
+        """Corners (4, 3) in the object's frame, in metres and in the same order."""
         return geometry.apply(self.object_from_marker @ SQUARE_FROM_MARKER, self.corners_in_square_m)
 
 
@@ -57,10 +58,10 @@ class Catalogue:
     """The scene's markers and objects.
 
     Attributes:
-        families: to be searched.
-        markers: what each marker is on.
+        families: names of the families to search.
+        markers: the mounting of each marker, by its key.
         names: of the objects, by id.
-        open_size_m: if set, every marker of the families counts, with this side, each an object of its own id.
+        open_size_m: if set, every marker of the families is an object of its own id, and this is its side.
     """
 
     families: tuple[str, ...]
@@ -69,11 +70,11 @@ class Catalogue:
     open_size_m: float | None = None
 
     def wanted(self) -> dict[str, set[int]]:
-        """Name the ids to be searched in each family; none: all."""
+        """List the ids to be searched in each family, by the family's name; no ids stand for all."""
         return {name: {number for family, number in self.markers if family == name} for name in self.families}
 
     def find(self, family: str, marker_id: int) -> MountedMarker | None:
-        """Look up what a marker is on."""
+        """Look up a marker's mounting; None where it is on none of the objects."""
         if self.open_size_m is not None:
             return MountedMarker(marker_id, self.open_size_m)
         return self.markers.get((family, marker_id))
@@ -81,7 +82,7 @@ class Catalogue:
 
 @dataclass(frozen=True)
 class MarkedObject:
-    """An object in an image, with those of its markers that tell where it is, the largest first."""
+    """An object in an image, with the markers that its pose is estimated from, the largest first."""
 
     id: int
     name: str
@@ -92,7 +93,7 @@ class MarkerAssignment:
     """Assigns the markers of each image to the catalogue's objects."""
 
     def __init__(self, catalogue: Catalogue, counters: Counters) -> None:
-        """Assign to these objects; `counters` take in markers that are on none of them or are seen twice."""
+        """Assign to the catalogue's objects; count markers that are on none of them, or twice in an image."""
         self._catalogue = catalogue
         self._counters = counters
         self._last_px: dict[Key, Array] = {}
@@ -102,23 +103,25 @@ class MarkerAssignment:
         self._last_px.clear()
 
     def objects(self, markers: Sequence[Marker]) -> list[MarkedObject]:
-        """Sort an image's markers by objects; an object's hidden markers are left out if others of it are visible."""
-        mounted: dict[int, list[tuple[Marker, MountedMarker]]] = {}
+        """Group an image's markers by object; leave out the hidden markers of objects that have visible ones."""
+        by_object: dict[int, list[tuple[Marker, MountedMarker]]] = {}
         for marker in sorted(self._without_copies(markers), key=lambda each: -each.side_px):
-            found = self._catalogue.find(*marker.key)
-            if found is None:
+            mounting = self._catalogue.find(*marker.key)
+            if mounting is None:
                 detail = f"marker {marker.id} of {marker.family} is on none of the objects"
                 self._counters.reject("unknown_marker", detail)
             else:
-                mounted.setdefault(found.object_id, []).append((marker, found))
+                by_object.setdefault(mounting.object_id, []).append((marker, mounting))
         names = self._catalogue.names
         return [
-            MarkedObject(number, names.get(number, f"marker {number}"), [it for it in on if not it[0].hidden] or on)
-            for number, on in mounted.items()
+            MarkedObject(
+                number, names.get(number, f"marker {number}"), [pair for pair in pairs if not pair[0].hidden] or pairs
+            )
+            for number, pairs in by_object.items()
         ]
 
     def _without_copies(self, markers: Sequence[Marker]) -> list[Marker]:
-        """Keep of a marker seen twice the copy nearest to its last place, at first the largest."""
+        """Keep one copy of each marker: the one nearest to its last place, or the largest where there is none."""
         kept: dict[Key, Marker] = {}
         for marker in sorted(markers, key=self._moved_px):
             if kept.setdefault(marker.key, marker) is not marker:

@@ -1,4 +1,4 @@
-"""Pose disambiguation: which of the two poses that a small, nearly frontal marker allows, decided over time."""
+"""Pose disambiguation: choose over time between the two poses that fit a small, nearly frontal marker."""
 
 from collections.abc import Sequence
 
@@ -11,17 +11,17 @@ from marker_tracker.pose.poses import Pose
 CORNER_NOISE_PX = 0.25
 """Standard deviation in pixels of a corner's coordinates."""
 MAX_STEP = 10.0
-"""Log-likelihood ratio that one image counts at most: its corners may be wrong together, under a finger."""
+"""Largest log-likelihood ratio from one image: a finger may make all of its corners wrong together."""
 MAX_EVIDENCE = 20.0
-"""Log-likelihood ratio that is kept at most: two images that clearly say otherwise undo it."""
+"""Largest accumulated log-likelihood ratio: two images that clearly favour the other pose outweigh it."""
 SWITCH_EVIDENCE = 6.0
-"""Log-likelihood ratio against the followed pose at which the other one is taken: chance hardly ever reaches it."""
+"""Log-likelihood ratio against the followed pose from which the other one is chosen: hardly ever reached by chance."""
 DECAY = 0.95
-"""Share of the evidence that is kept from one image to the next: a turning marker makes what is old worthless."""
+"""Share of the evidence that is kept from one image to the next: it is worthless once the marker has turned."""
 
 
 class PoseDisambiguation:
-    """Follows one of the two poses; takes the other one when that has fitted better for long or by far.
+    """Follows one of the two poses; switches to the other one when that has fitted better for long or by far.
 
     The evidence is the logarithm of the likelihood ratio of the followed pose to the other, for corners with
     independent normal errors: 4 (e_other² - e²) / (2 noise²), summed over images with exponential decay.
@@ -31,7 +31,7 @@ class PoseDisambiguation:
         self._evidence = 0.0
 
     def choose(self, poses: Sequence[Pose], rotation: Array | None) -> Pose:
-        """Choose from the poses of one image, the better first, given the rotation (3, 3) followed so far, if any."""
+        """Choose one of an image's poses, the better first, given the track's rotation (3, 3), None for a new track."""
         if rotation is None:
             self._evidence = 0.0
         if len(poses) == 1:

@@ -16,23 +16,23 @@ from marker_tracker.pose.poses import Measurement, Pose
 RESTART_S = 0.5
 """Seconds out of sight after which a track starts anew: by then the object may be anywhere."""
 ACCELERATION_STD_MPS2 = 8.0
-"""Metres per second squared: what a hand does to an object within a frame."""
+"""Metres per second squared: acceleration of an object by a hand between two images."""
 INITIAL_SPEED_STD_MPS = 1.0
-"""Metres per second: an object may be moving when it is first seen."""
+"""Metres per second: an object may be moving at its first measurement."""
 MAX_NIS = 60.0
-"""Normalised innovation squared of a measurement that is doubted once, and believed when the next one agrees."""
+"""Normalised innovation squared above which a measurement is held back, until the next one agrees with it."""
 MAX_HIDDEN_NIS = 16.0
-"""The same for a hidden object: what covers it may itself be hidden in part, and found in the wrong place."""
+"""The same for a hidden object: its occluder may itself be hidden in part, and be registered in the wrong place."""
 PREDICTED_S = 0.3
 """Seconds for which motion is predicted: a hand's movement takes little longer."""
 SLOWING_TIME_CONSTANT_S = 0.15
-"""Seconds in which the predicted velocity falls to 1/e: what is out of sight is mostly about to be put down."""
+"""Seconds in which the predicted velocity falls to 1/e: an object out of sight is mostly about to be put down."""
 MIN_VELOCITY_RATIO = 16.0
 """Squared velocity over its variance from which an object counts as moving: four standard deviations."""
 MIN_SPEED_MPS = 0.05
 """Metres per second below which an object never counts as moving: hands tremble."""
-MIN_SEEN_FOR_VELOCITY = 3
-"""Measurements before which a velocity is too uncertain to predict by."""
+MIN_MEASURED_FOR_VELOCITY = 3
+"""Fewest measurements for a velocity that is certain enough to predict by."""
 ROTATION_NOISE_RAD = 0.035
 """Radians: much smaller rotations are smoothed, much larger ones followed at once."""
 
@@ -45,15 +45,15 @@ class Track:
         self._motion: MotionEstimate | None = None
         self._rotation: Array | None = None
         self._disambiguation = PoseDisambiguation()
-        self._doubted: tuple[int, MotionEstimate] | None = None
+        self._held_back: tuple[int, MotionEstimate] | None = None
         self._measured = 0
         self._confidence = 0.0
         self._hidden = False
         self.stamp_ns = 0
-        """Of the last measurement that was believed."""
+        """Stamp of the last measurement that was accepted."""
 
     def update(self, stamp_ns: int, measurement: Measurement) -> bool:
-        """Take in a measurement; false where it is too far off to be believed yet."""
+        """Update the track by a measurement; return false where it is too far off and is held back."""
         seconds = (stamp_ns - self.stamp_ns) / SECOND_NS
         if self._motion is None or seconds > RESTART_S:
             return self._restart(stamp_ns, measurement)
@@ -62,26 +62,26 @@ class Track:
         expected = self._motion.predicted(seconds, ACCELERATION_STD_MPS2)
         motion, nis = expected.updated(position_m, measurement.noise_m2)
         if nis > (MAX_HIDDEN_NIS if measurement.hidden else MAX_NIS):
-            if self._hidden or self._agrees_with_doubted(stamp_ns, position_m, measurement.noise_m2):
+            if self._hidden or self._agrees_with_held_back(stamp_ns, position_m, measurement.noise_m2):
                 return self._restart(stamp_ns, measurement)
-            self._doubted = stamp_ns, MotionEstimate.initial(position_m, measurement.noise_m2, INITIAL_SPEED_STD_MPS)
+            self._held_back = stamp_ns, MotionEstimate.initial(position_m, measurement.noise_m2, INITIAL_SPEED_STD_MPS)
             return False
         self._motion = motion
         self._rotation = _smoothed(self._rotation, pose)
-        self._believe(stamp_ns, measurement)
+        self._accept(stamp_ns, measurement)
         return True
 
-    def _agrees_with_doubted(self, stamp_ns: int, position_m: Array, noise_m2: Array) -> bool:
-        if self._doubted is None:
+    def _agrees_with_held_back(self, stamp_ns: int, position_m: Array, noise_m2: Array) -> bool:
+        if self._held_back is None:
             return False
-        doubted_ns, motion = self._doubted
-        expected = motion.predicted((stamp_ns - doubted_ns) / SECOND_NS, ACCELERATION_STD_MPS2)
+        held_back_ns, motion = self._held_back
+        expected = motion.predicted((stamp_ns - held_back_ns) / SECOND_NS, ACCELERATION_STD_MPS2)
         return expected.updated(position_m, noise_m2)[1] <= MAX_NIS
 
     def described(self, stamp_ns: int, memory_ns: int) -> TrackedObject:
         """Describe the object at a stamp: as measured then, or as predicted if it is out of sight.
 
-        Out of sight, its confidence falls to 0 over the memory's length.
+        While it is out of sight, its confidence falls to 0 within `memory_ns`.
         """
         if stamp_ns == self.stamp_ns:
             return self._described_measured()
@@ -104,7 +104,7 @@ class Track:
         return self._described(self._motion.position_m, velocity_mps, self._confidence, seen=seen, followed=followed)
 
     def _restart(self, stamp_ns: int, measurement: Measurement) -> bool:
-        """Start anew at a measurement, unless it is of a hidden object: so far off, something else was tracked."""
+        """Start anew at a measurement, unless its object is hidden: then its occluder was tracked wrongly."""
         if measurement.hidden:
             return False
         pose = self._disambiguation.choose(measurement.poses, None)
@@ -112,11 +112,11 @@ class Track:
         self._motion = MotionEstimate.initial(position_m, measurement.noise_m2, INITIAL_SPEED_STD_MPS)
         self._rotation = pose.camera_from_object[:3, :3]
         self._measured = 0
-        self._believe(stamp_ns, measurement)
+        self._accept(stamp_ns, measurement)
         return True
 
-    def _believe(self, stamp_ns: int, measurement: Measurement) -> None:
-        self._doubted = None
+    def _accept(self, stamp_ns: int, measurement: Measurement) -> None:
+        self._held_back = None
         self._measured += 1
         self._confidence = measurement.confidence
         self._hidden = measurement.hidden
@@ -126,7 +126,7 @@ class Track:
         assert self._motion is not None
         velocity = self._motion.velocity_mps
         slow = float(np.linalg.norm(velocity)) < MIN_SPEED_MPS
-        if self._hidden or self._measured < MIN_SEEN_FOR_VELOCITY or slow:
+        if self._hidden or self._measured < MIN_MEASURED_FOR_VELOCITY or slow:
             return False
         return float(velocity @ np.linalg.solve(self._motion.covariance[3:, 3:], velocity)) > MIN_VELOCITY_RATIO
 
@@ -166,7 +166,7 @@ class Tracks:
         self._tracks.clear()
 
     def update(self, stamp_ns: int, measurements: Sequence[Measurement]) -> list[Measurement]:
-        """Take in an image's measurements; return those that are too far off to be believed yet."""
+        """Update the tracks by an image's measurements; return the measurements that are held back as outliers."""
         return [each for each in measurements if not self._update_one(stamp_ns, each)]
 
     def listed(self, stamp_ns: int) -> list[TrackedObject]:
@@ -186,14 +186,14 @@ class Tracks:
 
 
 def interpolated_rotation(start: Array, end: Array, share: float) -> Array:
-    """Turn from one rotation (3, 3) towards another by a share of the angle between them: (3, 3)."""
+    """Interpolate between two rotations (3, 3): turn the first by a share of the angle between them, (3, 3)."""
     turn = cv2.Rodrigues(np.ascontiguousarray(start.T @ end))[0]
     rotation: Array = start @ cv2.Rodrigues(share * turn)[0]
     return rotation
 
 
 def _smoothed(rotation: Array | None, pose: Pose) -> Array:
-    """Turn a rotation (3, 3) towards a measured pose, by more of the way the further it is."""
+    """Smooth a rotation (3, 3) with a measured pose's, which weighs more the larger the angle between them is."""
     assert rotation is not None
     measured = pose.camera_from_object[:3, :3]
     angle_rad = angle_between_rad(rotation, measured)

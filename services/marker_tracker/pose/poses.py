@@ -1,4 +1,4 @@
-"""The pose of each object from the corners of its markers, with a second candidate where the image allows one."""
+"""Pose estimation: one or two possible poses of each object from the corners of its markers."""
 
 import math
 from collections.abc import Sequence
@@ -16,38 +16,38 @@ from marker_tracker.pose.camera_model import CameraModel
 from marker_tracker.pose.catalogue import MarkedObject, MountedMarker
 
 Solution = tuple[Array, Array, float]
-"""Of one marker: rotation vector (3, 1), translation (3, 1) in metres, root mean square reprojection error in px."""
+"""A marker's pose: rotation vector (3, 1), translation (3, 1) in metres, root mean square reprojection error in px."""
 
 FULL_SIDE_PX = 24.0
-"""Pixels: from this side on, four for each cell of a 4x4 marker with its border, size costs no confidence."""
+"""Side in pixels below which confidence falls: four pixels for each cell of a 4x4 marker with its border."""
 MAX_ERROR_PX = 4.0
-"""Pixels of error above which several markers are not where the scene file puts them."""
+"""Reprojection error in pixels above which an object's markers cannot be where the scene file puts them."""
 RIVAL_ERROR_RATIO = 4.0
-"""Of the errors of two solutions, up to which the worse one remains possible."""
+"""Ratio of two solutions' reprojection errors up to which the worse one remains possible."""
 RIVAL_ERROR_PX = 1.0
-"""Pixels by which its error may be larger in any case: the noise of corners."""
+"""Pixels by which the worse one's error may always be larger: the noise of corners."""
 DOUBTFUL_ERROR_PX = 0.5
-"""Pixels of error above which a refined pose is compared with the one it was refined from."""
+"""Reprojection error in pixels above which a refined pose is compared with the initial one."""
 SAME_ROTATION_RAD = 0.05
-"""Radians between two solutions below which they are one."""
+"""Angle in radians between two solutions up to which they are the same."""
 REFINEMENT_STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 10, 1e-6)
 """Iterations and step at which OpenCV stops: the steps converge quadratically."""
 NUDGE_PX = np.array([[1e-4, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]])
-"""Pixels: OpenCV's IPPE has no answer when a marker is frontal to within some nanometres; this is enough for one."""
+"""Shift of the corners in pixels for a second attempt: OpenCV's IPPE fails when a marker is exactly frontal."""
 MIN_CORNER_NOISE_PX = 0.2
-"""Standard deviation in pixels: corners are no more exact, also where they happen to fit a pose exactly."""
+"""Least standard deviation of corners in pixels, also where they happen to fit a pose exactly."""
 MIN_POSITION_NOISE_M = 5e-4
-"""Standard deviation in metres: the sizes and places of markers are no better known."""
+"""Least standard deviation of a position in metres: the sizes and places of markers are not known better."""
 HIDDEN_CONFIDENCE = 0.5
-"""Of a hidden object's pose, relative to a visible one's: what covers its marker may have let go of it."""
+"""Confidence of a hidden object's pose relative to a visible one's: the hand that covers it may have released it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """Where an object may be.
+    """A possible pose of an object.
 
     Attributes:
-        camera_from_object: rigid transform (4, 4) in metres, to the frame of the image or of the skeletons.
+        camera_from_object: rigid transform (4, 4) in metres, to the camera frame of the image or of the skeletons.
         error_px: root mean square reprojection error of its markers' corners.
     """
 
@@ -57,15 +57,15 @@ class Pose:
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """What one image tells of an object's pose.
+    """The measurement of an object's pose in one image.
 
     Attributes:
         object_id: of the object.
         name: of the object.
         poses: the one or two possible ones, the better first, in the skeletons' camera frame.
-        noise_m2: covariance (3, 3) of the position.
+        noise_m2: covariance (3, 3) of the position, in square metres.
         confidence: 0 to 1.
-        hidden: its markers are hidden and moved with what covers them.
+        hidden: whether its markers are hidden and inferred from their occluders.
     """
 
     object_id: int
@@ -77,7 +77,7 @@ class Measurement:
 
 
 class BadPoseError(ValueError):
-    """Corners that no marker in front of the camera can have."""
+    """No pose in front of the camera fits a marker's corners."""
 
 
 def measure(objects: Sequence[MarkedObject], camera: CameraModel, counters: Counters) -> list[Measurement]:
@@ -99,36 +99,36 @@ def measure(objects: Sequence[MarkedObject], camera: CameraModel, counters: Coun
 
 
 def solve(markers: Sequence[tuple[Marker, MountedMarker]], camera: CameraModel) -> list[Pose]:
-    """Find the one or two poses in the image's frame that an object's markers allow, the better first.
+    """Find the one or two poses, in the image's camera frame, that fit an object's markers, the better first.
 
-    Each marker gives the two solutions of IPPE (Collins and Bartoli 2014); each is refined to the least reprojection
-    error over the corners of all of them (Gauss-Newton), unless that makes it worse.
+    Each marker gives the two solutions of IPPE (Collins and Bartoli 2014). Each solution is refined to the least
+    reprojection error over the corners of all markers (Gauss-Newton), unless that makes it worse.
 
     Raises:
         BadPoseError: no solution is finite, in front of the camera and nearer than `MAX_COORDINATE_M`.
     """
     corners_px = np.concatenate([marker.corners_px for marker, _ in markers])
     points_m = np.concatenate([mounted.corners_in_object_m for _, mounted in markers])
-    poses = [pose for marker, it in markers for pose in _from_one(marker, it, points_m, corners_px, camera)]
+    poses = [pose for marker, mounted in markers for pose in _from_one(marker, mounted, points_m, corners_px, camera)]
     usable = sorted((pose for pose in poses if _is_usable(pose)), key=lambda pose: pose.error_px)
     if not usable:
         raise BadPoseError(f"no pose in front of the camera fits the corners of marker {markers[0][0].id}")
     best = usable[0]
-    others = (pose for pose in usable[1:] if _is_possible(pose.error_px, best.error_px))
-    apart = (
+    possible = (pose for pose in usable[1:] if _is_possible(pose.error_px, best.error_px))
+    distinct = (
         pose
-        for pose in others
+        for pose in possible
         if angle_between_rad(pose.camera_from_object, best.camera_from_object) > SAME_ROTATION_RAD
     )
-    return [best, *apart][:2]
+    return [best, *distinct][:2]
 
 
-def _measurement(seen: MarkedObject, poses: Sequence[Pose], camera: CameraModel) -> Measurement:
-    largest, best = seen.markers[0][0], poses[0]
+def _measurement(marked: MarkedObject, poses: Sequence[Pose], camera: CameraModel) -> Measurement:
+    largest, best = marked.markers[0][0], poses[0]
     confidence = min(1.0, largest.side_px / FULL_SIDE_PX) / (1.0 + best.error_px)
     return Measurement(
-        seen.id,
-        seen.name,
+        marked.id,
+        marked.name,
         [Pose(camera.skeleton_from_image @ pose.camera_from_object, pose.error_px) for pose in poses],
         _noise_m2(best, largest.side_px, camera),
         confidence * (HIDDEN_CONFIDENCE if largest.hidden else 1.0),
@@ -137,7 +137,7 @@ def _measurement(seen: MarkedObject, poses: Sequence[Pose], camera: CameraModel)
 
 
 def _noise_m2(pose: Pose, side_px: float, camera: CameraModel) -> Array:
-    """Covariance (3, 3) of a position from the corners' error: along the ray it grows with depth over the side."""
+    """Covariance (3, 3) of a position from the corners' error: larger along the ray, by focal length over side (px)."""
     position_m = pose.camera_from_object[:3, 3]
     distance_m = float(np.linalg.norm(position_m))
     corner_px = max(MIN_CORNER_NOISE_PX, pose.error_px)
@@ -151,7 +151,7 @@ def _noise_m2(pose: Pose, side_px: float, camera: CameraModel) -> Array:
 def _from_one(
     marker: Marker, mounted: MountedMarker, points_m: Array, corners_px: Array, camera: CameraModel
 ) -> list[Pose]:
-    """Refine both solutions of one marker, in its square frame, over the points (n, 3) and corners (n, 2) of all."""
+    """Solve for one marker's poses, and refine them over the points (n, 3) and corners (n, 2) of all markers."""
     solutions = _ippe(mounted.corners_in_square_m, marker.corners_px, camera)
     if not solutions:
         solutions = _ippe(mounted.corners_in_square_m, marker.corners_px + NUDGE_PX, camera)
@@ -166,7 +166,7 @@ def _from_one(
 
 
 def _ippe(points_m: Array, corners_px: Array, camera: CameraModel) -> list[Solution]:
-    """Solve for both poses of a square with points (4, 3) and corners (4, 2); none where OpenCV has no answer."""
+    """Solve for both poses of a square with points (4, 3) and corners (4, 2); empty where OpenCV has no answer."""
     _count, rotations, translations, errors = cv2.solvePnPGeneric(
         points_m, corners_px, camera.matrix, camera.distortion, flags=cv2.SOLVEPNP_IPPE
     )
@@ -181,7 +181,7 @@ def _refined(
     """Refine a solution by Gauss-Newton (OpenCV's virtual visual servoing), unless that makes it worse.
 
     Returns:
-        The transform (4, 4) from the frame of the points, and its reprojection error in px.
+        The transform (4, 4) from the points' frame to the image's camera frame, and its reprojection error in px.
     """
     turned, moved_m = cv2.solvePnPRefineVVS(
         points_m, corners_px, camera.matrix, camera.distortion, rotation.copy(), translation_m.copy(), REFINEMENT_STOP

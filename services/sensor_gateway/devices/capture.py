@@ -1,4 +1,4 @@
-"""What every source of pictures offers: a device, a stream or a file."""
+"""The interface of everything that gives pictures: devices, streams and files."""
 
 from typing import Protocol
 
@@ -6,7 +6,7 @@ from sensor_gateway.captured_picture import Picture
 
 
 class CameraLostError(Exception):
-    """There are no more pictures: why."""
+    """The camera gives no more pictures; the message tells why."""
 
 
 class CaptureEndedError(Exception):
@@ -18,18 +18,18 @@ class Capture(Protocol):
 
     @property
     def live(self) -> bool:
-        """Whether frozen or black pictures mean a failed camera: not in a file, nor where depth alone finds people."""
+        """Whether frozen or black pictures mean a failed camera; false for files, and where depth alone is used."""
         ...
 
     def next(self, patience_s: float) -> Picture | None:
-        """Return the next picture, or None where there is none within so long.
+        """Return the next picture, or None if none comes within `patience_s`.
 
         Raises:
-            CameraLostError: there will be none.
-            CaptureEndedError: the file is over.
+            CameraLostError: no more pictures will come.
+            CaptureEndedError: the file has been played to its end.
         """
         ...
 
     def close(self) -> None:
-        """Let go of the camera."""
+        """Release the camera."""
         ...

@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 
 class DeviceClock:
-    """Shifts a device's stamps (ns) by one constant, so that the first is the host's present time.
+    """Shifts a device's stamps (ns) by one constant, so that the first stamp becomes the host's present time.
 
-    Intervals stay the device's own. Where the device's stamps fall, its clock has restarted, and the constant is
+    Intervals between stamps are preserved. If the device's stamps fall, its clock has restarted, and the constant is
     determined anew.
     """
 

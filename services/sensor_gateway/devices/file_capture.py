@@ -11,7 +11,7 @@ from sensor_gateway.devices.video import VideoError, pictures_of
 
 
 class FileCapture:
-    """A file of pictures played once or for ever, each when its stamp is due; none is left out, however late.
+    """Plays a file of pictures once or for ever, each when its stamp is due; late pictures are not dropped.
 
     `read` yields the file's pictures; the stamp of the first is its second argument (ns).
     """
@@ -36,7 +36,7 @@ class FileCapture:
 
         Raises:
             CameraLostError: the file is no video.
-            CaptureEndedError: it is over.
+            CaptureEndedError: the file has been played to its end.
         """
         try:
             self._pending = self._pending or self._read_next()
@@ -60,5 +60,5 @@ class FileCapture:
         return picture
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         self._pictures.close()

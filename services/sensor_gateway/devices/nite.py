@@ -1,4 +1,4 @@
-"""People as NiTE 2 tracks them in depth images, where its library is installed; no pose model is needed then."""
+"""People tracked by NiTE 2 in depth images, if its library is installed; no pose model is needed then."""
 
 import logging
 import os
@@ -21,7 +21,7 @@ FOLDERS = "NITE2_REDIST64", "NITE2_REDIST"
 """Environment variables that NiTE's installer sets to the folder with its library and data."""
 
 MILLIMETRES = 1000.0
-"""Of NiTE's unit in a metre."""
+"""NiTE's units of length in a metre."""
 LEFT_SHOULDER = INDEX["left_shoulder"]
 RIGHT_SHOULDER = INDEX["right_shoulder"]
 
@@ -32,11 +32,11 @@ def _opposite(name: str) -> str:
 
 
 OTHER_SIDE = tuple(INDEX[_opposite(name)] for name in JOINTS)
-"""For each joint (15), the index of the other side's; the middle joints are their own."""
+"""For each joint (15), the index of its counterpart on the other side; a middle joint is its own counterpart."""
 
 
 def nite() -> Any | None:
-    """Start NiTE where its installer's environment variable tells that it is there; None elsewhere.
+    """Start NiTE if its installer's environment variables are set and it can be started; None otherwise.
 
     Raises:
         OpenNiError: OpenNI 2 or its bindings are not installed.
@@ -57,7 +57,7 @@ def nite() -> Any | None:
 
 
 class NiteCapture(OpenNi2Capture):
-    """The first camera found, with the people that NiTE tracks in its depth images, in the dark as well."""
+    """The first connected camera, with the people that NiTE tracks in its depth images, in the dark as well."""
 
     live = False
 
@@ -68,7 +68,7 @@ class NiteCapture(OpenNi2Capture):
         self._users = Users(self._follow)
 
     def next(self, patience_s: float) -> Picture | None:
-        """Return a picture newer than the last, with its people, or None.
+        """Return a picture newer than the last with its people, or None if none comes within `patience_s`.
 
         Raises:
             CameraLostError: there is no camera, it cannot be used, was unplugged, has been silent for too long, or NiTE
@@ -82,7 +82,7 @@ class NiteCapture(OpenNi2Capture):
         return UsersPicture(picture.image_bgr, picture.stamp_ns, picture.depth_m, picture.lens, tuple(agents))
 
     def close(self) -> None:
-        """Let go of the camera."""
+        """Release the camera."""
         tracker, self._tracker = self._tracker, None
         if tracker is not None:
             with suppress(CameraLostError), _nite_errors_as_lost():
@@ -116,11 +116,11 @@ def _nite_errors_as_lost() -> Iterator[None]:
 
 
 class Users:
-    """Makes agents of NiTE's users; `follow` has a new one's skeleton tracked.
+    """Makes agents of NiTE's users; `follow` starts the skeleton tracking of a new user.
 
-    NiTE gives a number that is free again to somebody else; agents' numbers are never used again. It takes everybody
-    to face the camera, but whether its left is the actor's depends on whether its images were mirrored. The side on
-    which the left shoulder is when somebody is first seen tells.
+    NiTE reuses the number of a lost user; agents' numbers are never used again. NiTE assumes that everybody faces the
+    camera, and exchanges left and right if its images are mirrored. Whether it does is decided for each user by the
+    side of the left shoulder in the first skeleton.
     """
 
     def __init__(self, follow: Callable[[int], None]) -> None:
@@ -130,7 +130,7 @@ class Users:
         self._next = 1
 
     def agents(self, users: Sequence[Any]) -> list[Agent]:
-        """Return those whose skeleton is tracked."""
+        """Return the agents of the users whose skeleton is tracked."""
         for user in users:
             self._update_user(user)
         return [self._agent(user) for user in users if user.id in self._agents and _is_tracked(user)]

@@ -1,4 +1,4 @@
-"""Cameras that OpenNI 2 has a driver for (Kinect v1, Xtion, Astra), and its recordings, by its Python bindings."""
+"""Cameras that OpenNI 2 has a driver for (Kinect v1, Xtion, Astra), and OpenNI 2's recordings."""
 
 import os
 import time
@@ -15,15 +15,15 @@ from sensor_gateway.devices.silence import Silence
 from sensor_gateway.devices.video import VideoError
 
 FILE_ERRORS: tuple[type[Exception], ...] = (*ERRORS, CameraLostError)
-"""What opening a recording raises where it is none, or lacks a stream."""
+"""Errors raised when the file to open is no recording or lacks a stream."""
 MANUAL = -1.0
-"""OpenNI's playback speed for reading as fast as frames are asked for."""
+"""OpenNI's playback speed at which each frame is read on request."""
 END_S = 0.5
-"""A recording that gives no frame for so long is over: it does not tell its end."""
+"""Seconds without a frame after which a recording counts as ended: OpenNI does not report the end."""
 
 
 class OpenNi2Capture:
-    """The first camera found; the newest pair of colour and registered depth, stamped by the device."""
+    """The first connected camera; gives the newest pair of colour and registered depth, stamped by the device."""
 
     live = True
 
@@ -40,15 +40,15 @@ class OpenNi2Capture:
         self._silence = Silence()
 
     def next(self, patience_s: float) -> Picture | None:
-        """Return a picture newer than the last, or None.
+        """Return a picture newer than the last, or None if none comes within `patience_s`.
 
         Raises:
             CameraLostError: there is no camera, it cannot be used, was unplugged, or has been silent for too long.
         """
         try:
             self._streams = self._streams or self._opened()
-            heard, picture = self._streams.next(patience_s, self._clock)
-            if not heard:
+            has_frame, picture = self._streams.next(patience_s, self._clock)
+            if not has_frame:
                 self._check_connected(self._streams.uri)
         except ERRORS as error:
             raise CameraLostError(f"OpenNI says: {error_text(error)}") from None
@@ -59,7 +59,7 @@ class OpenNi2Capture:
         return picture
 
     def close(self) -> None:
-        """Let go of the camera."""
+        """Release the camera."""
         streams, self._streams = self._streams, None
         if streams is not None:
             streams.close()
@@ -76,10 +76,10 @@ class OpenNi2Capture:
 
 
 def recorded_pictures(path: Path, start_ns: int, field_of_view_deg: float = 60.0) -> Generator[Picture, None, None]:
-    """Yield a recording's pictures; the first is stamped `start_ns`, the others by the device's times.
+    """Yield a recording's pictures; the first is stamped `start_ns`, later ones keep the device's intervals.
 
     Raises:
-        VideoError: it is no recording of colour and depth.
+        VideoError: the file is no recording of colour and depth.
     """
     openni2 = library()
     clock = DeviceClock(lambda: start_ns)
@@ -90,20 +90,20 @@ def recorded_pictures(path: Path, start_ns: int, field_of_view_deg: float = 60.0
             f"{path}: no recording of colour and depth that OpenNI can play ({error_text(error)})"
         ) from None
     try:
-        heard, found_any = True, False
-        while heard:
-            heard, picture = streams.next(END_S, clock)
+        has_frame, has_picture = True, False
+        while has_frame:
+            has_frame, picture = streams.next(END_S, clock)
             if picture is not None:
-                found_any = True
+                has_picture = True
                 yield picture
-        if not found_any:
+        if not has_picture:
             raise VideoError(f"{path}: the recording has no colour and depth of the same time; record both streams")
     finally:
         streams.close()
 
 
 def _opened_file(openni2: Any, path: Path) -> Any:
-    """Open a recording that is read once, as fast as it is asked for."""
+    """Open a recording to be read once, each frame on request."""
     device = openni2.Device(os.fsencode(path.absolute()))
     if device.playback is None:
         device.close()

@@ -1,24 +1,24 @@
-"""Finds and starts OpenNI 2 by its Python bindings."""
+"""Finds and starts OpenNI 2 through its Python bindings."""
 
 import os
 from typing import Any
 
 INSTALL = 'the source openni2 needs OpenNI 2: pip install "actum[openni2]", and on Debian apt install libopenni2-0'
 LIBRARIES = "libOpenNI2.so.0", "libOpenNI2.so", "libOpenNI2.dylib", "OpenNI2.dll"
-"""Its names on Debian, other Linux, macOS and Windows, in the order in which they are tried."""
+"""File names of the library on Debian, other Linux, macOS and Windows, in the order in which they are tried."""
 FOLDERS = "OPENNI2_REDIST64", "OPENNI2_REDIST"
-"""Environment variables that name a folder with a library of one's own, such as Orbbec's."""
+"""Environment variables that name a folder with another build of the library, such as Orbbec's."""
 
 
 class OpenNiError(ValueError):
-    """The library is not there: what is wrong and what to do."""
+    """The library is not installed; the message tells what is missing and what to do."""
 
 
 def library() -> Any:
     """Import the bindings and start the library, once in a process.
 
     Raises:
-        OpenNiError: either is not installed.
+        OpenNiError: the bindings or the library are not installed.
     """
     try:
         from openni import openni2
@@ -30,7 +30,7 @@ def library() -> Any:
 
 
 def _errors() -> tuple[type[Exception], ...]:
-    """Return what the bindings raise where the library says no; nothing where they are not installed."""
+    """Return the classes of errors that the bindings raise; empty if they are not installed."""
     try:
         from openni.utils import OpenNIError
     except ImportError:
@@ -39,7 +39,7 @@ def _errors() -> tuple[type[Exception], ...]:
 
 
 def error_text(error: Exception) -> str:
-    """Return the message of an error of the bindings, whose arguments are a code, a message in bytes, a file's name."""
+    """Return the message of an error of the bindings; its arguments are a code, the message in bytes, a file name."""
     message = error.args[1] if len(error.args) > 1 else error
     return message.decode(errors="replace") if isinstance(message, bytes) else str(message)
 
@@ -48,7 +48,7 @@ ERRORS = _errors()
 
 
 def _start(openni2: Any) -> None:
-    """Start the library in the folder that the environment names, or else the system's, which the bindings miss."""
+    """Start the library from the folder that the environment names, or else the system's, which the bindings miss."""
     from openni.utils import InitializationError, OpenNIError
 
     folders = [os.environ[name] for name in FOLDERS if name in os.environ]

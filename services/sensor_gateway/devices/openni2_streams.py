@@ -1,4 +1,4 @@
-"""The colour and depth streams of an OpenNI 2 device, paired into pictures by their times."""
+"""The colour and depth streams of an OpenNI 2 device, paired into pictures by their stamps."""
 
 import logging
 import time
@@ -18,25 +18,25 @@ from sensor_gateway.lens import Lens
 log = logging.getLogger("actum")
 
 SIZE = 640, 480
-"""Width and height (px) of both images unless another is set: Kinect v1, Xtion and Astra have it."""
+"""Default width and height (px) of both images: Kinect v1, Xtion and Astra offer it."""
 RATE_HZ = 30
-"""Of both streams, at that size."""
+"""Frame rate of both streams at that size."""
 MICROSECOND_NS = 1000
 TOGETHER_US = 17_000
-"""How far apart depth and colour may be captured and still be one picture: half a frame."""
+"""Largest difference between the stamps of depth and colour of one picture, in microseconds: half a frame."""
 WAITING = 4
-"""How many frames of one stream wait for those of the other."""
+"""Most frames of one stream that are kept to be paired with the other's."""
 REST_S = 0.05
-"""How long a stopped stream is left alone before it is destroyed: drivers sleep a frame between looks at it."""
+"""Delay between stopping and destroying a stream: the driver's thread may still use it for a frame's time."""
 
 Frame = tuple[int, NDArray[Any]]
-"""When a frame was captured (µs), and its pixels."""
+"""A frame's stamp (µs) and its pixels."""
 
 
 def together(depths: deque[Frame], colors: deque[Frame]) -> tuple[NDArray[Any], Frame] | None:
-    """Take out the newest colour frame (height, width, 3) and the depth frame (height, width) of its time.
+    """Take the newest pair of a depth frame's pixels (height, width) and a colour frame with pixels (height, width, 3).
 
-    All older frames are dropped. None where no two frames belong together.
+    The pair and all older frames are removed. None if no two frames have nearly the same stamp.
     """
     for color in reversed(colors):
         if depths and abs((depth := min(depths, key=lambda d: abs(d[0] - color[0])))[0] - color[0]) <= TOGETHER_US:
@@ -55,7 +55,7 @@ class Streams:
     """A device's colour and depth streams, started.
 
     Raises:
-        CameraLostError: it lacks one, or gives colour of a kind that is not understood.
+        CameraLostError: the device lacks a stream, or gives colour in an unsupported format.
     """
 
     def __init__(self, openni2: Any, device: Any, size: tuple[int, int], field_of_view_deg: float) -> None:
@@ -87,7 +87,7 @@ class Streams:
         return True, self._together(clock)
 
     def close(self) -> None:
-        """Let go of the device, once the driver's own thread rests: it reads its streams without a lock."""
+        """Release the device after a delay, as the driver's own thread reads the streams without a lock."""
         for stream in (self._depth, self._color):
             stream.stop()
         time.sleep(REST_S)
@@ -109,7 +109,7 @@ class Streams:
         )
 
     def _configure(self, size: tuple[int, int]) -> None:
-        """Ask a camera for one size, unmirrored, depth registered to colour, both at the same times."""
+        """Ask a camera for one image size, no mirroring, depth registered to colour and synchronised with it."""
         openni2, registered = self._openni2, self._openni2.IMAGE_REGISTRATION_DEPTH_TO_COLOR
         _choose_mode(self._depth, size, openni2.PIXEL_FORMAT_DEPTH_1_MM)
         _choose_mode(self._color, size, openni2.PIXEL_FORMAT_RGB888)
@@ -139,9 +139,9 @@ class Streams:
 
 
 def lens_of(color: Any, field_of_view_deg: float) -> Lens:
-    """Return the intrinsics by the fields of view that the driver tells, or else by the assumed one.
+    """Compute the intrinsics from the fields of view that the driver reports, or else from the assumed one.
 
-    Drivers tell the same for all devices of a kind, so both count as assumed.
+    Drivers report the same values for all devices of a model, so both count as assumed.
     """
     width, height = color.video_mode.resolutionX, color.video_mode.resolutionY
     try:
@@ -162,7 +162,7 @@ def _is_mirrored(stream: Any) -> bool:
 
 
 def _choose_mode(stream: Any, size: tuple[int, int], pixel_format: Any) -> None:
-    """Set the wanted mode where the sensor has it; else the driver's default stays."""
+    """Set the wanted mode if the sensor has it; otherwise the driver's default stays."""
     wanted = (*size, RATE_HZ, int(pixel_format))
     for mode in stream.get_sensor_info().videoModes:
         if (mode.resolutionX, mode.resolutionY, mode.fps, int(mode.pixelFormat)) == wanted:

@@ -1,4 +1,4 @@
-"""RealSense cameras, and librealsense's recordings of them, by pyrealsense2."""
+"""RealSense cameras, and librealsense's recordings of them, read with pyrealsense2."""
 
 import time
 from collections.abc import Callable, Generator
@@ -21,16 +21,16 @@ INSTALL = (
     'the source realsense needs pyrealsense2: pip install "actum[realsense]"; on Debian also apt install libusb-1.0-0'
 )
 SIZE = 640, 480
-"""Width and height (px) of the depth image, and of the colour image unless another is set."""
+"""Width and height (px) of the depth image, and by default of the colour image."""
 RATE_HZ = 30
-"""Of both streams."""
+"""Frame rate of both streams."""
 MILLISECOND_NS = 1_000_000
 POLL_MS = 200
-"""How long one look for a recording's next frames takes at most."""
+"""Longest wait for a recording's next frames in one poll."""
 EMPTY_POLLS = 10
-"""A recording that has not ended and gives nothing in so many looks, 2 s, is cut off."""
+"""Successive polls without frames, 2 s, after which a recording without an end counts as truncated."""
 GRID = 12
-"""Pixels along each side of the image at which a distortion is fitted: many more than its five coefficients."""
+"""Points along each side of the grid on which a distortion is fitted: many more than its five coefficients."""
 TO_BGR = {
     "rgb8": cv2.COLOR_RGB2BGR,
     "rgba8": cv2.COLOR_RGBA2BGR,
@@ -41,14 +41,14 @@ TO_BGR = {
 
 
 class RealSenseError(ValueError):
-    """The library is not there: what is wrong and what to do."""
+    """The library is not installed; the message tells what is missing and what to do."""
 
 
 def library() -> Any:
     """Import pyrealsense2 when it is needed.
 
     Raises:
-        RealSenseError: it, or a library that it needs, is not installed.
+        RealSenseError: pyrealsense2, or a library that it needs, is not installed.
     """
     try:
         import pyrealsense2
@@ -58,7 +58,7 @@ def library() -> Any:
 
 
 class RealSenseCapture:
-    """The first RealSense camera found; the newest pair of colour and depth, stamped by the device."""
+    """The first connected RealSense camera; gives the newest pair of colour and depth, stamped by the device."""
 
     live = True
 
@@ -73,7 +73,7 @@ class RealSenseCapture:
         self._silence = Silence()
 
     def next(self, patience_s: float) -> Picture | None:
-        """Return a picture newer than the last, or None.
+        """Return a picture newer than the last, or None if none comes within `patience_s`.
 
         Raises:
             CameraLostError: there is no camera, it cannot be used, was unplugged, or has been silent for too long.
@@ -81,10 +81,10 @@ class RealSenseCapture:
         try:
             if self._pipeline is None:
                 self._pipeline = self._started()
-            found, frames = self._pipeline.try_wait_for_frames(round(1000 * patience_s))
-            if not found:
+            has_frames, frames = self._pipeline.try_wait_for_frames(round(1000 * patience_s))
+            if not has_frames:
                 self._check_connected()
-            picture = self._aligner.picture(frames, self._stamp_ns) if found else None
+            picture = self._aligner.picture(frames, self._stamp_ns) if has_frames else None
         except RuntimeError as error:
             raise CameraLostError(f"librealsense says: {error}") from None
         if picture is None:
@@ -94,7 +94,7 @@ class RealSenseCapture:
         return picture
 
     def close(self) -> None:
-        """Let go of the camera."""
+        """Release the camera."""
         pipeline, self._pipeline = self._pipeline, None
         if pipeline is not None:
             try:
@@ -112,7 +112,7 @@ class RealSenseCapture:
         return pipeline
 
     def _config(self, pipeline: Any) -> Any:
-        """Ask for colour of the wanted size and for depth of 640x480, or else for whatever the device gives."""
+        """Ask for colour of the wanted size and for depth of 640x480, or else for the device's default sizes."""
         rs = self._rs
         config = rs.config()
         config.enable_stream(rs.stream.color, *self._size, rs.format.bgr8, RATE_HZ)
@@ -135,10 +135,10 @@ class RealSenseCapture:
 
 
 def recorded_pictures(path: Path, start_ns: int) -> Generator[Picture, None, None]:
-    """Yield a recording's pictures; the first is stamped `start_ns`, the others by the device's times.
+    """Yield a recording's pictures; the first is stamped `start_ns`, later ones keep the device's intervals.
 
     Raises:
-        VideoError: it is no recording of colour and depth.
+        VideoError: the file is no recording of colour and depth.
     """
     rs = library()
     pipeline, config = rs.pipeline(), rs.config()
@@ -164,19 +164,19 @@ def recorded_pictures(path: Path, start_ns: int) -> Generator[Picture, None, Non
 def _played(
     pipeline: Any, playback: Any, picture_of: Callable[[Any], Picture | None]
 ) -> Generator[Picture, None, None]:
-    """Yield a recording's pictures, none left out, until it has stopped or is cut off."""
+    """Yield all pictures of a recording, until it has stopped or turns out to be truncated."""
     empty_polls = 0
     while empty_polls < EMPTY_POLLS:
-        found, frames = pipeline.try_wait_for_frames(POLL_MS)
-        empty_polls = 0 if found else empty_polls + 1
-        if found and (picture := picture_of(frames)) is not None:
+        has_frames, frames = pipeline.try_wait_for_frames(POLL_MS)
+        empty_polls = 0 if has_frames else empty_polls + 1
+        if has_frames and (picture := picture_of(frames)) is not None:
             yield picture
-        elif not found and playback.current_status().name == "stopped":
+        elif not has_frames and playback.current_status().name == "stopped":
             return
 
 
 class Aligner:
-    """Makes pictures of frame sets, the depth registered to the colour camera."""
+    """Makes pictures of librealsense's frame sets, with the depth registered to the colour camera."""
 
     def __init__(self, rs: Any) -> None:
         self._rs = rs
@@ -185,11 +185,11 @@ class Aligner:
 
     @property
     def made(self) -> bool:
-        """Whether there has been a picture."""
+        """Whether any picture has been made."""
         return self._newest is not None
 
     def picture(self, frames: Any, stamp_ns: Callable[[Any], int]) -> DepthPicture | None:
-        """Return a frame set's picture, stamped as its colour frame is; None without depth or without new colour."""
+        """Return a frame set's picture with its colour frame's stamp; None without depth or without new colour."""
         if not (frames.get_color_frame() and frames.get_depth_frame()):
             return None
         if frames.get_color_frame().get_frame_number() == self._newest:
@@ -206,7 +206,7 @@ class Aligner:
 
 
 def lens_of(rs: Any, intrinsics: Any) -> Lens:
-    """Return a stream's intrinsics, its distortion in OpenCV's terms."""
+    """Return a stream's intrinsics, with the distortion converted to OpenCV's coefficients."""
     matrix = np.array([[intrinsics.fx, 0, intrinsics.ppx], [0, intrinsics.fy, intrinsics.ppy], [0, 0, 1]])
     forward = rs.distortion.brown_conrady, rs.distortion.modified_brown_conrady
     if intrinsics.model in forward or not any(intrinsics.coeffs):
@@ -215,7 +215,7 @@ def lens_of(rs: Any, intrinsics: Any) -> Lens:
 
 
 def _fitted_distortion(rs: Any, intrinsics: Any, matrix: Array) -> Array:
-    """Fit OpenCV's k1 k2 p1 p2 k3 (5,) to a model that goes from the pixel to the ray, by linear least squares."""
+    """Fit OpenCV's k1 k2 p1 p2 k3 (5,) to a model that maps pixels to rays, by linear least squares on a grid."""
     x, y = np.meshgrid(np.linspace(0, intrinsics.width - 1, GRID), np.linspace(0, intrinsics.height - 1, GRID))
     pixels = np.column_stack([x.ravel(), y.ravel()])
     points = [rs.rs2_deproject_pixel_to_point(intrinsics, pixel.tolist(), 1.0)[:2] for pixel in pixels]

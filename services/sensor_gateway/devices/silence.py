@@ -1,4 +1,4 @@
-"""How long a device may give no picture before it counts as lost."""
+"""The timeout after which a device without pictures counts as lost."""
 
 import time
 from collections.abc import Callable
@@ -6,9 +6,9 @@ from collections.abc import Callable
 from sensor_gateway.devices.capture import CameraLostError
 
 SILENT_S = 2.0
-"""After a picture: many frame intervals, so that one lost frame is no lost camera."""
+"""Timeout after a picture: many frame intervals, so that one lost frame does not count as a lost camera."""
 OPENING_S = 10.0
-"""Before the first picture: opening a stream or starting a depth camera takes longer."""
+"""Timeout before the first picture: opening a stream or starting a depth camera takes longer."""
 
 
 class Silence:
@@ -19,14 +19,14 @@ class Silence:
         self._heard_s, self._allowed_s = now_s(), OPENING_S
 
     def heard(self) -> None:
-        """Restart: there was a picture."""
+        """Restart the timeout after a picture."""
         self._heard_s, self._allowed_s = self._now_s(), SILENT_S
 
     def check(self) -> None:
-        """Pass where the silence is not too long yet.
+        """Check the timeout.
 
         Raises:
-            CameraLostError: it is.
+            CameraLostError: the last picture is too long ago.
         """
         if self._now_s() - self._heard_s > self._allowed_s:
             raise CameraLostError(f"no picture for {self._allowed_s:g} s")

@@ -1,4 +1,4 @@
-"""A video file as stamped pictures, read as fast as they are asked for."""
+"""Reads a video file as stamped pictures, each on request."""
 
 from collections.abc import Generator
 from pathlib import Path
@@ -11,21 +11,22 @@ from sensor_gateway.captured_picture import Picture
 
 MILLISECOND_NS = SECOND_NS // 1000
 USUAL_RATE_HZ = 25.0
-"""Of files that tell neither times nor a rate, such as bare H.264 streams."""
+"""Frame rate assumed for files with neither stamps nor a rate, such as bare H.264 streams."""
 SUFFIXES = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm", ".wmv"})
 
 
 class VideoError(ValueError):
-    """A file holds no pictures that can be read: which and what to do."""
+    """A file holds no readable pictures; the message tells which file and what to do."""
 
 
 def pictures_of(path: Path, start_ns: int = 0) -> Generator[Picture, None, None]:
-    """Yield a file's frames; the first is stamped `start_ns`, the others by the file's own times.
+    """Yield a file's frames; the first is stamped `start_ns`, later ones by the file's own times.
 
-    Where those do not rise, as in a bare H.264 stream or at some files' end, a frame comes one interval after the last.
+    Where those times do not rise, as in a bare H.264 stream or at some files' end, a frame is stamped one interval
+    after the last.
 
     Raises:
-        VideoError: it cannot be read as a video, or holds no frame.
+        VideoError: the file cannot be read as a video, or holds no frame.
     """
     capture = cv2.VideoCapture(str(path))
     try:
@@ -45,6 +46,6 @@ def pictures_of(path: Path, start_ns: int = 0) -> Generator[Picture, None, None]
 
 
 def _frame_interval_ns(capture: cv2.VideoCapture) -> int:
-    """Return the time between two frames at the rate that the file tells, or else at the usual one."""
+    """Return the time between two frames at the file's frame rate, or else at the usual one."""
     rate_hz = capture.get(cv2.CAP_PROP_FPS)
     return round(SECOND_NS / (rate_hz if rate_hz > 0 else USUAL_RATE_HZ))

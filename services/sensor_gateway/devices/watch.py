@@ -1,4 +1,4 @@
-"""Whether a live camera's pictures can be used, and when to open a lost camera again: pure steps over stamps."""
+"""Detects frozen and black pictures of a live camera, and times its reopening: pure steps over stamps."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,23 +8,23 @@ from actum.node import SECOND_NS
 from sensor_gateway.captured_picture import Picture
 
 FROZEN_NS = SECOND_NS
-"""The same picture, bit for bit, for so long means that the driver repeats it: a sensor's noise never does."""
+"""Time for which identical pictures mean that the driver repeats one: a sensor's noise changes every picture."""
 
 BLACK_NS = SECOND_NS // 2
-"""Shorter black spells, as while a camera adjusts its exposure, are let pass."""
+"""Least time of black pictures that is reported: shorter ones occur while a camera adjusts its exposure."""
 
 BLACK_LOST_NS = 5 * SECOND_NS
-"""A camera black for so long since it was opened is opened again: a covered lens stays, a failed driver recovers."""
+"""Time of black pictures since opening after which a camera is opened again: that helps if its driver has failed."""
 
 STEP_PX = 8
-"""Every eighth pixel of every eighth row is compared: noise shows in any of them."""
+"""Every eighth pixel of every eighth row is compared: noise appears in all of them."""
 
 
 class Watch:
-    """Notices pictures that are frozen or stay black; its state outlives the camera's being opened again.
+    """Detects pictures that are frozen or stay black; keeps its state when the camera is opened again.
 
     Attributes:
-        lost: whether opening the camera again may mend the last complaint.
+        lost: whether opening the camera again may remedy the last complaint.
     """
 
     def __init__(self) -> None:
@@ -39,7 +39,7 @@ class Watch:
         self._lit_or_opened_ns = None
 
     def complaint(self, picture: Picture) -> str | None:
-        """Take the next picture; return why it cannot be used, or None. Stamps rise."""
+        """Judge the next picture; return why it cannot be used, or None. Stamps rise."""
         sample = np.ascontiguousarray(picture.image_bgr[::STEP_PX, ::STEP_PX])
         if self._last_sample is None or not np.array_equal(sample, self._last_sample):
             self._last_sample, self._changed_ns = sample, picture.stamp_ns
@@ -57,12 +57,12 @@ class Watch:
 
 
 class BackOff:
-    """When to try again: twice as long after each failure, up to a limit."""
+    """Exponential back-off: waits twice as long after each failure, up to a limit."""
 
     FIRST_NS = SECOND_NS // 2
-    """Short, for a plug that was loose for a moment."""
+    """First wait: short, for a plug that was loose for a moment."""
     LONGEST_NS = 8 * SECOND_NS
-    """How long one that was plugged in again waits at most."""
+    """Longest wait for a camera that has been plugged in again."""
 
     def __init__(self) -> None:
         self._wait_ns = self.FIRST_NS

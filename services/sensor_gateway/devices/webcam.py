@@ -1,4 +1,4 @@
-"""A camera or a network stream that OpenCV reads, the newest picture first."""
+"""A camera or a network stream that OpenCV reads; only the newest picture is kept."""
 
 import threading
 import time
@@ -11,13 +11,13 @@ from sensor_gateway.devices.capture import CameraLostError
 from sensor_gateway.devices.silence import OPENING_S, Silence
 
 CLOSING_S = 0.5
-"""How long `close` waits for the reading thread: some frames; a driver that hangs must not hold up the service."""
+"""Longest wait of `close` for the reading thread: a driver that hangs must not block the service."""
 COMPRESSED = cv2.VideoWriter.fourcc(*"MJPG")
-"""Asked for with a size: uncompressed, few devices give a large one at more than some frames/s."""
+"""Pixel format that is requested with a size: few devices give large uncompressed images at more than some Hz."""
 
 
 class LiveCapture:
-    """A device or a stream: a thread reads all it gives and keeps the newest picture only, stamped as it is read."""
+    """A device or a stream: a thread reads every picture and keeps only the newest, stamped as it is read."""
 
     live = True
 
@@ -32,7 +32,7 @@ class LiveCapture:
         self._thread.start()
 
     def next(self, patience_s: float) -> Picture | None:
-        """Return a picture newer than the last, or None.
+        """Return a picture newer than the last, or None if none comes within `patience_s`.
 
         Raises:
             CameraLostError: the device cannot be opened, has stopped, or has been silent for too long.
@@ -52,9 +52,9 @@ class LiveCapture:
         return self._lost is not None
 
     def close(self) -> None:
-        """Have the thread end; one that the driver holds up ends when that lets go.
+        """Stop the reading thread; if the driver blocks it, it ends as soon as the driver returns.
 
-        At the interpreter's end it must not be within OpenCV: it would take the process with it.
+        At the interpreter's end the thread must not be inside OpenCV, where it would crash the process.
         """
         self._closed = True
         self._thread.join(CLOSING_S)
@@ -72,7 +72,7 @@ class LiveCapture:
             self._changed.notify_all()
 
     def _read_all(self, capture: cv2.VideoCapture) -> str:
-        """Keep the newest picture until there are no more, and return why."""
+        """Keep the newest picture until no more come, and return the reason."""
         if not capture.isOpened():
             return "it cannot be opened"
         while not self._closed:
@@ -100,9 +100,9 @@ class LiveCapture:
 
 
 def timeouts_of(device: int | str) -> list[int]:
-    """Return OpenCV's parameters (name, ms, …) by which it gives a silent stream up when `Silence` does.
+    """Return OpenCV's parameters (name, ms, …) that give a silent stream the timeouts of `Silence`.
 
-    Without them one stream that hangs while opening would hold up all others. Devices take no such parameters.
+    Without them a stream that hangs while opening would block all others. Devices take no such parameters.
     """
     if isinstance(device, int) or "://" not in device:
         return []

@@ -1,9 +1,9 @@
-"""A person's joints lifted by measured depth: each lies half a limb behind the surface that the camera sees there.
+"""Lifts a person's joints by measured depth: each joint lies half a limb's thickness behind the measured surface.
 
-Depth images have holes, mixed values at edges, and whatever stands in front of or beside a joint. So the body that the
-colour image alone gives is first scaled to the distance at which most of its joints agree with the surface. A joint's
-own surface is then looked for near where that body expects it. Where there is none, the joint keeps the expected
-distance, corrected as the next joint towards the torso was.
+Depth images have holes, mixed values at edges, and objects in front of or beside a joint. So the body estimated from
+the colour image is first scaled to the distance at which most of its joints agree with the surface. Each joint's own
+surface is then searched for near the depth expected from that body. A joint without a surface keeps the expected
+distance, with the correction of the next joint towards the torso.
 """
 
 from collections.abc import Mapping
@@ -39,13 +39,13 @@ HALF_THICKNESS_M: Mapping[str, float] = MappingProxyType(
         "right_foot": 0.065,
     }
 )
-"""How far a joint of the model's body lies behind the skin before it; the torso's, seen from the front."""
+"""Depth of each joint of the model's body behind the skin; for the torso, seen from the front."""
 
 NARROW_M = 0.04
 """Half the width of an arm or a leg; along the ray feet are longer."""
 
 HALF_WIDTH_M = 0.16
-"""How far the torso lies behind the skin of a trunk seen from the side."""
+"""Depth of the torso joint behind the skin of a trunk seen from the side."""
 
 TRUNK = ("neck", "torso", "left_shoulder", "right_shoulder", "left_hip", "right_hip")
 MIDDLES = ("left_elbow", "right_elbow", "left_knee", "right_knee")
@@ -54,34 +54,34 @@ ENDS = ("left_hand", "right_hand", "left_foot", "right_foot")
 REACH_M: Mapping[str, float] = MappingProxyType(
     {"head": 0.2, **dict.fromkeys(TRUNK, 0.12), **dict.fromkeys(MIDDLES, 0.2), **dict.fromkeys(ENDS, 0.3)}
 )
-"""How far a joint may be from where the rest of the body expects it: a surface beyond belongs to something else."""
+"""Largest difference between a joint's measured and expected depth: a surface beyond belongs to something else."""
 
 SIZE_RANGE = (0.5, 1.6)
-"""The smallest and the largest body, as a share of the model's, that a joint's surface may indicate."""
+"""Smallest and largest body size that a joint's surface may indicate, relative to the model's body."""
 
 LEAST_VISIBLE = 0.5
-"""A joint of less confidence is taken to be hidden: the surface there is somebody else's, or another part's."""
+"""Least confidence of a visible joint: below it, the surface belongs to another part or person."""
 
 LEAST_JOINTS = 3
-"""The median of fewer measured joints says nothing of the body's distance."""
+"""Fewest measured joints whose median gives the body's distance."""
 
 LEAST_PIXELS = 5
-"""Fewer may be noise or the mixed values of an edge."""
+"""Fewest pixels of a surface: fewer may be noise or the mixed values of an edge."""
 
 LEAST_SHARE = 0.15
-"""Of a window's pixels: even a limb that is narrower than its window covers more."""
+"""Least share of a window's pixels in a surface: even a limb that is narrower than its window covers more."""
 
 NEAREST_QUANTILE = 0.1
-"""What counts as a limb's nearest depth: single outliers before it are passed over."""
+"""Quantile of depths that gives a limb's nearest depth: nearer outliers are ignored."""
 
 LIMB_DEPTH_M = 0.04
-"""How much further away than that a limb's own surface may be: half its width."""
+"""Range of depths behind the nearest one that belong to a limb's own surface: half its width."""
 
 WINDOWS = (0.5, 1.0, 2.0)
-"""Half sides of the windows tried in turn until one has enough surface, in half widths of the limb."""
+"""Half sides of the windows that are tried in turn until one has enough surface, in half widths of the limb."""
 
 UNMEASURED = 0.5
-"""A joint's confidence is multiplied by this where its distance is not measured."""
+"""Factor on the confidence of a joint whose distance is not measured."""
 
 _HALF_THICKNESS_M = np.array([HALF_THICKNESS_M[name] for name in JOINTS])
 _RADIUS_M = np.where(np.isin(JOINTS, MIDDLES + ENDS), np.minimum(_HALF_THICKNESS_M, NARROW_M), _HALF_THICKNESS_M)
@@ -91,14 +91,14 @@ _REACH_M = np.array([REACH_M[name] for name in JOINTS])
 
 @dataclass(frozen=True)
 class _Body:
-    """The body that the colour image alone gives.
+    """The body estimated from the colour image alone.
 
     Attributes:
-        joints_m: (15, 3), camera frame, a body of the model's size.
-        pixels: (15, 2).
-        confidence: (15,).
-        offset_m: (15,), how far along z a joint lies behind its surface.
-        radius_px: (15,), how far around its pixel the surface is its own.
+        joints_m: (15, 3), camera frame, for a body of the model's size.
+        pixels: (15, 2), the joints in the image.
+        confidence: (15,), in [0, 1].
+        offset_m: (15,), depth of each joint behind its surface, along z.
+        radius_px: (15,), radius around each joint's pixel of the surface that belongs to it.
     """
 
     joints_m: Array
@@ -109,9 +109,9 @@ class _Body:
 
 
 def lifted(landmarks: Landmarks, lens: Lens, depth_m: DepthImage, person_height_m: float | None = None) -> Placed:
-    """Place one person by depth (height, width; m, 0 where there is none) that is aligned with the colour image.
+    """Place one person by depth (height, width; m, 0 where it is unknown) that is registered to the colour image.
 
-    Where too little of the person has depth, they are placed as by the colour image alone.
+    If too few joints have depth, the person is placed by the colour image alone.
 
     Raises:
         PlacingError: the landmarks fit no place in front of the camera.
@@ -142,7 +142,7 @@ def _body(landmarks: Landmarks, lens: Lens) -> _Body:
 def _torso_half_thickness_m(joints_m: Array, direction: Array) -> float:
     """Return half the thickness of an elliptic trunk along a ray's direction (3,): 1 / √(cos² φ / a² + sin² φ / b²).
 
-    φ is how far the trunk is turned from the ray, a half its depth, b half its width.
+    φ is the angle by which the trunk is turned from the ray, a half its depth, b half its width.
     """
     names = ("left_shoulder", "left_hip", "right_shoulder", "right_hip")
     left_shoulder, left_hip, right_shoulder, right_hip = (joints_m[INDEX[name]] for name in names)
@@ -153,10 +153,10 @@ def _torso_half_thickness_m(joints_m: Array, direction: Array) -> float:
 
 
 def _scale(body: _Body, depth_m: DepthImage) -> float | None:
-    """Return the body's size in sizes of the model's, the median over its joints; None where too few are measured.
+    """Estimate the body's size relative to the model's, the median over its joints; None if too few are measured.
 
-    A body s times as large at s times the distance looks the same. With a joint at z and its surface o before it,
-    s (z - o) is the measured distance.
+    A body s times as large at s times the distance looks the same. With a joint at depth z and its surface at z - o,
+    the measured distance is s (z - o).
     """
     model_m = body.joints_m[:, 2] - body.offset_m
     sizes = _surfaces(body, depth_m, SIZE_RANGE[0] * model_m, SIZE_RANGE[1] * model_m) / model_m
@@ -171,7 +171,7 @@ def _measured(body: _Body, scale: float, depth_m: DepthImage) -> Array:
 
 
 def _surfaces(body: _Body, depth_m: DepthImage, low_m: Array, high_m: Array) -> Array:
-    """Return each visible joint's surface (15,; m) between two distances (15,; m); NaN where there is none."""
+    """Return the depth of each visible joint's surface (15,; m) between two depths (15,; m); NaN if there is none."""
     surfaces = np.full(len(JOINTS), np.nan)
     for i in np.flatnonzero(body.confidence >= LEAST_VISIBLE):
         for window in WINDOWS:
@@ -183,7 +183,7 @@ def _surfaces(body: _Body, depth_m: DepthImage, low_m: Array, high_m: Array) -> 
 
 
 def _window(depth_m: DepthImage, pixel: Array, half_px: float) -> DepthImage:
-    """Return the depth image's square around a pixel (x, y); empty where that is outside."""
+    """Return the square of the depth image around a pixel (x, y); empty if the pixel is outside the image."""
     height, width = depth_m.shape
     (x, y), half = np.rint(pixel).astype(int), max(round(half_px), 1)
     if not (0 <= x < width and 0 <= y < height):
@@ -192,10 +192,10 @@ def _window(depth_m: DepthImage, pixel: Array, half_px: float) -> DepthImage:
 
 
 def _surface(values: DepthImage, low_m: float, high_m: float, *, whole: bool) -> float:
-    """Return the middle of the values in range, or of the nearest ones of them; NaN where they are too few.
+    """Return the median of the depths in range, of a limb only of the nearest ones; NaN if they are too few.
 
-    A trunk fills its window: its middle is the median of the whole. A limb may be narrower than its window: its
-    values are those within `LIMB_DEPTH_M` of the nearest ones, and mixed values and what lies behind are left out.
+    A trunk fills its window, so all depths count (`whole`). A limb may be narrower than its window, so only depths
+    within `LIMB_DEPTH_M` of the nearest count, without mixed values and the background.
     """
     near = values[(values > max(low_m, 0.0)) & (values < high_m)]
     if len(near) and not whole:
@@ -204,7 +204,7 @@ def _surface(values: DepthImage, low_m: float, high_m: float, *, whole: bool) ->
 
 
 def _filled_along_limbs(differences_m: Array) -> Array:
-    """Give each joint without a difference (NaN) that of the next joint towards the torso that has one, or 0."""
+    """Fill missing differences (15,; NaN) with that of the next joint towards the torso that has one, or with 0."""
     filled = differences_m.copy()
     torso = INDEX["torso"]
     filled[torso] = 0.0 if np.isnan(filled[torso]) else filled[torso]

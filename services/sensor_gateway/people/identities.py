@@ -1,4 +1,4 @@
-"""Keeps people's identities from image to image: a detection gets the number of the track that it continues."""
+"""Multi-person tracking: assigns each detection the number of the track that it continues."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -10,25 +10,25 @@ from actum.filters import MotionEstimate
 from actum.node import SECOND_NS
 
 FORGET_NS = 3 * SECOND_NS // 2
-"""How long somebody unseen keeps their track."""
+"""Time without detection after which a track is dropped."""
 
 COAST_NS = SECOND_NS
-"""How long somebody unseen is predicted to walk on at the same velocity."""
+"""Time without detection for which a track is predicted at constant velocity; then it stands still."""
 
 REACH_M = 0.5
-"""How far (m) from the predicted position somebody is still the same person …"""
+"""Gate: largest distance (m) of a detection from a track's predicted position."""
 
 REACH_MPS = 0.7
-"""… and how fast that grows (m/s) while they are not seen."""
+"""Growth of the gate (m/s) with the time since the track's last detection."""
 
 DEPTH_SHARE = 0.3
-"""What a metre along the ray counts against one across it: one image tells little of distance."""
+"""Weight of a distance along the ray relative to one across it: one image determines depth poorly."""
 
 NEWCOMER_COST = 100.0
-"""Of a new track, in squared reaches: more than any assignment to the tracks there are."""
+"""Cost of a new track, in squared `REACH_M`: more than any assignment to an existing track."""
 
 AMBIGUOUS_COST = 0.15
-"""How much less a detection must cost with its own track than with one that is not seen now, in squared reaches."""
+"""Least difference of cost between a detection's track and an undetected one, in squared `REACH_M`."""
 
 MEASURED_STD_M = np.array([0.04, 0.04, 0.2])
 """Standard deviation (3,; x, y, z) of a position measured in one image."""
@@ -37,7 +37,7 @@ ACCELERATION_STD_MPS2 = np.array([2.0, 2.0, 0.5])
 """Process noise (3,; x, y, z): small along z, where the measurement says little."""
 
 WALKING_STD_MPS = 0.8
-"""Of a new track's velocity: somebody stands there or walks in."""
+"""Standard deviation of a new track's velocity: the person stands or walks."""
 
 
 @dataclass(frozen=True)
@@ -61,51 +61,51 @@ class _Track:
         return replace(ahead, motion=motion)
 
     def predicted(self, stamp_ns: int) -> "_Track":
-        """Predict up to a stamp: the position coasts for `COAST_NS` at most, its uncertainty grows all the time."""
+        """Predict the track at a stamp: the position moves for `COAST_NS` at most, the uncertainty always grows."""
         ahead = self.motion.predicted((stamp_ns - self.stamp_ns) / SECOND_NS, ACCELERATION_STD_MPS2)
         state = np.concatenate([self.predicted_m(stamp_ns), self.motion.velocity_mps])
         return replace(self, stamp_ns=stamp_ns, motion=replace(ahead, state=state))
 
 
 class Identities:
-    """Numbers people, from 1, in the order in which they first appear; nobody gets a number that another had."""
+    """Numbers people from 1 in the order in which they first appear; numbers are never used again."""
 
     def __init__(self) -> None:
         self._tracks: list[_Track] = []
         self._next = 1
 
     def step(self, stamp_ns: int, positions_m: Sequence[Array]) -> list[int]:
-        """Return the number of the person at each position (3,; m, camera frame) found in one image; stamps rise."""
+        """Return the number of the person at each position (3,; m, camera frame) detected in one image; stamps rise."""
         known = [track for track in self._tracks if 0 < stamp_ns - track.stamp_ns <= FORGET_NS]
         costs = [[_cost(track, stamp_ns, position) for track in known] for position in positions_m]
         assigned = _assigned(costs)
-        unseen = [i for i in range(len(known)) if i not in assigned]
-        seen = [
-            self._seen(known, i, row, unseen, stamp_ns, position)
+        undetected = [i for i in range(len(known)) if i not in assigned]
+        detected = [
+            self._continued(known, i, row, undetected, stamp_ns, position)
             for i, row, position in zip(assigned, costs, positions_m, strict=True)
         ]
-        self._tracks = seen + [known[i] for i in unseen]
-        return [track.agent for track in seen]
+        self._tracks = detected + [known[i] for i in undetected]
+        return [track.agent for track in detected]
 
-    def _seen(
+    def _continued(
         self,
         known: Sequence[_Track],
         i: int | None,
         costs: Sequence[float],
-        unseen: Sequence[int],
+        undetected: Sequence[int],
         stamp_ns: int,
         position_m: Array,
     ) -> _Track:
-        """Continue one person's track; by prediction alone where the detection may be a hidden person's as well."""
+        """Continue a person's track, only by prediction if the detection may belong to an undetected track as well."""
         if i is None:
             return self._new(stamp_ns, position_m)
-        if any(costs[other] < costs[i] + AMBIGUOUS_COST for other in unseen):
+        if any(costs[other] < costs[i] + AMBIGUOUS_COST for other in undetected):
             return known[i].predicted(stamp_ns)
         return known[i].updated(stamp_ns, position_m)
 
     @property
     def expected(self) -> frozenset[int]:
-        """The numbers of the people who are seen or expected back."""
+        """The numbers of the people whose tracks are kept, detected or not."""
         return frozenset(track.agent for track in self._tracks)
 
     def _new(self, stamp_ns: int, position_m: Array) -> _Track:
@@ -115,22 +115,22 @@ class Identities:
 
 
 def _cost(track: _Track, stamp_ns: int, position_m: Array) -> float:
-    """Return the squared distance of a position from the predicted one, in squared reaches; infinite where too far."""
-    apart_m = _apart_m(track.predicted_m(stamp_ns), position_m)
-    return (apart_m / REACH_M) ** 2 if apart_m < track.reach_m(stamp_ns) else float("inf")
+    """Return the squared distance of a position from the prediction, in squared `REACH_M`; infinite beyond the gate."""
+    distance_m = _weighted_distance_m(track.predicted_m(stamp_ns), position_m)
+    return (distance_m / REACH_M) ** 2 if distance_m < track.reach_m(stamp_ns) else float("inf")
 
 
-def _apart_m(expected_m: Array, position_m: Array) -> float:
-    """Return a distance in which the part along the ray counts less."""
+def _weighted_distance_m(expected_m: Array, position_m: Array) -> float:
+    """Return the distance of two positions (3,), with the component along the ray weighted by `DEPTH_SHARE`."""
     ray = position_m / max(float(np.linalg.norm(position_m)), 1e-9)
-    apart = position_m - expected_m
-    along = float(apart @ ray)
-    across = apart - along * ray
+    offset = position_m - expected_m
+    along = float(offset @ ray)
+    across = offset - along * ray
     return float(np.hypot(np.linalg.norm(across), DEPTH_SHARE * along))
 
 
 def _assigned(costs: Sequence[Sequence[float]]) -> list[int | None]:
-    """Assign each row a column of its own, or None at `NEWCOMER_COST`, so that the sum of the costs is smallest."""
+    """Assign each row a different column, or None at `NEWCOMER_COST`, so that the sum of costs is smallest."""
     return list(min(_assignments(costs, frozenset()), key=lambda choice: choice[0])[1])
 
 

@@ -1,4 +1,4 @@
-"""MediaPipe's 33 landmarks of a person, and the named table that makes the fifteen joints of them."""
+"""MediaPipe's 33 landmarks of a person, and the table that maps them to the fifteen joints."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ LANDMARKS: tuple[str, ...] = (
     "left_heel", "right_heel",
     "left_foot_index", "right_foot_index",
 )  # fmt: skip
-"""MediaPipe's order; left and right are the actor's own."""
+"""Names of the landmarks in MediaPipe's order; left and right are the actor's own."""
 
 MEDIAPIPE_33: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -45,7 +45,7 @@ MEDIAPIPE_33: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "right_foot": ("right_ankle", "right_foot_index"),
     }
 )
-"""Each joint is the mean of these landmarks: the head's and the palms' middles, as NITE's are."""
+"""The landmarks whose mean is each joint: as with NiTE, the head's and the palms' joints are their centres."""
 
 
 def _weights() -> Array:
@@ -65,9 +65,9 @@ class Landmarks:
     """One person in one image.
 
     Attributes:
-        image_px: (33, 2), may lie outside the image.
-        world_m: (33, 3), origin between the hips, the camera's axes (x right, y down, z forward), a body of the
-            model's own size.
+        image_px: (33, 2), positions in the image; they may lie outside it.
+        world_m: (33, 3), metric positions of a body of the model's size; origin between the hips, the camera's axes
+            (x right, y down, z forward).
         visibility: (33,), in [0, 1].
     """
 
@@ -82,5 +82,5 @@ def joints_of(points: Array) -> Array:
 
 
 def confidence_of(visibility: Array) -> Array:
-    """Return each joint's confidence (15,), that of its least visible landmark, from visibility (33,)."""
+    """Return each joint's confidence (15,): the least visibility of its landmarks, from visibility (33,)."""
     return np.asarray(np.where(_PARTS, visibility, np.inf).min(axis=1))

@@ -1,4 +1,4 @@
-"""The people of one image after another as agents: detected, placed, identified, smoothed."""
+"""Tracks the people in successive images as agents: detects, places, identifies and smooths them."""
 
 from collections.abc import Callable, Sequence
 
@@ -15,7 +15,7 @@ from sensor_gateway.people.placing import Placed, PlacingError
 from sensor_gateway.people.pose_estimator import Estimator
 
 SAME_PERSON = 0.12
-"""Median distance of two detections' landmarks, in heights of the larger: people side by side are further apart."""
+"""Largest median distance between two detections' landmarks of one person, in heights of the larger detection."""
 
 
 class PeopleTracker:
@@ -29,8 +29,7 @@ class PeopleTracker:
     def agents(self, image_bgr: NDArray[np.uint8], stamp_ns: int, place: Callable[[Landmarks], Placed]) -> list[Agent]:
         """Return the agents of one image (height, width, 3); stamps rise.
 
-        `place` puts one person's landmarks into the camera frame, and raises `PlacingError` where it cannot: that
-        detection is dropped.
+        `place` places one person's landmarks in the camera frame; a detection is dropped if it raises `PlacingError`.
         """
         detections = distinct(self._estimator.people(image_bgr, stamp_ns))
         people = [person for person in (_placed(landmarks, place) for landmarks in detections) if person is not None]
@@ -46,7 +45,7 @@ class PeopleTracker:
 
 
 def distinct(detections: Sequence[Landmarks]) -> list[Landmarks]:
-    """Drop detections that lie upon a more visible one: the model sometimes finds one person twice."""
+    """Drop detections that coincide with a more visible one: the model sometimes detects one person twice."""
     kept: list[Landmarks] = []
     for landmarks in sorted(detections, key=lambda landmarks: -float(landmarks.visibility.sum())):
         if all(_distance(landmarks, other) > SAME_PERSON for other in kept):

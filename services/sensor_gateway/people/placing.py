@@ -1,8 +1,8 @@
-"""A person's landmarks placed in the camera frame, in metres.
+"""Places a person's landmarks in the camera frame, in metres.
 
-MediaPipe's world landmarks have a body's shape but no position, and axes rotated with the ray to the person. They are
-rotated back and translated to where they project best onto the image landmarks. The distance follows from the body's
-size, which the model gives as about the same for everybody.
+MediaPipe's world landmarks have a body's shape but no position, and their axes are rotated with the ray to the person.
+They are rotated back and translated to where they project best onto the image landmarks. The distance follows from the
+body's size, which is about the same for everybody in the model's output.
 """
 
 from dataclasses import dataclass
@@ -17,16 +17,16 @@ MODEL_HEIGHT_M = 1.64
 """The stature of the model's body: 1.46 m from ankle to ear, which is 0.89 of a stature."""
 
 SIZE_STD = 0.07
-"""By how much people differ in size from the model's body, as a share."""
+"""Relative standard deviation of people's size from the model's body."""
 
 KNOWN_SIZE_STD = 0.03
-"""The same where the stature is known: the model's bones change with the posture."""
+"""Relative standard deviation if the stature is known: the model's bone lengths vary with the posture."""
 
 NEAREST_M = 0.2
-"""A body part nearer than this to the camera is a wrong fit."""
+"""Least depth of a landmark: a nearer one means a wrong fit."""
 
 LEAST_WEIGHT = 1e-3
-"""Of a landmark that is not visible at all: keeps the fit solvable."""
+"""Weight of an invisible landmark: keeps the fit solvable."""
 
 
 @dataclass(frozen=True)
@@ -34,9 +34,9 @@ class Placed:
     """One person in the camera frame.
 
     Attributes:
-        joints_m: (15, 3).
+        joints_m: (15, 3), positions in the camera frame.
         confidence: (15,), in [0, 1].
-        depth_std_m: the standard deviation of the distance; None where it is measured.
+        depth_std_m: the standard deviation of the distance; None if the distance is measured.
     """
 
     joints_m: Array
@@ -49,7 +49,7 @@ class PlacingError(ValueError):
 
 
 def placed(landmarks: Landmarks, lens: Lens, person_height_m: float | None = None) -> Placed:
-    """Place one person by the size of a body: the model's, or that of a person of the given stature.
+    """Place one person at the distance that fits the size of the model's body, or of a person of the given stature.
 
     Raises:
         PlacingError: the landmarks fit no place in front of the camera.
@@ -68,7 +68,7 @@ def posed(world_m: Array, rays: Array, visibility: Array) -> Array:
     The translation t minimises Σ w² ‖(p + t)_xy - r (p + t)_z‖² over rotated points p, their rays r and visibility w.
 
     Raises:
-        PlacingError: the best place is behind the camera or right at it.
+        PlacingError: the best translation puts a landmark behind the camera or nearer than `NEAREST_M`.
     """
     weights = np.maximum(visibility, LEAST_WEIGHT)
     rotated = world_m @ rotation_to_ray(np.average(rays, axis=0, weights=weights)).T

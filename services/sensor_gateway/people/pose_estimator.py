@@ -1,4 +1,4 @@
-"""Finds people's landmarks in images by MediaPipe's pose landmarker."""
+"""Detects people's landmarks in images with MediaPipe's pose landmarker."""
 
 import os
 from collections.abc import Iterator
@@ -16,46 +16,46 @@ from sensor_gateway.people.landmarks import Landmarks
 
 MILLISECOND_NS = 1_000_000
 HALF_PX = 0.5
-"""MediaPipe's origin is the image's corner, that of the intrinsics the first pixel's centre."""
+"""Offset between MediaPipe's origin, the image's corner, and that of the intrinsics, the first pixel's centre."""
 
 STDERR = 2
 """The file descriptor of the error stream."""
 BLANK = np.zeros((64, 64, 3), np.uint8)
-"""Shown to a model once it is opened: MediaPipe writes its start-up lines with the first image."""
+"""Image given to a model once it is opened: MediaPipe writes its start-up lines at the first image."""
 SEARCH_NS = SECOND_NS
-"""While there is one person, others are looked for this often: a search costs three times as much as following one."""
+"""Interval of searches for further people while there is one: a search costs three times as much as tracking one."""
 TOGETHER_NS = 2 * SECOND_NS
-"""So long after several were seen, several are looked for in each image: one may be hidden for a moment."""
+"""Time after several people were detected in which each image is searched for several: one may be hidden briefly."""
 INSTALL = 'the camera needs MediaPipe: pip install "actum[camera]"'
 LIBRARIES = "on Debian and Ubuntu, 'apt install libegl1 libgles2' gets what it needs"
 FETCH = "fetch it with 'actum models fetch', or name a file in ACTUM_POSE_MODEL"
 
 
 class PoseModelError(ValueError):
-    """There is no usable pose model: what is wrong and what to do."""
+    """There is no usable pose model; the message tells what is wrong and what to do."""
 
 
 class Estimator(Protocol):
     """Detects people in images."""
 
     def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
-        """Return those seen in an image (height, width, 3); stamps rise."""
+        """Return the landmarks of the people detected in an image (height, width, 3; BGR); stamps rise."""
         ...
 
 
 class Nobody:
-    """The estimator of sources in whose images nobody is looked for."""
+    """The estimator of sources whose images are not searched for people."""
 
     def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
-        """Return nobody."""
+        """Return no detections."""
         return []
 
 
 class PoseEstimator:
-    """Finds up to `people` persons in each image of a stream; the model follows them from image to image.
+    """Detects up to `people` persons in each image of a stream; the model tracks them from image to image.
 
-    Searching for several costs three times as much as following one, and the model smooths one person only. So while
-    there is one, others are searched for once a second.
+    Searching for several persons costs three times as much as tracking one, and the model smooths only a single person.
+    So while there is one person, further ones are searched for once a second.
 
     Raises:
         PoseModelError: MediaPipe is not installed, or the file is missing or no pose model.
@@ -78,13 +78,13 @@ class PoseEstimator:
         self.close()
 
     def close(self) -> None:
-        """Let go of the model; the estimator is of no use afterwards."""
+        """Release the model; the estimator cannot be used afterwards."""
         self._one.close()
         if self._several is not None:
             self._several.close()
 
     def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
-        """Return those seen in an image of shape (height, width, 3), in no lasting order.
+        """Return the landmarks of the people detected in an image (height, width, 3; BGR), in arbitrary order.
 
         Stamps rise; the model gets them in whole milliseconds, at least one after the last.
         """
@@ -92,11 +92,11 @@ class PoseEstimator:
             self._sees_several(stamp_ns) or not within(self._searched_ns, stamp_ns, SEARCH_NS)
         ):
             self._searched_ns = stamp_ns
-            found = self._several.people(image_bgr, stamp_ns)
-            if len(found) > 1:
+            detections = self._several.people(image_bgr, stamp_ns)
+            if len(detections) > 1:
                 self._together_ns = stamp_ns
             if self._sees_several(stamp_ns):
-                return found
+                return detections
         return self._one.people(image_bgr, stamp_ns)
 
     def _sees_several(self, stamp_ns: int) -> bool:
@@ -123,15 +123,15 @@ class Landmarker:
         self._last_ms = 0
 
     def close(self) -> None:
-        """Close the model, which at the interpreter's end would be too late."""
+        """Close the model; the interpreter's end would be too late for that."""
         self._landmarker.close()
 
     def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
-        """Return those seen in an image."""
+        """Return the landmarks of the people detected in an image (height, width, 3; BGR)."""
         self._last_ms = max(stamp_ns // MILLISECOND_NS, self._last_ms + 1)
         height, width = image_bgr.shape[:2]
-        found = self._landmarker.detect_for_video(self._image(image_bgr), self._last_ms)
-        pairs = zip(found.pose_landmarks, found.pose_world_landmarks, strict=True)
+        result = self._landmarker.detect_for_video(self._image(image_bgr), self._last_ms)
+        pairs = zip(result.pose_landmarks, result.pose_world_landmarks, strict=True)
         return [_landmarks(in_image, in_world, width, height) for in_image, in_world in pairs]
 
     def _image(self, image_bgr: NDArray[np.uint8]) -> Any:
@@ -158,7 +158,7 @@ class Landmarker:
 
 @contextmanager
 def native_stderr_dropped() -> Iterator[None]:
-    """Drop what native code writes to the error stream: MediaPipe logs the model's start whatever is set."""
+    """Drop what native code writes to the error stream: MediaPipe logs the model's start at any log level."""
     kept = os.dup(STDERR)
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
