@@ -1,4 +1,4 @@
-"""The demo's score: what was done beside what was recognised, and beside the paper's table 2."""
+"""The demo's score: its events compared with the ground truth, and its results beside the paper's table 2."""
 
 from collections import Counter
 from collections.abc import Mapping

@@ -119,9 +119,9 @@ def _agent(agent: Agent) -> str:
     return f"agent {agent.agent}: torso {_point(agent.joints[INDEX['torso']])}, {known} of {len(agent.joints)} joints"
 
 
-def _object(found: TrackedObject) -> str:
-    hidden = "" if found.seen else " (covered, followed)" if found.followed else " (hidden)"
-    return f"{found.id} {escape(found.name)} {_point(found.position_m)}{hidden}"
+def _object(tracked: TrackedObject) -> str:
+    hidden = "" if tracked.seen else " (covered, followed)" if tracked.followed else " (hidden)"
+    return f"{tracked.id} {escape(tracked.name)} {_point(tracked.position_m)}{hidden}"
 
 
 def _point(position_m: list[float] | None) -> str:

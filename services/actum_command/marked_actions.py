@@ -64,7 +64,7 @@ def relabelled(segment_id: str, label: str) -> Change:
 
 
 def trimmed(segment_id: str, later_start_ns: int, later_end_ns: int) -> Change:
-    """Return the change that moves a segment's start and end by so much (ns); recorded answers to it stay."""
+    """Return the change that shifts a segment's start and end mark (ns, positive is later); recorded answers stay."""
 
     def edit(message: Message) -> Message:
         if not isinstance(message, Segment):

@@ -57,7 +57,7 @@ def train_model(training: Path, model_file: Path, progress: Progress) -> Evaluat
 
 
 def tested_actors(people: int) -> list[int]:
-    """Return the actors of the test: so many other than the training's, or the training's own where `people` is 0."""
+    """Return the actors of the test: `people` others than the training's, or the training's own where that is 0."""
     return list(range(ACTOR + 1, ACTOR + 1 + people)) or [ACTOR]
 
 

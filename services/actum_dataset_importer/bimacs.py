@@ -204,14 +204,14 @@ def _quaternion(row: Row, body: str) -> Point:
 
 
 def _labels(folder: Path, person: str, take: str) -> list[Label]:
-    found = sorted(folder.glob(f"labels_subject_{person}/*/take_{take}.json"))
-    if not found:
+    files = sorted(folder.glob(f"labels_subject_{person}/*/take_{take}.json"))
+    if not files:
         raise DatasetError(f"{folder}: no labels_subject_{person}/*/take_{take}.json; put the labels beside the takes")
     try:
-        content = json.loads(found[0].read_text())
+        content = json.loads(files[0].read_text())
         return [label for hand in HANDS for label in _hand_labels(hand, content[f"{hand}_hand"])]
     except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise DatasetError(f"{found[0]}: not frames and labels in turns for each hand ({error!r})") from None
+        raise DatasetError(f"{files[0]}: not frames and labels in turns for each hand ({error!r})") from None
 
 
 def _hand_labels(hand: Hand, content: list[Any]) -> list[Label]:

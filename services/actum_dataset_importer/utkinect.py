@@ -94,8 +94,8 @@ def read_labels(folder: Path) -> dict[str, list[LabelledSegment]]:
     path = folder / LABELS
     if not path.is_file():
         is_original = (folder / ORIGINAL_LABELS).is_file()
-        found = f"; {ORIGINAL_LABELS} is there, but some of its bounds are wrong" if is_original else ""
-        raise DatasetError(f"{path}: no such file{found}; put the corrected label file {LABELS} beside the recordings")
+        hint = f"; {ORIGINAL_LABELS} is there, but some of its bounds are wrong" if is_original else ""
+        raise DatasetError(f"{path}: no such file{hint}; put the corrected label file {LABELS} beside the recordings")
     recordings: dict[str, list[LabelledSegment]] = {}
     segments: list[LabelledSegment] | None = None
     for number, line in enumerate(path.read_text().splitlines(), start=1):

@@ -30,7 +30,7 @@ from actum_model_inspector.text_layout import wrapped
 SIDE_IN = 10.0  # inches of the map's longer side: names of 25 actions find room
 PALEST = 0.15  # share of a unit's colour, the rest white, where two actions answer alike: still a hint of colour
 NAME_PT = 10.0  # letters of an action's name: readable on a screen
-MISTAKE_PT = 6.5  # letters of what is written at a mistake: smaller, as there may be many
+MISTAKE_PT = 6.5  # letters of the names at wrong answers: smaller, as there may be many
 BOLD = 1.15  # width of bold letters in units of plain ones
 
 

@@ -107,7 +107,7 @@ def _terms(attribution: Contributions, winner: str, other: str) -> list[Term]:
 
 
 def _remarks(attribution: Contributions, winner: str, other: str) -> list[str]:
-    """Return the lines that explain the colours, and what is unusual about this answer."""
+    """Return lines that explain the colours, and any peculiarity of this answer."""
     lines = [f"green speaks for {winner}, purple for {other}; the figures: what the units hold that say so most"]
     if attribution.difference < 0:
         lines.append(f"the scores lean to {other}: the place on the map of actions decided otherwise")

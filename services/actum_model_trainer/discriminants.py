@@ -35,7 +35,7 @@ class Discriminants:
 
 @dataclass(frozen=True, eq=False)
 class FittedStage:
-    """The discriminants of one stage of an action, with what is known of the n vectors they were fitted to.
+    """The discriminants of one stage of an action, with sample and action of the n vectors they were fitted to.
 
     Attributes:
         discriminants: fitted to them.

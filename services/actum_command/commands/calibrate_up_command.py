@@ -38,12 +38,12 @@ def up(
     fail(f"nobody stood upright and still for long enough: {estimator.instruction}")
 
 
-def _report(found: UpDirection) -> None:
+def _report(tilt: UpDirection) -> None:
     say(
-        f"the camera looks {_signed(found.pitch_deg, 'up', 'down')} and is turned "
-        f"{_signed(found.roll_deg, 'clockwise', 'counterclockwise')} (the body swayed by {found.sway_deg:.1f} degrees)"
+        f"the camera looks {_signed(tilt.pitch_deg, 'up', 'down')} and is turned "
+        f"{_signed(tilt.roll_deg, 'clockwise', 'counterclockwise')} (the body swayed by {tilt.sway_deg:.1f} degrees)"
     )
-    numbers = ", ".join(f"{component:.3f}" for component in found.in_camera)
+    numbers = ", ".join(f"{component:.3f}" for component in tilt.in_camera)
     say(f"tell its sensor gateway: ACTUM_UP_IN_CAMERA='[{numbers}]'")
 
 

@@ -43,7 +43,7 @@ class PlainTyper(typer.Typer):
         return super().command(name, **{"cls": PlainCommand} | options)
 
 
-def _word(shown: str) -> str:
+def _word(type_text: str) -> str:
     """Return the placeholder for `<str>`, `<int range>` or `<list[Path]>`; a list of choices stays."""
-    kind = shown.strip("<>").removeprefix("list[").removesuffix("]").removesuffix(" range")
-    return WORDS.get(kind.lower(), shown)
+    kind = type_text.strip("<>").removeprefix("list[").removesuffix("]").removesuffix(" range")
+    return WORDS.get(kind.lower(), type_text)

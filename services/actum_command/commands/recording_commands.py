@@ -51,7 +51,7 @@ def record(
 
 
 def _report(stream: StreamRecorder, output: Path, label: str | None) -> None:
-    """Say what the file holds and what it lacks."""
+    """Print the counts of stored messages and marks, and warnings about those that are missing."""
     say(f"{stream.stored} messages, {stream.actions.total()} marked actions, written to {output}")
     for (origin, named), count in stream.actions.items():
         say(f"  {count} marked by {origin}, {'without a label' if named is None else f'labelled {named!r}'}")

@@ -15,13 +15,13 @@ from actum_command.service_settings import DECLARED, flag_of, negated_flag_of
 
 def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
     """Add to a command an option for each setting of the services that it lacks; it gets their values as `given`."""
-    own = dict(inspect.signature(command, eval_str=True).parameters)
-    del own["given"]
+    command_parameters = dict(inspect.signature(command, eval_str=True).parameters)
+    del command_parameters["given"]  # the command gets this one from the flags below
     flags = {
         name: _flag(name, field, service)
         for service, settings in DECLARED.items()
         for name, field in settings.model_fields.items()
-        if name not in ServiceSettings.model_fields and name not in own
+        if name not in ServiceSettings.model_fields and name not in command_parameters
     }
 
     @wraps(command)
@@ -29,7 +29,7 @@ def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
         given = {name: arguments.pop(name) for name in flags}
         command(**arguments, given={name: value for name, value in given.items() if value not in (None, [])})
 
-    parameters = [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in own.values()]
+    parameters = [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in command_parameters.values()]
     with_given.__signature__ = inspect.Signature([*parameters, *flags.values()])  # type: ignore[attr-defined]
     return with_given
 
