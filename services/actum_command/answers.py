@@ -1,4 +1,4 @@
-"""What marked segments are answered with, in words, as the answers come."""
+"""Waits for the answers to marked segments, and describes them in words."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -10,45 +10,46 @@ from actum.messages import Action, Event, Message
 from actum.runtime import Client, Listening
 from actum_command.describing import describe
 
-ANSWER_S = 6.0  # 2 s at the most for the classifier's late frames, 2 s for the fusion's objects, and some to be sure
+ANSWER_S = 6.0  # at most 2 s for the classifier's late frames and 2 s for the fusion's late objects, and a margin
 POLL_S = 0.02  # less than a frame's interval
 
 
 class Answers:
-    """Waits for the answers to segments; those to earlier segments that were not waited for come, too."""
+    """Waits for the answers to segments; late answers to earlier segments are described when they arrive."""
 
     def __init__(self, client: Client) -> None:
         self._events = client.listen(keys.pattern(keys.EVENT, client.sensor))
         self._actions = client.listen(keys.pattern(keys.ACTION, client.sensor))
-        self._asked: dict[str, Action | None] = {}
+        self._pending: dict[str, Action | None] = {}
 
     def until(self, segment_id: str, interrupted: Callable[[], bool]) -> Iterator[str]:
         """Yield lines of console markup until a segment's event has come, for `ANSWER_S`, or until interrupted."""
-        self._asked[segment_id] = None
+        self._pending[segment_id] = None
         deadline_s = time.monotonic() + ANSWER_S
         while True:
-            yield from self._events_come()
-            if segment_id not in self._asked:
+            yield from self._new_events()
+            if segment_id not in self._pending:
                 return
             if time.monotonic() >= deadline_s:
                 break
             if interrupted():
                 return
             time.sleep(POLL_S)
-        yield _lack(segment_id, self._asked.pop(segment_id))
+        yield _missing_answer(segment_id, self._pending.pop(segment_id))
 
-    def _events_come(self) -> Iterator[str]:
-        """Describe the events of segments asked for that have come, and remember their final actions."""
+    def _new_events(self) -> Iterator[str]:
+        """Describe the events of pending segments that have arrived, and keep their final actions."""
         for message in _messages(self._actions):
-            if isinstance(message, Action) and message.final and message.segment_id in self._asked:
-                self._asked[message.segment_id] = message
+            if isinstance(message, Action) and message.final and message.segment_id in self._pending:
+                self._pending[message.segment_id] = message
         for message in _messages(self._events):
-            if isinstance(message, Event) and message.segment_id in self._asked:
-                del self._asked[message.segment_id]
+            if isinstance(message, Event) and message.segment_id in self._pending:
+                del self._pending[message.segment_id]
                 yield describe(message)
 
 
-def _lack(segment_id: str, action: Action | None) -> str:
+def _missing_answer(segment_id: str, action: Action | None) -> str:
+    """Describe what a segment without an event lacks: any answer, or only the event after its final action."""
     if action is None:
         return f"[yellow]{escape(segment_id)}: no answer within {ANSWER_S:g} s; see actum doctor[/yellow]"
     return f"{describe(action)}; no event: does action_fusion run?"

@@ -1,4 +1,4 @@
-"""The demo's score: what was done beside what was recognised, and beside the paper's table 2."""
+"""The demo's score: its events compared with the ground truth, and its results beside the paper's table 2."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -26,10 +26,12 @@ TABLE_2: Mapping[str, tuple[int, int, int]] = MappingProxyType(
 
 @dataclass
 class Score:
-    """What was done beside what was recognised.
+    """The ground truth of segments beside their events.
 
     Attributes:
         expected: how many events there will be.
+        truths: the ground truth by segment id.
+        events: the events that have come, by segment id.
     """
 
     expected: int
@@ -42,21 +44,21 @@ class Score:
 
     def object_right(self, segment_id: str) -> bool:
         """Whether the event names the object it was done to."""
-        found = self.events[segment_id].object
-        return found is not None and found.id == self.truths[segment_id].object_id
+        answered = self.events[segment_id].object
+        return answered is not None and answered.id == self.truths[segment_id].object_id
 
     def of(self, action: str) -> list[str]:
         """List the answered segments of an action."""
         return [name for name, truth in self.truths.items() if truth.action == action and name in self.events]
 
     def objects_by_majority(self) -> int:
-        """Count the objects that a majority guess by the action gets right: the one it was done to most often."""
-        met = [Counter(self.truths[name].object_id for name in self.of(action)) for action in TABLE_2]
-        return sum(max(counts.values(), default=0) for counts in met)
+        """Count the objects that are right if each action's most frequent object is answered for all its segments."""
+        object_counts = [Counter(self.truths[name].object_id for name in self.of(action)) for action in TABLE_2]
+        return sum(max(counts.values(), default=0) for counts in object_counts)
 
 
 def line(score: Score, event: Event) -> str:
-    """Say one event, and whether it is right."""
+    """Describe one event as console markup, and whether action and object are right."""
     truth = score.truths.get(event.segment_id)
     if truth is None:
         return f"[yellow]{escape(event.segment_id)} is of no action of the scene[/yellow]"
@@ -82,7 +84,7 @@ def table(score: Score) -> Table:
 
 
 def summary(score: Score, learned: Evaluation, baseline: Evaluation, people: int) -> str:
-    """Say what the numbers mean, and what a much simpler method reaches."""
+    """Return the summary of the demo's results, with those of a much simpler method."""
     right = sum(score.action_right(name) for action in TABLE_2 for name in score.of(action))
     tests = len(score.events)
     low, high = wilson_interval(right, tests)
@@ -107,11 +109,11 @@ def _counts(score: Score, action: str) -> tuple[int, int, int]:
 
 
 def _cells(counts: tuple[int, ...]) -> list[str]:
-    """Write counts, with their share of the tests where they are one."""
-    paper_tests, paper_right, paper_object, tests, right, found = counts
+    """Return a row's cells: the numbers of tests, and the counts of right actions and objects with their shares."""
+    paper_tests, paper_right, paper_object, tests, right, right_objects = counts
     return [
         str(paper_tests), _share(paper_right, paper_tests), _share(paper_object, paper_tests),
-        str(tests), _share(right, tests), _share(found, tests),
+        str(tests), _share(right, tests), _share(right_objects, tests),
     ]  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Messages in words, one line each, as console markup."""
+"""Describes messages in words, one line of console markup each."""
 
 from datetime import datetime
 from functools import singledispatch
@@ -27,7 +27,7 @@ EPOCH_NS = 10**18  # September 2001: later stamps count from 1970, smaller ones 
 
 
 def time_of(message: Message) -> str:
-    """Say when a message was captured: the time of day, or seconds on a clock that does not tell it."""
+    """Return when a message was captured: the time of day, or seconds since the start of the sensor's clock."""
     if message.stamp_ns is None:
         return "now"
     if message.stamp_ns < EPOCH_NS:
@@ -36,25 +36,25 @@ def time_of(message: Message) -> str:
 
 
 def describe(message: Message) -> str:
-    """Say the gist of a message in one line, after the segment it belongs to."""
+    """Describe a message in one line; where it belongs to a segment, the line begins with that."""
     if isinstance(message, Event):
         return f"{escape(message.segment_id)}: {describe_event(message)}" if message.valid else describe_event(message)
     if isinstance(message, Action):
         return describe_action(message)
     if not message.valid:
         return f"[yellow]not valid: {escape(message.reason or '')}[/yellow]"
-    return _gist(message)
+    return _content(message)
 
 
 def describe_event(event: Event) -> str:
-    """Say an event: the sentence, or why there is none."""
+    """Describe an event: its sentence, or why it was rejected."""
     if not event.valid:
         return f"[yellow]{escape(event.segment_id)} rejected: {escape(event.reason or '')}[/yellow]"
     return f"[bold]{escape(event.sentence)}[/bold]"
 
 
 def describe_action(action: Action) -> str:
-    """Say an action, final or so far, or why there is none."""
+    """Describe an action, partial or final, or why it was rejected."""
     if not action.valid:
         return f"[yellow]{escape(action.segment_id)} rejected: {escape(action.reason or '')}[/yellow]"
     kind = "final" if action.final else "so far"
@@ -63,18 +63,18 @@ def describe_action(action: Action) -> str:
 
 
 @singledispatch
-def _gist(message: Message) -> str:
+def _content(message: Message) -> str:
     return message.SCHEMA
 
 
-@_gist.register
+@_content.register
 def _skeleton(message: Skeleton) -> str:
     return "; ".join(map(_agent, message.agents)) or "nobody"
 
 
-@_gist.register
+@_content.register
 def _posture(message: Posture) -> str:
-    """Say where the person's hips are in the camera frame, and the hands seen from there."""
+    """Describe the hips' position in the camera frame, and the hands' positions in the egocentric frame."""
     if message.ego_from_camera is None or message.joints_m is None:
         return f"agent {message.agent}: no joints"
     ego_from_camera = np.reshape(message.ego_from_camera, (4, 4))
@@ -86,30 +86,30 @@ def _posture(message: Posture) -> str:
     )
 
 
-@_gist.register
+@_content.register
 def _objects(message: Objects) -> str:
     return "; ".join(map(_object, message.objects)) or "no object"
 
 
-@_gist.register
+@_content.register
 def _image(message: Image) -> str:
     return f"{message.format} {message.width}x{message.height}, {len(message.data)} bytes"
 
 
-@_gist.register
+@_content.register
 def _mark(message: Segment) -> str:
     label = "" if message.label is None else f", label {escape(message.label)}"
     origin = "" if message.origin is None else f", by {escape(message.origin)}"
     return f"{message.kind} {escape(message.segment_id)}{label}{origin}"
 
 
-@_gist.register
+@_content.register
 def _truth(message: Truth) -> str:
     done = f'{message.action} {message.object_id} "{message.object_name}"'
     return f"{message.kind} {escape(message.segment_id)}: {escape(done)}"
 
 
-@_gist.register
+@_content.register
 def _status(message: Status) -> str:
     return f"{escape(message.state)}, {sum(message.rates.values()):.0f} messages/s"
 
@@ -119,9 +119,9 @@ def _agent(agent: Agent) -> str:
     return f"agent {agent.agent}: torso {_point(agent.joints[INDEX['torso']])}, {known} of {len(agent.joints)} joints"
 
 
-def _object(found: TrackedObject) -> str:
-    hidden = "" if found.seen else " (covered, followed)" if found.followed else " (hidden)"
-    return f"{found.id} {escape(found.name)} {_point(found.position_m)}{hidden}"
+def _object(tracked: TrackedObject) -> str:
+    hidden = "" if tracked.seen else " (covered, followed)" if tracked.followed else " (hidden)"
+    return f"{tracked.id} {escape(tracked.name)} {_point(tracked.position_m)}{hidden}"
 
 
 def _point(position_m: list[float] | None) -> str:

@@ -1,4 +1,4 @@
-"""Whether every service is there, alive and of one version, and what to do where one is not."""
+"""Checks that every service is there, alive and of one version; says what to do where one is not."""
 
 import time
 from collections.abc import Iterator, Mapping
@@ -12,28 +12,28 @@ from actum_command.processes import SERVICES
 from scene_simulator.endless_simulator import DESCRIPTION
 
 EXPECTED = ("sensor_gateway", *SERVICES)
-"""The services of a whole system; the simulated scene stands in the sensor gateway's place, by its name."""
+"""The services of a whole system; the simulated scene replaces the sensor gateway under the same name."""
 
 STATUS_S = 2.5  # a little more than two of the reports that every service sends each second
 POLL_S = 0.02  # short beside a second between reports
 
 ENDED = "source ended"
-"""The state of a sensor whose files or scene are over."""
+"""The state of a sensor whose files or scene have ended."""
 
 NO_MODEL = "no model"
-"""How the state of a classifier begins that has had no model yet."""
+"""The prefix of the state of a classifier that has had no model yet."""
 
 OLD_MODEL = "model not renewed"
-"""How the state of a classifier begins whose model file was replaced by one that cannot be used."""
+"""The prefix of the state of a classifier whose model file was replaced by one that cannot be used."""
 
 
 PROGRAMS = {"sensor_gateway": "'python -m sensor_gateway', for the simulated scene 'python -m scene_simulator',"}
-"""How a service is started, where there is more than one program of its name."""
+"""The programs to start for a service, where there is more than one of its name."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One service as it was found: what it tells of itself, in words, and what is wrong."""
+    """The result of the check of one service: its own report, in words, and its problems."""
 
     service: str
     instances: int
@@ -48,7 +48,7 @@ class Finding:
 
 
 def examine(client: Client) -> list[Finding]:
-    """Look at every service that is expected or found alive."""
+    """Check every service that is expected or alive."""
     statuses = _statuses(client)
     tokens: dict[str, list[str]] = {}
     for key in client.alive():
@@ -63,8 +63,8 @@ def examine(client: Client) -> list[Finding]:
 
 
 def _statuses(client: Client) -> dict[str, Status]:
-    """Collect what each service says of itself within a little over two reports."""
-    found: dict[str, Status] = {}
+    """Return the latest status of each service that reports within `STATUS_S`, by the service's name."""
+    statuses: dict[str, Status] = {}
     listening = client.listen(keys.pattern(keys.STATUS, client.sensor))
     deadline_s = time.monotonic() + STATUS_S
     while time.monotonic() < deadline_s:
@@ -72,8 +72,8 @@ def _statuses(client: Client) -> dict[str, Status]:
         if received is None:
             time.sleep(POLL_S)
         elif isinstance(received.message, Status):
-            found[received.message.service] = received.message
-    return found
+            statuses[received.message.service] = received.message
+    return statuses
 
 
 def _finding(name: str, instances: list[str], infos: list[Info], status: Status | None) -> Finding:
@@ -100,7 +100,7 @@ def _short(key: str, status: Status) -> str:
 
 
 def _latency(latency_ms: Mapping[str, float]) -> str:
-    """Write both percentiles, a dash for one that a foreign service does not tell."""
+    """Return both percentiles as text, a dash for one that a foreign service does not report."""
     if not latency_ms:
         return ""
     return " / ".join(f"{latency_ms[name]:.2f}" if name in latency_ms else "-" for name in ("p50", "p99"))
@@ -124,13 +124,13 @@ def _problems(name: str, instances: list[str], infos: list[Info], status: Status
 
 
 def _who(infos: list[Info], instances: list[str]) -> str:
-    """Name each process and, where it tells, the machine it runs on."""
+    """Name each instance and, where it says so, the machine that it runs on."""
     silent = sorted(set(instances) - {info.instance for info in infos})
     return ", ".join([f"{info.instance} on {info.host}" if info.host else info.instance for info in infos] + silent)
 
 
 def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
-    """Say what is wrong by the service's own account; `source` names what it reads, in brackets."""
+    """Yield the problems that a service's own state names; `source` is the source that it reads, in brackets."""
     if status.state.startswith("camera lost"):
         yield f"{name}: {status.state}{source}; it tries again by itself"
     elif status.state == ENDED:

@@ -1,4 +1,4 @@
-"""A folder of pictures of a model, and of why it answers recordings as it does, with a page that shows them."""
+"""Writes a folder of pictures that explain a model and its answers to recordings, with a page that shows them."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,7 +9,7 @@ from som_classifier.model import Model
 
 
 class NoSegmentError(ValueError):
-    """Recordings in which nothing is marked: what to do."""
+    """The recordings have no marked segment; the text says what to do."""
 
 
 def write_inspection(

@@ -1,4 +1,4 @@
-"""What calibration takes from live streams: views of the board in colour images, and skeletons."""
+"""Collects the inputs of calibration from live streams: views of the board in colour images, and skeletons."""
 
 import threading
 import time
@@ -12,33 +12,33 @@ from actum_calibrator.grey_images import UnusablePictureError, grey_from_message
 from actum_calibrator.pairs import Pair
 from actum_calibrator.view_collector import PairCollector, ViewCollector
 
-SILENCE_S = 10.0  # a gateway that puts anything has done so by then, however slow its camera starts
+SILENCE_S = 10.0  # longer than the slowest camera takes from the gateway's start to the first frame
 POLL_S = 0.01  # a third of a frame's interval
 REMEDY = "A gateway whose ACTUM_CALIBRATION is for another image size gives none that can be used: start it without"
 
 Tell = Callable[[str], object]
-"""Is told what happens and what to do next, a line of console markup each time."""
+"""Called with each line of console markup that says what has happened or what to do next."""
 
 
 class SilentStreamError(RuntimeError):
-    """Nothing that can be used has come for too long: on which key, why, what to do."""
+    """No message that can be used has come for too long; the text names the key, the reason and what to do."""
 
 
 def collect_views(client: Client, finder: BoardFinder, stop: threading.Event, tell: Tell) -> list[View]:
-    """Collect views until there are enough or until stopped, telling what to show next.
+    """Collect views until there are enough or until stopped, and tell which view is needed next.
 
     Raises:
         SilentStreamError: no valid image comes.
     """
-    collector, told = ViewCollector(), None
+    collector, last_instruction = ViewCollector(), None
     for _, view in _views(client, [client.sensor], finder, stop, tell):
         if collector.offer(view):
             tell(f"view {len(collector.views)} taken")
         if collector.complete:
             break
-        if collector.instruction != told:
-            told = collector.instruction
-            tell(f"  next: {told}")
+        if collector.instruction != last_instruction:
+            last_instruction = collector.instruction
+            tell(f"  next: {last_instruction}")
     return collector.views
 
 
@@ -66,21 +66,21 @@ def live_skeletons(client: Client, stop: threading.Event, tell: Tell) -> Iterato
         SilentStreamError: nothing comes.
     """
     key = keys.key(keys.SKELETON, client.sensor)
-    stream, heard_s = client.listen(key), time.monotonic()
+    stream, received_s = client.listen(key), time.monotonic()
     tell(f"watching {key}; Ctrl-C ends")
     while not stop.wait(POLL_S):
         while (received := stream.take()) is not None:
-            heard_s = time.monotonic()
+            received_s = time.monotonic()
             if isinstance(received.message, Skeleton):
                 yield received.message
-        if time.monotonic() - heard_s > SILENCE_S:
+        if time.monotonic() - received_s > SILENCE_S:
             raise SilentStreamError(f"no skeleton on {key} for {SILENCE_S:g} s: does its gateway run?")
 
 
 def _views(
     client: Client, sensors: Sequence[str], finder: BoardFinder, stop: threading.Event, tell: Tell
 ) -> Iterator[tuple[int, View | None]]:
-    """Yield which sensor's image came and the board in it, None where it is not found, until stopped."""
+    """Yield the index of each image's sensor and the board's view, None where no board is found, until stopped."""
     streams = [_ImageStream(client, keys.key(keys.COLOR, sensor)) for sensor in sensors]
     tell(f"watching {', '.join(stream.key for stream in streams)}; Ctrl-C ends")
     while not stop.is_set():
@@ -97,23 +97,23 @@ class _ImageStream:
     def __init__(self, client: Client, key: str) -> None:
         self.key = key
         self._listening = client.listen(key, ring=1)
-        self._heard_s = time.monotonic()
+        self._valid_s = time.monotonic()
         self._invalid: str | None = None
 
     def newest(self) -> Image | None:
-        """Return the newest image, if it came since the last and is valid.
+        """Return the newest image if it is valid and has come since the last call, else None.
 
         Raises:
-            SilentStreamError: none that is has come for `SILENCE_S`.
+            SilentStreamError: no valid image has come for `SILENCE_S`.
         """
         received = self._listening.take()
         image = None if received is None else received.message
         if isinstance(image, Image) and image.valid:
-            self._heard_s, self._invalid = time.monotonic(), None
+            self._valid_s, self._invalid = time.monotonic(), None
             return image
         if isinstance(image, Image):
             self._invalid = image.reason or "it does not say why"
-        if time.monotonic() - self._heard_s <= SILENCE_S:
+        if time.monotonic() - self._valid_s <= SILENCE_S:
             return None
         if self._invalid is not None:
             raise SilentStreamError(f"no valid image on {self.key} for {SILENCE_S:g} s: {self._invalid}. {REMEDY}")

@@ -13,12 +13,12 @@ from actum_model_trainer.samples import classifier_input, closed_segments, senso
 from som_classifier.segments import ClosedSegment
 
 Edit = Callable[[Segment | Action | Event | Truth], Message | None]
-"""What becomes of a message that names the segment; None for nothing."""
+"""Returns the message to store in place of one that names the segment, or None to leave it out."""
 
 
 @dataclass(frozen=True)
 class MarkedAction:
-    """One marked action: `frames` can be learnt from, unless `problem` says why none can."""
+    """One marked action: its number of valid frames, and why it cannot be trained on, None where it can."""
 
     segment_id: str
     label: str | None
@@ -54,7 +54,7 @@ def bounds_ns(recording: Recording, segment_id: str) -> tuple[int | None, int | 
 
 
 def relabelled(segment_id: str, label: str) -> Change:
-    """Give a segment another label."""
+    """Return the change that gives a segment another label."""
 
     def edit(message: Message) -> Message:
         is_start = isinstance(message, Segment) and message.kind == "start"
@@ -64,7 +64,7 @@ def relabelled(segment_id: str, label: str) -> Change:
 
 
 def trimmed(segment_id: str, later_start_ns: int, later_end_ns: int) -> Change:
-    """Move a segment's start and end; what was answered of it when it was recorded stays as it is."""
+    """Return the change that shifts a segment's start and end mark (ns, positive is later); recorded answers stay."""
 
     def edit(message: Message) -> Message:
         if not isinstance(message, Segment):
@@ -77,11 +77,13 @@ def trimmed(segment_id: str, later_start_ns: int, later_end_ns: int) -> Change:
 
 
 def dropped(segment_id: str) -> Change:
-    """Leave out a segment's marks and all that was answered of it."""
+    """Return the change that leaves out a segment's marks, its answers and its ground truth."""
     return _of_segment(segment_id, lambda _: None)
 
 
 def _of_segment(segment_id: str, edit: Edit) -> Change:
+    """Return the change that edits the messages that name a segment, and no others."""
+
     def change(stored: StoredMessage) -> StoredMessage | None:
         message = _message(stored)
         if not isinstance(message, Segment | Action | Event | Truth) or message.segment_id != segment_id:
@@ -95,7 +97,7 @@ def _of_segment(segment_id: str, edit: Edit) -> Change:
 
 
 def _message(stored: StoredMessage) -> Message | None:
-    """Decode what may name a segment; a mark that says "now" was put when it was stored."""
+    """Decode a message that may name a segment, None for any other. A mark without a stamp gets that of its storage."""
     try:
         if keys.parse(stored.key).topic not in (keys.SEGMENT, keys.ACTION, keys.EVENT, keys.TRUTH):
             return None
@@ -106,5 +108,6 @@ def _message(stored: StoredMessage) -> Message | None:
 
 
 def _problem(closed: ClosedSegment) -> str | None:
+    """Return why a segment cannot be trained on, None where it can."""
     problem = why_unusable(closed)
     return "no label" if problem is None and closed.label is None else problem

@@ -1,4 +1,4 @@
-"""A sensor's messages as they come, each as a line of words or of JSON."""
+"""Writes a sensor's messages as they arrive, each as a line of words or of JSON."""
 
 from collections.abc import Iterator
 
@@ -14,11 +14,11 @@ WATCHABLE = {topic.leaf.removesuffix("/{}"): topic for topic in keys.TOPICS}
 """All topics, by the name that a user gives them."""
 
 
-def heard(client: Client, topics: list[keys.Topic]) -> Iterator[Received]:
-    """Yield what comes on the topics, from now on."""
+def received_on(client: Client, topics: list[keys.Topic]) -> Iterator[Received]:
+    """Yield the messages that arrive on the topics, from now on."""
     leaves = {topic.leaf for topic in topics}
-    only = keys.pattern(topics[0], client.sensor) if len(topics) == 1 else keys.everything(client.sensor)
-    return (received for received in client.listen(only) if _leaf(received.key) in leaves)
+    pattern = keys.pattern(topics[0], client.sensor) if len(topics) == 1 else keys.everything(client.sensor)
+    return (received for received in client.listen(pattern) if _leaf(received.key) in leaves)
 
 
 def line(received: Received) -> str:
@@ -29,7 +29,7 @@ def line(received: Received) -> str:
 
 
 def json_line(received: Received) -> str:
-    """Write one received message as JSON: key, schema and every field, or why it is no message."""
+    """Write one received message as JSON: key, schema and every field; or key and error where it does not decode."""
     if received.message is None:
         fields = {"key": received.key, "error": str(received.error)}
     else:

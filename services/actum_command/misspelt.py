@@ -1,4 +1,4 @@
-"""Settings that no service has: each service takes its own of what all are told, so none misses what is misspelt."""
+"""Finds misspelt settings: each service ignores the settings of others, so none notices one that nobody has."""
 
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -10,14 +10,14 @@ from actum_command.service_settings import DECLARED
 PREFIX = "ACTUM_"
 FILE = PREFIX + "CONFIG"
 OTHERS = ("camera_device", "config", "data", "log", "models", "parent", "videos")
-"""What the runtime, the compose files and the tests are told in the environment."""
+"""The `ACTUM_…` variables that are no settings of services: the runtime, the compose files or the tests read them."""
 
 KNOWN = sorted({name for settings in DECLARED.values() for name in settings.model_fields})
 """The settings of all services."""
 
 
 def misspelt(environment: Mapping[str, str]) -> Iterator[str]:
-    """Name what is no setting, in the file that `ACTUM_CONFIG` names and in the environment.
+    """Yield a line for each name that is no setting, in the file that `ACTUM_CONFIG` names and in the environment.
 
     Raises:
         OSError, ValueError: the file cannot be read.

@@ -1,4 +1,4 @@
-"""A published file, such as the pose model: fetched, checked against its digest, and only then given its name."""
+"""Downloads a published file, such as the pose model, and checks its digest before it gets its name."""
 
 import hashlib
 import urllib.error
@@ -9,25 +9,25 @@ from http.client import HTTPException
 from pathlib import Path
 
 CHUNK_BYTES = 64 * 1024  # small enough that progress moves on a slow line, large enough that it costs nothing
-TIMEOUT_S = 30.0  # of silence: after so long a server is given up
+TIMEOUT_S = 30.0  # a server that sends nothing for so long is given up
 Progress = Callable[[int, int], None]
-"""Told after each piece: how many bytes are there, of how many."""
+"""Called after each chunk with the number of bytes received, and of all."""
 
 
 class FetchError(ValueError):
-    """A file that could not be fetched: which, why, what to do."""
+    """A file that could not be fetched; the text names it, the reason and what to do."""
 
 
 @dataclass(frozen=True)
 class Published:
-    """A file as its publisher has it."""
+    """A published file: its address, size (bytes) and SHA-256 (hexadecimal)."""
 
     url: str
     size: int
     sha256: str
 
     def is_at(self, path: Path) -> bool:
-        """Tell whether a file is this one."""
+        """Tell whether the file at a path has this one's digest."""
         return path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() == self.sha256
 
 
@@ -41,10 +41,10 @@ POSE_MODEL = Published(
 
 
 def fetch(published: Published, path: Path, progress: Progress) -> None:
-    """Fetch a file to a path; what was there stays until the new one is whole and right.
+    """Fetch a file to a path; an existing one is replaced only once the new one is complete and checked.
 
     Raises:
-        FetchError: it cannot be reached, or what came is not it.
+        FetchError: it cannot be reached, or its size or digest is another.
         OSError: it cannot be written.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -57,7 +57,7 @@ def fetch(published: Published, path: Path, progress: Progress) -> None:
 
 
 def _received(published: Published, part: Path, progress: Progress) -> tuple[int, str]:
-    """Write what comes, and return its size and SHA-256."""
+    """Download the file to `part`, and return its size and SHA-256."""
     digest, size = hashlib.sha256(), 0
     with part.open("wb") as file:
         for chunk in _chunks(published.url):

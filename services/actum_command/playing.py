@@ -1,4 +1,4 @@
-"""What `actum play` puts: recordings in a row, with the stamps, numbers and names of one live session."""
+"""Prepares recordings for `actum play`: one after another, with the stamps, numbers and names of one live session."""
 
 from collections.abc import Collection, Iterator, Sequence
 from typing import Any
@@ -22,9 +22,10 @@ def schedule(
     """Yield the recordings' messages one recording after another in order of stamp, the first stamp being `start_ns`.
 
     Stamps rise by a second or more between recordings; intervals and gaps in the numbers inside a recording are
-    exact. Streams carry the play's session; marks keep their ids, with `#2` … where an earlier recording has used
-    them, have the origin `replay`, lose their labels (nothing live may know them) and their numbers (they are put by
-    this player). `sensor` renames the viewpoint. `topics` are played, by default `playable_topics` of each recording.
+    exact. Streams get the session id of this playback. Marks keep their ids, with `#2` … added where an earlier
+    recording has used one; they get the origin `replay`, and lose their labels (no live service may know them) and
+    their numbers (this player numbers its own). `sensor` renames the viewpoint. Only messages of `topics` are played,
+    by default of each recording's `playable_topics`.
 
     Raises:
         RecordingError: a recording is damaged.
@@ -49,7 +50,7 @@ def playable_topics(recording: Recording) -> frozenset[keys.Topic]:
 
 
 class _Names:
-    """The new names in one recording: the viewpoint, its sessions, its segments. `taken` is shared by a play."""
+    """Renames one recording's sensor, sessions and segments. `taken` holds the segment ids used in this playback."""
 
     def __init__(self, session_id: str, sensor: str | None, taken: set[str]) -> None:
         self._session_id = session_id

@@ -1,4 +1,4 @@
-"""A preset by its name, with what is set otherwise of the paper's."""
+"""Looks a preset up by name, and changes settings of the paper's preset."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -8,15 +8,15 @@ from som_classifier.attention import CHOICES
 from som_classifier.presets import PAPER, PRESETS, PaperPreset, Preset
 
 SETTINGS = "; ".join(f"{name}={'|'.join(values)}" for name, values in CHOICES.items())
-"""What can be set of the paper's preset, in words."""
+"""The settings of the paper's preset and their values, in words."""
 
 
 class PresetError(ValueError):
-    """A preset or a setting that there is not: which, and which there are."""
+    """An unknown preset or setting; the text names it and the known ones."""
 
 
 def preset_named(name: str, settings: Sequence[str] = ()) -> Preset:
-    """Look a preset up by name, and change what the settings, each NAME=VALUE, say of it.
+    """Return the preset of a name, changed by the settings, each NAME=VALUE.
 
     Raises:
         PresetError: there is no such preset, or it has no such setting.

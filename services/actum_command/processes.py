@@ -20,7 +20,7 @@ ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 def system(
     settings: ServiceSettings, source: str, path: Path | None, model: Path | None, given: Given
 ) -> list[Program]:
-    """All programs of a system but its router: the four services, and the sensor that the source names."""
+    """Return all programs of a system but its router: the four services, and the sensor that the source names."""
     if source == "simulator":
         sensor = [simulator(settings, arguments_of("scene_simulator", given)), scene(settings)]
         return [*services(settings, model, simulated_objects(), given), *sensor]
@@ -37,7 +37,7 @@ def common(settings: ServiceSettings) -> dict[str, str]:
 
 
 def router(settings: ServiceSettings) -> Program:
-    """Run the embedded router, listening where the others connect."""
+    """Return the program of the embedded router, which listens where the others connect."""
     return Program("router", "actum_command", ["router", "--listen", settings.connect], common(settings))
 
 
@@ -51,9 +51,9 @@ def simulated_objects() -> dict[str, str]:
 def services(
     settings: ServiceSettings, model: Path | None, objects: Mapping[str, str], given: Given = MappingProxyType({})
 ) -> list[Program]:
-    """Run the four services behind the sensor, told what is given of their settings.
+    """Return the programs of the four services behind the sensor, with those of the given settings that they have.
 
-    `objects` is environment that tells the tracker what it may see.
+    `objects` is the environment that lists the objects for the tracker, as `simulated_objects` returns it.
     """
     environment = {**common(settings), **objects}
     if model is not None:
@@ -62,15 +62,15 @@ def services(
 
 
 def gateway(settings: ServiceSettings, arguments: Sequence[str]) -> Program:
-    """Run the sensor gateway with its own arguments."""
+    """Return the program of the sensor gateway with its arguments."""
     return Program("sensor_gateway", "sensor_gateway", arguments, common(settings))
 
 
 def simulator(settings: ServiceSettings, arguments: Sequence[str]) -> Program:
-    """Run the simulated scene, in the sensor gateway's place."""
+    """Return the program of the simulated scene, which replaces the sensor gateway."""
     return Program("scene_simulator", "scene_simulator", arguments, common(settings))
 
 
 def scene(settings: ServiceSettings) -> Program:
-    """Run the client that puts the simulated scene's marks."""
+    """Return the program of the client that puts the simulated scene's marks."""
     return Program("scene", "actum_command", ["scene"], common(settings))

@@ -1,4 +1,4 @@
-"""Marks and labelled examples of the simulated scene, made from the truth that it tells."""
+"""Marks and labelled examples of the simulated scene, made from its ground truth."""
 
 import threading
 from pathlib import Path
@@ -11,7 +11,7 @@ from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator, labelled_stream
 
 POLL_S = 0.005  # a sixth of a frame's interval: marks come well before the next frame
-SUBSCRIBER_POLL_S = 0.5  # how soon a request to stop is heeded while nobody listens to marks
+SUBSCRIBER_POLL_S = 0.5  # how soon a stop takes effect while nobody listens to marks
 
 
 def write_examples(output: Path, repetitions: int, actor: int, seed: int) -> None:
@@ -27,7 +27,7 @@ def write_examples(output: Path, repetitions: int, actor: int, seed: int) -> Non
 
 
 def mark_truth(client: Client, stop: threading.Event) -> None:
-    """Answer each truth with its mark, until stopped."""
+    """Put the mark of each ground-truth message, until stopped."""
     truths = client.listen(keys.key(keys.TRUTH, client.sensor))
     while not stop.is_set() and not client.wait_for_subscriber(keys.SEGMENT, SUBSCRIBER_POLL_S):
         pass

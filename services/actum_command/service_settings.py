@@ -14,14 +14,14 @@ DECLARED: Mapping[str, type[ServiceSettings]] = {
     service.__name__: service.settings.Settings
     for service in (sensor_gateway, scene_simulator, pose_preprocessor, som_classifier, marker_tracker, action_fusion)
 }
-"""What each service can be told."""
+"""The settings of each service, by the service's name."""
 
 Given = Mapping[str, bool | list[str]]
-"""The settings that stood on the command line, by name."""
+"""The settings that are given on the command line, by name."""
 
 
 def arguments_of(service: str, given: Given) -> list[str]:
-    """Write those of the given settings that a service has as its flags."""
+    """Return the flags of a service for those of the given settings that it has."""
     arguments: list[str] = []
     for name, value in given.items():
         if name not in DECLARED[service].model_fields:

@@ -26,22 +26,22 @@ from scene_simulator.programme import ACTIONS
 from som_classifier.model_loading import load_model
 from som_classifier.presets import DEFAULT
 
-ACTOR = 0  # who is learnt from; those tested are the ones after
-PEOPLE = 9  # the paper tests each action 9 times: once with each of so many people
+ACTOR = 0  # the actor of the training; the actors of the test have the numbers that follow
+PEOPLE = 9  # actors of the test: the paper tests each action 9 times, here once with each actor
 TRAINING_SEED = 1
-TEST_SEED = 2  # another than in training, so that nobody's repetitions come twice
+TEST_SEED = 2  # another than in training, so that no repetition is the same as in training
 TRAINING_REPETITIONS = 12  # enough samples of each action that more no longer help
-READY_S = 30.0  # ample for all processes to come up, on a slow machine, too
+READY_S = 30.0  # enough for all processes to start, also on a slow machine
 LONGEST_SAMPLE_S = 4.5  # more than an action of the simulated scene takes with the pause after it
 POLL_S = 0.01  # a third of a frame's interval
-SUBSCRIBER_POLL_S = 0.5  # how soon a request to stop is heeded while the services come up
+SUBSCRIBER_POLL_S = 0.5  # how soon a stop takes effect while the services start
 
 Tell = Callable[[str], object]
-"""Is told what happens, a line of console markup each time."""
+"""Called with each line of console markup that says what has happened."""
 
 
 class ExperimentError(RuntimeError):
-    """The experiment did not get to its end: why, and where its log is."""
+    """The experiment did not finish; the text says why and names its log."""
 
 
 class TerminatedError(Exception):
@@ -49,7 +49,7 @@ class TerminatedError(Exception):
 
 
 def train_model(training: Path, model_file: Path, progress: Progress) -> Evaluation:
-    """Train on examples of one simulated person, written to `training`; return how the model knows them again."""
+    """Train on examples of one simulated person, written to `training`; return the model's evaluation on them."""
     write_examples(training, TRAINING_REPETITIONS, ACTOR, TRAINING_SEED)
     recordings = [Recording(training)]
     train(samples_from(recordings, progress).usable, DEFAULT, 0, progress).save(model_file)
@@ -57,12 +57,12 @@ def train_model(training: Path, model_file: Path, progress: Progress) -> Evaluat
 
 
 def tested_actors(people: int) -> list[int]:
-    """List so many people other than the one of the training; that one where they are none."""
+    """Return the actors of the test: `people` others than the training's, or the training's own where that is 0."""
     return list(range(ACTOR + 1, ACTOR + 1 + people)) or [ACTOR]
 
 
 def nearest_neighbour_baseline(training: Path, folder: Path, actors: Sequence[int], repetitions: int) -> Evaluation:
-    """Classify the samples of the live test by the nearest neighbour; `folder` is for recordings of them."""
+    """Classify the samples of the live test by the nearest neighbour; recordings of them are written to `folder`."""
     tests = [folder / f"test-{actor}.mcap" for actor in actors]
     for actor, test in zip(actors, tests, strict=True):
         write_examples(test, repetitions, actor, TEST_SEED)
@@ -70,7 +70,7 @@ def nearest_neighbour_baseline(training: Path, folder: Path, actors: Sequence[in
 
 
 class LiveTest:
-    """Router, services and simulated scene as processes of their own; one event is collected for each sample."""
+    """Runs router, services and simulated scene as processes of their own, and collects one event for each sample."""
 
     def __init__(self, here: ServiceSettings, stop: threading.Event, tell: Tell) -> None:
         self._here = here
@@ -79,7 +79,7 @@ class LiveTest:
         self._log = log_file("demo", here)
 
     def run(self, model: Path, actors: Sequence[int], repetitions: int) -> Score:
-        """Start every process and let one actor after the other act.
+        """Start every process, let one actor after the other act, and return the score of all events.
 
         Raises:
             ExperimentError: the services do not come up.
@@ -115,7 +115,7 @@ class LiveTest:
         raise ExperimentError(f"the services are not all up after {READY_S:g} s; see {self._log}")
 
     def _collect(self, listening: Listening, score: Score, until: int, supervisor: Supervisor) -> None:
-        """Score what comes until there are so many events, or they take too long."""
+        """Add truths and events to the score until it has `until` events, or they take too long."""
         deadline_s = time.monotonic() + (until - len(score.events)) * LONGEST_SAMPLE_S + READY_S
         while len(score.events) < until and time.monotonic() < deadline_s:
             self._end_if_stopped()

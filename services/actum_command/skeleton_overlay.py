@@ -35,7 +35,7 @@ def drawn(image_bgr: Pixels, agents: Sequence[Agent], lens: Lens, caption: str) 
 
 
 def sheet(pictures: Sequence[Pixels], columns: int) -> Pixels:
-    """Return pictures (height, width, 3) of one size in rows of so many; the rest of the last row is black."""
+    """Return one picture of equally large pictures (height, width, 3) in rows; the rest of the last row is black."""
     height, width = pictures[0].shape[:2]
     rows = -(-len(pictures) // columns)
     canvas = np.zeros((rows * height, min(columns, len(pictures)) * width, 3), np.uint8)
@@ -61,8 +61,8 @@ def _draw_agent(canvas: Pixels, agent: Agent, lens: Lens) -> None:
 
 def _pixel(joint_m: Array, lens: Lens) -> tuple[int, int]:
     """Project a joint (3,) into the picture, in sixteenths of a pixel."""
-    no_motion = np.zeros(3)
-    [[[x, y]]] = cv2.projectPoints(joint_m.reshape(1, 1, 3), no_motion, no_motion, lens.matrix, lens.distortion)[0]
+    zero = np.zeros(3)  # the joint is in the camera frame: no rotation, no translation
+    [[[x, y]]] = cv2.projectPoints(joint_m.reshape(1, 1, 3), zero, zero, lens.matrix, lens.distortion)[0]
     return round(x * (1 << SUBPIXEL_BITS)), round(y * (1 << SUBPIXEL_BITS))
 
 

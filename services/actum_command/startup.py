@@ -1,4 +1,4 @@
-"""What is settled before a whole system starts: its source, its endpoint, its model."""
+"""Checks before a whole system starts: its source, its endpoint, its model."""
 
 import socket
 import tempfile
@@ -12,7 +12,7 @@ from actum_command.processes import SERVICES
 from actum_command.service_settings import DECLARED, Given, flag_of, service_of
 from som_classifier.model_loading import ModelError, load_model
 
-CHECK_S = 0.2  # how often the router is asked for: soon enough that nobody notices the wait
+CHECK_S = 0.2  # interval of checks for the router: so short that nobody notices the wait
 ROUTER_S = 5.0  # a router is up within a second; services wait for it by themselves where it takes longer
 
 FILES_ELSEWHERE = {
@@ -26,7 +26,7 @@ WITHOUT_CAMERA = ("simulator", "recording")
 """The sources that have no camera to choose."""
 
 SENSORS = {"none": None, "simulator": "scene_simulator"}
-"""The service that is the sensor, where it is not the sensor gateway."""
+"""The service that puts the sensor's streams, by source, where it is not the sensor gateway."""
 
 NO_MODEL = (
     "no --model: every action is answered with 'no model'. For the simulated scene: "
@@ -35,7 +35,7 @@ NO_MODEL = (
 
 
 def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
-    """Return the source that is meant.
+    """Return the named source; where none is named, the camera if one is given, else the simulator.
 
     Raises:
         SettingsError: it does not start the service that a given setting is for, or plays no file though one is named.
@@ -45,8 +45,8 @@ def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
         raise SettingsError(f"source {source} takes no --camera: leave --source out, or name camera")
     sensor = SENSORS.get(source, "sensor_gateway")
     started = SERVICES if sensor is None else (*SERVICES, sensor)
-    told = {name for service in started for name in DECLARED[service].model_fields}
-    for name in (name for name in given if name not in told):
+    of_started = {name for service in started for name in DECLARED[service].model_fields}
+    for name in (name for name in given if name not in of_started):
         subject = f"{sensor} takes no {flag_of(name)}: it" if source == "simulator" else flag_of(name)
         remedy = "" if named else "; name another source"
         raise SettingsError(
@@ -75,7 +75,7 @@ def refuse_taken(endpoint: str) -> None:
 
 
 def _bind(host: str, port: int) -> None:
-    """Take an address for a moment, of whichever family it is."""
+    """Bind a TCP socket to an address, IPv4 or IPv6, and close it again."""
     family, kind, protocol, _, address = socket.getaddrinfo(
         host or "0.0.0.0", port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
     )[0]
@@ -100,7 +100,7 @@ def wait_for_router(here: ServiceSettings, stop: threading.Event) -> None:
 
 
 def lack_of_model(model: Path | None) -> str | None:
-    """Say why there is no model that can be used yet; None where there is one."""
+    """Return why no usable model is there yet; None where one is."""
     if model is None:
         return NO_MODEL
     if not model.exists():
@@ -113,5 +113,5 @@ def lack_of_model(model: Path | None) -> str | None:
 
 
 def log_file(name: str, here: ServiceSettings) -> Path:
-    """Return where the output of background processes goes."""
+    """Return the path of the file for the output of background processes."""
     return Path(tempfile.gettempdir()) / f"actum-{name}-{here.instance}.log"

@@ -1,4 +1,4 @@
-"""What `actum record` does with each message: store it, and give every mark the stamp it was resolved to."""
+"""Stores messages for `actum record`; a mark without a stamp gets the one that the classifier resolved it to."""
 
 from collections import Counter
 from collections.abc import Collection
@@ -14,14 +14,14 @@ from actum.recording import Recorder
 STREAMS = frozenset(
     {keys.SKELETON, keys.POSTURE, keys.OBJECTS, keys.SEGMENT, keys.ACTION, keys.EVENT, keys.TRUTH},
 )
-"""What is stored of every sensor."""
+"""The topics that are stored of every sensor."""
 
 IMAGES = frozenset({keys.COLOR, keys.DEPTH})
-"""What is stored where it is asked for: faces are personal data."""
+"""The topics that are stored only on request: faces are personal data."""
 
 
 def origin_of(mark: Segment) -> str:
-    """Tell who put a mark; one that does not say so is the user's."""
+    """Return a mark's origin, `manual` where it names none."""
     return mark.origin or MANUAL
 
 
@@ -36,7 +36,7 @@ class _PendingMark:
 
 @dataclass(frozen=True)
 class _SegmentBounds:
-    """A segment's bounds, as its final action told them, and when it did."""
+    """A segment's bounds from its final action, and the time when that was received."""
 
     start_ns: int
     end_ns: int | None
@@ -46,16 +46,17 @@ class _SegmentBounds:
 class StreamRecorder:
     """Stores the messages of the given topics, of the marks only those of the given origins.
 
-    A mark without a stamp waits for its segment's final action, which says where the classifier put it; at the end
-    those left get the stamp of the frame that was newest when they came. `label` is given to start marks without one.
+    A mark without a stamp waits for its segment's final action, which has the bounds that the classifier used. Marks
+    that still wait at the end get the stamp of the frame that was newest when they came. Start marks without a label
+    get `label`.
 
     Attributes:
-        stored: how many messages are in the file.
-        actions: how many of them mark the start of an action, by origin and label.
+        stored: number of messages in the file.
+        actions: number of start marks among them, by origin and label.
         unended: the segments that have a start and no end so far.
-        left_out: how many actions were marked by others, by origin.
-        undecodable: payloads that are no message, by kind.
-        counters: marks that were thrown away.
+        left_out: number of start marks that were not stored because of their origin, by origin.
+        undecodable: number of payloads that do not decode, by kind.
+        counters: count the marks that were discarded.
     """
 
     def __init__(
@@ -93,11 +94,11 @@ class StreamRecorder:
             self._store(message, received_ns)
 
     def reject(self, error: DecodeError) -> None:
-        """Count a payload that is no message."""
+        """Count a payload that does not decode."""
         self.undecodable[error.kind] += 1
 
     def close(self) -> None:
-        """Store the marks that no final action has resolved; one that came before any frame is counted and lost."""
+        """Store the marks that no final action has resolved; one that came before any frame is counted and dropped."""
         for pending in self._pending:
             self._store_at(pending, pending.newest_ns)
         self._pending = []

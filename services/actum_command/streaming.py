@@ -1,4 +1,4 @@
-"""A sensor's streams to a file and back, live."""
+"""Records a sensor's live streams to a file, and plays recordings on its keys."""
 
 import threading
 import time
@@ -11,13 +11,13 @@ from actum.runtime import Client, Listening, Pace
 from actum_command.playing import schedule
 from actum_command.stream_recorder import StreamRecorder
 
-LEAD_IN_S = 0.3  # services that start anew at a new session have done so by then
+LEAD_IN_S = 0.3  # longer than a service takes to reset at a new session
 POLL_S = 0.005  # a sixth of a frame's interval
-ON_ITS_WAY_S = 0.3  # how long a message may take to come that was put before the recording was stopped
+ON_ITS_WAY_S = 0.3  # longest delay of a message that was put before the recording was stopped
 
 
 def store_all(listening: Listening, recorder: StreamRecorder, stop: threading.Event, deadline_s: float) -> None:
-    """Store what comes until stopped or until the deadline (monotonic), and what was on its way then."""
+    """Store messages until stopped or until the deadline (monotonic clock), then those that were put before."""
     while not stop.is_set() and time.monotonic() < deadline_s:
         if not _store(listening, recorder):
             stop.wait(POLL_S)
@@ -28,7 +28,7 @@ def store_all(listening: Listening, recorder: StreamRecorder, stop: threading.Ev
 
 
 def _store(listening: Listening, recorder: StreamRecorder) -> bool:
-    """Store one message, if one has come."""
+    """Store one message if one has come; tell whether one had."""
     received = listening.take()
     if received is None:
         return False
@@ -40,9 +40,9 @@ def _store(listening: Listening, recorder: StreamRecorder) -> bool:
 
 
 def put_all(client: Client, recordings: Sequence[Recording], speed: float, stop: threading.Event) -> int:
-    """Put recordings at a multiple of their pace, after an empty frame of the new session; count their messages.
+    """Put recordings at a multiple of their pace, and return how many messages were put.
 
-    Everything downstream starts anew at that frame, before the first mark comes.
+    An empty frame of the new session goes before them, so that all services reset before the first mark.
 
     Raises:
         RecordingError: a recording is damaged.

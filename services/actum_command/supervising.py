@@ -15,20 +15,20 @@ from actum.runtime.parent import PARENT
 from actum.runtime.serving import TAKEN, UNUSABLE
 
 RESTART_S = (0.5, 1.0, 2.0, 4.0, 8.0)
-"""The back-off: how long a program that has ended waits for its first, second … restart."""
+"""The back-off (s): how long a program that has ended waits for its first, second … restart."""
 
 ELSEWHERE_S = 30.0
-"""How often it is tried whether what runs elsewhere has ended there."""
+"""Interval (s) between attempts to start a service that runs elsewhere already."""
 
 STEADY_S = 30.0
-"""A program that has run for this long starts again with the shortest back-off."""
+"""A program that has run for this long (s) restarts with the shortest back-off."""
 
 TERM_S = 5.0
-"""How long a program may take to end when it is asked to, before it is killed."""
+"""How long (s) a program may take to end after SIGTERM, before it is killed."""
 
 
 class UnusableError(RuntimeError):
-    """A program that cannot be used as it is set: which, and what it said."""
+    """A program that cannot run with its settings; the text names it and says where its output is."""
 
 
 @dataclass(frozen=True)
@@ -53,8 +53,7 @@ class _Child:
 class Supervisor:
     """Starts programs, restarts those that end by themselves, and stops all at the end.
 
-    They end with this process, even where it is killed.
-    Their output goes to `log`, or to this process's own.
+    Programs end with this process, even if it is killed. Their output goes to `log`, or to this process's own output.
     """
 
     def __init__(self, log: Path | None = None) -> None:
@@ -88,7 +87,8 @@ class Supervisor:
         return lines
 
     def _ended(self, child: _Child, now_s: float) -> str:
-        if child.process.returncode == UNUSABLE:  # started again, it would end so again
+        """Schedule the restart of a program that has ended, and return a line that says so."""
+        if child.process.returncode == UNUSABLE:  # a restart would end the same way
             where = f"in {self._log.name}" if self._log else "above"
             raise UnusableError(f"{child.program.name} cannot run as it is set: it says why {where}")
         if child.process.returncode == TAKEN:
@@ -107,7 +107,7 @@ class Supervisor:
         _stop(ending)
 
     def stop(self) -> None:
-        """Ask every process to end, and make those that do not."""
+        """Send every process SIGTERM, and kill those that do not end."""
         _stop(self._children)
         self._children.clear()
         if self._log:

@@ -1,4 +1,4 @@
-"""Pictures of a video with the joints found in them drawn in."""
+"""Draws the joints found in a video into some of its pictures."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ def joint_pictures(video: Path, settings: Settings, optics: Optics, count: int) 
     """Find the joints in every frame of a video as the camera source does, and draw them into `count` of its frames.
 
     Return the pictures drawn, (height, width, 3) BGR, evenly from the first frame to the last, and how many frames
-    there are. The video is decoded once to count its frames, so that only those are kept which are drawn.
+    there are. The video is decoded once more to count its frames, so that only those drawn are kept in memory.
 
     Raises:
         ValueError, OSError: the pose model or the video cannot be used.
@@ -29,8 +29,8 @@ def joint_pictures(video: Path, settings: Settings, optics: Optics, count: int) 
         frames = sum(1 for _ in pictures_of(video))
         chosen = {int(frame) for frame in np.linspace(0, frames - 1, min(count, frames)).round()}
         perceiver = Perceiver(estimator, optics, settings.sensor, video.stem, Counters())
-        seen = ((picture, perceiver.skeleton(picture)) for picture in pictures_of(video))
-        pictures = [_with_joints(*frame, optics) for i, frame in enumerate(seen) if i in chosen]
+        skeletons = ((picture, perceiver.skeleton(picture)) for picture in pictures_of(video))
+        pictures = [_with_joints(*frame, optics) for i, frame in enumerate(skeletons) if i in chosen]
     return pictures, frames
 
 
@@ -49,5 +49,5 @@ def _with_joints(picture: Picture, skeleton: Skeleton, optics: Optics) -> Pixels
 
 
 def _distance_m(joints: list[list[float] | None]) -> float:
-    """Average the depths of a person's known joints."""
+    """Return the mean depth (m) of a person's known joints."""
     return float(np.mean([joint[2] for joint in joints if joint is not None]))

@@ -33,19 +33,20 @@ ACTIONS = (
     "idle", "approach", "retreat", "lift", "place", "hold", "pour", "cut", "hammer", "saw", "stir", "screw", "drink",
     "wipe",
 )  # fmt: skip
-"""The names of the action ids 0 … 13."""
+"""The names of the actions, by their id in the labels, 0 to 13."""
 
 OBJECTS = (
     "bowl", "knife", "screwdriver", "cutting board", "whisk", "hammer", "bottle", "cup", "banana", "cereals", "sponge",
     "wood", "saw", "hard drive",
 )  # fmt: skip
-"""The names of the object classes 0 … 13; they serve as object ids, so that two instances of a class are one object."""
+"""The names of the object classes, by their number in the labels, 0 to 13. A class's number serves as the object's id,
+so that two instances of a class count as one object."""
 
 VALID = "_valid"
 HANDS: Mapping[Hand, str] = {"right": "HandRight", "left": "HandLeft"}
 
 EGO_FROM_CAMERA = [-1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]
-"""The same origin, with the egocentric axes' directions: left, up, forward."""
+"""Keeps the origin, and turns the axes to left, up, forward, as in the egocentric frame: 4x4, row-major."""
 
 Row = Mapping[str, str]
 Point = list[float]
@@ -57,7 +58,7 @@ class HandsTake:
 
     Attributes:
         marks: start and end of each segment; they do not name the object.
-        truths: which object the label of a segment names; idle has none.
+        truths: the object that the label of each segment names; a label without an object has none.
         skipped: names of the segments that do not end after they start.
     """
 
@@ -161,7 +162,7 @@ def _posture(row: Row, stamp_ns: int, sensor: str, session_id: str) -> Posture:
 
 
 def _bodies(rows: Sequence[Row]) -> dict[int, str]:
-    """Return the prefix of the columns of each object class that the table has."""
+    """Return, for each object class of the table by its number, the prefix of its columns' names."""
     known = {name.replace(" ", ""): number for number, name in enumerate(OBJECTS)}
     bodies = [column.removesuffix(VALID) for column in rows[0] if column.endswith(VALID)] if rows else []
     return {known[name]: body for body in bodies if (name := body.lower().replace("_", "")) in known}
@@ -197,24 +198,24 @@ def _tracked(number: int, position: Point, quaternion: Point) -> TrackedObject:
 
 
 def _quaternion(row: Row, body: str) -> Point:
-    """Read an orientation (4,; x, y, z, w), the body's own axes turned as the world's are."""
+    """Read an orientation in the camera frame (4,; x, y, z, w); the body's own axes are turned as the world's are."""
     x, y, z, w = (float(row[f"{body}_q{axis}"]) for axis in "xyzw")
     return [*camera_from_world((x, y, z)), w]
 
 
 def _labels(folder: Path, person: str, take: str) -> list[Label]:
-    found = sorted(folder.glob(f"labels_subject_{person}/*/take_{take}.json"))
-    if not found:
+    files = sorted(folder.glob(f"labels_subject_{person}/*/take_{take}.json"))
+    if not files:
         raise DatasetError(f"{folder}: no labels_subject_{person}/*/take_{take}.json; put the labels beside the takes")
     try:
-        content = json.loads(found[0].read_text())
+        content = json.loads(files[0].read_text())
         return [label for hand in HANDS for label in _hand_labels(hand, content[f"{hand}_hand"])]
     except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise DatasetError(f"{found[0]}: not frames and labels in turns for each hand ({error!r})") from None
+        raise DatasetError(f"{files[0]}: not frames and labels in turns for each hand ({error!r})") from None
 
 
 def _hand_labels(hand: Hand, content: list[Any]) -> list[Label]:
-    """Read `[frame, label, frame, label, …, frame]`."""
+    """Read one hand's labels from `[frame, label, frame, label, …, frame]`."""
     frames, labels = content[0::2], content[1::2]
     return [
         Label(hand, first, last, ACTIONS[action], target)

@@ -15,10 +15,10 @@ from sensor_gateway.people.pose_estimator import Estimator
 from sensor_gateway.perceiver import Perceiver
 
 DEFAULT_PATTERN = r"(?P<action>[^_]+)_(?P<person>[^_]+)(_.*)?"
-"""`wave_anna.mp4`, `wave_anna_2.mp4`: the action, the person, anything."""
+"""Matches names such as `wave_anna` and `wave_anna_2`: the action, the person, anything."""
 
 NOT_IN_NAMES = re.compile(r"[^\w.-]+")
-"""What not every file system takes in a name."""
+"""Characters that some file systems do not allow in names."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def check_names(files: Sequence[Path]) -> None:
 def read_clip(
     path: Path, naming: Naming, sensor: str, optics: Optics, opened: Callable[[], AbstractContextManager[Estimator]]
 ) -> Take:
-    """Find the people of a clip as the camera source does, with a new estimator: none remembers the clip before.
+    """Estimate the poses in a clip as the camera source does; `opened` makes a new estimator for each clip.
 
     Raises:
         DatasetError: the name does not tell the action, or the file is no video.

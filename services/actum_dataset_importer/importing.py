@@ -18,7 +18,7 @@ from sensor_gateway.perceiver import OTHER_SIZE
 SENSOR = "kinect0"
 """The services' default sensor: such recordings can be played without a flag."""
 MOST_NAMES = 12
-"""Of actions or persons that the report lists: they fit some lines of a terminal."""
+"""Most actions or persons that the report lists: they fit some lines of a terminal."""
 Progress = Callable[[int, int], None]
 """Called after each file with how many are done and how many there are."""
 
@@ -27,7 +27,7 @@ ODDITIES = {
     utkinect.OVERLAPPING_PAIR: "pairs of segments that overlap, kept",
     OTHER_SIZE: "frames of another size than was calibrated: nobody is looked for in them",
 }
-"""How the report names what reading a take dropped or found unusual."""
+"""The report's words for each kind of `Take.oddities`."""
 
 
 @dataclass

@@ -26,7 +26,7 @@ from actum_dataset_importer.takes import (
 FRAMES_PER_SECOND = 15
 """As the set's paper says; its files hold no times."""
 SOURCE_JOINTS = 20
-"""Of Kinect's skeleton, before they are reduced to the fifteen."""
+"""Joints of Kinect's skeleton, of which fifteen are kept."""
 PATTERN = "*_skeleton3D.txt"
 NAME = re.compile(r"(a(?P<action>\d\d)_s(?P<person>\d\d)_e(?P<execution>\d\d))_skeleton3D\.txt")
 

@@ -30,14 +30,14 @@ from actum_dataset_importer.takes import (
 Integers = NDArray[np.int64]
 
 REACH_US = 1_500_000
-"""How far a segment reaches from its action point at most: half the usual 3 s between two, where people move least."""
+"""Longest reach of a segment from its action point (µs): half the usual 3 s between two, where people move least."""
 
 SOURCE_JOINTS = 20
-"""Of Kinect's skeleton, before they are reduced to the fifteen."""
+"""Joints of Kinect's skeleton, of which fifteen are kept."""
 PATTERN = "p*.npz"
 PARTS = ("xyz_mm", "t_us", "tags_us")
 DAMAGED = (OSError, ValueError, EOFError, BadZipFile, zlib.error)
-"""What reading arrays raises where a file is none of them, or broken."""
+"""What reading arrays raises on a file of another kind or a damaged one."""
 
 NAME = re.compile(r"P(?P<instruction>\d)_(?P<set>\d)_(?P<gesture>(?P<number>\d+)A?)_p(?P<person>\d\d)")
 
@@ -106,7 +106,7 @@ def read_stream(path: Path, name: str, sensor: str) -> Take:
 
 
 def spans_about(points_us: Integers, first_us: int, last_us: int) -> list[tuple[int, int] | None]:
-    """Return start and end (µs) of the segment about each action point; None where the stream does not reach.
+    """Return start and end (µs) of the segment about each action point; None where the stream has no frames there.
 
     Args:
         points_us: (points,), rising.

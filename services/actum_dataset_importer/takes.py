@@ -1,4 +1,4 @@
-"""One take of a public skeleton set, and the functions that reading any of them needs."""
+"""One take of a public data set of skeletons, and functions that the readers of all such sets share."""
 
 import warnings
 from collections import Counter
@@ -13,7 +13,7 @@ from actum.node import SECOND_NS
 
 
 class DatasetError(ValueError):
-    """A file or folder does not have the data set's form: which, what is wrong, what to do."""
+    """A file or folder that is not of the data set's form; the text names it, the problem and what to do."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Take:
 
     Attributes:
         metadata: written into the recording beside person and source.
-        oddities: how often reading dropped or found something unusual, by kind.
+        oddities: counts of what was dropped or unusual in the file, by kind.
         skipped: names of the segments that could not be marked.
     """
 
@@ -51,7 +51,7 @@ def read_rows(path: Path, columns: int) -> NDArray[np.float64]:
     """Read a text file of finite numbers (rows, columns).
 
     Raises:
-        DatasetError: it is anything else.
+        DatasetError: the file holds anything else.
     """
     try:
         with warnings.catch_warnings():
@@ -65,7 +65,7 @@ def read_rows(path: Path, columns: int) -> NDArray[np.float64]:
 
 
 def frame_without_person(stamp_ns: int, sensor: str, session_id: str) -> Skeleton:
-    """Return an invalid frame, for one in which the set has no skeleton."""
+    """Return an invalid skeleton message, for a frame in which the set has no skeleton."""
     reason = "no skeleton in the source"
     return Skeleton(stamp_ns=stamp_ns, sensor=sensor, valid=False, reason=reason, agents=[], session_id=session_id)
 
@@ -84,5 +84,5 @@ def camera_joints(positions_m: list[list[float]]) -> list[list[float] | None]:
 
 
 def stamp_of(index: int, rate_hz: int) -> int:
-    """Return the stamp (ns, to the nearest) of a frame counted at a fixed rate."""
+    """Return the stamp (ns, rounded) of a frame by its index, at a fixed rate."""
     return (2 * index * SECOND_NS + rate_hz) // (2 * rate_hz)

@@ -18,9 +18,9 @@ from actum.skeletons import JOINTS, to_actum
 from actum_dataset_importer.takes import DatasetError, Take, camera_joints, files_of, read_rows, segment_marks, stamp_of
 
 IMAGES_PER_SECOND = 30
-"""The camera's rate, by which images are numbered."""
+"""The camera's rate (Hz); image numbers count at this rate."""
 SOURCE_JOINTS = 20
-"""Of Kinect's skeleton, before they are reduced to the fifteen."""
+"""Joints of Kinect's skeleton, of which fifteen are kept."""
 PATTERN = "joints_s*_e*.txt"
 NAME = re.compile(r"joints_(s(?P<person>\d\d)_e(?P<execution>\d\d))\.txt")
 LABELS = "actionLabel_modified.txt"
@@ -94,8 +94,8 @@ def read_labels(folder: Path) -> dict[str, list[LabelledSegment]]:
     path = folder / LABELS
     if not path.is_file():
         is_original = (folder / ORIGINAL_LABELS).is_file()
-        found = f"; {ORIGINAL_LABELS} is there, but some of its bounds are wrong" if is_original else ""
-        raise DatasetError(f"{path}: no such file{found}; put the corrected label file {LABELS} beside the recordings")
+        hint = f"; {ORIGINAL_LABELS} is there, but some of its bounds are wrong" if is_original else ""
+        raise DatasetError(f"{path}: no such file{hint}; put the corrected label file {LABELS} beside the recordings")
     recordings: dict[str, list[LabelledSegment]] = {}
     segments: list[LabelledSegment] | None = None
     for number, line in enumerate(path.read_text().splitlines(), start=1):

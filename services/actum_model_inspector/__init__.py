@@ -1,1 +1,1 @@
-"""Pictures of what a trained model has learnt, and of why it recognised what it did."""
+"""Pictures that show what a trained model has learnt, and explain its answers."""

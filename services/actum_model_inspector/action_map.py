@@ -30,7 +30,7 @@ from actum_model_inspector.text_layout import wrapped
 SIDE_IN = 10.0  # inches of the map's longer side: names of 25 actions find room
 PALEST = 0.15  # share of a unit's colour, the rest white, where two actions answer alike: still a hint of colour
 NAME_PT = 10.0  # letters of an action's name: readable on a screen
-MISTAKE_PT = 6.5  # letters of what is written at a mistake: smaller, as there may be many
+MISTAKE_PT = 6.5  # letters of the names at wrong answers: smaller, as there may be many
 BOLD = 1.15  # width of bold letters in units of plain ones
 
 
@@ -38,18 +38,18 @@ BOLD = 1.15  # width of bold letters in units of plain ones
 def action_map(maps: ModelMaps, segments: Sequence[AnsweredSegment] = ()) -> Figure:
     """Colour each unit by the action whose neuron is most active for it, and put a dot on each segment's winner."""
     som, labels = maps.actions, maps.model.labels
-    found = regions(maps.unit_cosines(), som.grid)
+    map_regions = regions(maps.unit_cosines(), som.grid)
     longest = max(som.rows, som.cols)
     size = max(SIDE_IN * som.cols / longest, 6.0), max(SIDE_IN * som.rows / longest, 3.0) + 0.85
     figure = figure_with_layout(*size, f"The map of actions: {som.rows} × {som.cols} units, {len(labels)} actions")
     axes = figure.add_subplot()
-    _draw_regions(axes, found, len(labels))
+    _draw_regions(axes, map_regions, len(labels))
     dots = [segment for segment in segments if segment.action_unit is not None]
     space = LabelSpace((-0.5, -0.5, som.cols - 0.5, som.rows - 0.5))
-    _name_regions(axes, found, labels, space)
+    _name_regions(axes, map_regions, labels, space)
     _draw_dots(axes, som, dots, space)
     axes.set_title(_legend(dots))
-    without_region = [label for index, label in enumerate(labels) if not (found.actions == index).any()]
+    without_region = [label for index, label in enumerate(labels) if not (map_regions.actions == index).any()]
     if without_region:
         axes.set_xlabel(f"without a place of their own: {wrapped(', '.join(without_region), 110)}", loc="left")
     return figure
@@ -82,22 +82,22 @@ def spread_on_unit(units: Indices) -> Floats:
     return offsets
 
 
-def _draw_regions(axes: Axes, found: Regions, actions: int) -> None:
-    strength = PALEST + (1 - PALEST) * found.margins
-    draw_squares(axes, mixed_with_white(action_colours(actions)[found.actions], strength))
-    axes.add_collection(LineCollection(borders(found.actions), colors=PAPER, linewidths=2.0))
+def _draw_regions(axes: Axes, map_regions: Regions, actions: int) -> None:
+    strength = PALEST + (1 - PALEST) * map_regions.margins
+    draw_squares(axes, mixed_with_white(action_colours(actions)[map_regions.actions], strength))
+    axes.add_collection(LineCollection(borders(map_regions.actions), colors=PAPER, linewidths=2.0))
     hide_axes(axes)
 
 
-def _name_regions(axes: Axes, found: Regions, labels: Sequence[str], space: LabelSpace) -> None:
+def _name_regions(axes: Axes, map_regions: Regions, labels: Sequence[str], space: LabelSpace) -> None:
     """Write each action's name into the largest connected component of its region."""
     for index, label in enumerate(labels):
-        component = largest_component(found.actions == index)
+        component = largest_component(map_regions.actions == index)
         if not len(component):
             continue
         row, col = innermost_unit(component)
         name = wrapped(label, 14)
-        width, height = text_size(name, BOLD * _in_units(NAME_PT, found.actions.shape))
+        width, height = text_size(name, BOLD * _in_units(NAME_PT, map_regions.actions.shape))
         x, y = space.moved_inside(col, row, width, height)
         x, y = space.place(((x, y + shift * height) for shift in (0, -0.5, 0.5, -1, 1)), width, height) or (x, y)
         axes.text(
@@ -107,7 +107,7 @@ def _name_regions(axes: Axes, found: Regions, labels: Sequence[str], space: Labe
 
 
 def _draw_dots(axes: Axes, som: Som, dots: Sequence[AnsweredSegment], space: LabelSpace) -> None:
-    """Draw a dot per segment; wrong ones are ringed, and named by the action that was really done."""
+    """Draw a dot per segment; one with a wrong answer gets a ring and the name of the action that was really done."""
     units = np.array([dot.action_unit for dot in dots], dtype=np.intp)
     places = som.coordinates[units][:, ::-1] + spread_on_unit(units)
     wrong = np.array([dot.label is not None and not dot.correct for dot in dots], dtype=bool)
@@ -120,7 +120,7 @@ def _draw_dots(axes: Axes, som: Som, dots: Sequence[AnsweredSegment], space: Lab
 
 
 def _name_mistakes(axes: Axes, som: Som, unit: int, done: Counter[str], space: LabelSpace) -> None:
-    """Write beside a unit which actions were really done there, unless there is no room."""
+    """Write beside a unit the actions really done in its wrongly answered segments, unless there is no room."""
     text = "\n".join(wrapped(label, 18, 1) + (f" × {n}" if n > 1 else "") for label, n in done.most_common())
     row, col = som.coordinates[unit]
     width, height = text_size(text, _in_units(MISTAKE_PT, (som.rows, som.cols)))

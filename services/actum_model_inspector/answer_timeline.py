@@ -48,7 +48,7 @@ class AnswerTimeline:
 
 
 def answer_timeline(model: Model, answered: AnsweredSegment) -> AnswerTimeline:
-    """Let the model answer after each frame from the first possible one, or after every few of very many."""
+    """Return the model's answers after each frame from the first possible one, at `MAX_INSTANTS` frames at most."""
     frames = encoded(model, answered.frames)
     counts = np.unique(np.linspace(model.min_frames, len(frames), MAX_INSTANTS).astype(int))
     answers: list[Recognition] = [model.recognise(frames[:count], complete=count == len(frames)) for count in counts]
@@ -79,7 +79,7 @@ def timeline_picture(model: Model, answered: AnsweredSegment) -> Figure:
 
 def _draw_lines(axes: Axes, timeline: AnswerTimeline, labels: Sequence[str], done: str | None) -> None:
     times_s, activations = timeline.times_s, timeline.activations
-    named = _named(timeline, labels, done)
+    named = _named_actions(timeline, labels, done)
     colours = action_colours(len(labels))
     dot = "o" if len(times_s) == 1 else ""
     axes.plot(times_s, np.delete(activations, named, axis=1), dot + "-", color="#cccccc", linewidth=0.8, clip_on=False)
@@ -89,14 +89,14 @@ def _draw_lines(axes: Axes, timeline: AnswerTimeline, labels: Sequence[str], don
     ends = [float(activations[-1, index]) for index in named]
     height = float(np.ptp(activations)) or 1.0
     for index, end, place in zip(named, ends, spread_apart(ends, _NAME_GAP * height), strict=True):
-        done_too = DONE if labels[index] == done else ""
-        name = shortened(labels[index], NAME_COLUMNS - len(done_too)) + done_too
+        suffix = DONE if labels[index] == done else ""
+        name = shortened(labels[index], NAME_COLUMNS - len(suffix)) + suffix
         _name_line(axes, name, (float(times_s[-1]), end), place, colours[index])
     axes.set_ylabel("activation (cosine)")
     axes.set_title("each line an action's neuron: how much the frames so far are like what it learnt; grey: the others")
 
 
-def _named(timeline: AnswerTimeline, labels: Sequence[str], done: str | None) -> Indices:
+def _named_actions(timeline: AnswerTimeline, labels: Sequence[str], done: str | None) -> Indices:
     """Choose the actions whose lines are named: the final answer first, the action done, then those answered longest.
 
     Among equally long ones, that with the larger activation comes first.

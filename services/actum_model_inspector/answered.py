@@ -55,7 +55,7 @@ class AnsweredSegment:
 def answered_segments(
     maps: ModelMaps, recordings: Sequence[Recording], progress: Progress = silent
 ) -> list[AnsweredSegment]:
-    """Cut every segment out of the recordings, labelled or not, and let the model answer it.
+    """Cut every segment out of the recordings, labelled or not, and return each with the model's answer.
 
     Raises:
         RecordingError: a file is damaged.
@@ -95,7 +95,7 @@ def headline(answered: AnsweredSegment) -> str:
 def _verdict(answered: AnsweredSegment) -> str:
     if answered.recognition is None:
         return "rejected"
-    found, confidence = answered.recognition.label, answered.recognition.confidence
+    label, confidence = answered.recognition.label, answered.recognition.confidence
     taken = "recognised" if answered.label is None or answered.correct else "taken for"
     unsure = " (unfamiliar)" if answered.recognition.unknown else ""
-    return f"{taken} {shortened(found)} {confidence:.2f}{unsure}"
+    return f"{taken} {shortened(label)} {confidence:.2f}{unsure}"

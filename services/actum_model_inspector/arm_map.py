@@ -76,7 +76,7 @@ class ArmsOnBodies:
 def arm_map(arms: Som, mirrors: bool) -> Figure:
     """Draw each unit's weights on the U-matrix: a right arm of somebody who stands, with arrows at its joints.
 
-    Where the model `mirrors`, they stand for the mirror image of a left arm, too.
+    Where the model `mirrors`, a unit stands for the mirror image of a left arm, too.
     """
     title = f"The map of arms: {arms.rows} × {arms.cols} units, each standing for where the arm is and where it goes"
     figure = figure_with_layout(*map_size(arms), title)

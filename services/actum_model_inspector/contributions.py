@@ -18,7 +18,7 @@ from som_classifier.pyramid_model import PyramidModel
 
 @dataclass(frozen=True, eq=False)
 class Contributions:
-    """What the score of the action answered has over that of another action, and where it comes from.
+    """The difference between the scores of the action answered and of another one, as a sum of contributions.
 
     score[winner] − score[other] = Σ units + bias.
 
@@ -31,7 +31,7 @@ class Contributions:
         bias: the difference of the offsets, the same for every segment. Training sets it so that an average segment
             gives neither action a lead, or a slight one to the more frequent action: its units sum up to about −bias.
         activities: (cells, channels, units of a map), mean activities.
-        in_mirror: whether the segment was read as its mirror image, because the left arm acts.
+        in_mirror: whether the model read the segment as its mirror image, because the left arm acts.
         left_moves: whether the left arm is the body part that moves most.
     """
 
@@ -47,8 +47,8 @@ class Contributions:
     @property
     def cells(self) -> Floats:
         """The contribution of each cell through each channel, shape (cells, channels)."""
-        added: Floats = self.units.sum(axis=2)
-        return added
+        sums: Floats = self.units.sum(axis=2)
+        return sums
 
     @property
     def difference(self) -> float:
@@ -57,12 +57,12 @@ class Contributions:
 
     @property
     def arm(self) -> Hand:
-        """The arm that the arm map's acting channel sees."""
+        """The arm that the arm map's channel for the acting arm reads."""
         return "left" if self.in_mirror else "right"
 
 
 def contributions(model: PyramidModel, frames: Sequence[Frame], compared_with: str | None = None) -> Contributions:
-    """Attribute the lead of the answer to a complete segment over another action.
+    """Attribute the difference between the scores of the answer to a complete segment and of another action.
 
     Args:
         model: that answers.

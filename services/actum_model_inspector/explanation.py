@@ -42,9 +42,9 @@ def explanation_picture(model: PyramidModel, answered: AnsweredSegment) -> Figur
     activation.
     """
     done = answered.label if answered.label in model.labels and not answered.correct else None
-    found = contributions(model, encoded(model, answered.frames), done)
-    winner, other = (shortened(model.labels[index], 30) for index in (found.winner, found.other))
-    lines, (*terms, total) = _remarks(found, winner, other), _terms(found, winner, other)
+    attribution = contributions(model, encoded(model, answered.frames), done)
+    winner, other = (shortened(model.labels[index], 30) for index in (attribution.winner, attribution.other))
+    lines, (*terms, total) = _remarks(attribution, winner, other), _terms(attribution, winner, other)
     height_in, width_in = ROW_IN * len(model.pyramid.levels) + SCALE_IN, MAPS * (WIDTH_IN + GAP_IN)
     waterfall_in = TERM_IN * len([*terms, total])
     title = f"Why {winner} and not {other}" + (", which was done" if done else "")
@@ -54,22 +54,22 @@ def explanation_picture(model: PyramidModel, answered: AnsweredSegment) -> Figur
     waterfall = axes_at(figure, 0.1, height_in + 0.44, width_in - 0.2, waterfall_in)
     waterfall.set_xlim(0.0, width_in - 0.2)
     draw_waterfall(waterfall, terms, total)
-    for channel, (heading, draw) in enumerate(_columns(found)):
+    for channel, (heading, draw) in enumerate(_columns(attribution)):
         axes = axes_at(figure, 0.1 + channel * (WIDTH_IN + GAP_IN), 0.1, WIDTH_IN, height_in)
-        _draw_cells(axes, model, found, channel)
-        draw(axes, model, found)
+        _draw_cells(axes, model, attribution, channel)
+        draw(axes, model, attribution)
         axes.set_title(heading)
     return figure
 
 
 def largest_contributors(units: Floats) -> tuple[Indices, Floats]:
-    """Return the units that contribute most to the sum over all, in the direction of its sign, and their weights.
+    """Return the units with the largest contributions of the same sign as the sum of all, and their weights.
 
     Args:
         units: (n,), contributions.
 
     Returns:
-        indices: (k,), k = `FIGURE_UNITS` or fewer, the largest first.
+        indices: (k,), k = `FIGURE_UNITS` or fewer, the unit of the largest contribution first.
         weights: (k,), in proportion to the contributions, of sum 1.
     """
     signed = units * np.sign(units.sum() or 1.0)
@@ -78,41 +78,42 @@ def largest_contributors(units: Floats) -> tuple[Indices, Floats]:
     return chosen, weights / weights.sum() if weights.sum() > 0 else np.full(len(chosen), 1 / len(chosen))
 
 
-def _columns(found: Contributions) -> Sequence[tuple[str, Draw]]:
+def _columns(attribution: Contributions) -> Sequence[tuple[str, Draw]]:
     """Return each column's heading and the function that draws its figures."""
     return (
         ("POSTURES, in the whole action and in its parts", _draw_postures),
         ("MOVEMENTS: where the joints are going", _draw_velocities),
-        (f"THE {found.arm.upper()} ARM as seen from its shoulder", _draw_arms),
+        (f"THE {attribution.arm.upper()} ARM as seen from its shoulder", _draw_arms),
     )
 
 
-def _terms(found: Contributions, winner: str, other: str) -> list[Term]:
+def _terms(attribution: Contributions, winner: str, other: str) -> list[Term]:
     """Return the terms of the difference between the scores, and last the difference itself."""
-    postures, velocities, arm, other_arm = found.cells.sum(axis=0).tolist()
-    idle = "right" if found.arm == "left" else "left"
+    postures, velocities, arm, other_arm = attribution.cells.sum(axis=0).tolist()
+    idle = "right" if attribution.arm == "left" else "left"
+    winner_score, other_score = attribution.scores
     return [
         Term("postures", postures, "the boxes on the left, added up"),
         Term("movements", velocities, "the boxes in the middle"),
-        Term(f"{found.arm} arm", arm, "the boxes on the right"),
+        Term(f"{attribution.arm} arm", arm, "the boxes on the right"),
         Term(f"{idle} arm", other_arm, "counts less and is not drawn"),
         Term(
-            "less average", found.bias,
+            "less average", attribution.bias,
             "the same for every segment: what the boxes add up to in an average one is taken off, so that only what is "
             "special about this one counts",
         ),
-        Term("together", found.difference, f"{winner} scores {found.scores[0]:.2f}, {other} {found.scores[1]:.2f}"),
+        Term("together", attribution.difference, f"{winner} scores {winner_score:.2f}, {other} {other_score:.2f}"),
     ]  # fmt: skip
 
 
-def _remarks(found: Contributions, winner: str, other: str) -> list[str]:
-    """Return the lines that explain the colours, and what is unusual about this answer."""
+def _remarks(attribution: Contributions, winner: str, other: str) -> list[str]:
+    """Return lines that explain the colours, and any peculiarity of this answer."""
     lines = [f"green speaks for {winner}, purple for {other}; the figures: what the units hold that say so most"]
-    if found.difference < 0:
+    if attribution.difference < 0:
         lines.append(f"the scores lean to {other}: the place on the map of actions decided otherwise")
-    if found.in_mirror:
+    if attribution.in_mirror:
         lines.append("the left arm acts: the model reads this in a mirror; it is drawn as it was")
-    elif found.left_moves:
+    elif attribution.left_moves:
         lines.append("the left arm moves most, but this was not read in a mirror: the map of arms sees the right one")
     return lines
 
@@ -128,10 +129,10 @@ def _cells(model: PyramidModel) -> Floats:
     )
 
 
-def _draw_cells(axes: Axes, model: PyramidModel, found: Contributions, channel: int) -> None:
+def _draw_cells(axes: Axes, model: PyramidModel, attribution: Contributions, channel: int) -> None:
     """Draw the cells as boxes, level beneath level, shaded by their contribution; the axes' unit is an inch."""
-    largest = float(np.abs(found.cells).max()) or 1.0
-    for (left, top, width), value in zip(_cells(model), found.cells[:, channel], strict=True):
+    largest = float(np.abs(attribution.cells).max()) or 1.0
+    for (left, top, width), value in zip(_cells(model), attribution.cells[:, channel], strict=True):
         shade = SHADES(0.5 + 0.5 * _STRONGEST * value / largest)
         axes.add_patch(Rectangle((left, top), width, ROW_IN, facecolor=shade, edgecolor=PAPER, linewidth=3))
         axes.text(left + 0.08, top + 0.08, f"{value:+.2f}", va="top", weight="bold", fontsize=9)
@@ -154,29 +155,29 @@ def _figure_places(model: PyramidModel) -> tuple[Indices, Floats]:
     return wide, np.stack([cells[wide, 0] + cells[wide, 2] / 2, cells[wide, 1] + ROW_IN / 2], axis=1)
 
 
-def _draw_postures(axes: Axes, model: PyramidModel, found: Contributions) -> None:
+def _draw_postures(axes: Axes, model: PyramidModel, attribution: Contributions) -> None:
     """Draw into each cell the mean posture of the units that contribute most."""
     wide, middles = _figure_places(model)
-    means = _mean_contributors(found, wide, 0, _unit_postures(model))
-    draw_figures(axes, _as_performed(means, found), middles, FIGURE_IN, pen=Pen(1.8))
+    means = _mean_contributors(attribution, wide, 0, _unit_postures(model))
+    draw_figures(axes, _as_performed(means, attribution), middles, FIGURE_IN, pen=Pen(1.8))
 
 
-def _draw_velocities(axes: Axes, model: PyramidModel, found: Contributions) -> None:
+def _draw_velocities(axes: Axes, model: PyramidModel, attribution: Contributions) -> None:
     """Draw into each cell its mean posture, with the mean velocities of the units that contribute most as arrows."""
     wide, middles = _figure_places(model)
     _, arrows_m = velocity_arrows(model.first.velocities)
-    means = _as_performed(_mean_contributors(found, wide, 1, arrows_m), found)
-    bodies = _as_performed(_mean_postures(model, found, wide), found)
+    means = _as_performed(_mean_contributors(attribution, wide, 1, arrows_m), attribution)
+    bodies = _as_performed(_mean_postures(model, attribution, wide), attribution)
     draw_figures(axes, bodies, middles, FIGURE_IN, pen=Pen(1.2, FAINT))
     draw_arrows(axes, bodies, means, middles, FIGURE_IN)
 
 
-def _draw_arms(axes: Axes, model: PyramidModel, found: Contributions) -> None:
+def _draw_arms(axes: Axes, model: PyramidModel, attribution: Contributions) -> None:
     """Draw into each cell its mean posture, with the mean arm (and its velocity) of the units that contribute most."""
     wide, middles = _figure_places(model)
-    means = _mean_contributors(found, wide, 2, model.first.arms.weights)
-    drawn = ArmsOnBodies.of(means, _mean_postures(model, found, wide))
-    drawn = drawn.mirrored() if found.in_mirror else drawn
+    means = _mean_contributors(attribution, wide, 2, model.first.arms.weights)
+    drawn = ArmsOnBodies.of(means, _mean_postures(model, attribution, wide))
+    drawn = drawn.mirrored() if attribution.in_mirror else drawn
     drawn.draw(axes, middles, FIGURE_IN, LONGEST_ARROW_M / fastest_m(model.first.arms))
 
 
@@ -185,19 +186,19 @@ def _unit_postures(model: PyramidModel) -> Floats:
     return model.first.postures.weights.reshape(len(model.first.postures.weights), -1, 3)
 
 
-def _mean_postures(model: PyramidModel, found: Contributions, cells: Indices) -> Floats:
+def _mean_postures(model: PyramidModel, attribution: Contributions, cells: Indices) -> Floats:
     """Return the mean posture in each cell, (cells, 15, 3): that of the posture map's units, weighted by activity."""
-    activities = found.activities[cells, 0]
+    activities = attribution.activities[cells, 0]
     postures: Floats = np.tensordot(activities / activities.sum(axis=1, keepdims=True), _unit_postures(model), 1)
     return postures
 
 
-def _mean_contributors(found: Contributions, cells: Indices, channel: int, values: Floats) -> Floats:
+def _mean_contributors(attribution: Contributions, cells: Indices, channel: int, values: Floats) -> Floats:
     """Return for each cell the mean of the units' values (units, …), over those that contribute most, (cells, …)."""
-    chosen = (largest_contributors(units) for units in found.units[cells, channel])
+    chosen = (largest_contributors(units) for units in attribution.units[cells, channel])
     return np.array([np.tensordot(weights, values[indices], 1) for indices, weights in chosen])
 
 
-def _as_performed(vectors: Floats, found: Contributions) -> Floats:
+def _as_performed(vectors: Floats, attribution: Contributions) -> Floats:
     """Mirror vectors (n, 15, 3) back where the segment was read in a mirror."""
-    return mirrored(vectors) if found.in_mirror else vectors
+    return mirrored(vectors) if attribution.in_mirror else vectors

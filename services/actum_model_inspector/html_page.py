@@ -37,8 +37,8 @@ def page(
     """Return the page as HTML.
 
     Args:
-        model: that the pictures are of.
-        segments: that it answered.
+        model: the model that the pictures show.
+        segments: the segments that it answered.
         evaluation: of its answers, None where no segment has a label.
         planned: the pictures in their order.
         files: the file of each picture, by the picture's name.
@@ -63,7 +63,7 @@ def page(
 
 
 def model_facts(model: Model) -> str:
-    """State the model's kind, preset and training."""
+    """Return a sentence on the model's kind, preset and training."""
     metadata = model.metadata
     people = f" by {len(metadata.persons)} people" if len(metadata.persons) > 1 else ""
     return (
@@ -73,7 +73,7 @@ def model_facts(model: Model) -> str:
 
 
 def missing_letters(model: Model, segments: Sequence[AnsweredSegment]) -> Iterable[str]:
-    """State which letters of the actions' names the pictures cannot show, if any."""
+    """Yield a sentence on the letters of the actions' names that the pictures cannot show, if there are any."""
     names = [*model.metadata.labels, *(segment.label or "" for segment in segments)]
     if letters := missing_glyphs(" ".join(names)):
         yield (
@@ -83,7 +83,7 @@ def missing_letters(model: Model, segments: Sequence[AnsweredSegment]) -> Iterab
 
 
 def test_facts(model: Model, segments: Sequence[AnsweredSegment], evaluation: Evaluation | None) -> Iterable[str]:
-    """State how many segments it answered, how many of them rightly, and whose it knew from the training."""
+    """Yield sentences on the number of segments, the right answers, and the people who were also in the training."""
     if segments:
         rejected = sum(segment.recognition is None for segment in segments)
         yield f"Tried on {len(segments)} segments" + (f", of which it rejected {rejected}." if rejected else ".")

@@ -1,4 +1,4 @@
-"""The list of pictures of a model and of segments that it answered, each with its caption."""
+"""The pictures of a model and of segments that it answered, each with its caption, and their writing to files."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from actum_model_inspector.explanation import explanation_picture
 from actum_model_inspector.folder import clear, note
 from actum_model_inspector.model_maps import ModelMaps, PyramidMaps
 from actum_model_inspector.posture_map import posture_map
-from actum_model_inspector.reliability_diagram import judged, reliability_picture
+from actum_model_inspector.reliability_diagram import labelled_answers, reliability_picture
 from actum_model_inspector.segment_selection import examples, file_names, mistake_name, mistakes
 from actum_model_inspector.style import save
 from actum_model_inspector.trace_picture import trace_picture
@@ -115,7 +115,7 @@ def _of_answers(segments: Sequence[AnsweredSegment], evaluation: Evaluation) -> 
         "elsewhere are pairs of actions that the model mixes up.",
         partial(confusion_picture, evaluation),
     )  # fmt: skip
-    if len(judged(segments)) >= MIN_ANSWERS:
+    if len(labelled_answers(segments)) >= MIN_ANSWERS:
         yield Picture(
             section, "reliability",
             "Whether its confidence can be taken at its word: beneath the dashed line it is surer than it is right.",

@@ -17,7 +17,7 @@ class LabelSpace:
     """The space for labels on a map, in the map's units.
 
     Attributes:
-        page: that labels must lie within.
+        page: the box that labels must lie within.
         taken: the boxes of labels placed so far.
     """
 
@@ -25,13 +25,13 @@ class LabelSpace:
     taken: list[Box] = field(default_factory=list)
 
     def moved_inside(self, x: float, y: float, width: float, height: float) -> tuple[float, float]:
-        """Return the middle of a box, moved as little as brings the box onto the page."""
+        """Return the middle (x, y) of a box, moved by the least that brings the box onto the page."""
         left, top, right, bottom = self.page
         x = min(max(x, left + width / 2), max(right - width / 2, left + width / 2))
         return x, min(max(y, top + height / 2), max(bottom - height / 2, top + height / 2))
 
     def place(self, middles: Iterable[tuple[float, float]], width: float, height: float) -> tuple[float, float] | None:
-        """Take the first of some middles at which a box is on the page and overlaps no other; None if there is none."""
+        """Place a box at the first of some middles where it is on the page and overlaps no other; None if at none."""
         page = self.page
         for x, y in middles:
             box = left, top, right, bottom = x - width / 2, y - height / 2, x + width / 2, y + height / 2
@@ -51,7 +51,7 @@ def text_size(text: str, size: float) -> tuple[float, float]:
 def spread_apart(wanted: list[float], distance: float) -> list[float]:
     """Return the values, moved so that they lie at least a distance apart, in the same order.
 
-    Neighbours that are too close are spread evenly about the mean of the values they wanted.
+    Neighbours that are too close are spread evenly about the mean of their values.
     """
     groups: list[list[float]] = []
     for value in sorted(wanted):

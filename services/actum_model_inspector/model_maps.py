@@ -1,4 +1,4 @@
-"""The same view of every kind of model: its map of postures, its map of actions, and what segments win on them."""
+"""The maps of every kind of model behind one interface: map of postures, map of actions, and segments' winners."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -25,10 +25,10 @@ class ModelMaps(ABC):
     """The maps of one model.
 
     Attributes:
-        model: whose maps they are.
+        model: the model that the maps belong to.
         postures: the first map.
         actions: the second map.
-        figure: how the joints that a unit of the first map stands for are joined.
+        figure: which of the joints that a unit of the first map stands for are joined by lines.
     """
 
     model: Model
@@ -86,7 +86,7 @@ class PyramidMaps(ModelMaps):
     def unit_cosines(self) -> Floats:
         """Return the neurons' cosines for the weights of each unit of the second map as input, (units, actions)."""
         activities = [self.model.action_map.activity(weights) for weights in self.actions.weights]
-        return np.stack([self.model.layer3.cosines(own) for own in activities])
+        return np.stack([self.model.layer3.cosines(activity) for activity in activities])
 
 
 class PaperMaps(ModelMaps):
@@ -104,9 +104,9 @@ class PaperMaps(ModelMaps):
         return points - TORSO_FROM_HIPS_M if from_hips else points
 
     def winners(self, frames: Sequence[Frame]) -> Indices:
-        """Return the winner for what is attended to at each encoded frame, NO_WINNER where none of it is there."""
-        _, seen = self.model.attended(frames)
-        return seen.winners
+        """Return the winner for the attended part at each encoded frame, NO_WINNER where all of the part is missing."""
+        _, activity = self.model.attended(frames)
+        return activity.winners
 
     def action_unit(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a segment of encoded frames."""
@@ -116,14 +116,14 @@ class PaperMaps(ModelMaps):
         """Return the neurons' cosines for the weights of each unit of the second map as input, (units, actions)."""
         contrast = self.model.metadata.contrast
         activities = [soft_activity(self.actions.excess2(weights), contrast) for weights in self.actions.weights]
-        return np.stack([self.model.layer3.cosines(own) for own in activities])
+        return np.stack([self.model.layer3.cosines(activity) for activity in activities])
 
 
 def maps_of(model: Model) -> ModelMaps:
-    """Find a model's maps.
+    """Return a model's maps.
 
     Raises:
-        TypeError: it is of a kind that has no pictures yet.
+        TypeError: it is of a kind without pictures.
     """
     match model:
         case PyramidModel():

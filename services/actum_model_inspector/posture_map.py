@@ -48,7 +48,7 @@ def draw_units(
     strength: float = 1.0,
     zorder: float = 2.0,
 ) -> None:
-    """Draw the figures of some units; where a figure is only a limb, faintly with somebody who stands.
+    """Draw the figures of some units; where a figure is only a limb, over the faint figure of somebody who stands.
 
     Args:
         axes: whose y goes down.
@@ -76,7 +76,7 @@ def drawn_units(som: Som) -> tuple[Indices, int]:
 
 
 def which_are_drawn(spacing: int) -> str:
-    """State which units are drawn, if not all are."""
+    """Return words that say which units are drawn; "" where all are."""
     return "" if spacing == 1 else f"one unit in {spacing * spacing} is drawn; "
 
 

@@ -35,11 +35,11 @@ def largest_component(mask: Mask) -> Indices:
     Args:
         mask: (rows, cols).
     """
-    left = {(int(row), int(col)) for row, col in np.argwhere(mask)}
+    remaining = {(int(row), int(col)) for row, col in np.argwhere(mask)}
     largest: set[tuple[int, int]] = set()
-    while left:
-        component = _component_at(next(iter(left)), left)
-        left -= component
+    while remaining:
+        component = _component_at(next(iter(remaining)), remaining)
+        remaining -= component
         largest = max(largest, component, key=len)
     return np.array(sorted(largest), dtype=np.intp).reshape(-1, 2)
 
@@ -56,14 +56,14 @@ def innermost_unit(component: Indices) -> tuple[int, int]:
 
 
 def _component_at(start: tuple[int, int], members: set[tuple[int, int]]) -> set[tuple[int, int]]:
-    """Return the members that are connected with a start, side to side."""
-    found, front = {start}, [start]
-    while front:
-        row, col = front.pop()
-        near = {(row - 1, col), (row + 1, col), (row, col - 1), (row, col + 1)} & members - found
-        found |= near
-        front += near
-    return found
+    """Return the members that are connected with a start, by common sides."""
+    component, frontier = {start}, [start]
+    while frontier:
+        row, col = frontier.pop()
+        near = {(row - 1, col), (row + 1, col), (row, col - 1), (row, col + 1)} & members - component
+        component |= near
+        frontier += near
+    return component
 
 
 def _inner_radius(unit: tuple[int, int], members: set[tuple[int, int]]) -> int:

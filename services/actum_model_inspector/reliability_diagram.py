@@ -13,7 +13,7 @@ from actum_model_trainer.evaluation import wilson_interval
 WIDTH_IN = 6.8  # of the picture: about square axes
 
 
-def judged(segments: Sequence[AnsweredSegment]) -> list[AnsweredSegment]:
+def labelled_answers(segments: Sequence[AnsweredSegment]) -> list[AnsweredSegment]:
     """Return the segments that have a label and an answer."""
     return [segment for segment in segments if segment.label is not None and segment.recognition is not None]
 
@@ -31,36 +31,40 @@ def reliability_picture(segments: Sequence[AnsweredSegment]) -> Figure:
     Raises:
         ValueError: fewer than `MIN_ANSWERS` segments have a label and an answer.
     """
-    known = judged(segments)
+    known = labelled_answers(segments)
     if len(known) < MIN_ANSWERS:
         raise ValueError(f"{len(known)} labelled and answered segments are too few: at least {MIN_ANSWERS} are needed")
-    found = bins(known)
+    filled_bins = bins(known)
     figure = figure_with_layout(
-        WIDTH_IN, 7.0, f"Confidence is {calibration_error(found):.2f} off on average ({len(known)} answers)"
+        WIDTH_IN, 7.0, f"Confidence is {calibration_error(filled_bins):.2f} off on average ({len(known)} answers)"
     )
     upper, lower = figure.subplots(2, 1, height_ratios=[4, 1], sharex=True)
-    _draw_accuracy(upper, found)
-    _draw_counts(lower, found)
+    _draw_accuracy(upper, filled_bins)
+    _draw_counts(lower, filled_bins)
     return figure
 
 
-def _draw_accuracy(axes: Axes, found: Sequence[ConfidenceBin]) -> None:
+def _draw_accuracy(axes: Axes, filled_bins: Sequence[ConfidenceBin]) -> None:
     axes.plot([0, 1], [0, 1], color=FAINT, linewidth=1, linestyle=(0, (4, 3)))
     axes.text(0.03, 0.95, "more often right than it says", color=FAINT, va="top")
     axes.text(0.98, 0.03, "less often right than it says", color=FAINT, ha="right")
-    for each in found:
+    for each in filled_bins:
         axes.plot([each.confidence] * 2, wilson_interval(each.correct, each.n), color=ACCENT, linewidth=1.4)
-    confidences, accuracies = [each.confidence for each in found], [each.accuracy for each in found]
+    confidences, accuracies = [each.confidence for each in filled_bins], [each.accuracy for each in filled_bins]
     axes.plot(confidences, accuracies, color=ACCENT, linewidth=0.6)
-    axes.scatter(confidences, accuracies, s=[30 + each.n for each in found], color=ACCENT, zorder=3, clip_on=False)
+    axes.scatter(
+        confidences, accuracies, s=[30 + each.n for each in filled_bins], color=ACCENT, zorder=3, clip_on=False
+    )
     axes.set(ylabel="share of right answers", xlim=(0, 1), ylim=(0, 1.02))
     reading = "on the dashed line, eight in ten of the answers given with 0.8 are right; bars: 95 % interval"
     set_caption(axes, reading, WIDTH_IN - 1)
 
 
-def _draw_counts(axes: Axes, found: Sequence[ConfidenceBin]) -> None:
-    axes.bar([each.low + 0.05 for each in found], [each.n for each in found], 0.085, color=ACCENT, alpha=0.35)
-    for each in found:
+def _draw_counts(axes: Axes, filled_bins: Sequence[ConfidenceBin]) -> None:
+    axes.bar(
+        [each.low + 0.05 for each in filled_bins], [each.n for each in filled_bins], 0.085, color=ACCENT, alpha=0.35
+    )
+    for each in filled_bins:
         axes.text(each.low + 0.05, each.n, str(each.n), ha="center", va="bottom", color=INK)
     axes.set(xlabel="confidence of the answer", ylabel="answers")
     axes.margins(y=0.25)

@@ -13,9 +13,9 @@ from actum.skeletons import INDEX, JOINTS, PARTS
 from actum_model_inspector.style import INK, LEFT, PAPER, RIGHT
 
 AZIMUTH_RAD = np.deg2rad(20.0)  # of the view: an arm stretched forward does not hide behind its own hand
-ELEVATION_RAD = np.deg2rad(12.0)  # for the same reason
-HEIGHT_M = 1.75  # from the feet to a raised hand: what must fit into a figure's size
-MIDDLE_M = -0.22  # height of the middle of that above the torso
+ELEVATION_RAD = np.deg2rad(12.0)  # of the view, for the same reason
+HEIGHT_M = 1.75  # from the feet to a raised hand: the height that must fit into a figure's size
+MIDDLE_M = -0.22  # height of the middle between feet and raised hand above the torso
 HEAD_M = 0.11  # radius of a head
 LONGEST_ARROW_M = 0.9  # of a map's fastest joint: an arrow about as long as a leg
 SHORTEST_ARROW_M = 0.06  # shorter arrows are left out: only their heads would be seen
@@ -173,7 +173,7 @@ def _side(name: str) -> str:
 
 
 def _parts(points: Floats) -> list[str]:
-    """Return the body part of three joints each, (n, 3, 3): that whose first joint, when standing, is nearest."""
+    """Return the body part of each limb (n, 3, 3), the one whose first joint, when standing, is nearest to its own."""
     first = np.array([STANDING[joints[0]] for joints in PARTS.values()])
     distances = np.linalg.norm(points[:, None, 0] - first, axis=-1)
     return [tuple(PARTS)[index] for index in distances.argmin(axis=1)]

@@ -19,12 +19,12 @@ from actum.arrays import Floats
 from actum_model_inspector.text_layout import on_one_line, wrapped
 
 INK = "#222222"  # text and lines
-FAINT = "#767676"  # what is said beside: 4.5:1 on the paper
+FAINT = "#767676"  # secondary text and lines: contrast 4.5:1 on the paper
 PAPER = "#ffffff"
-RIGHT = "#d55e00"  # the actor's right on every figure …
-LEFT = "#0072b2"  # … and left: told apart by the colour-blind
+RIGHT = "#d55e00"  # the actor's right on every figure; the colour-blind can tell it from the left
+LEFT = "#0072b2"  # the actor's left
 ACCENT = "#0072b2"
-"""Of what a diagram is about."""
+"""The data of a diagram."""
 
 _HUES = (
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9",
@@ -155,7 +155,7 @@ def hide_axes(axes: Axes) -> None:
 def action_colours(actions: int) -> Floats:
     """Return one colour (RGB, 0 to 1) per action, shape (actions, 3); after the twelfth they repeat, lighter.
 
-    Nobody tells twenty colours apart, so names stand beside them wherever they are used.
+    Nobody can tell twenty colours apart, so every use of them has names beside.
     """
     hues = np.array([to_rgb(hue) for hue in _HUES])
     rounds, index = np.divmod(np.arange(actions), len(hues))

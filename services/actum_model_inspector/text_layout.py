@@ -28,13 +28,13 @@ def shortened(text: str, width: float = MAX_COLUMNS) -> str:
 
 def wrapped(text: str, width: float, lines: int = 2) -> str:
     """Break a name into at most `lines` lines of `width` columns, its end cut off where it does not fit."""
-    found: list[str] = []
+    full_lines: list[str] = []
     rest = on_one_line(text)
-    while columns(rest) > width and len(found) < lines - 1:
+    while columns(rest) > width and len(full_lines) < lines - 1:
         end = _end_of_line(rest, width)
-        found.append(rest[:end].rstrip())
+        full_lines.append(rest[:end].rstrip())
         rest = rest[end:].lstrip()
-    return "\n".join([*found, shortened(rest, width)])
+    return "\n".join([*full_lines, shortened(rest, width)])
 
 
 def _end_of_line(text: str, width: float) -> int:

@@ -21,7 +21,7 @@ from som_classifier.map_activity import NO_WINNER
 
 PALE = 0.28  # opacity of the map beneath the trajectory
 CARD = 0.94  # side of a visited unit's card, in units of the map
-SHIFT = 0.07  # of steps to their right, in units of the map: there and back lie side by side
+SHIFT = 0.07  # of steps to their right, in units of the map: steps there and back lie side by side
 TIME_COLOURS = mpl.colormaps["plasma"].resampled(256)
 _LATEST = 0.88  # of the colour scale, for the segment's end: its last part is too light for white paper
 
@@ -31,17 +31,17 @@ def trace_picture(maps: ModelMaps, answered: AnsweredSegment) -> Figure:
     """Draw the winners of a segment, joined in their order, over the pale posture map."""
     frames = encoded(maps.model, answered.frames)
     winners = maps.winners(frames)
-    seen = np.flatnonzero(winners != NO_WINNER)
-    units, first = stays(winners[seen])
+    with_winner = np.flatnonzero(winners != NO_WINNER)
+    units, first = stays(winners[with_winner])
     width, height = map_size(maps.postures)
     figure = figure_with_layout(width + 0.9, height, headline(answered))
     axes = figure.add_subplot()
     draw_postures(axes, maps, PALE)
-    when = answered.relative_times[seen[first]]
-    _draw_trajectory(axes, maps.postures.coordinates[units][:, ::-1], when)
+    times = answered.relative_times[with_winner[first]]
+    _draw_trajectory(axes, maps.postures.coordinates[units][:, ::-1], times)
     in_mirror = maps.is_mirrored(frames)
     points = mirrored(maps.unit_joints()) if in_mirror else maps.unit_joints()
-    _draw_cards(axes, maps, points, units, when)
+    _draw_cards(axes, maps, points, units, times)
     mirror = "; the left arm acts: read in a mirror, drawn as it was" if in_mirror else ""
     axes.set_title(f"{len(units)} stays on {len(np.unique(units))} units, framed in the colour of the first{mirror}")
     name_sides(axes)
@@ -56,9 +56,9 @@ def stays(winners: Indices) -> tuple[Indices, Indices]:
     return winners[begins], begins
 
 
-def _draw_trajectory(axes: Axes, places: Floats, when: Floats) -> None:
+def _draw_trajectory(axes: Axes, places: Floats, times: Floats) -> None:
     """Join places (n, 2), x and y, by lines in the colour of their time (n,), 0 to 1, long ones with an arrowhead."""
-    colours = TIME_COLOURS(_LATEST * when)
+    colours = TIME_COLOURS(_LATEST * times)
     steps = _shifted_right(np.stack([places[:-1], places[1:]], axis=1))
     axes.add_collection(LineCollection(list(steps), colors=PAPER, linewidths=4.5, capstyle="round", zorder=3))
     axes.add_collection(LineCollection(list(steps), colors=colours[:-1], linewidths=2.0, capstyle="round", zorder=3))
@@ -77,11 +77,11 @@ def _shifted_right(steps: Floats) -> Floats:
     return moved
 
 
-def _draw_cards(axes: Axes, maps: ModelMaps, points: Floats, units: Indices, when: Floats) -> None:
+def _draw_cards(axes: Axes, maps: ModelMaps, points: Floats, units: Indices, times: Floats) -> None:
     """Draw each visited unit on a white card, framed in the colour of its first visit, and name start and end."""
     visited, first = np.unique(units, return_index=True)
     places = maps.postures.coordinates[:, ::-1]
-    for unit, colour in zip(visited, TIME_COLOURS(_LATEST * when[first]), strict=True):
+    for unit, colour in zip(visited, TIME_COLOURS(_LATEST * times[first]), strict=True):
         corner = places[unit] - 0.5 * CARD
         card = FancyBboxPatch(
             corner, CARD, CARD, boxstyle="round,pad=0,rounding_size=0.12", facecolor=PAPER, edgecolor=colour,

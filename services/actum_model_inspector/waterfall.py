@@ -9,8 +9,8 @@ from matplotlib.patches import Rectangle
 
 from actum_model_inspector.style import FAINT, INK, hide_axes
 
-POSITIVE = "#4d9221"  # green …
-NEGATIVE = "#9a4fa8"  # … and purple: told apart by the colour-blind
+POSITIVE = "#4d9221"  # green
+NEGATIVE = "#9a4fa8"  # purple, which the colour-blind can tell from green
 TERM_IN = 0.22  # height of a row: a line of text with some air
 NAMES_IN = 1.0  # width of the terms' names
 BARS_IN = 3.2  # width of the bars
@@ -23,7 +23,7 @@ class Term:
 
     Attributes:
         name: in a word or two.
-        value: what it adds.
+        value: the amount that it adds.
         meaning: a sentence that explains it.
     """
 

@@ -1,4 +1,4 @@
-"""A model's answers to samples, by the code that also answers live but without messages in between."""
+"""A model's answers to samples, computed by the live classifier's code but without messages in between."""
 
 from collections.abc import Sequence
 
@@ -21,7 +21,7 @@ def encoded(model: Model, sample: SegmentSample) -> list[Frame]:
 
 
 def answer(model: Model, frames: Sequence[Frame], fraction: float = 1.0) -> Recognition:
-    """Return the model's answer after a share (0 to 1) of a sample's encoded frames; at 1 to the complete action."""
+    """Return the model's answer to the first share (0 to 1) of a sample's encoded frames; 1 is the complete action."""
     count = min(len(frames), max(model.min_frames, round(fraction * len(frames))))
     return model.recognise(frames[:count], complete=fraction >= 1.0)
 

@@ -41,23 +41,23 @@ def variants(
     """Yield the sample as measured, then rotated, then with other bodies' proportions and tempo.
 
     Args:
-        sample: to vary.
-        preset: with the rotations and the variation of bodies.
+        sample: the sample to vary.
+        preset: gives the rotations and the variation of bodies.
         mirrors: whether a sample of the left arm is mirrored first, as the classifier reads it.
-        rng: that draws the proportions.
+        rng: draws the proportions.
     """
     measured = Variant(sample.postures, sample.velocities)
-    own = measured.mirrored if mirrors and sample.acting_hands[-1] == "left" else measured
-    yield own
+    as_read = measured.mirrored if mirrors and sample.acting_hands[-1] == "left" else measured
+    yield as_read
     for yaw_deg, pitch_deg in zip(preset.turns_deg, preset.leans_deg, strict=True):
         pitch = pitch_rotation(np.radians(pitch_deg if sample.depth_inferred else 0.0))
         rotation = yaw_rotation(np.radians(yaw_deg)) @ pitch
-        yield Variant(own.postures @ rotation, own.velocities @ rotation)
+        yield Variant(as_read.postures @ rotation, as_read.velocities @ rotation)
     for _ in range(preset.others.count):
         factors = np.exp(rng.normal(0.0, preset.others.build_sd, len(_BONE_NAMES)))
         scaling = bone_scaling(dict(zip(_BONE_NAMES, factors, strict=True)))
-        velocities = preset.others.tempo * _applied(scaling, own.velocities)
-        yield Variant(_applied(scaling, own.postures), velocities)
+        velocities = preset.others.tempo * _applied(scaling, as_read.velocities)
+        yield Variant(_applied(scaling, as_read.postures), velocities)
 
 
 def yaw_rotation(radians: float) -> Array:

@@ -30,7 +30,7 @@ class HandPath:
     """The hand path of a labelled segment.
 
     Attributes:
-        points_m: (32, 3), relative to the torso in camera axes; None where fewer than two frames show it.
+        points_m: (32, 3), relative to the torso in camera axes; None where fewer than two frames have the joints.
     """
 
     file: str
@@ -40,16 +40,16 @@ class HandPath:
 
 
 def nearest_neighbour(training: Sequence[Recording], test: Sequence[Recording]) -> Evaluation:
-    """Answer each labelled segment of the test with the label of the nearest training path.
+    """Answer each labelled segment of the test recordings with the label of the nearest training path.
 
     Raises:
         ValueError: the training recordings hold no path.
     """
-    known = [(path.label, path.points_m) for path in hand_paths(training) if path.points_m is not None]
-    if not known:
+    labelled_paths = [(path.label, path.points_m) for path in hand_paths(training) if path.points_m is not None]
+    if not labelled_paths:
         raise ValueError("the training recordings hold no labelled segment with a hand path")
-    labels = [label for label, _ in known]
-    points_m = np.stack([points for _, points in known])
+    labels = [label for label, _ in labelled_paths]
+    points_m = np.stack([points for _, points in labelled_paths])
     return Evaluation(
         tuple(
             Prediction(path.file, path.segment_id, path.label, _nearest(labels, points_m, path.points_m))
@@ -59,14 +59,14 @@ def nearest_neighbour(training: Sequence[Recording], test: Sequence[Recording]) 
 
 
 def hand_paths(recordings: Sequence[Recording]) -> Iterator[HandPath]:
-    """Yield the path of every labelled segment."""
+    """Yield the hand path of every labelled segment."""
     for recording in recordings:
         for sensor in sensors(recording):
             skeletons = [m for m in recording.messages((keys.SKELETON,)) if isinstance(m, Skeleton)]
-            seen = [skeleton for skeleton in skeletons if skeleton.sensor == sensor]
+            of_sensor = [skeleton for skeleton in skeletons if skeleton.sensor == sensor]
             for closed in closed_segments(classifier_input(recording, sensor)):
                 if closed.label is not None:
-                    yield HandPath(str(recording.path), closed.segment_id, closed.label, _path(seen, closed))
+                    yield HandPath(str(recording.path), closed.segment_id, closed.label, _path(of_sensor, closed))
 
 
 def hand_path(hands_and_torso_m: Array, stamps_ns: NDArray[np.int64]) -> Array:
@@ -74,7 +74,7 @@ def hand_path(hands_and_torso_m: Array, stamps_ns: NDArray[np.int64]) -> Array:
 
     Args:
         hands_and_torso_m: (n, 3, 3), in each frame of the segment the left hand, the right hand and the torso, all in
-            one and the same coordinate frame.
+            the same coordinate frame.
         stamps_ns: (n,), rising.
     """
     hands_m = hands_and_torso_m[:, :2] - hands_and_torso_m[:, 2:]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-MIN_ANSWERS = 30  # labelled ones: of fewer, the accuracy of a bin is chance
+MIN_ANSWERS = 30  # labelled answers: with fewer, the accuracy in a bin is chance
 BINS = 10  # equally wide, as is usual
 
 
@@ -35,13 +35,13 @@ class ConfidenceBin:
 
 def confidence_bins(confidences: Sequence[float], correct: Sequence[bool]) -> list[ConfidenceBin]:
     """Sort answers into bins by confidence, given whether each is correct; empty bins are left out."""
-    sure, right = np.array(confidences, dtype=np.float64), np.array(correct, dtype=bool)
-    which = np.minimum((sure * BINS).astype(int), BINS - 1)
+    confidence, is_correct = np.array(confidences, dtype=np.float64), np.array(correct, dtype=bool)
+    bin_indices = np.minimum((confidence * BINS).astype(int), BINS - 1)
     bins = []
-    for k in np.unique(which).tolist():
-        inside = which == k
-        counts = int(inside.sum()), int(right[inside].sum())
-        bins.append(ConfidenceBin(k / BINS, (k + 1) / BINS, *counts, float(sure[inside].mean())))
+    for k in np.unique(bin_indices).tolist():
+        inside = bin_indices == k
+        counts = int(inside.sum()), int(is_correct[inside].sum())
+        bins.append(ConfidenceBin(k / BINS, (k + 1) / BINS, *counts, float(confidence[inside].mean())))
     return bins
 
 

@@ -1,8 +1,8 @@
-"""What a model's confidence and its open-set decision are set to: inverse temperatures and a familiarity threshold.
+"""Calibration of a model: inverse temperatures for its confidence, a familiarity threshold for unknown actions.
 
-Both are estimated on cross-validated scores, which say how the model fares on people it was not trained on. A few
-people say little about that, a single one nothing. Therefore each estimate is averaged with what was found for models
-of other people's actions (`som_classifier.presets.Prior`), which counts as much as `Prior.people` further people.
+Both are estimated on cross-validated scores, which show how well the model does on people it was not trained on. Few
+people show little of that, a single one nothing. Therefore each estimate is averaged with the value for models of
+other people's actions (`som_classifier.presets.Prior`), which counts as much as `Prior.people` further people.
 """
 
 from collections.abc import Sequence
@@ -24,8 +24,8 @@ def inverse_temperatures(
 ) -> list[float]:
     """Return the inverse temperature of each stage: the matched one averaged with the prior's, at most the matched one.
 
-    People within a training set differ less from one another than strangers do, so that the matched inverse
-    temperature is rather too large and never too small.
+    People within a training set differ less from one another than from new people, so that the matched inverse
+    temperature tends to be too large and is never too small.
 
     Args:
         stages: with their cross-validated scores.
@@ -43,9 +43,9 @@ def inverse_temperatures(
 def cross_validated_inverse_temperature(stage: FittedStage, upper: UpperLayers) -> float:
     """Return the inverse temperature that makes the mean confidence equal the accuracy of the cross-validated scores.
 
-    An answer counts as right where the largest score is that of the action done. The cosines are not asked: the upper
-    layers were trained on these very scores. Laplace's rule (one right and one wrong answer more) keeps n right
-    answers of n from making the next one certain.
+    An answer counts as right where the largest score is that of the action done. The accuracy is that of the scores,
+    not of the cosines, because the upper layers were trained on these very scores. Laplace's rule (one right and one
+    wrong answer more) keeps the accuracy below 1 where all n answers are right.
     """
     scores = stage.discriminants.cross_validated_scores
     right = int((scores.argmax(axis=1) == stage.targets).sum())
@@ -53,7 +53,7 @@ def cross_validated_inverse_temperature(stage: FittedStage, upper: UpperLayers) 
 
 
 def familiarity_threshold(scores: Floats, samples: Sequence[SegmentSample], preset: PyramidPreset) -> float:
-    """Return the open-set threshold: segments whose familiarity is below may be none of the trained actions.
+    """Return the open-set threshold: a segment of lower familiarity may be none of the trained actions.
 
     Familiarity is an open-set score: a segment's largest score, lowered where its postures are unlike those of the
     action (`familiarity_of` in som_classifier). The threshold is the quantile that a share `preset.known_share` of the
@@ -65,17 +65,17 @@ def familiarity_threshold(scores: Floats, samples: Sequence[SegmentSample], pres
         preset: with the share and the prior.
     """
     prior, people = preset.prior, len({sample.person for sample in samples})
-    nobody_twice = len({(sample.person, sample.label) for sample in samples}) == len(samples)
+    one_sample_each = len({(sample.person, sample.label) for sample in samples}) == len(samples)
     exceeded = np.quantile(scores.max(axis=1), 1 - preset.known_share)
-    expected = prior.familiar_from_one if nobody_twice else prior.familiar
+    expected = prior.familiar_from_one if one_sample_each else prior.familiar
     return float(_averaged_with_prior(exceeded, expected, prior, people))
 
 
 def expected_log_errors(first: FirstMaps, postures: Sequence[Floats], targets: Indices, prior: Prior) -> list[float]:
-    """Return for each action the mean log(d²) from the posture map (d in m) to expect of a stranger who does it.
+    """Return for each action the mean log(d²), d the distance (m) to the posture map, to expect of a new person.
 
     It is the prior's, plus the difference between the action's own mean and that of all samples: a map has few units
-    for rare postures. Each action's mean difference is shrunk towards 0 as by one more sample without any.
+    for rare postures. Each action's mean difference is shrunk towards 0, as if by one more sample of difference 0.
 
     Args:
         first: the trained maps of the first layer.
@@ -83,11 +83,11 @@ def expected_log_errors(first: FirstMaps, postures: Sequence[Floats], targets: I
         targets: (n,), the samples' actions.
         prior: of models of other people's actions.
     """
-    log_errors = np.array([first.log_errors(own, first.winners(own)).mean() for own in postures])
+    log_errors = np.array([first.log_errors(frames, first.winners(frames)).mean() for frames in postures])
     above_mean = np.bincount(targets, weights=log_errors - log_errors.mean()) / (np.bincount(targets) + 1)
-    return [float(prior.log_error + own) for own in above_mean]
+    return [float(prior.log_error + difference) for difference in above_mean]
 
 
 def _averaged_with_prior(estimate: Any, expected: Any, prior: Prior, people: int) -> Any:
-    """Weigh an estimate by the people it is of beyond the first, who says nothing of how people differ."""
+    """Return the mean of both, the estimate weighted by the people beyond the first: one shows no differences."""
     return (prior.people * expected + (people - 1) * estimate) / (prior.people + people - 1)

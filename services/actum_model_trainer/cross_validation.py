@@ -38,8 +38,8 @@ def leave_one_person_out(
     for person in people:
         others = [sample for sample in samples.usable if sample.person != person]
         model = train(others, preset, seed, _prefixed(f"without {person or 'unnamed'}: ", progress))
-        own = [recording for recording in recordings if recording.person == person]
-        predictions += _predictions(model, own, segments, _prefixed(f"on {person or 'unnamed'}: ", progress))
+        tests = [recording for recording in recordings if recording.person == person]
+        predictions += _predictions(model, tests, segments, _prefixed(f"on {person or 'unnamed'}: ", progress))
     return Evaluation(tuple(predictions))
 
 
@@ -51,8 +51,8 @@ def _predictions(
         for sensor in sensors(recording):
             for segment_id, label in segment_labels(recording, sensor).items():
                 segment = segments.get((str(recording.path), sensor, segment_id))
-                found = answer(model, encoded(model, segment)) if isinstance(segment, SegmentSample) else None
-                yield prediction(recording, segment_id, label, found.label if found else None, found)
+                answered = answer(model, encoded(model, segment)) if isinstance(segment, SegmentSample) else None
+                yield prediction(recording, segment_id, label, answered.label if answered else None, answered)
     progress("evaluating", len(recordings), len(recordings))
 
 

@@ -11,7 +11,7 @@ from actum.arrays import Array, Indices
 from actum_model_trainer.samples import SegmentSample
 
 FOLDS_WITHIN_AN_ACTION = 5  # of an action that one person alone did
-MAX_PERSON_FOLDS = 10  # more people share folds: each fold costs a solution, and more say little more
+MAX_PERSON_FOLDS = 10  # more people share folds: each fold costs a linear solve, and more folds change little
 SMALLEST_LENGTH2 = 1e-9  # squared length of pooled vectors: the penalty must not be 0 where all are the same
 
 
@@ -35,7 +35,7 @@ class Discriminants:
 
 @dataclass(frozen=True, eq=False)
 class FittedStage:
-    """The discriminants of one stage of an action, with what is known of the n vectors they were fitted to.
+    """The discriminants of one stage of an action, with sample and action of the n vectors they were fitted to.
 
     Attributes:
         discriminants: fitted to them.
@@ -49,9 +49,9 @@ class FittedStage:
 
 
 def folds_of(samples: Sequence[SegmentSample]) -> Indices:
-    """Divide samples into folds for cross-validation, shape (n,): by person, so that each is scored by the others.
+    """Return the fold of each sample for cross-validation, shape (n,): one per person, who is so scored by the others.
 
-    An action that only one person did is divided evenly instead: without that person nothing were known of it.
+    The samples of an action that only one person did are divided evenly: the others hold no sample of it.
     """
     people = sorted({sample.person for sample in samples})
     by_label: dict[str, set[str]] = {}
@@ -94,23 +94,23 @@ def fit_discriminants(
 
 
 def _cross_validated(training_scores: Array, inverse: Array, indicators: Array, folds: Indices) -> Array:
-    """Replace the scores (n, actions) of all vectors whose action other folds know, too."""
+    """Return the scores (n, actions), cross-validated for all vectors whose action occurs in another fold, too."""
     scores = training_scores.copy()
     for fold in np.unique(folds):
-        inside, outside = np.flatnonzero(folds != fold), np.flatnonzero(folds == fold)
-        known_actions = np.flatnonzero(indicators[inside].any(axis=0))
-        known = indicators[np.ix_(outside, known_actions)].any(axis=1)
-        if known.any():
-            scores[outside[known]] = _scores_of_left_out(inverse, indicators, inside, outside)[known]
+        fitted, held_out = np.flatnonzero(folds != fold), np.flatnonzero(folds == fold)
+        fitted_actions = np.flatnonzero(indicators[fitted].any(axis=0))
+        scorable = indicators[np.ix_(held_out, fitted_actions)].any(axis=1)
+        if scorable.any():
+            scores[held_out[scorable]] = _held_out_scores(inverse, indicators, fitted, held_out)[scorable]
     return scores
 
 
-def _scores_of_left_out(inverse: Array, indicators: Array, inside: Indices, outside: Indices) -> Array:
-    """Return the scores (outside, actions) on discriminants fitted to the rows inside, from the inverse B for all rows.
+def _held_out_scores(inverse: Array, indicators: Array, fitted: Indices, held_out: Indices) -> Array:
+    """Return the scores (held out, actions) of discriminants fitted to the other rows, from the inverse B for all rows.
 
-    By the inverse of a block matrix, K_oi (K_ii + penalty)⁻¹ = −B_oo⁻¹ B_oi: nothing is fitted anew.
+    By the inverse of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: no discriminants need be fitted.
     """
-    intercept: Array = indicators[inside].mean(axis=0)
-    towards = inverse[np.ix_(outside, inside)] @ (indicators[inside] - intercept)
-    scores: Array = intercept - np.linalg.solve(inverse[np.ix_(outside, outside)], towards)
+    intercept: Array = indicators[fitted].mean(axis=0)
+    product = inverse[np.ix_(held_out, fitted)] @ (indicators[fitted] - intercept)
+    scores: Array = intercept - np.linalg.solve(inverse[np.ix_(held_out, held_out)], product)
     return scores

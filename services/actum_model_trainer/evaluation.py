@@ -54,7 +54,7 @@ class ClassScore:
         correct: number of right answers.
         rejected: number of segments without an answer.
         accuracy: correct / n, 0 where n is 0.
-        confidence: the answers' mean; None where none has any.
+        confidence: the answers' mean confidence; None where no answer has one.
         unknown: the share of answers that say unknown; None where the model gives no familiarity.
     """
 
@@ -108,8 +108,8 @@ class Evaluation:
         return {label: _score([p for p in self.predictions if p.label == label]) for label in self.labels}
 
     @cached_property
-    def told_unknown(self) -> list[bool]:
-        """Of each answer with a familiarity, whether it says unknown."""
+    def unknown_decisions(self) -> list[bool]:
+        """The open-set decisions, of each answer that has one: whether it says unknown."""
         return [prediction.unknown for prediction in self.predictions if prediction.unknown is not None]
 
     @cached_property
@@ -134,21 +134,21 @@ class Evaluation:
         }
 
 
-def _score(own: Sequence[Prediction]) -> ClassScore:
-    correct = sum(prediction.correct for prediction in own)
+def _score(predictions: Sequence[Prediction]) -> ClassScore:
+    correct = sum(prediction.correct for prediction in predictions)
     return ClassScore(
-        n=len(own),
+        n=len(predictions),
         correct=correct,
-        rejected=sum(prediction.predicted is None for prediction in own),
-        accuracy=correct / len(own) if own else 0.0,
-        confidence=_mean([prediction.confidence for prediction in own]),
-        unknown=_mean([prediction.unknown for prediction in own]),
+        rejected=sum(prediction.predicted is None for prediction in predictions),
+        accuracy=correct / len(predictions) if predictions else 0.0,
+        confidence=_mean([prediction.confidence for prediction in predictions]),
+        unknown=_mean([prediction.unknown for prediction in predictions]),
     )
 
 
 def _mean(values: Sequence[float | None]) -> float | None:
-    told = [value for value in values if value is not None]
-    return sum(told) / len(told) if told else None
+    known = [value for value in values if value is not None]
+    return sum(known) / len(known) if known else None
 
 
 def wilson_interval(correct: int, n: int) -> tuple[float, float]:

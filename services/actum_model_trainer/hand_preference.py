@@ -1,4 +1,4 @@
-"""Whether people prefer one hand: only then is an action of the left arm the mirrored action of a left-hander."""
+"""Whether people prefer one hand: only then is an action of the left arm a left-hander's mirror image of the action."""
 
 from collections import Counter
 from collections.abc import Sequence

@@ -42,13 +42,13 @@ class _AttendedSample:
     @property
     def vectors(self) -> Array:
         """The first map's training vectors, shape (n, size), without frames in which the part is wholly missing."""
-        own: Array = self.rows[:, self.attended]
-        return own[~np.isnan(own).all(axis=1)]
+        vectors: Array = self.rows[:, self.attended]
+        return vectors[~np.isnan(vectors).all(axis=1)]
 
     def trajectory(self, layer1: Som, contrast: float) -> Array:
         """Return the trajectory over the first map, shape (changes, 2).
 
-        Frame by frame through the same matrix products as the recogniser, so that both agree to the bit.
+        It is computed frame by frame by the same matrix products as in the recogniser, so that both agree to the bit.
         """
         frames = [map_activity(layer1, rows, contrast)[self.attended] for rows in self.rows]
         winners, centres = np.array([frame.winners for frame in frames]), np.array([frame.centres for frame in frames])
@@ -64,10 +64,10 @@ def train(samples: Sequence[SegmentSample], preset: PaperPreset, seed: int, prog
     labels = actions_of(samples)
     rng = np.random.default_rng(seed)
     attended = [_AttendedSample.of(sample, preset.posture) for sample in samples]
-    postures = np.concatenate([own.vectors for own in attended])
+    postures = np.concatenate([sample.vectors for sample in attended])
     layer1 = _trained_map(preset.layer1, postures, rng, progress, "layer 1")
     centre_contrast = preset.centre_contrast * median_quantization_error2(layer1, postures)
-    paths = [own.trajectory(layer1, centre_contrast) for own in attended]
+    paths = [sample.trajectory(layer1, centre_contrast) for sample in attended]
     points = max(2, *map(len, paths))
     vectors = np.stack([ordered_vector(path, points) for path in paths])
     layer2 = _trained_map(preset.layer2, vectors, rng, progress, "layer 2")

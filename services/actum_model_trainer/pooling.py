@@ -33,26 +33,26 @@ class Pooling:
         self._pyramid = pyramid
 
     def vectors(
-        self, samples: Sequence[SegmentSample], shown: Sequence[Sequence[Variant]], stages: Sequence[Sequence[float]]
+        self, samples: Sequence[SegmentSample], variants: Sequence[Sequence[Variant]], stages: Sequence[Sequence[float]]
     ) -> list[PooledVectors]:
         """Return the vectors of each stage, evenly thinned out to about `MAX_VECTORS`.
 
         Args:
             samples: of the training.
-            shown: the variants of each sample.
+            variants: those of each sample.
             stages: the shares of an action (0 to 1) that belong to each stage.
         """
         rows: list[list[Floats]] = [[] for _ in stages]
         sample_indices: list[list[int]] = [[] for _ in stages]
-        for index, (sample, variants) in enumerate(zip(samples, shown, strict=True)):
-            sums = _VariantSums(self, sample, variants)
+        for index, (sample, of_sample) in enumerate(zip(samples, variants, strict=True)):
+            sums = _VariantSums(self, sample, of_sample)
             for stage, fractions in enumerate(stages):
-                pairs = list(product(fractions, range(len(variants))))
+                pairs = list(product(fractions, range(len(of_sample))))
                 step = min(-(-len(samples) * len(pairs) // MAX_VECTORS), len(pairs))
                 for fraction, variant in pairs[index % step :: step]:
                     rows[stage].append(self._pyramid.vector(sums.until(variant, fraction)))
                     sample_indices[stage].append(index)
-        return [(np.stack(own), np.array(whose)) for own, whose in zip(rows, sample_indices, strict=True)]
+        return [(np.stack(vectors), np.array(indices)) for vectors, indices in zip(rows, sample_indices, strict=True)]
 
 
 class _VariantSums:
@@ -66,20 +66,20 @@ class _VariantSums:
         self._prefixes: dict[tuple[int, bool], list[Prefix]] = {}
 
     def until(self, variant: int, fraction: float) -> PrefixSums:
-        """Return the sums over a share of a variant as the live classifier would have them at that time.
+        """Return the sums over the first share of a variant, as the live classifier would have them at that time.
 
-        It mirrors by the arm that has acted so far, whereas the variant is mirrored by the arm of the whole sample.
+        The classifier mirrors by the arm that has acted so far, the variant is mirrored by the arm of the whole sample.
         """
         total = len(self._left_handed)
         frames = min(total, max(MIN_FRAMES, round(fraction * total)))
         same_arm = self._left_handed[frames - 1] == self._left_handed[-1]
         if (variant, same_arm) not in self._prefixes:
-            own = self._variants[variant]
-            self._prefixes[variant, same_arm] = self._summed(own if same_arm else own.mirrored)
+            as_read = self._variants[variant]
+            self._prefixes[variant, same_arm] = self._summed(as_read if same_arm else as_read.mirrored)
         return PrefixSums(self._prefixes[variant, same_arm][: frames + 1])
 
     def _summed(self, variant: Variant) -> list[Prefix]:
         activities = self._first.activities(variant.postures, variant.velocities)
         sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
         np.cumsum(quantised(activities), axis=0, out=sums[1:])
-        return [Prefix([own], so_far_um) for own, so_far_um in zip(sums, self._travelled_um, strict=True)]
+        return [Prefix([row], travelled_um) for row, travelled_um in zip(sums, self._travelled_um, strict=True)]

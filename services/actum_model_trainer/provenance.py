@@ -1,4 +1,4 @@
-"""What a model file says about the samples that the model was trained on."""
+"""The metadata of a model that describe its training: samples, preset, seed and version."""
 
 import hashlib
 from collections.abc import Sequence
@@ -43,7 +43,7 @@ def provenance(samples: Sequence[SegmentSample], preset: Preset, seed: int) -> d
 
 
 def digest_of(samples: Sequence[SegmentSample]) -> str:
-    """Return the SHA-256 (hexadecimal) over everything that a training reads of its samples, in their order."""
+    """Return the SHA-256 (hexadecimal) over all fields of the samples that a training reads, in their order."""
     digest = hashlib.sha256()
     for sample in samples:
         digest.update(f"{sample.label}\0{sample.person}\0{sample.joints.shape}\0{sample.depth_inferred}".encode())

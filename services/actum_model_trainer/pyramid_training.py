@@ -28,8 +28,8 @@ from som_classifier.pyramid_model import PyramidMetadata, PyramidModel
 from som_classifier.stage_discriminants import StageDiscriminants
 
 MAX_ROWS = 20_000  # per map of the first layer: some 60 for each of its 324 units
-MIN_DURATION_S = 1 / 30  # a frame of a usual sensor: samples may be of equal stamps
-MIN_LOG_DURATION_SD = 0.1  # of ln(duration / s): people's tempos differ by 10 % even where those of a training do not
+MIN_DURATION_S = 1 / 30  # one frame at 30 Hz: all stamps of a sample may be equal
+MIN_LOG_DURATION_SD = 0.1  # of ln(duration / s): people's tempos differ by 10 % even where the training's do not
 
 
 def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, progress: Progress) -> PyramidModel:
@@ -44,13 +44,13 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
     mirrors = people_prefer_one_hand(samples)
     few_people = len({sample.person for sample in samples}) <= preset.few_people
     augmentation = replace(preset, others=preset.others_of_few) if few_people else preset
-    shown = [list(variants(sample, augmentation, mirrors, rng)) for sample in samples]
-    first = _first_maps([variant for own in shown for variant in own], preset, rng, progress)
-    pooled = Pooling(first, Pyramid(preset.levels, preset.overlap), mirrors).vectors(samples, shown, preset.stages)
+    augmented = [list(variants(sample, augmentation, mirrors, rng)) for sample in samples]
+    first = _first_maps([variant for of_sample in augmented for variant in of_sample], preset, rng, progress)
+    pooled = Pooling(first, Pyramid(preset.levels, preset.overlap), mirrors).vectors(samples, augmented, preset.stages)
     fitted = _fitted_stages(pooled, targets, folds_of(samples), preset.shrinkage, progress)
     upper = train_upper(fitted[-1], len(labels), preset, rng, progress)
     stages = _stage_discriminants(fitted, samples, preset)
-    log_errors = expected_log_errors(first, [own[0].postures for own in shown], targets, preset.prior)
+    log_errors = expected_log_errors(first, [of_sample[0].postures for of_sample in augmented], targets, preset.prior)
     metadata = (
         provenance(samples, preset, seed)
         | {"mirrors": mirrors, "usual_log_errors": log_errors, "held_out": _cross_validated_counts(fitted[-1], labels)}
@@ -61,10 +61,10 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
 
 
 def _first_maps(
-    shown: Sequence[Variant], preset: PyramidPreset, rng: np.random.Generator, progress: Progress
+    augmented: Sequence[Variant], preset: PyramidPreset, rng: np.random.Generator, progress: Progress
 ) -> FirstMaps:
-    postures = np.concatenate([variant.postures for variant in shown])
-    velocities = np.concatenate([variant.velocities for variant in shown])
+    postures = np.concatenate([variant.postures for variant in augmented])
+    velocities = np.concatenate([variant.velocities for variant in augmented])
     arms = arm_inputs(frame_inputs(postures, velocities))
     soms, contrasts = [], []
     for name, inputs in (("map of postures", postures), ("map of velocities", velocities), ("map of arms", arms)):
@@ -79,7 +79,7 @@ def _first_maps(
 def _training_rows(inputs: Floats, rng: np.random.Generator) -> NDArray[np.float32]:
     """Return inputs (n, …) as rows of float32 without those that are wholly missing, at most `MAX_ROWS` drawn evenly.
 
-    A component that is missing everywhere becomes 0: being the same for all units, it tells none from another.
+    A component that is missing everywhere becomes 0: it is then the same for all units and decides nothing.
     """
     flat = inputs.reshape(len(inputs), -1).astype(np.float32)
     flat = flat[~np.isnan(flat).all(axis=1)]
@@ -97,9 +97,9 @@ def _fitted_stages(
     fitted = []
     for done, (vectors, sample_indices) in enumerate(pooled):
         progress("discriminant axes", done, len(pooled))
-        own = targets[sample_indices]
-        discriminants = fit_discriminants(vectors, indicators[own], folds[sample_indices], shrinkage)
-        fitted.append(FittedStage(discriminants, sample_indices, own))
+        vector_targets = targets[sample_indices]
+        discriminants = fit_discriminants(vectors, indicators[vector_targets], folds[sample_indices], shrinkage)
+        fitted.append(FittedStage(discriminants, sample_indices, vector_targets))
     progress("discriminant axes", len(pooled), len(pooled))
     return fitted
 
@@ -151,7 +151,7 @@ def _confidence_parameters(
 def _cross_validated_counts(stage: FittedStage, labels: Sequence[str]) -> dict[str, dict[str, int]]:
     """Count the samples by action done (outer) and action of the largest cross-validated score (inner).
 
-    Of each sample's vectors only the first counts, that of the sample as measured.
+    Only the first vector of each sample counts, that of the sample as measured.
     """
     first = np.unique(stage.sample_indices, return_index=True)[1]
     answers = stage.discriminants.cross_validated_scores[first].argmax(axis=1)

@@ -18,15 +18,15 @@ def report(evaluation: Evaluation, seconds: float) -> Group:
 def summary(evaluation: Evaluation, seconds: float) -> Text:
     """State accuracy, calibration error and the number of answers that say unknown."""
     low, high = wilson_interval(evaluation.correct, evaluation.n)
-    said = [
+    parts = [
         f"accuracy {evaluation.accuracy:.1%} ({evaluation.correct} of {evaluation.n}, "
         f"95 % interval {low:.1%} to {high:.1%})"
     ]
     if evaluation.calibration_error is not None:
-        said.append(f"confidence off by {evaluation.calibration_error:.3f} on average (ECE)")
-    if evaluation.told_unknown:
-        said.append(f"{sum(evaluation.told_unknown)} of {len(evaluation.told_unknown)} answers told unknown")
-    return Text(", ".join([*said, f"{seconds:.1f} s"]))
+        parts.append(f"confidence off by {evaluation.calibration_error:.3f} on average (ECE)")
+    if decisions := evaluation.unknown_decisions:
+        parts.append(f"{sum(decisions)} of {len(decisions)} answers told unknown")
+    return Text(", ".join([*parts, f"{seconds:.1f} s"]))
 
 
 def per_class(evaluation: Evaluation) -> Table:

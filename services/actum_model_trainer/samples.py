@@ -22,7 +22,7 @@ from som_classifier.segmenter import Segmenter
 from som_classifier.segments import ClosedSegment
 
 STREAMS = (keys.SKELETON, keys.SEGMENT)
-"""What is read of a recording; everything else follows from it."""
+"""The topics that are read from a recording; postures are computed from them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,14 +33,14 @@ class SegmentSample:
         label: the action done.
         stamps_ns: (n,), rising.
         joints: (n, 15, 3), scaled to the standard body's metres, in the egocentric frame, NaN where missing.
-        motion: (n, 5), how far each body part has moved since the frame before, metres.
+        motion: (n, 5), mean displacement of each body part since the frame before, metres.
         postures: (n, 15, 3), scaled joints in the upright frame, low-passed, NaN where missing.
         velocities: (n, 15, 3), of the postures.
-        person: who did it, as the recording names them.
+        person: who acts, as the recording names them.
         file: the recording's path.
         segment_id: of the segment in the recording.
         depth_inferred: whether some distances were inferred from an image and a standard body's size.
-        sensor: the one that saw it.
+        sensor: the sensor of the frames.
     """
 
     label: str
@@ -57,7 +57,7 @@ class SegmentSample:
 
     @cached_property
     def acting_hands(self) -> list[Hand | None]:
-        """For each frame, the arm that has acted up to it; None for both arms or another limb."""
+        """For each frame, the side of the arm that has acted up to it; None for both arms or another limb."""
         summed = np.cumsum([limb_moments(posture) for posture in self.postures], axis=0)
         return [LimbSpreads.of(so_far).acting_hand for so_far in summed]
 

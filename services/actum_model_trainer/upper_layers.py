@@ -46,9 +46,9 @@ def train_upper(
 ) -> UpperLayers:
     """Train both layers on scores of complete actions, each a weighted mean of training and cross-validated score.
 
-    Training scores alone are better than those of strangers will be; cross-validated scores alone are worse, because
-    their discriminants know fewer people than the final ones. Where there are few scores, mixup adds more, so that
-    both layers also learn the region between the actions, where the scores of strangers lie.
+    Training scores are better than the scores of new people will be; cross-validated scores are worse, because their
+    discriminants were fitted to fewer people than the final ones. Where there are few scores, mixup adds more, so
+    that both layers also learn the region between the actions, where the scores of new people lie.
 
     Raises:
         TrainingError: the scores of all samples are the same.
@@ -70,22 +70,22 @@ def train_upper(
 def mixup(
     scores: Floats, targets: Indices, fewest: int, least_share: float, rng: np.random.Generator
 ) -> tuple[Floats, Indices]:
-    """Return the scores and convex combinations of two of them (mixup), and the targets, of `fewest` rows at least.
+    """Return the scores and convex combinations of pairs of them (mixup), with the targets, `fewest` rows at least.
 
-    A combination m × one + (1 − m) × other, with m uniform from `least_share` to 1, has the target of the one.
+    A combination m × first + (1 − m) × second, with m uniform from `least_share` to 1, has the target of the first.
 
     Args:
         scores: (n, actions).
         targets: (n,), the index of each one's action.
-        fewest: rows of the result, (max(n, fewest), actions).
-        least_share: of the one in a combination.
-        rng: that draws pairs and shares.
+        fewest: the least number of rows of the result, which are (max(n, fewest), actions).
+        least_share: the smallest weight of the first in a combination.
+        rng: draws pairs and weights.
     """
     missing = max(fewest - len(scores), 0)
-    one, other = rng.integers(len(scores), size=(2, missing))
+    first, second = rng.integers(len(scores), size=(2, missing))
     shares = rng.uniform(least_share, 1.0, (missing, 1))
-    mixtures = shares * scores[one] + (1 - shares) * scores[other]
-    return np.concatenate([scores, mixtures]), np.concatenate([targets, targets[one]])
+    mixtures = shares * scores[first] + (1 - shares) * scores[second]
+    return np.concatenate([scores, mixtures]), np.concatenate([targets, targets[first]])
 
 
 def _trained_action_map(

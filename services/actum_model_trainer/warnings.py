@@ -1,4 +1,4 @@
-"""Warnings about training examples: what a model cannot learn from them, and what to record next."""
+"""Warnings about weaknesses of training samples: what a model cannot learn from them, and what to record next."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -8,7 +8,7 @@ from actum_model_trainer.samples import SegmentSample
 
 MIN_EXAMPLES = 5  # of an action: fewer say little of how its performances differ
 MAX_RATIO = 3  # between the numbers of examples of two actions: beyond, the rarer one is hardly learnt
-CONFUSED_SHARE = 0.25  # of the answers within a pair of actions, those that name the wrong one: half of guessing
+CONFUSED_SHARE = 0.25  # of the answers within a pair of actions that name the wrong one: guessing makes half
 CONFUSED_TIMES = 2  # wrong answers within a pair: a single one may be chance
 BACKGROUND = ("idle", "background")  # labels of segments in which none of the actions is done
 
@@ -70,12 +70,12 @@ def _confused(answers: Sequence[tuple[str, str]]) -> Iterator[str]:
 def _confused_pair(a: str, b: str, times: Mapping[tuple[str, str], int]) -> str:
     mistaken = [(done, answer) for done, answer in ((a, b), (b, a)) if times[done, answer]]
     tested = {label: sum(n for (done, _), n in times.items() if done == label) for label in (a, b)}
-    found = _listed(
+    confusions = _listed(
         f"{done} was taken for {other} in {times[done, other]} of {tested[done]}" for done, other in mistaken
     )
     more = _listed(done for done, _ in mistaken)
     return (
-        f"{a} and {b} are not told apart: of examples left out, {found}. "
+        f"{a} and {b} are not told apart: of examples left out, {confusions}. "
         f"Record {MIN_EXAMPLES} more of {more}, also by people who are not in yet; "
         "if that does not help, do them more differently or give them one name."
     )

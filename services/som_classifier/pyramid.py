@@ -56,7 +56,7 @@ class PrefixSums:
         return len(self.prefixes) - 1
 
     def until(self, frames: int) -> "PrefixSums":
-        """Return the prefix sums of the first frames alone, so many."""
+        """Return the prefix sums of the segment's first `frames` frames."""
         return PrefixSums(self.prefixes[: frames + 1], self.side)
 
     def since_start(self, at: Sequence[int]) -> NDArray[np.unsignedinteger]:

@@ -68,7 +68,7 @@ class Stream:
         return newest_first[::-1]
 
     def missed_after(self, end_ns: int) -> int:
-        """Count the frames lost between `end_ns` and the last frame before it, where that can be told."""
+        """Return how many frames were lost between the last frame before `end_ns` and the next one; 0 where unknown."""
         following = None
         for frame in reversed(self._frames):
             if frame.stamp_ns == end_ns:

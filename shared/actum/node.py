@@ -102,7 +102,7 @@ class Numbering:
 
 
 def replay(node: Node, messages: Iterable[tuple[int, Message]], settle_ns: int = SETTLE_NS) -> Iterator[Message]:
-    """Feed a node messages at their arrival times (ns), with ticks between, and yield what it puts.
+    """Feed a node messages at their arrival times (ns), with ticks between, and yield the messages that it puts.
 
     Ticks go on for `settle_ns` after the last message, so that segments still waiting are answered, too.
     """

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from actum_model_inspector.answered import AnsweredSegment
-from actum_model_inspector.reliability_diagram import bins, calibration_error, judged, reliability_picture
+from actum_model_inspector.reliability_diagram import bins, calibration_error, labelled_answers, reliability_picture
 from som_classifier.recognition import Recognition
 
 PUSH = Recognition("push", 0.8, {"push": 0.9, "pull": 0.1}, "right_arm", np.zeros((1, 2)))
@@ -30,7 +30,7 @@ def test_who_is_as_sure_as_right_has_no_calibration_error() -> None:
 
 def test_only_what_has_label_and_answer_is_judged() -> None:
     both = said(0.5)
-    assert judged([both, said(0.5, None), REJECTED]) == [both]
+    assert labelled_answers([both, said(0.5, None), REJECTED]) == [both]
 
 
 def test_too_few_answers_make_no_reliability_diagram() -> None:

@@ -52,13 +52,13 @@ def test_an_action_is_told_with_its_mean_confidence_and_how_much_was_unknown() -
     assert (push.confidence, push.unknown) == (pytest.approx(0.7), 1 / 2)
     assert (lift.confidence, lift.unknown) == (pytest.approx(0.9), 0)
     assert (pull.confidence, pull.unknown) == (None, None)
-    assert sum(FIVE.told_unknown) == 1
-    assert len(FIVE.told_unknown) == 4
+    assert sum(FIVE.unknown_decisions) == 1
+    assert len(FIVE.unknown_decisions) == 4
 
 
 def test_answers_that_tell_no_confidence_have_none_on_average() -> None:
     push = WITHOUT_CONFIDENCE.per_class["push"]
-    assert (push.confidence, push.unknown, WITHOUT_CONFIDENCE.told_unknown) == (None, None, [])
+    assert (push.confidence, push.unknown, WITHOUT_CONFIDENCE.unknown_decisions) == (None, None, [])
 
 
 def test_how_far_confidence_is_off_is_told_of_thirty_answers_and_not_of_fewer() -> None:

@@ -1,1 +1,1 @@
-"""The command line itself: options, help, what is printed, exit codes. The work is done by the modules beside."""
+"""The command line itself: options, help, printed texts, exit codes. The modules of `actum_command` do the work."""

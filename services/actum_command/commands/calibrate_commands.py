@@ -52,16 +52,16 @@ def intrinsics(
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
     views, unusable = (_live_views(finder), []) if live else _views(finder, files)
     try:
-        found = estimate_intrinsics(views)
+        fit = estimate_intrinsics(views)
     except PoorSetError as error:
         _refuse([*error.reasons, *complaints(unusable)], output)
-    calibration = calibration_of(found, _today())
+    calibration = calibration_of(fit, _today())
     try:
         calibration.save(output)
-        picture.write_bytes(coverage_picture(found, views))
+        picture.write_bytes(coverage_picture(fit, views))
     except OSError as error:
         fail(str(error))
-    _report_intrinsics(found)
+    _report_intrinsics(fit)
     say(f"written to {output} (calibration {calibration.id}); look at {picture}")
 
 
@@ -90,13 +90,13 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
     try:
         cameras = Calibration.load(markers_camera), Calibration.load(people_camera)
-        seen, unusable = (_live_pairs(_sensors(live), finder), []) if live else _pairs(finder, pairs or [])
-        found = _extrinsics(seen, unusable, cameras, output)
-        calibration = with_extrinsics(cameras[0], found, _today())
+        usable, unusable = (_live_pairs(_sensors(live), finder), []) if live else _pairs(finder, pairs or [])
+        fit = _extrinsics(usable, unusable, cameras, output)
+        calibration = with_extrinsics(cameras[0], fit, _today())
         calibration.save(output)
     except (CalibrationError, PairingError, OSError) as error:
         fail(str(error))
-    _report_extrinsics(found, seen)
+    _report_extrinsics(fit, usable)
     say(f"written to {output} (calibration {calibration.id})")
 
 
@@ -127,7 +127,7 @@ def _files(paths: Sequence[Path]) -> list[Path]:
 
 
 def _coverage_picture_of(output: Path, pictures: Sequence[Path]) -> Path:
-    """Name the picture of the coverage that is written beside the calibration, over none of those it is made from."""
+    """Return the path of the coverage picture, beside the calibration; fail where either would replace an input."""
     refuse_ending(output, ".yaml", ".yml")
     picture = output.with_name(f"{output.stem}-coverage.png")
     inputs = {file.resolve() for file in pictures}
@@ -145,7 +145,7 @@ def _sensors(text: str) -> tuple[str, str]:
 
 
 def _views(finder: BoardFinder, files: Sequence[Path]) -> tuple[list[View], list[UnusablePictureError]]:
-    """Look for the board in every picture; name those that cannot be used."""
+    """Return the board's view in each picture, and the errors of those that cannot be used, which are printed."""
     views: list[View] = []
     unusable: list[UnusablePictureError] = []
     for file in files:
@@ -175,32 +175,31 @@ def _live_pairs(sensors: tuple[str, str], finder: BoardFinder) -> list[Pair]:
 
 
 def _pairs(finder: BoardFinder, paths: Sequence[Path]) -> tuple[list[Pair], list[UnusablePictureError]]:
-    """Look for the board in both pictures of every pair."""
-    found: list[Pair] = []
+    """Return the board's views in all pairs, and the errors of pictures that cannot be used."""
+    usable: list[Pair] = []
     unusable: list[UnusablePictureError] = []
     for name, markers, people in pair_files(paths):
         views, problems = _views(finder, [markers, people])
         unusable += problems
         if not problems:
-            found.append(Pair(name, *views))
-    return found, unusable
+            usable.append(Pair(name, *views))
+    return usable, unusable
 
 
-def _report_intrinsics(found: Intrinsics) -> None:
-    fx, fy = found.matrix[0, 0], found.matrix[1, 1]
-    console.print(f"RMS {found.rms_px:.3f} px over {len(found.residuals_px)} views of {found.size[0]}x{found.size[1]}")
+def _report_intrinsics(fit: Intrinsics) -> None:
+    fx, fy = fit.matrix[0, 0], fit.matrix[1, 1]
+    console.print(f"RMS {fit.rms_px:.3f} px over {len(fit.residuals_px)} views of {fit.size[0]}x{fit.size[1]}")
     console.print(
-        f"focal length {fx:.1f} ± {found.deviations_px[0]:.1f} px across, "
-        f"{fy:.1f} ± {found.deviations_px[1]:.1f} px down"
+        f"focal length {fx:.1f} ± {fit.deviations_px[0]:.1f} px across, {fy:.1f} ± {fit.deviations_px[1]:.1f} px down"
     )
-    console.print(f"coverage {found.coverage:.0%} of the image")
-    if found.bend_mm:
+    console.print(f"coverage {fit.coverage:.0%} of the image")
+    if fit.bend_mm:
         console.print(
-            f"[yellow]the board is bent by {found.bend_mm:.1f} mm: allowed for here, but not in extrinsics; glue it "
+            f"[yellow]the board is bent by {fit.bend_mm:.1f} mm: allowed for here, but not in extrinsics; glue it "
             "to something flat[/yellow]",
             soft_wrap=True,
         )
-    if found.coverage < GOOD_COVERAGE:
+    if fit.coverage < GOOD_COVERAGE:
         console.print(
             "[yellow]towards the edges of the image the distortion is extrapolated: "
             "add views with the board there, if objects will be[/yellow]",
@@ -208,14 +207,14 @@ def _report_intrinsics(found: Intrinsics) -> None:
         )
 
 
-def _report_extrinsics(found: Extrinsics, pairs: Sequence[Pair]) -> None:
-    x, y, z = found.skeleton_from_image[:3, 3]
-    console.print(f"RMS {found.rms_px:.3f} px over {len(pairs)} pairs")
-    for pair, error in zip(pairs, found.rms_of_pairs_px, strict=True):
+def _report_extrinsics(fit: Extrinsics, pairs: Sequence[Pair]) -> None:
+    x, y, z = fit.skeleton_from_image[:3, 3]
+    console.print(f"RMS {fit.rms_px:.3f} px over {len(pairs)} pairs")
+    for pair, error in zip(pairs, fit.rms_of_pairs_px, strict=True):
         say(f"  {pair.name}: {error:.3f} px")
     console.print(
         f"the camera that sees markers is at x {x:+.3f}, y {y:+.3f}, z {z:+.3f} m of the one that sees people "
-        f"(right, down, forward), ± {found.position_deviation_mm:.1f} mm and ± {found.rotation_deviation_deg:.2f} deg",
+        f"(right, down, forward), ± {fit.position_deviation_mm:.1f} mm and ± {fit.rotation_deviation_deg:.2f} deg",
         soft_wrap=True,
     )
 

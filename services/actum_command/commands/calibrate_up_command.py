@@ -15,7 +15,7 @@ from actum_calibrator.up_direction import UpDirection, UpDirectionEstimator
 from actum_command.commands.terminal import connect, fail, say
 from actum_command.live_calibration import SilentStreamError, live_skeletons
 
-PAUSE_NS = SECOND_NS // 2  # how long one instruction is left to be read before the next
+PAUSE_NS = SECOND_NS // 2  # shortest time between two instructions, so that each can be read
 
 
 def up(
@@ -25,30 +25,30 @@ def up(
 ) -> None:
     """Find how a tilted camera is tilted: one person stands upright and still before it, arms down, for two seconds."""
     frames = _live() if recording is None else _recorded(recording)
-    estimator, told, told_ns = UpDirectionEstimator(), "", -PAUSE_NS
+    estimator, instruction, instructed_ns = UpDirectionEstimator(), "", -PAUSE_NS
     for frame in frames:
         estimator.offer(frame)
         if estimator.up is not None:
             _report(estimator.up)
             return
-        is_new = estimator.instruction != told and abs(frame.stamp_ns - told_ns) >= PAUSE_NS
+        is_new = estimator.instruction != instruction and abs(frame.stamp_ns - instructed_ns) >= PAUSE_NS
         if recording is None and is_new:
-            told, told_ns = estimator.instruction, frame.stamp_ns
-            say(f"  {told}")
+            instruction, instructed_ns = estimator.instruction, frame.stamp_ns
+            say(f"  {instruction}")
     fail(f"nobody stood upright and still for long enough: {estimator.instruction}")
 
 
-def _report(found: UpDirection) -> None:
+def _report(tilt: UpDirection) -> None:
     say(
-        f"the camera looks {_signed(found.pitch_deg, 'up', 'down')} and is turned "
-        f"{_signed(found.roll_deg, 'clockwise', 'counterclockwise')} (the body swayed by {found.sway_deg:.1f} degrees)"
+        f"the camera looks {_signed(tilt.pitch_deg, 'up', 'down')} and is turned "
+        f"{_signed(tilt.roll_deg, 'clockwise', 'counterclockwise')} (the body swayed by {tilt.sway_deg:.1f} degrees)"
     )
-    numbers = ", ".join(f"{component:.3f}" for component in found.in_camera)
+    numbers = ", ".join(f"{component:.3f}" for component in tilt.in_camera)
     say(f"tell its sensor gateway: ACTUM_UP_IN_CAMERA='[{numbers}]'")
 
 
 def _signed(angle_deg: float, positive: str, negative: str) -> str:
-    """Say an angle by the word for its sign."""
+    """Return an angle in words, its sign as one of two words."""
     return f"{positive if angle_deg >= 0 else negative} by {abs(angle_deg):.1f} degrees"
 
 

@@ -28,7 +28,7 @@ from actum_command.supervising import UnusableError
 from actum_model_trainer.evaluation import Evaluation
 from scene_simulator.programme import ACTIONS
 
-TERMINATED = 128 + signal.SIGTERM  # the exit code by which a shell knows what SIGTERM ended
+TERMINATED = 128 + signal.SIGTERM  # the exit code that a shell reports for a process that SIGTERM ended
 
 
 def demo(
@@ -41,13 +41,13 @@ def demo(
     here, actors = settings(), tested_actors(people)
     try:
         refuse_taken(here.connect)
-        signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))  # as Ctrl-C does: the training ends where it is
+        signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))  # ends the training at once, as Ctrl-C does
         with tempfile.TemporaryDirectory(prefix="actum-demo-") as folder:
             training, model = Path(folder) / "training.mcap", Path(folder) / "model.npz"
             learned = _train(training, model)
             baseline = nearest_neighbour_baseline(training, Path(folder), actors, repetitions)
-            stop = stop_on_signals()  # looked at only where no process is being started: those that run end with this
-            live = LiveTest(here, stop, lambda said: console.print(said, soft_wrap=True))
+            stop = stop_on_signals()  # not checked while processes start; they end with this one
+            live = LiveTest(here, stop, lambda text: console.print(text, soft_wrap=True))
             score = live.run(model, actors, repetitions)
     except TerminatedError:
         sys.exit(TERMINATED)

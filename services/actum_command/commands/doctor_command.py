@@ -1,4 +1,4 @@
-"""`actum doctor`: is everything there, alive, and of one version?"""
+"""`actum doctor`: checks that every service is there, alive and of one version."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -13,9 +13,9 @@ from actum_command.commands.terminal import connect, console, say
 from actum_command.diagnosis import Finding, examine
 from actum_command.misspelt import misspelt
 
-TABLE_WIDTH = 100  # the characters that a table needs in which no word is broken
+TABLE_WIDTH = 100  # characters that the table needs so that no word is broken
 SOURCES = {"sensor_gateway": "sensor", "marker_camera": "marker camera"}
-"""What a service's source is called."""
+"""The name of a service's source in the output."""
 
 
 def doctor() -> None:
@@ -32,7 +32,7 @@ def doctor() -> None:
 
 
 def show(findings: list[Finding], console: Console) -> None:
-    """Print what was found, as wide as the console allows, and what the sensor is."""
+    """Print the findings, as a table if the console is wide enough, and the source of each service that has one."""
     if console.width >= TABLE_WIDTH:
         console.print(table(findings))
     else:
@@ -54,12 +54,12 @@ def table(findings: list[Finding]) -> Table:
 
 
 def paragraphs(findings: list[Finding]) -> Iterator[str]:
-    """Say the same in lines, for a console that has no room for a table."""
+    """Yield the findings as lines, for a console that is too narrow for the table."""
     columns = _columns(findings)
     for finding in findings:
         yield f"{_coloured(finding, escape(finding.service))}, {finding.instances or 'none'} alive"
-        told = {name: cell(finding) for name, cell in columns.items()}
-        yield from (f"  {name}: {escape(text)}" for name, text in told.items() if text)
+        cells = {name: cell(finding) for name, cell in columns.items()}
+        yield from (f"  {name}: {escape(text)}" for name, text in cells.items() if text)
 
 
 def _coloured(finding: Finding, text: str) -> str:
@@ -68,7 +68,7 @@ def _coloured(finding: Finding, text: str) -> str:
 
 
 def _columns(findings: list[Finding]) -> dict[str, Callable[[Finding], str]]:
-    """Return what is told of each service, by its heading; drops where there are any."""
+    """Return the function that reads each column from a finding, by heading; drops only where there are any."""
     columns: dict[str, Callable[[Finding], str]] = {
         "version": attrgetter("version"),
         "state": attrgetter("state"),

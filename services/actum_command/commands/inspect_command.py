@@ -18,7 +18,7 @@ FORMATS = ("png", "svg")
 """Formats that pictures can be written in."""
 
 FILES = (".png", ".svg", ".html", ".pdf")
-"""Endings of what is written into the folder, or what might be looked for."""
+"""Endings by which a name given as the folder is taken for that of a file."""
 
 
 def inspect(

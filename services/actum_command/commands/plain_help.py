@@ -1,4 +1,4 @@
-"""Help that says what to write as the services' own help does; Typer names Python's types."""
+"""Help with the placeholders of the services' own help (TEXT, PATH) where Typer shows Python's types."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -8,17 +8,17 @@ from typer.core import TyperCommand, TyperGroup
 
 F = TypeVar("F", bound=Callable[..., Any])
 WORDS = {"str": "TEXT", "path": "PATH", "file": "PATH", "int": "INTEGER", "float": "NUMBER", "bool": ""}
-"""What is shown in place of Python's types."""
+"""The placeholder that is shown for each of Python's types."""
 
 
 class _Plain:
-    """A command or group whose parameters are shown with words of ours."""
+    """A command or group whose parameters are shown with these placeholders."""
 
     def get_params(self, ctx: Any) -> Any:
-        """Return the parameters, each with its word."""
+        """Return the parameters, each with its placeholder."""
         params = super().get_params(ctx)  # type: ignore[misc]
         for param in params:
-            if hasattr(param, "display_type"):  # older versions of Typer write words by themselves
+            if hasattr(param, "display_type"):  # older versions of Typer show such placeholders themselves
                 word = _word(type(param).display_type(param, ctx))
                 param.display_type = lambda _, word=word: word
         return params
@@ -43,7 +43,7 @@ class PlainTyper(typer.Typer):
         return super().command(name, **{"cls": PlainCommand} | options)
 
 
-def _word(shown: str) -> str:
-    """Translate `<str>`, `<int range>` and `<list[Path]>`; what is to be chosen from stays."""
-    kind = shown.strip("<>").removeprefix("list[").removesuffix("]").removesuffix(" range")
-    return WORDS.get(kind.lower(), shown)
+def _word(type_text: str) -> str:
+    """Return the placeholder for `<str>`, `<int range>` or `<list[Path]>`; a list of choices stays."""
+    kind = type_text.strip("<>").removeprefix("list[").removesuffix("]").removesuffix(" range")
+    return WORDS.get(kind.lower(), type_text)

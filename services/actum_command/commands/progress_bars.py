@@ -9,7 +9,7 @@ from actum_command.commands.terminal import errors
 
 
 class Bars:
-    """One bar per stage, made when the stage is first heard of."""
+    """One bar per stage, added at the stage's first report."""
 
     def __init__(self, progress: Progress) -> None:
         self._progress = progress

@@ -16,9 +16,9 @@ from actum_command.commands.terminal import connect, fail, refuse_ending, refuse
 from actum_command.stream_recorder import IMAGES, STREAMS, StreamRecorder
 from actum_command.streaming import put_all, store_all
 
-WAIT_S = 5.0  # a preprocessor that is starting listens within this time
+WAIT_S = 5.0  # how long to wait for a preprocessor that is starting to subscribe
 ALL = "all"
-"""Marks of every origin."""
+"""The value of `--marks` for every origin."""
 
 
 def record(
@@ -51,7 +51,7 @@ def record(
 
 
 def _report(stream: StreamRecorder, output: Path, label: str | None) -> None:
-    """Say what the file holds and what it lacks."""
+    """Print the counts of stored messages and marks, and warnings about those that are missing."""
     say(f"{stream.stored} messages, {stream.actions.total()} marked actions, written to {output}")
     for (origin, named), count in stream.actions.items():
         say(f"  {count} marked by {origin}, {'without a label' if named is None else f'labelled {named!r}'}")

@@ -1,4 +1,4 @@
-"""Options that choose recordings, and what is said of those that were read."""
+"""Options that choose recordings, and warnings about those that were read."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -15,7 +15,7 @@ AllOption = Annotated[bool, typer.Option("--all", help="also recordings marked a
 
 
 def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[Recording]:
-    """Open the recordings that are meant; none is an error."""
+    """Open the chosen recordings; fail where there is none."""
     people = None if person is None else [name.strip() for name in person.split(",")]
     try:
         recordings = select(files, people, with_excluded)
@@ -27,7 +27,7 @@ def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[R
 
 
 def tell_unread(recordings: Iterable[Recording]) -> None:
-    """Say of recordings that have been read which break off, and what was passed over in them."""
+    """Warn of the recordings that break off, and of messages that were skipped, after recordings have been read."""
     for recording in recordings:
         if recording.truncated:
             say(f"{recording.path} breaks off: only what lies before the break was read", style="yellow")

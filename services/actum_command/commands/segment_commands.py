@@ -14,7 +14,7 @@ from actum_command.answers import Answers
 from actum_command.commands.plain_help import PlainTyper
 from actum_command.commands.terminal import connect, console, fail, say, settings
 
-WAIT_S = 5.0  # a classifier that is starting listens within this time
+WAIT_S = 5.0  # how long to wait for a classifier that is starting to subscribe
 
 app = PlainTyper(no_args_is_help=True, help="Mark the start and the end of an action.")
 
@@ -98,7 +98,7 @@ def _put(client: Client, mark: Segment) -> None:
 
 
 def _enter_was_pressed() -> bool:
-    """Whether somebody at a terminal wants to go on; a script's lines lie there all the time."""
+    """Tell whether somebody has pressed Enter at a terminal; a script's input is always ready and does not count."""
     return sys.stdin.isatty() and bool(select.select([sys.stdin], [], [], 0)[0])
 
 

@@ -1,4 +1,4 @@
-"""Options for every setting of the services that a command starts, from where the services declare them."""
+"""Options for every setting of the services that a command starts, made from the services' declarations."""
 
 import inspect
 from collections.abc import Callable
@@ -14,14 +14,14 @@ from actum_command.service_settings import DECLARED, flag_of, negated_flag_of
 
 
 def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
-    """Let a command take every setting of the services that it has no option for itself; it gets them as `given`."""
-    own = dict(inspect.signature(command, eval_str=True).parameters)
-    del own["given"]
+    """Add to a command an option for each setting of the services that it lacks; it gets their values as `given`."""
+    command_parameters = dict(inspect.signature(command, eval_str=True).parameters)
+    del command_parameters["given"]  # the command gets this one from the flags below
     flags = {
         name: _flag(name, field, service)
         for service, settings in DECLARED.items()
         for name, field in settings.model_fields.items()
-        if name not in ServiceSettings.model_fields and name not in own
+        if name not in ServiceSettings.model_fields and name not in command_parameters
     }
 
     @wraps(command)
@@ -29,13 +29,13 @@ def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
         given = {name: arguments.pop(name) for name in flags}
         command(**arguments, given={name: value for name, value in given.items() if value not in (None, [])})
 
-    parameters = [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in own.values()]
+    parameters = [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in command_parameters.values()]
     with_given.__signature__ = inspect.Signature([*parameters, *flags.values()])  # type: ignore[attr-defined]
     return with_given
 
 
 def _flag(name: str, field: FieldInfo, service: str) -> inspect.Parameter:
-    """Declare an option for Typer; its value is the service's to judge."""
+    """Return a setting's option for Typer; the service validates its value."""
     words: dict[str, Any] = {"help": explained(field), "rich_help_panel": f"Settings of {service}"}
     is_switch = not placeholder(field)
     if is_switch:

@@ -18,7 +18,7 @@ from actum_command.supervising import Program, Supervisor, UnusableError
 from sensor_gateway.settings import SourceName
 
 SOURCES = [name for name in get_args(SourceName) if name != "marker-camera"]
-"""What the gateway reads for `actum up`: a camera for the markers stands beside another one."""
+"""The sources of the gateway that `actum up` can start: a marker camera runs only beside another source."""
 
 NO_MARKS = "nobody marks actions here: 'actum segment toggle' does, and 'actum play' beside --source none"
 

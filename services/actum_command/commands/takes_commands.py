@@ -1,4 +1,4 @@
-"""`actum takes`: the marked actions of recordings, listed and mended."""
+"""`actum takes`: lists the marked actions of recordings, and changes them."""
 
 from collections.abc import Callable, Sequence
 from difflib import get_close_matches
@@ -16,9 +16,9 @@ from actum_command.commands.terminal import fail, say
 from actum_command.marked_actions import MarkedAction, bounds_ns, dropped, marked_actions, relabelled, trimmed
 
 LISTS = "list"
-"""The command that `actum takes` is by itself."""
+"""The default command of `actum takes`."""
 
-LONGEST_LABEL = 200  # characters that the field of a mark holds
+LONGEST_LABEL = 200  # characters allowed in the field of a mark
 
 
 class _ListsByDefault(PlainGroup):
@@ -48,16 +48,16 @@ def list_command(
 ) -> None:
     """List the marked actions: segment, label, how long, how many frames, usable for training or why not."""
     recordings = chosen(files, person, with_excluded)
-    found: list[MarkedAction] = []
+    all_actions: list[MarkedAction] = []
     try:
         for recording in recordings:
             actions = list(marked_actions(recording))
             _show(recording, actions)
-            found += actions
+            all_actions += actions
     except RecordingError as error:
         fail(str(error))
     tell_unread(recordings)
-    say(f"{len(found)} marked actions, {sum(action.problem is None for action in found)} usable")
+    say(f"{len(all_actions)} marked actions, {sum(action.problem is None for action in all_actions)} usable")
 
 
 @app.command("relabel")
@@ -107,7 +107,7 @@ def drop(file: Rec, segment_id: SegmentId) -> None:
 
 
 def _show(recording: Recording, actions: Sequence[MarkedAction]) -> None:
-    """Print a recording's actions below its name, in columns that are as wide as their words."""
+    """Print a recording's actions below its name, in columns as wide as their longest text."""
     say(f"{recording.path}, person {recording.person or '(unknown)'}")
     if not actions:
         say("  no marked action")
@@ -124,11 +124,11 @@ def _show(recording: Recording, actions: Sequence[MarkedAction]) -> None:
 
 
 def _bounds(file: Path, segment_id: str) -> tuple[int | None, int | None]:
-    """Return where a segment starts and ends (ns), or fail naming those that there are."""
+    """Return the stamps (ns) of a segment's start and end marks; fail, naming similar segments, where it has none."""
     try:
         recording = Recording(file)
-        found = bounds_ns(recording, segment_id)
-        if found == (None, None):
+        marks_ns = bounds_ns(recording, segment_id)
+        if marks_ns == (None, None):
             names = [action.segment_id for action in marked_actions(recording)]
             near = get_close_matches(segment_id, names, n=1) or names[:5]
             fail(
@@ -136,7 +136,7 @@ def _bounds(file: Path, segment_id: str) -> tuple[int | None, int | None]:
             )
     except RecordingError as error:
         fail(str(error))
-    return found
+    return marks_ns
 
 
 def _rewrite(file: Path, change: Change) -> None:

@@ -1,4 +1,4 @@
-"""What every command needs: the console, the settings, a session with the router, and a clear way to fail."""
+"""Functions that all commands share: the console, the settings, a session with the router, and a clear way to fail."""
 
 import sys
 from pathlib import Path
@@ -27,7 +27,7 @@ def settings() -> ServiceSettings:
 
 
 def say(message: str, style: str | None = None) -> None:
-    """Print a line as it is: what looks like markup in a path or a label is not."""
+    """Print a line literally: nothing in a path or a label is taken for markup."""
     console.print(message, markup=False, soft_wrap=True, style=style)
 
 
@@ -46,7 +46,7 @@ def connect(wait_s: float = 5.0) -> Client:
 
 
 def connect_whenever() -> Client:
-    """Open a session with the router whenever it comes, saying where it is waited for."""
+    """Open a session with the router, waiting without limit; print that it waits."""
     here = settings()
     try:
         return Client(here, wait_s=0)
@@ -58,14 +58,14 @@ def connect_whenever() -> Client:
 
 
 def refuse_ending(file: Path, *endings: str) -> None:
-    """Fail where a file's name has none of the endings of what is to be written into it."""
+    """Fail where the name of a file to write has none of these endings."""
     if file.suffix.lower() not in endings:
         name = file.name.removesuffix(file.suffix) + endings[0]
         fail(f"{file} does not end in {' or '.join(endings)}: name it {file.with_name(name) if file.name else name}")
 
 
 def refuse_unwritable(file: Path) -> None:
-    """Fail now where a file could not be written after long work; folders that are missing will be made."""
+    """Fail before long work where a file could not be written after it; missing folders will be made."""
     try:
         if file.is_dir():
             fail(f"{file} is a folder: name the file to write")

@@ -113,7 +113,7 @@ def _show(result: Evaluation, seconds: float) -> None:
 
 
 def _refuse_place(file: Path) -> None:
-    """Fail now where what takes long to make could not be written."""
+    """Fail before long work where its result could not be written."""
     if not file.parent.is_dir():
         fail(f"{file} cannot be written: there is no folder {file.parent}")
     refuse_unwritable(file)

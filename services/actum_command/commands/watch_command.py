@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from actum_command.commands.terminal import connect, console, fail
-from actum_command.message_lines import WATCHABLE, heard, json_line, line
+from actum_command.message_lines import WATCHABLE, json_line, line, received_on
 
 
 def watch(
@@ -20,7 +20,7 @@ def watch(
         fail(f"no topic {unknown[0]!r}: use any of {', '.join(WATCHABLE)}")
     with connect() as client:
         try:
-            for received in heard(client, [WATCHABLE[name] for name in topics or ["event"]]):
+            for received in received_on(client, [WATCHABLE[name] for name in topics or ["event"]]):
                 if as_json:
                     print(json_line(received), flush=True)
                 else:

@@ -76,7 +76,7 @@ class BatchTraining(Generic[Map]):
         self.epochs_done += 1
 
     def _sums(self, winners: NDArray[np.intp]) -> Doubles:
-        """Return per unit the sums of what it won, then the counts, shape (nodes, dim + 1 or 2 dim)."""
+        """Return per unit the sums of the inputs that it won, then the counts, shape (nodes, dim + 1 or 2 dim)."""
         nodes = self._start.grid.nodes
         sums = [np.bincount(winners, weights=column, minlength=nodes) for column in self._summed]
         counts = [np.bincount(winners, weights=column, minlength=nodes) for column in self._counted]
@@ -84,7 +84,7 @@ class BatchTraining(Generic[Map]):
 
 
 def _columns(vectors: NDArray[Any]) -> tuple[Doubles, list[Doubles | None]]:
-    """Return the transposed vectors (dim, n), 0 where missing, and weights (n,) that count what is known.
+    """Return the transposed vectors (dim, n), 0 where missing, and weights (n,) that count known values.
 
     There is one array of weights per component, or a single None, which counts all, where nothing is missing.
     """
