@@ -106,14 +106,14 @@ def _read(levels: Array, corners_px: Array, family: Family) -> _Readings:
     narrow = sides_px.min(axis=1) <= NARROW_CELL_PX * (family.cells + 2)
     ids, turns, wrong = np.zeros((3, len(levels)), dtype=np.intp)
     all_squares, matched = np.ones(len(levels), dtype=bool), np.zeros(len(levels), dtype=bool)
-    for attempted, threshold, tolerated, applies in (
-        (levels, 0.5, family.corrected, all_squares),
-        (levels, SHADOW_THRESHOLD, 0, all_squares),
-        (_sharpened(levels), 0.5, family.corrected, narrow),
+    for prepare, threshold, tolerated, applies in (
+        (np.asarray, 0.5, family.corrected, all_squares),
+        (np.asarray, SHADOW_THRESHOLD, 0, all_squares),
+        (_sharpened, 0.5, family.corrected, narrow),
     ):
         (unread,) = np.nonzero(applies & ~matched)
         if len(unread):
-            result = _matched(attempted[unread], threshold, family, tolerated)
+            result = _matched(prepare(levels[unread]), threshold, family, tolerated)
             ids[unread], turns[unread], wrong[unread], matched[unread] = result
     (index,) = np.nonzero(matched)
     upright = [np.roll(corners_px[at], turns[at], axis=0) for at in index]
