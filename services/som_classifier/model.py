@@ -16,6 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from actum.skeletons import JOINTS
 from som_classifier.frames import Frame
 from som_classifier.recognition import Recognition
+from som_classifier.spotting.spotted import Spotter, SpottingOptions
 
 Arrays = Mapping[str, NDArray[Any]]
 
@@ -122,6 +123,10 @@ class Model(ABC):
     @abstractmethod
     def maps(self, frames: Sequence[Frame]) -> Arrays:
         """Return the activity of each map over a whole segment, by name, each (rows, cols) within [0, 1]."""
+
+    def spotter(self, options: SpottingOptions) -> Spotter | None:
+        """Return a search for actions in one person's stream; None where the model was not trained for that."""
+        return None
 
     @property
     def labels(self) -> list[str]:

@@ -28,6 +28,7 @@ from actum.messages.base import (
     Transform,
 )
 from actum.messages.recognised import (
+    AUTO,
     MANUAL,
     REPLAY,
     SIMULATOR,
@@ -58,6 +59,7 @@ MESSAGES: tuple[type[Message], ...] = (
 )
 
 __all__ = [
+    "AUTO",
     "MANUAL",
     "MESSAGES",
     "MOST_AGENTS",

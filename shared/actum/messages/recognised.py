@@ -36,6 +36,8 @@ SIMULATOR = "simulator"
 """The origin of the simulated scene's marks."""
 REPLAY = "replay"
 """The origin of the marks of a recording that is played."""
+AUTO = "auto"
+"""The origin of the marks that the classifier puts itself, where it has found an action that nobody marked."""
 
 
 class Segment(Message):
@@ -55,7 +57,8 @@ class Segment(Message):
     label: Name | None = None
     """What is done, in recordings to learn from; it is never used to recognise."""
     origin: Name | None = None
-    """Who put it: manual, a person at a switch; simulator, the scene; replay, a recording; null, a program of yours."""
+    """Who put it: manual, a person at a switch; simulator, the scene; replay, a recording; auto, the
+    classifier itself; null, a program of yours."""
 
 
 class Action(Message):
@@ -92,6 +95,8 @@ class Action(Message):
     """How much it resembles what was trained, on the model's own scale; null where the model cannot tell."""
     missing_joints: list[Name] = Field([])
     """The names of the joints that some frame lacked for longer than 0.3 s."""
+    completeness: FiniteFloat | None = None
+    """How much of the action has been done, 0 to 1; null in final ones and where the model cannot tell."""
     maps: dict[str, Tensor] | None = None
     """The mean activity of each map over the segment, rows by columns, by the map's name; null unless asked for."""
     trace: Tensor | None = None

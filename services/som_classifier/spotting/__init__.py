@@ -1,0 +1,1 @@
+"""Finds actions in a person's stream of postures without marks."""
