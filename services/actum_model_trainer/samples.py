@@ -142,7 +142,7 @@ def samples_from(recordings: Sequence[Recording], progress: Progress = silent) -
 
 def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[ClosedSegment]:
     """Return the segments of a stream of stamped (ns) messages as the classifier cuts them, in the order they end."""
-    collector = _Collector()
+    collector = SegmentCollector()
     for _ in replay(collector, messages):
         raise AssertionError("the collector puts nothing")
     return collector.closed
@@ -156,7 +156,7 @@ def why_unusable(closed: ClosedSegment) -> str | None:
     return closed.reason
 
 
-class _Collector:
+class SegmentCollector:
     """A node that collects the segments that the classifier's segmenter closes."""
 
     name = "collector"
@@ -168,6 +168,7 @@ class _Collector:
         self._segmenter = Segmenter(self.counters)
 
     def handle(self, message: Message | Tick) -> list[Message]:
+        """Take a posture, a mark or a tick; put nothing."""
         match message:
             case Posture():
                 self.closed += self._segmenter.posture(message)[1]

@@ -1,3 +1,4 @@
+import json
 import re
 import signal
 import socket
@@ -18,6 +19,7 @@ from actum.settings import ServiceSettings
 from actum_command import processes
 from actum_command.__main__ import app
 from actum_command.commands import (
+    continuous_evaluation,
     demo_command,
     recording_options,
     segment_commands,
@@ -26,6 +28,7 @@ from actum_command.commands import (
     training_commands,
 )
 from actum_command.preset_settings import preset_named
+from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from people import FRAME_NS
 from performers import mark, performance
 from som_classifier.attention import PostureInput
@@ -186,6 +189,34 @@ def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
     command = ["evaluate", str(tmp_path / "m.npz"), str(tmp_path / "a.mcap"), "--json", str(report)]
     assert "accuracy" in runner.invoke(app, command).output
     assert '"predictions"' in report.read_text()
+
+
+def test_a_model_that_cannot_find_actions_by_itself_says_what_to_do(examples: Path, tmp_path: Path) -> None:
+    model = str(tmp_path / "m.npz")
+    assert CliRunner().invoke(app, ["train", str(examples), "-o", model, "--preset", "paper"]).exit_code == 0
+    assert "cannot find actions without marks; train it anew" in refusal(
+        "evaluate", "--continuous", model, str(examples)
+    )
+
+
+def test_what_is_found_without_marks_is_told_and_written(
+    examples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No model is needed to see how it is told: this one finds the first action alone."""
+
+    def found(_model: object, _recordings: object, _progress: object) -> Found:
+        return Found([first], [truth, truth_missed], [Stretch("a.mcap", 1, 0, 60 * 10**9)])
+
+    first = Detection("a.mcap", 1, 0, 10**9, 2 * 10**9, "lift", 0.9)
+    truth, truth_missed = Truth("a.mcap", 1, 0, 10**9, "lift"), Truth("a.mcap", 1, 5 * 10**9, 6 * 10**9, "push")
+    monkeypatch.setattr(continuous_evaluation, "load_model", lambda _: None)
+    monkeypatch.setattr(continuous_evaluation, "found_by", found)
+    report = tmp_path / "report.json"
+    done = CliRunner().invoke(app, ["evaluate", "--continuous", "m.npz", str(examples), "--json", str(report)])
+    assert "1 of 2 actions found, 0 false detections" in done.output
+    written = json.loads(report.read_text())
+    assert (written["detections"][0]["label"], written["truths"][1]["label"]) == ("lift", "push")
+    assert written["scores"]["event_f1"] == pytest.approx(2 / 3)
 
 
 def test_an_unknown_topic_to_watch_is_refused_with_the_known_ones() -> None:

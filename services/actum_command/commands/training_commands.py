@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from actum.recording import RecordingError
+from actum_command.commands.continuous_evaluation import evaluate_continuously
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
 from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say
@@ -64,12 +65,15 @@ def train_command(
         say(warning, style="yellow")
 
 
-def evaluate_command(
+def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     files: Annotated[list[Path], typer.Argument(help="MODEL and recordings, or only recordings")],
     person: PersonOption = None,
     json_file: Annotated[Path | None, typer.Option("--json", help="write every prediction here")] = None,
     by_person: Annotated[
         bool, typer.Option("--leave-one-person-out", help="train anew without each person, test on them")
+    ] = False,
+    continuous: Annotated[
+        bool, typer.Option("--continuous", help="give whole recordings without their marks: actions are to be found")
     ] = False,
     preset: PresetOption = DEFAULT.name,
     settings: SetOption = None,
@@ -83,6 +87,11 @@ def evaluate_command(
         refuse_ending(json_file, ".json")
     if not by_person and len(files) == 1:
         fail(f"{files[0]} alone cannot be evaluated: name a model and then recordings, or use --leave-one-person-out")
+    if continuous:
+        recordings = chosen(files if by_person else files[1:], person, with_excluded)
+        model_file = None if by_person else files[0]
+        evaluate_continuously(model_file, recordings, _preset(preset, settings), seed, json_file)
+        return
     try:
         model = None if by_person else load_model(files[0])
         recordings = chosen(files if by_person else files[1:], person, with_excluded)
