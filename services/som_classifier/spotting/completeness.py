@@ -1,7 +1,7 @@
 """How complete each action is within a window: linear heads on the window's pyramid vector.
 
-A head is trained to answer 1 for a window that is the whole action, 0 for one that overlaps it little or not at all, and
-linearly in between: `completeness_of_iou`.
+A head is trained to answer 1 for a window that is the whole action, 0 for one that overlaps it little or not at all,
+and linearly in between: `completeness_of_iou`.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ def completeness_of_iou(iou: Floats) -> Floats:
 
 
 def iou_of_completeness(completeness: float) -> float:
-    """Return the overlap that a head's answer stands for, within [0, 1]: of a true beginning, the share that is done."""
+    """Return the overlap (0 to 1) that a head's answer stands for: of a beginning, how much of the action is done."""
     return min(max(NONE_BELOW_IOU + completeness * (WHOLE_FROM_IOU - NONE_BELOW_IOU), 0.0), 1.0)
 
 

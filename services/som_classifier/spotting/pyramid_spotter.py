@@ -13,7 +13,7 @@ from som_classifier.spotting.completeness import iou_of_completeness
 from som_classifier.spotting.decoding import Candidate, Decoder
 from som_classifier.spotting.spotted import Ongoing, Spotted, SpottedSegment, SpottingOptions
 from som_classifier.spotting.spotting_model import SpottingModel
-from som_classifier.spotting.windows import RecentFrames, Window
+from som_classifier.spotting.windows import RecentFrames
 
 ONGOING_FROM = 0.25
 """Completeness from which an action counts as going on: that of a window that overlaps it by 40 %."""
@@ -41,8 +41,8 @@ class Recogniser(Protocol):
 class PyramidSpotter:
     """Looks at all windows that end now, several times a second, and decides which of them were actions.
 
-    An action is told only where the model, asked about the frames that were found, does not call them unknown: the heads
-    know no more than the background that was shown to them.
+    An action is told only where the model, asked about the frames found, does not call it unknown: the heads know no
+    more than the background that was shown to them.
 
     Args:
         model: the recogniser.
@@ -73,11 +73,14 @@ class PyramidSpotter:
 
     def _decision(self, now_ns: int) -> Spotted:
         windows = self._recent.windows()
-        answers = [self._learned.heads.completeness(self._model.pooled(window.frames)) for window in windows]
-        scored = list(zip(windows, answers, strict=True))
-        candidates = (self._learned.candidate(window, answer, self._threshold) for window, answer in scored)
-        decided = self._decoder.step(now_ns, [each for each in candidates if each is not None])
-        self._ongoing = self._likeliest(scored)
+        if not windows:
+            return Spotted()
+        starts_ns = np.array([window[0].stamp_ns for window in windows])
+        completeness = np.stack([self._learned.heads.completeness(self._model.pooled(window)) for window in windows])
+        ends_ns = np.full(len(windows), now_ns)
+        candidates = self._learned.candidates(starts_ns, ends_ns, completeness, self._threshold)
+        decided = self._decoder.step(now_ns, candidates)
+        self._ongoing = self._likeliest(starts_ns.tolist(), now_ns, completeness)
         return Spotted(tuple(self._segment(each) for each in decided if self._is_familiar(each)), self._ongoing)
 
     def _segment(self, candidate: Candidate) -> SpottedSegment:
@@ -88,19 +91,13 @@ class PyramidSpotter:
         frames = self._recent.between(candidate.start_ns, candidate.end_ns)
         return len(frames) >= self._model.min_frames and not self._model.recognise(frames, complete=True).unknown
 
-    def _likeliest(self, scored: Sequence[tuple[Window, NDArray[np.float32]]]) -> Ongoing | None:
-        """Return the action to which the windows that end now belong most surely, None where it is none."""
-        free = [each for each in scored if self._decoder.is_free(each[0].start_ns, each[0].end_ns)]
-        if not free:
+    def _likeliest(self, starts_ns: Sequence[int], now_ns: int, completeness: NDArray[np.float32]) -> Ongoing | None:
+        """Return the action to which a window that ends now belongs most surely, None where none belongs to any."""
+        free = [n for n, start_ns in enumerate(starts_ns) if self._decoder.is_free(start_ns, now_ns)]
+        if not free or completeness[free].max() < ONGOING_FROM:
             return None
-        window, answer = max(free, key=lambda each: float(each[1].max()))
-        action = int(answer.argmax())
-        completeness = float(answer[action])
-        if completeness < ONGOING_FROM:
-            return None
-        return Ongoing(
-            window.start_ns,
-            self._model.labels[action],
-            self._learned.probability(completeness),
-            iou_of_completeness(completeness),
-        )
+        window = max(free, key=lambda n: float(completeness[n].max()))
+        action = int(completeness[window].argmax())
+        answer = float(completeness[window, action])
+        probability = self._learned.probability(answer)
+        return Ongoing(starts_ns[window], self._model.labels[action], probability, iou_of_completeness(answer))

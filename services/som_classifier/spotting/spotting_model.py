@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from actum.arrays import Array
+from actum.arrays import Array, Floats
+from actum.node import SECOND_NS
 from som_classifier.spotting.completeness import CompletenessHeads
 from som_classifier.spotting.decoding import Candidate
-from som_classifier.spotting.windows import Window
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
+Stamps = NDArray[np.int64]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 SHORTEST_S = 0.1
@@ -82,30 +83,37 @@ class SpottingModel:
     heads: CompletenessHeads
     metadata: SpottingMetadata
 
-    def candidate(self, window: Window, completeness: NDArray[np.float32], threshold: float) -> Candidate | None:
-        """Return the action that a window is most likely to be, None where it is none.
-
-        gain = (completeness + weight · log-likelihood of the duration − threshold) · duration / mean duration
+    def candidates(self, starts_ns: Stamps, ends_ns: Stamps, completeness: Floats, threshold: float) -> list[Candidate]:
+        """Return for each window the action that it is most likely to be, where it is one.
 
         Args:
-            window: the window.
-            completeness: (actions,), the heads' answers.
+            starts_ns: (n,), the windows' first stamps.
+            ends_ns: (n,), their last stamps.
+            completeness: (n, actions), the heads' answers.
             threshold: completeness that must be exceeded.
         """
-        gains = self.gains(window.duration_s, completeness, threshold)
-        action = int(gains.argmax())
-        if gains[action] <= 0:
-            return None
-        return Candidate(window.start_ns, window.end_ns, action, float(completeness[action]), float(gains[action]))
+        gains = self.gains((ends_ns - starts_ns) / SECOND_NS, completeness, threshold)
+        actions = gains.argmax(axis=1)
+        return [
+            Candidate(
+                int(starts_ns[n]), int(ends_ns[n]), int(action), float(completeness[n, action]), float(gains[n, action])
+            )
+            for n, action in enumerate(actions)
+            if gains[n, action] > 0
+        ]
 
-    def gains(self, duration_s: float, completeness: NDArray[np.float32], threshold: float) -> Array:
-        """Return what a window of this duration is worth as each action, for their completeness (actions,); same shape."""
+    def gains(self, durations_s: Array, completeness: Floats, threshold: float) -> Array:
+        """Return what windows (n,) are worth as each action, shape (n, actions).
+
+        gain = (completeness + weight * log-likelihood of the duration - threshold) * duration / mean duration, the
+        durations of each action being log-normally distributed.
+        """
         means, sds = self._log_durations
-        z2 = np.square((np.log(max(duration_s, SHORTEST_S)) - means) / sds)
+        z2 = np.square((np.log(np.maximum(durations_s, SHORTEST_S))[:, None] - means) / sds)
         log_likelihoods = -0.5 * np.minimum(z2, LARGEST_Z2)
-        relative_duration = duration_s / float(np.exp(means).mean())
-        gains: Array = completeness + self.metadata.duration_weight * log_likelihoods - threshold
-        return gains * relative_duration
+        worth = completeness + self.metadata.duration_weight * log_likelihoods - threshold
+        gains: Array = worth * (durations_s / np.exp(means).mean())[:, None]
+        return gains
 
     def probability(self, completeness: float) -> float:
         """Return how probable it is that an action is going on for which a head answers this much."""

@@ -2,7 +2,6 @@
 
 from collections import deque
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from actum.node import SECOND_NS
 from som_classifier.frames import Frame
@@ -12,32 +11,6 @@ FEWEST_FRAMES = 4
 """Frames that a window needs: with fewer the pyramid's finest cells hold less than one each."""
 COVERED_SHARE = 0.8
 """Share of a duration over which there must be frames: after a gap longer windows come back one after the other."""
-
-
-@dataclass(frozen=True)
-class Window:
-    """Frames that may be one action.
-
-    Attributes:
-        frames: valid ones, in order, the last of them the newest of the stream.
-    """
-
-    frames: Sequence[Frame]
-
-    @property
-    def start_ns(self) -> int:
-        """Stamp of the first frame."""
-        return self.frames[0].stamp_ns
-
-    @property
-    def end_ns(self) -> int:
-        """Stamp of the last frame."""
-        return self.frames[-1].stamp_ns
-
-    @property
-    def duration_s(self) -> float:
-        """From the first to the last frame."""
-        return (self.end_ns - self.start_ns) / SECOND_NS
 
 
 class RecentFrames:
@@ -67,7 +40,7 @@ class RecentFrames:
             self._frames.popleft()
         return follows
 
-    def windows(self) -> list[Window]:
+    def windows(self) -> list[list[Frame]]:
         """List the windows that end with the newest frame, the shortest first."""
         frames = list(self._frames)
         newest_ns, first, found = frames[-1].stamp_ns, len(frames) - 1, []
@@ -76,5 +49,5 @@ class RecentFrames:
                 first -= 1
             long_enough = newest_ns - frames[first].stamp_ns >= COVERED_SHARE * duration_ns
             if len(frames) - first >= FEWEST_FRAMES and long_enough:
-                found.append(Window(frames[first:]))
+                found.append(frames[first:])
         return found
