@@ -43,7 +43,7 @@ def _named(name: str, field: FieldInfo) -> list[str]:
 
 def _default(field: FieldInfo) -> str:
     default: Any = field.get_default(call_default_factory=True)
-    if default is None or default in ({}, [], ""):
+    if default is None or default in ({}, [], "", frozenset()):
         return ""
     if isinstance(default, bool):
         return "on" if default else "off"
