@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -21,6 +22,8 @@ KEPT_ASIDE: tuple[str, ...] = ("rub_nose", "drink", "stretch", "adjust_clothing"
 """Kinds that only tests show. All but drinking have a relative in training; drinking is as near to lifting as any."""
 FAMILIAR: tuple[str, ...] = tuple(kind for kind in ALL if kind not in KEPT_ASIDE)
 """Kinds for training recordings, so that tests ask for more than what was learnt by heart."""
+Choice = Literal["none", "familiar", "all", "only"]
+"""Which doings a scene has: none, those for training, all, or all and no actions."""
 LIKING = 2.0
 """Shape of the gamma distribution of a person's liking for a kind: some kinds are several times as frequent."""
 
@@ -44,6 +47,13 @@ class Everyday:
         unknown = [kind for kind in self.kinds if kind not in ALL]
         if unknown or not self.kinds:
             raise ValueError(f"no everyday doings {', '.join(unknown) or 'at all'}: use some of {', '.join(ALL)}")
+
+
+def chosen(choice: Choice, minutes: float) -> Everyday | None:
+    """Return the doings of a scene that lasts at least some minutes, or None."""
+    if choice == "none":
+        return None
+    return Everyday(FAMILIAR if choice == "familiar" else ALL, least_s=60 * minutes)
 
 
 class EverydayPerson:

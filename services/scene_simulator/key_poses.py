@@ -12,17 +12,17 @@ from scene_simulator.trajectories import bump, elapsed_share, interpolated, mini
 
 ARC_SHARE = 0.10
 """Height of a hand's arc as a share of its way: people lift their hands a little on the way."""
-FORWARD_SHARE = 0.25
+FORWARD_SHARE = 0.35
 """Way of a hand before the body as a share of the height it rises or falls by: it goes around the shoulder."""
 BEAT_RAMP_S = 0.3
 """Seconds in which a repeated movement sets in and fades."""
-STEP_M = 0.62
+STEP_M = 0.60
 """Length of a step of an adult who walks slowly."""
-WALKING_M_S = (0.10, 0.80)
+WALKING_M_S = (0.10, 1.30)
 """Speeds of the pelvis at which legs and arms begin to swing, and at which they swing fully; below, feet just shift."""
-LEG_SWING_RAD = np.deg2rad(23.0)
-"""Largest swing of a thigh: with it a leg of ordinary length makes a step of `STEP_M`."""
-KNEE_BEND_RAD = np.deg2rad(35.0)
+LEG_SWING_RAD = np.deg2rad(20.0)
+"""Largest swing of a thigh: two legs of 0.85 m that swing so are a step of `STEP_M` apart."""
+KNEE_BEND_RAD = np.deg2rad(30.0)
 """Largest bend of the knee in slow walking."""
 ARM_SWING_M = 0.10
 """Largest swing of a hand forward and back in slow walking."""

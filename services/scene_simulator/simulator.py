@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from actum.messages import SIMULATOR, Agent, Image, Message, Segment, Skeleton, Truth
-from actum.node import SECOND_NS, Counters
+from actum.node import SECOND_NS, Counters, Source
 from scene_simulator.conditions import PLAIN, Conditions
 from scene_simulator.drawing_primitives import Canvas, Pinhole
 from scene_simulator.everyday import Everyday
@@ -144,8 +144,8 @@ class Simulator:
         )
 
 
-def labelled_stream(simulator: Simulator) -> Iterator[Message]:
-    """Yield a simulator's messages with a labelled mark after each truth, as in a training recording."""
+def labelled_stream(simulator: Source) -> Iterator[Message]:
+    """Yield a simulated scene's messages with a labelled mark after each truth, as in a training recording."""
     for messages in simulator.frames():
         for message in messages:
             yield message

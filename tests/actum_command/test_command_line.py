@@ -12,7 +12,8 @@ import typer
 from typer.testing import CliRunner
 
 from actum import __version__
-from actum.recording import Recorder
+from actum.messages import Segment
+from actum.recording import Recorder, Recording
 from actum.runtime import RouterUnreachableError
 from actum.settings import ServiceSettings
 from actum_command import processes
@@ -186,6 +187,21 @@ def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
     command = ["evaluate", str(tmp_path / "m.npz"), str(tmp_path / "a.mcap"), "--json", str(report)]
     assert "accuracy" in runner.invoke(app, command).output
     assert '"predictions"' in report.read_text()
+
+
+def test_everyday_doings_lengthen_an_example_and_are_not_marked(tmp_path: Path) -> None:
+    def simulated(*choices: str) -> tuple[float, int]:
+        path = tmp_path / f"{choices[1]}.mcap"
+        assert CliRunner().invoke(app, ["simulate", str(path), "--repetitions", "1", *choices]).exit_code == 0
+        messages = list(Recording(path).messages())
+        return messages[-1].stamp_ns / 1e9, sum(isinstance(message, Segment) for message in messages)
+
+    plain_s, marks = simulated("--everyday", "none")
+    lively_s, marks_among_doings = simulated("--everyday", "familiar")
+    idle_s, marks_without_actions = simulated("--everyday", "only", "--minutes", "2")
+    assert lively_s > 2 * plain_s
+    assert marks == marks_among_doings == 10
+    assert (idle_s >= 120, marks_without_actions) == (True, 0)
 
 
 def test_an_unknown_topic_to_watch_is_refused_with_the_known_ones() -> None:
