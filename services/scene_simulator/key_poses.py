@@ -1,7 +1,7 @@
 """Free movements of the whole body as key poses, and the frames between them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -74,17 +74,16 @@ def moving(poses: Sequence[KeyPose], resting: Episode, rate_hz: int) -> Episode:
     pelvis = resting.pelvis_m + shift[:, :1] * left + shift[:, 1:] * forward
     stance = Stance(pelvis, resting.heading_rad - turn, lean)
     rows = np.zeros(len(values), dtype=int)
-    return Episode(
-        trial=None,
-        segment=None,
+    return replace(
+        resting,
         pelvis_m=pelvis,
         heading_rad=stance.heading_rad,
         hands_m=pelvis[:, None] + np.einsum("thk,ktd->thd", hands, np.stack(stance.axes())),
         positions_m=resting.positions_m[rows],
         yaw_rad=resting.yaw_rad[rows],
         riser_tops_m=resting.riser_tops_m[rows],
-        grip=np.zeros(len(rows)),
-        pointing=np.zeros(len(rows)),
+        grip=resting.grip[rows],
+        pointing=resting.pointing[rows],
         lean_rad=lean,
         twist_rad=twist,
         reaching=reaching,

@@ -15,6 +15,7 @@ from scene_simulator.trial import Layout
 Hands = Mapping[int, Array]
 """Goals (3,) of hands, by column: 0 is the left hand, 1 the right one."""
 LEFT, RIGHT = 0, 1
+UP = np.array([0.0, 1.0, 0.0])
 SIDES = (1, -1)
 """Side of each hand's column: +1 is the person's left."""
 START_S = 0.30
@@ -83,7 +84,7 @@ class Motion:
 
     @property
     def at_table(self) -> bool:
-        """Whether both hands rest on the table."""
+        """Whether the hands are at the table, where the trunk follows the acting one."""
         return self.last.reaching == 1.0
 
     def from_camera(self, point_m: Array) -> Array:
