@@ -13,7 +13,8 @@ import typer
 from typer.testing import CliRunner
 
 from actum import __version__
-from actum.recording import Recorder
+from actum.messages import Segment
+from actum.recording import Recorder, Recording
 from actum.runtime import RouterUnreachableError
 from actum.settings import ServiceSettings
 from actum_command import processes
@@ -217,6 +218,21 @@ def test_what_is_found_without_marks_is_told_and_written(
     written = json.loads(report.read_text())
     assert (written["detections"][0]["label"], written["truths"][1]["label"]) == ("lift", "push")
     assert written["scores"]["event_f1"] == pytest.approx(2 / 3)
+
+
+def test_everyday_doings_lengthen_an_example_and_are_not_marked(tmp_path: Path) -> None:
+    def simulated(*choices: str) -> tuple[float, int]:
+        path = tmp_path / f"{choices[1]}.mcap"
+        assert CliRunner().invoke(app, ["simulate", str(path), "--repetitions", "1", *choices]).exit_code == 0
+        messages = list(Recording(path).messages())
+        return messages[-1].stamp_ns / 1e9, sum(isinstance(message, Segment) for message in messages)
+
+    plain_s, marks = simulated("--everyday", "none")
+    lively_s, marks_among_doings = simulated("--everyday", "familiar")
+    idle_s, marks_without_actions = simulated("--everyday", "only", "--minutes", "2")
+    assert lively_s > 2 * plain_s
+    assert marks == marks_among_doings == 10
+    assert (idle_s >= 120, marks_without_actions) == (True, 0)
 
 
 def test_an_unknown_topic_to_watch_is_refused_with_the_known_ones() -> None:
