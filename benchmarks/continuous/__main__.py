@@ -61,8 +61,8 @@ of event F1 and F1 at IoU .5 less {COST_OF_A_SECOND} for each second of median l
 training."""
     yield """Events: the right label and a frame in common; F1@.5: an overlap (IoU) of at least .5. Each detection
 claims the truth of its label that it overlaps most, and a truth takes the best claim; all others are false. False
-detections are counted a minute of background, wherever they lie. Latency is from the true end to the decision. Split:
-truths in several detections; merged: detections that hold several truths."""
+detections are counted a minute of background, wherever they lie; in brackets those that lie in it. Latency is from the
+true end to the decision. Split: truths in several detections; merged: detections that hold several truths."""
 
 
 def section(bench: Bench, part: str) -> str:

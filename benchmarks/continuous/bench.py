@@ -19,7 +19,7 @@ HEADER = (
     "F1@.1",
     "F1@.25",
     "F1@.5",
-    "false / min",
+    "false / min (in background)",
     "latency, s: median (90 %)",
     "recall at 1 false / min",
     "split, merged",
@@ -66,7 +66,7 @@ def scores_table(pooled: dict[str, Found]) -> str:
 def _cells(scores: ContinuousScores) -> Iterator[str]:
     yield share(scores.event.f1)
     yield from (share(value) for value in scores.f1_at_iou.values())
-    yield number(scores.false_per_min)
+    yield f"{number(scores.false_per_min)} ({number(scores.alarms_per_min)})"
     median_s, ninth_decile_s = scores.latency_s or (None, None)
     yield f"{number(median_s)} ({number(ninth_decile_s)})"
     yield "–" if scores.recall_at_rate is None else share(scores.recall_at_rate)

@@ -24,7 +24,7 @@ from actum_model_trainer.samples import select
 
 from .bench import Bench, share
 from .methods import SEED, Method, found
-from .ours import OncePerTraining, Ours
+from .ours import Ours
 from .rocket_windows import RocketWindows
 from .streams import Fold, Stream, folds, stream_of
 
@@ -38,7 +38,8 @@ def never_trained(bench: Bench) -> Iterator[str]:
     """Four gestures left out of training."""
     drawn = np.random.default_rng(SEED).permutation(len(GESTURES)).reshape(-1, LEFT_OUT).tolist()
     rows: list[list[str]] = []
-    for draw, (numbers, fold) in enumerate(zip(drawn[:DRAWS], folds(*[bench.data.composed] * 2), strict=False)):
+    people = folds(bench.data.composed, bench.data.composed)
+    for draw, (numbers, fold) in enumerate(zip(drawn[:DRAWS], people, strict=False)):
         unknown = [GESTURES[number] for number in numbers]
         folder = bench.data.imported / f"never_trained_{draw}"
         for how, training in (
@@ -84,7 +85,7 @@ def _belongs(detection: Detection, truth: Truth) -> bool:
 
 
 def _rows(bench: Bench, fold: Fold, unknown: Sequence[str], how: str) -> Iterator[list[str]]:
-    methods: tuple[Method, ...] = Ours(OncePerTraining(bench.model_of.model_of)), RocketWindows()
+    methods: tuple[Method, ...] = Ours(bench.model_of), RocketWindows()
     for method in methods:
         own = found(method.fit(fold.training), fold)
         count, of = answered(own.detections, own.truths, unknown), sum(t.label in unknown for t in own.truths)

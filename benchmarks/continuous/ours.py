@@ -25,13 +25,13 @@ class OncePerTraining:
     """Trains a model the first time it is asked for, and keeps the newest: all methods of a fold share it."""
 
     def __init__(self, model_of: ModelOf = trained) -> None:
-        self.model_of = model_of
+        self._model_of = model_of
         self._newest: tuple[tuple[Stream, ...], Model] | None = None
 
     def __call__(self, training: tuple[Stream, ...]) -> Model:
         """Return the model of these streams."""
         if self._newest is None or self._newest[0] != training:
-            self._newest = training, self.model_of(training)
+            self._newest = training, self._model_of(training)
         return self._newest[1]
 
 

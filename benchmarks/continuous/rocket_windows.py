@@ -28,9 +28,9 @@ Floats = NDArray[np.float32]
 INSTANTS = 32
 CHUNK = 1000
 """Windows that are transformed at once: 40 MB of features."""
-THRESHOLDS = (-0.2, 0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8)
+THRESHOLDS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2)
 """Of the margin of an action's decision value over none's; targets are −1 and 1."""
-HOLDS_S = (0.1, 0.2, 0.3, 0.5, 0.8)
+HOLDS_S = (0.1, 0.2, 0.3, 0.5)
 """How long an answer waits for a better one that overlaps it."""
 OVERLAP = 0.25
 """The share of itself by which a later answer may reach into an earlier one."""

@@ -22,7 +22,7 @@ from actum_dataset_importer.importing import (
 )
 from actum_model_trainer.continuous.detections import Detection, Stretch, Truth
 from actum_model_trainer.continuous.watching import sensors_of, watched
-from actum_model_trainer.samples import SegmentSample, classifier_input, samples_from, select
+from actum_model_trainer.samples import SegmentSample, samples_from, select
 from som_classifier.frames import Frame
 from som_classifier.streams import Streams
 
@@ -140,38 +140,34 @@ def folds(training: Sequence[Stream], test: Sequence[Stream]) -> list[Fold]:
 def stream_of(recording: Recording) -> Stream:
     """Read a recording of one person before one sensor."""
     (sensor,) = sensors_of(recording)
-    known = watched(_Nobody(), recording, sensor, str(recording.path))
-    agent, frames = _frames(recording, sensor)
-    whole = _sample(frames, recording)
+    collector = _Collector()
+    known = watched(collector, recording, sensor, str(recording.path))
+    (agent,) = collector.agents
+    whole = _sample(collector.frames, recording)
     (example,) = with_joints([whole], [recording])
     samples = samples_from([recording]).usable
     return Stream(recording, whole, example.camera_m, agent, list(known.truths), list(known.seen), samples)
 
 
-class _Nobody:
-    """A node that finds nothing."""
+class _Collector:
+    """A node that keeps the valid frames as the classifier does, and whose they are, and finds nothing."""
 
-    name = "nobody"
+    name = "collector"
     inputs = ()
 
     def __init__(self) -> None:
         self.counters = Counters()
+        self.frames: list[Frame] = []
+        self.agents: set[int] = set()
+        self._streams = Streams()
 
-    def handle(self, _message: Message | Tick) -> Iterable[Message]:
-        return []
-
-
-def _frames(recording: Recording, sensor: str) -> tuple[int, list[Frame]]:
-    """Return the valid frames as the classifier keeps them, and whose they are."""
-    kept, frames, agents = Streams(), [], set()
-    for _, message in classifier_input(recording, sensor):
+    def handle(self, message: Message | Tick) -> Iterable[Message]:
         if isinstance(message, Posture):
-            _, frame = kept.add(message)
+            _, frame = self._streams.add(message)
             if frame is not None and frame.valid:
-                frames.append(frame)
-                agents.add(message.agent)
-    (agent,) = agents
-    return agent, frames
+                self.frames.append(frame)
+                self.agents.add(message.agent)
+        return []
 
 
 def _sample(frames: Sequence[Frame], recording: Recording) -> SegmentSample:

@@ -168,6 +168,7 @@ def test_false_detections_are_those_that_answer_no_truth_by_minutes_without_an_a
     answers = [found("lift", 10, 12), found("lift", 10.5, 11), found("drink", 21, 22), found("push", 50, 51)]
     scores = scores_of(Found(answers, [LIFT, PUSH], [seen(66)]))
     assert (scores.background_min, scores.false_detections, scores.false_per_min) == (1.0, 3, 3.0)
+    assert scores.alarms_per_min == 1.0
 
 
 def test_background_is_counted_for_each_person_and_outside_truths_that_overlap() -> None:

@@ -48,6 +48,7 @@ def _rows(scores: ContinuousScores) -> list[tuple[str, str]]:
         *((f"F1 at IoU {iou:g}", f"{value:.3f}") for iou, value in scores.f1_at_iou.items()),
         *([("action points F1 (±333 ms)", f"{scores.point_f1:.3f}")] if scores.point_f1 is not None else []),
         ("false detections / min of background", _number(scores.false_per_min, "{:.2f}")),
+        ("of these in the background", _number(scores.alarms_per_min, "{:.2f}")),
         ("recall at 1 false detection / min", _number(scores.recall_at_rate, "{:.3f}")),
         ("latency after the true end, median", _number(median_s, "{:.2f} s")),
         ("latency after the true end, 90 %", _number(ninth_decile_s, "{:.2f} s")),

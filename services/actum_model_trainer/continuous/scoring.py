@@ -73,6 +73,7 @@ class ContinuousScores:
         false_detections: detections that answer no truth.
         background_min: the minutes in which somebody was seen and did none of the actions.
         false_per_min: false detections in a minute of background, wherever they lie; None without background.
+        alarms_per_min: the same of those alone that have no time in common with any truth: they lie in the background.
         latency_s: from a truth's end to the answer to it, seconds: median and 90th percentile; None without an answer.
         fragmentations: truths to which more than one detection belongs, by more than half of its length, whatever its
             label.
@@ -88,6 +89,7 @@ class ContinuousScores:
     false_detections: int
     background_min: float
     false_per_min: float | None
+    alarms_per_min: float | None
     latency_s: tuple[float, float] | None
     fragmentations: int
     merges: int
@@ -109,6 +111,7 @@ class ContinuousScores:
             "false_detections": self.false_detections,
             "background_min": self.background_min,
             "false_per_min": self.false_per_min,
+            "alarms_per_min": self.alarms_per_min,
             "latency_median_s": median_s,
             "latency_p90_s": ninth_decile_s,
             "fragmentations": self.fragmentations,
@@ -131,6 +134,7 @@ def scores_of(found: Found) -> ContinuousScores:
         false_detections=false,
         background_min=minutes,
         false_per_min=false / minutes if minutes else None,
+        alarms_per_min=_alarms(found) / minutes if minutes else None,
         latency_s=latency_s(matches),
         fragmentations=_fragmentations(found),
         merges=_merges(found),
@@ -188,6 +192,12 @@ def _recall_at(most_false: float, found: Found) -> float:
         if len(kept) - right <= most_false:
             best = max(best, right)
     return best / len(found.truths) if found.truths else 0.0
+
+
+def _alarms(found: Found) -> int:
+    """Count the detections that have no time in common with any truth of their agent."""
+    done = _of_one_person(found.truths)
+    return sum(all(overlap_ns(own, truth) <= 0 for truth in done[own.file, own.agent]) for own in found.detections)
 
 
 def _fragmentations(found: Found) -> int:
