@@ -17,7 +17,7 @@ from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import Evaluation, evaluate
 from actum_model_trainer.report import report
 from actum_model_trainer.samples import samples_from
-from actum_model_trainer.training import TrainingError, train
+from actum_model_trainer.training import TrainingError, train_to_spot
 from actum_model_trainer.warnings import warnings_of
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
@@ -53,7 +53,7 @@ def train_command(
             say(f"left out {unusable.segment_id} of {unusable.file}: {unusable.reason}")
         tell_unread(recordings)
         with bars() as progress:
-            model = train(samples.usable, chosen_preset, seed, progress)
+            model = train_to_spot(samples.usable, samples.streams, chosen_preset, seed, progress)
         model.save(output)
     except (RecordingError, TrainingError, OSError) as error:
         fail(str(error))

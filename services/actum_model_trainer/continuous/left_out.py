@@ -8,7 +8,7 @@ from actum_model_trainer.continuous.detections import Detection, Found, point_fr
 from actum_model_trainer.continuous.watching import found_by
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.samples import samples_from
-from actum_model_trainer.training import TrainingError, train
+from actum_model_trainer.training import TrainingError, train_to_spot
 from som_classifier.model import Model
 from som_classifier.presets import Preset
 
@@ -24,10 +24,12 @@ def models_without(
     Raises:
         RecordingError: a file is damaged.
     """
-    samples = samples_from(recordings, progress).usable
+    samples = samples_from(recordings, progress)
 
     def model_without(person: str, progress: Progress) -> Model:
-        return train([sample for sample in samples if sample.person != person], preset, seed, progress)
+        others = [sample for sample in samples.usable if sample.person != person]
+        streams = [stream for stream in samples.streams if stream.person != person]
+        return train_to_spot(others, streams, preset, seed, progress)
 
     return model_without
 
