@@ -231,7 +231,7 @@ PYRAMID = PyramidPreset(
     prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28, familiar_from_one=0.2, log_error=-2.5),
     spotting=SpottingPreset(
         interval_s=0.1,
-        lag_s=0.3,
+        lag_s=0.2,
         overlap=0.15,
         duration_weight=0.1,
         windows=8,
