@@ -48,16 +48,23 @@ def variants(
     """
     measured = Variant(sample.postures, sample.velocities)
     as_read = measured.mirrored if mirrors and sample.acting_hands[-1] == "left" else measured
-    yield as_read
+    yield from varied(as_read, sample.depth_inferred, preset, rng)
+
+
+def varied(
+    measured: Variant, depth_inferred: bool, preset: PyramidPreset, rng: np.random.Generator
+) -> Iterator[Variant]:
+    """Yield postures and velocities as measured, then rotated, then with other bodies' proportions and tempo."""
+    yield measured
     for yaw_deg, pitch_deg in zip(preset.turns_deg, preset.leans_deg, strict=True):
-        pitch = pitch_rotation(np.radians(pitch_deg if sample.depth_inferred else 0.0))
+        pitch = pitch_rotation(np.radians(pitch_deg if depth_inferred else 0.0))
         rotation = yaw_rotation(np.radians(yaw_deg)) @ pitch
-        yield Variant(as_read.postures @ rotation, as_read.velocities @ rotation)
+        yield Variant(measured.postures @ rotation, measured.velocities @ rotation)
     for _ in range(preset.others.count):
         factors = np.exp(rng.normal(0.0, preset.others.build_sd, len(_BONE_NAMES)))
         scaling = bone_scaling(dict(zip(_BONE_NAMES, factors, strict=True)))
-        velocities = preset.others.tempo * _applied(scaling, as_read.velocities)
-        yield Variant(_applied(scaling, as_read.postures), velocities)
+        velocities = preset.others.tempo * _applied(scaling, measured.velocities)
+        yield Variant(_applied(scaling, measured.postures), velocities)
 
 
 def yaw_rotation(radians: float) -> Array:

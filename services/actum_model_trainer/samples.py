@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from actum import keys
 from actum.arrays import Array
-from actum.messages import Hand, Message, Posture, Segment, Skeleton
+from actum.messages import REPLAY, Hand, Message, Posture, Segment, Skeleton
 from actum.node import Counters, Numbering, Tick, replay
 from actum.recording import Recording
 from actum_model_trainer.progress import Progress, silent
@@ -76,6 +76,7 @@ class LabelledStream:
         person: whose recording it is.
         file: the recording's path.
         agent: the person's number in it.
+        depth_inferred: whether some distances were inferred from an image and a standard body's size.
     """
 
     stamps_ns: NDArray[np.int64]
@@ -86,6 +87,7 @@ class LabelledStream:
     person: str
     file: str
     agent: int
+    depth_inferred: bool = False
 
 
 @dataclass(frozen=True)
@@ -151,9 +153,14 @@ def classifier_input(recording: Recording, sensor: str) -> Iterator[tuple[int, M
     preprocessor, numbering = PosePreprocessor(PoseSettings.defaults()), Numbering()
     for message in recording.messages(STREAMS):
         if message.sensor == sensor:
-            arriving = preprocessor.handle(message) if isinstance(message, Skeleton) else [message]
+            arriving = preprocessor.handle(message) if isinstance(message, Skeleton) else [_played(message)]
             for posture_or_mark in arriving:
                 yield message.stamp_ns, numbering.numbered(posture_or_mark)
+
+
+def _played(mark: Message) -> Message:
+    """Return a mark as `actum play` puts it: whoever put it first, the classifier is to answer it."""
+    return mark.model_copy(update={"origin": REPLAY}) if isinstance(mark, Segment) else mark
 
 
 def samples_from(recordings: Sequence[Recording], progress: Progress = silent) -> Samples:
@@ -272,4 +279,5 @@ def _stream(
         recording.person,
         str(recording.path),
         agent,
+        any(frame.depth_inferred for frame in frames),
     )

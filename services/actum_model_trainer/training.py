@@ -44,4 +44,4 @@ def train_to_spot(
     if not isinstance(model, PyramidModel) or isinstance(preset, PaperPreset):
         return model
     with threadpool_limits(1, user_api="blas"):
-        return with_spotting(model, streams, preset.spotting, seed, progress)
+        return with_spotting(model, streams, preset, seed, progress)

@@ -26,7 +26,11 @@ def record(
     person: Annotated[str, typer.Option(help="who acts; kept in the file, used to split training from test")] = "",
     label: Annotated[str | None, typer.Option(help="what is done in the segments marked while recording")] = None,
     marks: Annotated[
-        str, typer.Option(help="whose marks are stored: manual (yours and your programs'), simulator, replay; or all")
+        str,
+        typer.Option(
+            help="whose marks are stored: manual (yours and your programs'), simulator, replay, auto (found by the"
+            " classifier); or all"
+        ),
     ] = MANUAL,
     images: Annotated[bool, typer.Option(help="also store images (faces are personal data)")] = False,
     seconds: Annotated[float | None, typer.Option(min=0, help="stop by itself; default: at Ctrl-C")] = None,

@@ -11,7 +11,7 @@ from actum.arrays import Array, Floats, Indices
 from actum.node import SECOND_NS
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
-from actum_model_trainer.spotting.encoded_stream import EncodedStream
+from actum_model_trainer.samples import LabelledStream
 from som_classifier.spotting.decoding import Decoder
 from som_classifier.spotting.spotting_model import SpottingModel
 
@@ -35,7 +35,7 @@ class ScannedStream:
         completeness: (n, actions).
     """
 
-    stream: EncodedStream
+    stream: LabelledStream
     windows: Indices
     completeness: Floats
 
@@ -75,7 +75,7 @@ def found(scanned: Sequence[ScannedStream], learned: SpottingModel, labels: Sequ
     """Return what a search with this threshold finds in the streams."""
     detections, truths, seen = [], [], []
     for each in scanned:
-        stream = each.stream.stream
+        stream = each.stream
         file, agent = stream.file, stream.agent
         detections += [
             Detection(file, agent, start_ns, end_ns, decided_ns, labels[action], 1.0)
