@@ -1,7 +1,7 @@
 """Data augmentation: variants of each sample, rotated and with the proportions and tempos of other bodies."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,6 +33,11 @@ class Variant:
     def mirrored(self) -> "Variant":
         """Its mirror image, left and right exchanged."""
         return Variant(mirrored(self.postures), mirrored(self.velocities))
+
+
+def augmentation_for(people: Sequence[str], preset: PyramidPreset) -> PyramidPreset:
+    """Return the preset whose augmentation suits the people of all samples: few show less of how bodies differ."""
+    return replace(preset, others=preset.others_of_few) if len(set(people)) <= preset.few_people else preset
 
 
 def variants(

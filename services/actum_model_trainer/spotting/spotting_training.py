@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
 from actum.node import SECOND_NS
-from actum_model_trainer.augmentation import Variant, varied
+from actum_model_trainer.augmentation import Variant, augmentation_for, varied
 from actum_model_trainer.continuous.detections import Stretch, Truth
 from actum_model_trainer.continuous.scoring import background_min
 from actum_model_trainer.progress import Progress
@@ -116,14 +116,16 @@ def _drawn(
     rng: np.random.Generator,
     progress: Progress,
 ) -> list[_Drawn]:
-    """Draw the training windows of all streams, shared out among each stream as measured and its augmented versions."""
+    """Draw the training windows of all streams, each in some versions of its stream: as measured, or augmented."""
     windows = [training_windows(stream, model.labels, durations_s, rng) for stream in streams]
-    kept_share = min(1.0, preset.spotting.most_windows / max(sum(len(each.frames) for each in windows), 1))
+    copies = preset.spotting.most_windows / max(sum(len(each.frames) for each in windows), 1)
+    augmentation = augmentation_for([stream.person for stream in streams], preset)
     drawn = []
     for done, (stream, each) in enumerate(zip(streams, windows, strict=True)):
         progress("windows of streams", done, len(streams))
-        kept = np.flatnonzero(rng.random(len(each.frames)) < kept_share)
-        variants = list(varied(Variant(stream.postures, stream.velocities), stream.depth_inferred, preset, rng))
+        variants = list(varied(Variant(stream.postures, stream.velocities), stream.depth_inferred, augmentation, rng))
+        often = min(int(copies), len(variants)) + (rng.random(len(each.frames)) < copies % 1)
+        kept = np.repeat(np.arange(len(each.frames)), np.minimum(often, len(variants)))
         of_window = rng.integers(len(variants), size=len(kept))
         vectors = np.zeros((len(kept), model.pyramid.cells * model.first.units), np.float32)
         for number in np.unique(of_window):

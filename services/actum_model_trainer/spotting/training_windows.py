@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
 from actum_model_trainer.samples import LabelledStream
-from som_classifier.spotting.completeness import completeness_of_iou
 from som_classifier.kinematics import GAP_NS
+from som_classifier.spotting.completeness import completeness_of_iou
 from som_classifier.spotting.windows import COVERED_SHARE as LIVE_COVERED_SHARE
 from som_classifier.spotting.windows import FEWEST_FRAMES
 
