@@ -38,7 +38,7 @@ def test_a_stream_holds_every_frame_and_truth(own: Stream) -> None:
     assert len(own.stamps_ns) == len(own.camera_m) == 9 * 25
     assert [truth.label for truth in own.truths] == ["lift", "push", "swing"] * 3
     assert [own.frames_of(truth) for truth in own.truths] == [(25 * k, 25 * k + 19) for k in range(9)]
-    assert [sample.label for sample in own.samples] == [truth.label for truth in own.truths]
+    assert [sample.label for sample in own.taught.usable] == [truth.label for truth in own.truths]
 
 
 def test_every_person_is_tested_once_and_never_learnt_from_meanwhile(tmp_path: Path) -> None:
