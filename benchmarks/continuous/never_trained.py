@@ -15,7 +15,7 @@ from actum import keys
 from actum.messages import Segment
 from actum.recording import Recorder, Recording
 from actum_dataset_importer.importing import SENSOR, import_takes
-from actum_dataset_importer.msrc12 import GESTURES, NAME, stream_names
+from actum_dataset_importer.msrc12 import GESTURES, NAME, stream_names_by_file
 from actum_dataset_importer.msrc12_composed import composed
 from actum_model_trainer.continuous.detections import Detection, Found, Truth
 from actum_model_trainer.continuous.matching import intersection_over_union, matched, overlap_ns
@@ -61,12 +61,12 @@ def unlabelled(streams: Sequence[Stream], unknown: Sequence[str], folder: Path) 
 def absent(originals: Path, fold: Fold, unknown: Sequence[str], folder: Path) -> tuple[Stream, ...]:
     """Return the training people's streams, composed without some gestures."""
     people = {stream.person for stream in fold.training}
-    names: dict[Path, list[str]] = {}
-    for file, name in stream_names(originals):
-        match = NAME.fullmatch(name)
-        if match and int(match["person"]) in people and GESTURES[int(match["number"]) - 1] not in unknown:
-            names.setdefault(file, []).append(name)
-    takes = [take for file, of_file in names.items() for take in composed(file, of_file, SENSOR)]
+    takes = []
+    for file, of_file in stream_names_by_file(originals).items():
+        named = [(name, NAME.fullmatch(name)) for name in of_file]
+        kept = [name for name, match in named if match and GESTURES[int(match["number"]) - 1] not in unknown]
+        if named[0][1] and int(named[0][1]["person"]) in people:
+            takes += composed(file, kept, SENSOR)
     import_takes("msrc12", takes, len(takes), folder, lambda done, total: None)
     return tuple(stream_of(recording) for recording in select([folder]))
 

@@ -18,7 +18,7 @@ ModelOf = Callable[[tuple[Stream, ...]], Model]
 
 def trained(training: tuple[Stream, ...]) -> Model:
     """Train the default preset on streams."""
-    return train([sample for stream in training for sample in stream.samples], DEFAULT, SEED)
+    return train([sample for stream in training for sample in stream.taught.usable], DEFAULT, SEED)
 
 
 class OncePerTraining:

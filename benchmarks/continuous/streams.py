@@ -22,7 +22,7 @@ from actum_dataset_importer.importing import (
 )
 from actum_model_trainer.continuous.detections import Detection, Stretch, Truth
 from actum_model_trainer.continuous.watching import sensors_of, watched
-from actum_model_trainer.samples import SegmentSample, samples_from, select
+from actum_model_trainer.samples import Samples, SegmentSample, samples_from, select
 from som_classifier.frames import Frame
 from som_classifier.streams import Streams
 
@@ -41,7 +41,7 @@ class Stream:
         agent: the person's number in it.
         truths: what was done.
         seen: when the person was seen.
-        samples: its labelled segments, to train on.
+        taught: what can be learnt from it.
     """
 
     recording: Recording
@@ -50,7 +50,7 @@ class Stream:
     agent: int
     truths: list[Truth]
     seen: list[Stretch]
-    samples: list[SegmentSample]
+    taught: Samples
 
     @property
     def person(self) -> int:
@@ -145,8 +145,8 @@ def stream_of(recording: Recording) -> Stream:
     (agent,) = collector.agents
     whole = _sample(collector.frames, recording)
     (example,) = with_joints([whole], [recording])
-    samples = samples_from([recording]).usable
-    return Stream(recording, whole, example.camera_m, agent, list(known.truths), list(known.seen), samples)
+    taught = samples_from([recording])
+    return Stream(recording, whole, example.camera_m, agent, list(known.truths), list(known.seen), taught)
 
 
 class _Collector:

@@ -11,7 +11,7 @@ from actum_dataset_importer import bimacs, msr_action3d, msrc12, utkinect
 from actum_dataset_importer.bimacs import HandsTake
 from actum_dataset_importer.clips import Naming, check_names, clip_files, read_clip
 from actum_dataset_importer.msrc12_composed import STREAMS, composed
-from actum_dataset_importer.msrc12_cuts import read_trimmed
+from actum_dataset_importer.msrc12_cuts import trimmed
 from actum_dataset_importer.takes import Take
 from sensor_gateway.optics import Optics
 from sensor_gateway.people.pose_estimator import Estimator
@@ -131,9 +131,9 @@ def import_msrc12_trimmed(src: Path, out: Path, progress: Progress) -> ImportRep
     Raises:
         DatasetError: `src` does not hold the set, or a file of it is damaged.
     """
-    streams = msrc12.stream_names(src)
-    takes = (read_trimmed(file, name, SENSOR) for file, name in streams)
-    return import_takes("msrc12", takes, len(streams), out, progress)
+    names = msrc12.stream_names_by_file(src)
+    takes = (take for file, of_file in names.items() for take in trimmed(file, of_file, SENSOR))
+    return import_takes("msrc12", takes, sum(map(len, names.values())), out, progress)
 
 
 def import_msrc12_composed(src: Path, out: Path, progress: Progress) -> ImportReport:
@@ -142,9 +142,7 @@ def import_msrc12_composed(src: Path, out: Path, progress: Progress) -> ImportRe
     Raises:
         DatasetError: `src` does not hold the set, a file of it is damaged, or its gestures cannot be mixed.
     """
-    names: dict[Path, list[str]] = {}
-    for file, name in msrc12.stream_names(src):
-        names.setdefault(file, []).append(name)
+    names = msrc12.stream_names_by_file(src)
     takes = (take for file, of_file in names.items() for take in composed(file, of_file, SENSOR))
     return import_takes("msrc12", takes, STREAMS * len(names), out, progress)
 

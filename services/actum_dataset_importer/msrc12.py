@@ -111,6 +111,18 @@ def stream_names(path: Path) -> list[tuple[Path, str]]:
     return [(file, name) for file in files_of(path, PATTERN) for name in _names(file)]
 
 
+def stream_names_by_file(path: Path) -> dict[Path, list[str]]:
+    """List the streams of each file, and so of each person.
+
+    Raises:
+        DatasetError: there is no file, or one is damaged.
+    """
+    names: dict[Path, list[str]] = {}
+    for file, name in stream_names(path):
+        names.setdefault(file, []).append(name)
+    return names
+
+
 def stored_stream(path: Path, name: str) -> Stream:
     """Read one stream.
 

@@ -17,7 +17,7 @@ from actum.messages import Segment
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX, KINECT_V1_20
 from actum_dataset_importer.msrc12 import Stream, skeleton, stored_stream
-from actum_dataset_importer.msrc12_cuts import cuts_of
+from actum_dataset_importer.msrc12_cuts import cuts_of, resting_pose
 from actum_dataset_importer.takes import DatasetError, Take, segment_marks, stamp_of
 
 Floats = NDArray[np.float64]
@@ -63,9 +63,10 @@ def composed(path: Path, names: Sequence[str], sensor: str) -> Iterator[Take]:
         DatasetError: the file is not of the set's form, or its gestures cannot be mixed.
     """
     streams = [stored_stream(path, name) for name in names]
+    rest_m = resting_pose(streams)
     repeated: dict[str, list[Piece]] = {}
     for stream in streams:
-        repeated.setdefault(stream.label, []).extend(pieces_of(stream))
+        repeated.setdefault(stream.label, []).extend(pieces_of(stream, rest_m))
     person = streams[0].person
     rng = np.random.default_rng([SEED, int(person)])
     drawn = {label: [of_one[i] for i in rng.permutation(len(of_one))] for label, of_one in sorted(repeated.items())}
@@ -77,9 +78,12 @@ def composed(path: Path, names: Sequence[str], sensor: str) -> Iterator[Take]:
         yield _joined(mixed(pieces, rng), f"composed_p{int(person):02d}_{number + 1}", person, sensor)
 
 
-def pieces_of(stream: Stream) -> list[Piece]:
-    """Return a stream's repetitions but for the first and the last, where all of them was seen."""
-    cuts = list(enumerate(zip(cuts_of(stream), stream.points_us, strict=True)))[1:-1]
+def pieces_of(stream: Stream, rest_m: Floats) -> list[Piece]:
+    """Return a stream's repetitions but for the first and the last, where all of them was seen.
+
+    `rest_m` is the person's pose of rest (15, 3) from the torso.
+    """
+    cuts = list(enumerate(zip(cuts_of(stream, rest_m), stream.points_us, strict=True)))[1:-1]
     return [
         Piece(
             stream.segment_id(number),

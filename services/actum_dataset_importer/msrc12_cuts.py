@@ -1,9 +1,10 @@
 """Where a gesture of MSRC-12 starts and ends: the set annotates only its action point.
 
-Two repetitions part where, between their action points, the actor moves least and is nearest to the pose between
-repetitions. What is left about a point is trimmed where the actor stands still near that pose.
+Two repetitions part where, between their action points, the actor moves least and is nearest to the pose of rest. What
+is left about a point is trimmed where the actor stands still near that pose.
 """
 
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -23,9 +24,10 @@ SMOOTHED_FRAMES = 5
 STILL = 0.25
 """Speed below which the actor counts as still, as a share of the repetition's greatest."""
 NEAR = 0.5
-"""Distance to the pose between repetitions below which the actor counts as near it, as a share of its greatest."""
-RESTING_SHARE = 1 / 6
-"""How far from half-way between two points the pose between repetitions is looked for, as a share of the way."""
+"""Distance to the pose of rest below which the actor counts as near it, as a share of the repetition's greatest."""
+RESTING_SHARE = 0.25
+"""The share of each stream's frames, the slowest, among which a person's pose of rest is looked for: in some gestures
+nobody rests between two repetitions, but over all gestures people rest alike."""
 FEWEST_FRAMES = 8
 """Frames that a repetition has at least: a quarter of a second."""
 EPSILON = 1e-9
@@ -49,34 +51,76 @@ class Cut:
     last: int
 
 
-def read_trimmed(path: Path, name: str, sensor: str) -> Take:
-    """Read one stream and mark each repetition from where it starts to where it ends.
+@dataclass(frozen=True, eq=False)
+class Movement:
+    """How the person of a stream moves, where anybody was found.
+
+    Attributes:
+        frames: (n,), indices of the stream's frames.
+        stamps_us: (n,), of these.
+        poses_m: (n, 15, 3), from the torso, smoothed.
+        speeds: (n,), the joints' mean speed, m/s.
+    """
+
+    frames: NDArray[np.intp]
+    stamps_us: NDArray[np.int64]
+    poses_m: Floats
+    speeds: Floats
+
+
+def trimmed(path: Path, names: Sequence[str], sensor: str) -> Iterator[Take]:
+    """Read the streams of one person's file and mark each repetition from where it starts to where it ends.
 
     Raises:
-        DatasetError: the name or the content is not of the set's form.
+        DatasetError: a name or the content is not of the set's form.
     """
-    stream = stored_stream(path, name)
-    stamps_us = stream.stamps_us.tolist()
-    spans_us = [None if cut is None else (stamps_us[cut.start], stamps_us[cut.end]) for cut in cuts_of(stream)]
-    take = take_of(stream, spans_us, sensor)
-    points = enumerate((stream.points_us * 1000).tolist())
-    take.set_action_points({stream.segment_id(i): stamp_ns for i, stamp_ns in points if spans_us[i] is not None})
-    return take
+    streams = [stored_stream(path, name) for name in names]
+    rest_m = resting_pose(streams)
+    for stream in streams:
+        stamps_us = stream.stamps_us.tolist()
+        cuts = cuts_of(stream, rest_m)
+        spans_us = [None if cut is None else (stamps_us[cut.start], stamps_us[cut.end]) for cut in cuts]
+        take = take_of(stream, spans_us, sensor)
+        points = zip(cuts, (stream.points_us * 1000).tolist(), strict=True)
+        take.set_action_points({stream.segment_id(i): ns for i, (cut, ns) in enumerate(points) if cut is not None})
+        yield take
 
 
-def cuts_of(stream: Stream) -> list[Cut | None]:
-    """Cut a stream into its repetitions, one for each action point; None where nobody was found long enough."""
-    seen = np.flatnonzero(stream.seen)
-    if len(seen) < FEWEST_FRAMES or not len(stream.points_us):
+def resting_pose(streams: Iterable[Stream]) -> Floats:
+    """Return the pose of rest of a person, (15, 3) in metres from the torso, by all of their streams."""
+    slow = [np.zeros((0, len(KINECT_V1_20), 3))]
+    for stream in streams:
+        movement = _movement(stream)
+        if movement is not None:
+            slow.append(movement.poses_m[movement.speeds <= np.quantile(movement.speeds, RESTING_SHARE)])
+    pose: Floats = np.median(np.concatenate(slow), axis=0) if len(slow) > 1 else np.zeros((len(KINECT_V1_20), 3))
+    return pose
+
+
+def cuts_of(stream: Stream, rest_m: Floats) -> list[Cut | None]:
+    """Cut a stream into its repetitions, one for each action point, given the pose of rest (15, 3) from the torso (m).
+
+    None stands for one in which nobody was found long enough.
+    """
+    movement = _movement(stream)
+    if movement is None or not len(stream.points_us):
         return [None] * len(stream.points_us)
-    stamps_us = stream.stamps_us[seen]
-    poses_m = _smoothed(stream.xyz_mm[seen][:, KINECT_V1_20] / 1000)
-    poses_m -= poses_m[:, [INDEX["torso"]]]
-    speeds = _speeds(poses_m, stamps_us)
-    distances = _mean_distance(poses_m - _resting_pose(poses_m, stamps_us, stream.points_us))
+    speeds, distances = movement.speeds, _mean_distance(movement.poses_m - rest_m)
     unrest = speeds / (np.median(speeds) + EPSILON) + distances / (np.median(distances) + EPSILON)
-    parts = _parts(unrest, stamps_us, stream.points_us)
-    return [None if part is None else _trimmed(seen, *part, speeds, distances) for part in parts]
+    parts = _parts(unrest, movement.stamps_us, stream.points_us)
+    return [None if part is None else _trimmed(movement, *part, distances) for part in parts]
+
+
+def _movement(stream: Stream) -> Movement | None:
+    """Return how a stream's person moves; None where hardly anybody was found."""
+    frames = np.flatnonzero(stream.seen)
+    if len(frames) < FEWEST_FRAMES:
+        return None
+    stamps_us = stream.stamps_us[frames]
+    poses_m = _smoothed(stream.xyz_mm[frames][:, KINECT_V1_20] / 1000)
+    poses_m -= poses_m[:, [INDEX["torso"]]]
+    speeds = _mean_distance(np.gradient(poses_m, axis=0)) / np.gradient(stamps_us * 1000 / SECOND_NS)
+    return Movement(frames, stamps_us, poses_m, speeds)
 
 
 def _parts(unrest: Floats, stamps_us: NDArray[np.int64], points_us: NDArray[np.int64]) -> list[tuple[int, int] | None]:
@@ -96,31 +140,13 @@ def _least(unrest: Floats, stamps_us: NDArray[np.int64], start_us: int, end_us: 
     return int(between[unrest[between].argmin()]) if len(between) else None
 
 
-def _trimmed(seen: NDArray[np.intp], first: int, last: int, speeds: Floats, distances: Floats) -> Cut:
+def _trimmed(movement: Movement, first: int, last: int, distances: Floats) -> Cut:
     own = slice(first, last + 1)
-    still = speeds[own] < STILL * speeds[own].max()
+    still = movement.speeds[own] < STILL * movement.speeds[own].max()
     near = distances[own] < NEAR * distances[own].max()
     acting = np.flatnonzero(~(still & near))
     start, end = (first + int(acting[0]), first + int(acting[-1])) if len(acting) > 1 else (first, last)
-    return Cut(int(seen[first]), int(seen[start]), int(seen[end]), int(seen[last]))
-
-
-def _resting_pose(poses_m: Floats, stamps_us: NDArray[np.int64], points_us: NDArray[np.int64]) -> Floats:
-    """Return the median pose (15, 3) about half-way between action points."""
-    if len(points_us) < 2:
-        middle: Floats = np.median(poses_m, axis=0)
-        return middle
-    halfway_us = (points_us[1:] + points_us[:-1]) / 2
-    nearby_us = RESTING_SHARE * np.median(np.diff(points_us))
-    resting = np.abs(stamps_us[:, None] - halfway_us).min(axis=1) < nearby_us
-    pose: Floats = np.median(poses_m[resting] if resting.any() else poses_m, axis=0)
-    return pose
-
-
-def _speeds(poses_m: Floats, stamps_us: NDArray[np.int64]) -> Floats:
-    """Return the joints' mean speed (m/s) at each of the poses (n, 15, 3)."""
-    speeds: Floats = _mean_distance(np.gradient(poses_m, axis=0)) / np.gradient(stamps_us * 1000 / SECOND_NS)
-    return speeds
+    return Cut(*(int(movement.frames[i]) for i in (first, start, end, last)))
 
 
 def _mean_distance(vectors_m: Floats) -> Floats:

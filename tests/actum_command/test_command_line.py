@@ -32,6 +32,7 @@ from actum_command.preset_settings import preset_named
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from people import FRAME_NS
 from performers import mark, performance
+from recognisers import tiny_model
 from som_classifier.attention import PostureInput
 from som_classifier.presets import PAPER, PaperPreset
 
@@ -210,7 +211,7 @@ def test_what_is_found_without_marks_is_told_and_written(
 
     first = Detection("a.mcap", 1, 0, 10**9, 2 * 10**9, "lift", 0.9)
     truth, truth_missed = Truth("a.mcap", 1, 0, 10**9, "lift"), Truth("a.mcap", 1, 5 * 10**9, 6 * 10**9, "push")
-    monkeypatch.setattr(continuous_evaluation, "load_model", lambda _: None)
+    monkeypatch.setattr(training_commands, "load_model", lambda _: tiny_model())
     monkeypatch.setattr(continuous_evaluation, "found_by", found)
     report = tmp_path / "report.json"
     done = CliRunner().invoke(app, ["evaluate", "--continuous", "m.npz", str(examples), "--json", str(report)])

@@ -8,7 +8,7 @@ import pytest
 
 from actum.recording import Recorder, Recording
 from actum_dataset_importer.msrc12 import stored_stream
-from actum_dataset_importer.msrc12_cuts import Cut, cuts_of, read_trimmed
+from actum_dataset_importer.msrc12_cuts import Cut, cuts_of, resting_pose, trimmed
 from actum_dataset_importer.takes import Take
 from msrc12_streams import LIFT_S, PERIOD_S, lifting, written
 
@@ -17,7 +17,13 @@ S = 1_000_000_000
 
 
 def cuts(folder: Path, **parts: np.ndarray) -> list[Cut | None]:
-    return cuts_of(stored_stream(written(folder, {NAME: lifting(4) | parts}), NAME))
+    stream = stored_stream(written(folder, {NAME: lifting(4) | parts}), NAME)
+    return cuts_of(stream, resting_pose([stream]))
+
+
+def read(path: Path) -> Take:
+    (take,) = trimmed(path, [NAME], "door")
+    return take
 
 
 def starts_and_ends_s(take: Take) -> list[tuple[float, float]]:
@@ -26,7 +32,7 @@ def starts_and_ends_s(take: Take) -> list[tuple[float, float]]:
 
 
 def test_marks_hold_the_movement_and_not_the_rest(tmp_path: Path) -> None:
-    take = read_trimmed(written(tmp_path, {NAME: lifting(4)}), NAME, "door")
+    take = read(written(tmp_path, {NAME: lifting(4)}))
     assert [mark.label for mark in take.marks[::2]] == ["lift arms"] * 4
     for number, (start_s, end_s) in enumerate(starts_and_ends_s(take)):
         middle_s = (number + 0.5) * PERIOD_S
@@ -35,7 +41,7 @@ def test_marks_hold_the_movement_and_not_the_rest(tmp_path: Path) -> None:
 
 
 def test_action_points_stay_with_their_segments(tmp_path: Path) -> None:
-    take = read_trimmed(written(tmp_path, {NAME: lifting(3)}), NAME, "door")
+    take = read(written(tmp_path, {NAME: lifting(3)}))
     with Recorder(tmp_path / "x.mcap", person="1", source="msrc12", **take.metadata) as recorder:
         recorder.write(take.frames[0])
     points_ns = Recording(tmp_path / "x.mcap").action_points_ns
@@ -63,7 +69,7 @@ def test_where_nobody_is_seen_nothing_is_marked(tmp_path: Path) -> None:
     first, _, third, fourth = cuts(tmp_path, xyz_mm=partly)
     assert first is None
     assert third and fourth
-    take = read_trimmed(written(tmp_path, {NAME: lifting(4) | {"xyz_mm": partly}}), NAME, "door")
+    take = read(written(tmp_path, {NAME: lifting(4) | {"xyz_mm": partly}}))
     assert f"{NAME}-01" in take.skipped
     assert f"{NAME}-01" not in take.metadata["action_points_ns"]
 

@@ -8,13 +8,17 @@ import numpy as np
 import pytest
 from benchmarks.continuous.energy import Hysteresis, speeds_m_s
 from benchmarks.continuous.methods import chosen, inner_folds
-from benchmarks.continuous.never_trained import answered
+from benchmarks.continuous.never_trained import absent, answered, unlabelled
 from benchmarks.continuous.rocket_windows import INSTANTS, Scored, decoded, resampled
-from benchmarks.continuous.streams import Stream, folds, stream_of
+from benchmarks.continuous.streams import Fold, Stream, folds, stream_of
 from benchmarks.continuous.windows import NONE, durations_s, overlap_share, sliding, training_windows
 
 from actum.recording import Recorder, Recording
+from actum_dataset_importer.importing import import_msrc12_composed
+from actum_dataset_importer.msrc12 import GESTURES
 from actum_model_trainer.continuous.detections import Detection, Truth
+from actum_model_trainer.samples import select
+from msrc12_streams import lifting, written
 from performers import performance
 
 S = 1_000_000_000
@@ -38,7 +42,7 @@ def test_a_stream_holds_every_frame_and_truth(own: Stream) -> None:
     assert len(own.stamps_ns) == len(own.camera_m) == 9 * 25
     assert [truth.label for truth in own.truths] == ["lift", "push", "swing"] * 3
     assert [own.frames_of(truth) for truth in own.truths] == [(25 * k, 25 * k + 19) for k in range(9)]
-    assert [sample.label for sample in own.samples] == [truth.label for truth in own.truths]
+    assert [sample.label for sample in own.taught.usable] == [truth.label for truth in own.truths]
 
 
 def test_every_person_is_tested_once_and_never_learnt_from_meanwhile(tmp_path: Path) -> None:
@@ -140,3 +144,25 @@ def test_an_untrained_action_is_answered_where_a_false_detection_belongs_to_it()
     assert answered([inside, right], truths, ["kick"]) == 1
     assert answered([beside, right], truths, ["kick"]) == 0
     assert answered([replace(inside, agent=2)], truths, ["kick"]) == 0
+
+
+def test_an_unlabelled_action_is_still_done(own: Stream, tmp_path: Path) -> None:
+    (without,) = unlabelled([own], ["lift"], tmp_path / "without")
+    assert [truth.label for truth in without.truths] == ["push", "swing"] * 3
+    np.testing.assert_array_equal(without.camera_m, own.camera_m)
+    assert without.person == own.person
+
+
+def test_an_absent_gesture_is_not_even_done(tmp_path: Path) -> None:
+    """Streams are composed anew of the training people's other gestures."""
+    for person in (1, 3):
+        names = [f"P3_1_{gesture}_p{person:02d}" for gesture in range(1, 13)]
+        written(tmp_path, {name: lifting(6) for name in names}, person)
+    import_msrc12_composed(tmp_path, tmp_path / "out", lambda done, total: None)
+    of_one, of_other = (
+        [stream_of(recording) for recording in select([tmp_path / "out"], [person])] for person in ("1", "3")
+    )
+    learnt = absent(tmp_path, Fold(tuple(of_one), tuple(of_other)), GESTURES[:4], tmp_path / "absent")
+    assert {each.person for each in learnt} == {1}
+    assert {truth.label for each in learnt for truth in each.truths} == set(GESTURES[4:])
+    assert sum(len(each.stamps_ns) for each in learnt) < 0.8 * sum(len(each.stamps_ns) for each in of_one)

@@ -14,22 +14,22 @@ from actum_model_trainer.continuous.left_out import found_without_each, models_w
 from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.continuous.watching import NoSpotterError, found_by
 from actum_model_trainer.training import TrainingError
-from som_classifier.model_loading import ModelError, load_model
+from som_classifier.model import Model
 from som_classifier.presets import Preset
 
 
 def evaluate_continuously(
-    model_file: Path | None, recordings: Sequence[Recording], preset: Preset, seed: int, json_file: Path | None
+    model: Model | None, recordings: Sequence[Recording], preset: Preset, seed: int, json_file: Path | None
 ) -> None:
-    """Watch recordings with a model, or without one each person on all others, and print and write the scores."""
+    """Watch recordings with a model, or without one each person with one of all others, and tell the scores."""
     began_s = time.monotonic()
     try:
         with bars() as progress:
-            if model_file is None:
+            if model is None:
                 found = found_without_each(recordings, models_without(recordings, preset, seed, progress), progress)
             else:
-                found = found_by(load_model(model_file), recordings, progress)
-    except (RecordingError, TrainingError, ModelError, NoSpotterError) as error:
+                found = found_by(model, recordings, progress)
+    except (RecordingError, TrainingError, NoSpotterError) as error:
         fail(str(error))
     tell_unread(recordings)
     if not found.seen:

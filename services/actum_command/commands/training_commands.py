@@ -2,12 +2,13 @@
 
 import json
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from actum.recording import RecordingError
+from actum.recording import Recording, RecordingError
 from actum_command.commands.continuous_evaluation import evaluate_continuously
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
@@ -19,6 +20,7 @@ from actum_model_trainer.report import report
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import TrainingError, train_to_spot
 from actum_model_trainer.warnings import warnings_of
+from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
 
@@ -81,26 +83,32 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     with_excluded: AllOption = False,
 ) -> None:
     """Test a model on labelled recordings, or a preset on each person with all others as training."""
-    began_s = time.monotonic()
     if json_file is not None:
         _refuse_place(json_file)
         refuse_ending(json_file, ".json")
     if not by_person and len(files) == 1:
         fail(f"{files[0]} alone cannot be evaluated: name a model and then recordings, or use --leave-one-person-out")
-    if continuous:
-        recordings = chosen(files if by_person else files[1:], person, with_excluded)
-        model_file = None if by_person else files[0]
-        evaluate_continuously(model_file, recordings, _preset(preset, settings), seed, json_file)
-        return
     try:
         model = None if by_person else load_model(files[0])
-        recordings = chosen(files if by_person else files[1:], person, with_excluded)
+    except ModelError as error:
+        fail(str(error))
+    recordings = chosen(files if by_person else files[1:], person, with_excluded)
+    evaluate_them = evaluate_continuously if continuous else _evaluate_segments
+    evaluate_them(model, recordings, _preset(preset, settings), seed, json_file)
+
+
+def _evaluate_segments(
+    model: Model | None, recordings: Sequence[Recording], preset: Preset, seed: int, json_file: Path | None
+) -> None:
+    """Recognise labelled segments by a model, or without one each person's by all others, and tell the scores."""
+    began_s = time.monotonic()
+    try:
         with bars() as progress:
             if model is None:
-                result = leave_one_person_out(recordings, _preset(preset, settings), seed, progress)
+                result = leave_one_person_out(recordings, preset, seed, progress)
             else:
                 result = evaluate(model, recordings, progress)
-    except (RecordingError, TrainingError, ModelError) as error:
+    except (RecordingError, TrainingError) as error:
         fail(str(error))
     tell_unread(recordings)
     _show(result, time.monotonic() - began_s)
