@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -55,6 +56,12 @@ class Cuts:
         if not self.repetitions:
             return 0.0
         return (self.course.stamp_ns(len(self.activity) - 1) - self.repetitions[-1].end_ns) / SECOND_NS
+
+    @property
+    def longest_pause_s(self) -> float:
+        """The longest time between two repetitions (s); 0 where there are no two."""
+        pauses_ns = [after.start_ns - before.end_ns for before, after in pairwise(self.repetitions)]
+        return max(pauses_ns, default=0) / SECOND_NS
 
 
 @dataclass(frozen=True, eq=False)
