@@ -60,14 +60,9 @@ class SpeedLine:
 def stream_picture(
     title: str, speeds: Sequence[SpeedLine], marked: Sequence[Span], answered: Sequence[Span], answers_of: str
 ) -> Figure:
-    """Draw the speeds with the marked segments as bands, and the answers beneath, in rows of equal duration.
+    """Draw speeds, the first person's stronger, segments as bands (their notes are numbers), and answers beneath.
 
-    Args:
-        title: of the picture.
-        speeds: of each person, the one who matters first.
-        marked: the segments; their notes are their numbers.
-        answered: the answers.
-        answers_of: who answered, in words; "" leaves the lane of answers out.
+    `answers_of` says in words who answered; "" leaves the answers out.
     """
     end_s = max([1.0, *(float(line.times_s[-1]) for line in speeds), *(span.end_s for span in marked)])
     rows = min(math.ceil(end_s / ROW_S), MOST_ROWS)
@@ -78,22 +73,26 @@ def stream_picture(
     labels = sorted({span.label for span in (*marked, *answered) if span.label is not None})
     colours = dict(zip(labels, action_colours(len(labels)), strict=True))
     tallest = HEADROOM * max([0.1, *(float(np.nanmax(line.speeds_mps)) for line in speeds)])
-    width_in = WIDTH_IN - LEFT_IN - RIGHT_IN
     for row in range(rows):
+        shown_s = row * row_s, (row + 1) * row_s
         bottom_in = FOOT_IN + (rows - 1 - row) * row_in
-        axes = axes_at(figure, LEFT_IN, bottom_in + lane_in, width_in, SPEED_IN)
-        axes.set_xlim(row * row_s, (row + 1) * row_s)
+        axes = _axes(figure, bottom_in + lane_in, SPEED_IN, shown_s)
         _draw_speeds(axes, speeds, tallest)
         _draw_marked(axes, marked, colours, tallest)
         if row == 0:
             _name_people(axes, speeds)
         if answers_of:
             axes.tick_params(labelbottom=False, bottom=False)
-            axes = axes_at(figure, LEFT_IN, bottom_in, width_in, lane_in)
-            axes.set_xlim(row * row_s, (row + 1) * row_s)
+            axes = _axes(figure, bottom_in, lane_in, shown_s)
             _draw_answers(axes, answered, colours)
     axes.set_xlabel("time since the start (s)" + (f"; strips: {answers_of}" if answers_of else ""))
     return figure
+
+
+def _axes(figure: Figure, bottom_in: float, height_in: float, shown_s: tuple[float, float]) -> Axes:
+    axes = axes_at(figure, LEFT_IN, bottom_in, WIDTH_IN - LEFT_IN - RIGHT_IN, height_in)
+    axes.set_xlim(*shown_s)
+    return axes
 
 
 def _draw_speeds(axes: Axes, speeds: Sequence[SpeedLine], tallest: float) -> None:

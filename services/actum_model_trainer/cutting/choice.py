@@ -13,8 +13,11 @@ from actum_model_trainer.cutting.movement import movement_about
 
 STRICTNESS = 0.6
 """A burst speaks against being a repetition where its likeness is below 0.375, this divided by one more."""
+BETWEEN = 0.7
+"""Price of a second of movement between two repetitions: a scratch is left out, a repetition is not."""
 OUTSIDE = 0.5
-"""Price of a second of movement before the first and after the last repetition; between two of them it is 1."""
+"""Price of a second of movement before the first and after the last repetition, at most for the
+duration of one: people walk up and back for any time."""
 RESTING = 0.3
 """Price of a second of rest within a repetition."""
 MOST_REPETITIONS = 40
@@ -63,7 +66,7 @@ class Chains:
 
     def chain(self, repetitions: int) -> Chain:
         """Return the best chain of so many bursts, at most `longest`; its worth is a mean over them."""
-        worths = (self._worths[repetitions - 1] - self._tails) / self._moved_s[:, None]
+        worths = (self._worths[repetitions - 1] - self._after) / self._moved_s[:, None]
         template, last = np.unravel_index(int(np.argmax(worths)), worths.shape)
         chosen = [int(last)]
         for before in self._before[repetitions - 1 : 0 : -1]:
@@ -74,7 +77,7 @@ class Chains:
     @cached_property
     def likeliest_number(self) -> int:
         """The number of repetitions whose best chain explains most movement; one where no two are alike."""
-        explained_s = [float((worths - self._tails).max()) for worths in self._worths]
+        explained_s = [float((worths - self._after).max()) for worths in self._worths]
         return 2 + int(np.argmax(explained_s[1:])) if len(explained_s) > 1 else len(explained_s)
 
     @cached_property
@@ -84,10 +87,14 @@ class Chains:
         return np.maximum(moved, 1 / RATE_HZ)
 
     @cached_property
-    def _tails(self) -> Array:
-        """Price of the movement after each burst, were it the last one, shape (b,)."""
-        tails: Array = OUTSIDE * (self._movement.moved_s[-1] - self._movement.moved_s[self._bursts[:, 1]])
-        return tails
+    def _after(self) -> Array:
+        """Price of the movement after each burst, were it the last one, for each template, shape (b, b)."""
+        return self._price_outside(self._movement.moved_s[-1] - self._movement.moved_s[self._bursts[:, 1]])
+
+    def _price_outside(self, moved_s: Array) -> Array:
+        """Return the price of the times of movement (b,) outside a chain for each template, shape (b, b)."""
+        priced: Array = OUTSIDE * np.minimum(moved_s, self._moved_s[:, None])
+        return priced
 
     def _extend(self, most: int) -> None:
         """Find the worth (templates, last bursts) of the best chain of each length, and the burst before the last."""
@@ -97,11 +104,11 @@ class Chains:
         gains = self._moved_s[:, None] * ((1 + STRICTNESS) * self._likeness - STRICTNESS) - RESTING * resting_s
         earlier = np.searchsorted(ends, starts, side="right")
         after = earlier > 0
-        self._worths, self._before = [gains - OUTSIDE * until_start], [np.full(gains.shape, -1)]
+        self._worths, self._before = [gains - self._price_outside(until_start)], [np.full(gains.shape, -1)]
         while len(self._worths) < most:
-            best, which = _running_maximum(self._worths[-1] + until_end)
+            best, which = _running_maximum(self._worths[-1] + BETWEEN * until_end)
             worths, before = np.full(gains.shape, IMPOSSIBLE), np.full(gains.shape, -1)
-            worths[:, after] = best[:, earlier[after] - 1] + gains[:, after] - until_start[after]
+            worths[:, after] = best[:, earlier[after] - 1] + gains[:, after] - BETWEEN * until_start[after]
             before[:, after] = which[:, earlier[after] - 1]
             if worths.max() < IMPOSSIBLE / 2:
                 return
