@@ -114,11 +114,11 @@ def _best_chain(course: Course, asked: int | None) -> _Found | None:
 
 
 def _repetitions(found: _Found) -> Iterator[Repetition]:
-    """Yield the chain's bursts with some rest before and after; between two that are close, they share it."""
+    """Yield the chain's bursts with some rest before and after; two that are close share it, an instant apart."""
     starts, ends = found.chain.bursts[:, 0], found.chain.bursts[:, 1] - 1
     middles = (ends[:-1] + starts[1:]) / 2
-    earliest = np.concatenate([[0.0], middles])
-    latest = np.concatenate([middles, [len(found.activity) - 1.0]])
+    earliest = np.concatenate([[0.0], middles + 0.5])
+    latest = np.concatenate([middles - 0.5, [len(found.activity) - 1.0]])
     bounds = np.stack([np.maximum(starts - MARGIN, earliest), np.minimum(ends + MARGIN, latest)], axis=1)
     for (start, end), likeness in zip(bounds, found.chain.likeness, strict=True):
         yield Repetition(found.course.stamp_ns(start), found.course.stamp_ns(end), float(likeness))
