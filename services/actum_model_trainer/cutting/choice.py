@@ -11,11 +11,11 @@ from actum_model_trainer.cutting.courses import RATE_HZ, Course
 from actum_model_trainer.cutting.likeness import likeness_of
 from actum_model_trainer.cutting.movement import movement_about
 
-STRICTNESS = 0.6
-"""A burst speaks against being a repetition where its likeness is below 0.375, this divided by one more."""
-BETWEEN = 0.7
+STRICTNESS = 1.0
+"""A burst speaks against being a repetition where its likeness is below a half: s / (1 + s)."""
+BETWEEN = 0.4
 """Price of a second of movement between two repetitions: a scratch is left out, a repetition is not."""
-OUTSIDE = 0.5
+OUTSIDE = 0.7
 """Price of a second of movement before the first and after the last repetition, at most for the
 duration of one: people walk up and back for any time."""
 RESTING = 0.3

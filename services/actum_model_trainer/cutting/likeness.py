@@ -9,7 +9,7 @@ SAMPLES = 12
 """Postures by which a burst is compared: each stroke of a wave still has two."""
 EVEN = 0.5
 """Share of the mean speed that passes as movement at every instant, so that a hold takes little of the samples."""
-SPREAD = 0.8
+SPREAD = 0.6
 """Distance of two bursts, in units of the course's spread, at which their likeness is halved."""
 LOG_DURATION = 0.5
 """Logarithm of the ratio of durations at which the likeness is halved: one takes 1.6 times as long as the other."""
