@@ -102,7 +102,7 @@ class Recorder:
     def _schema(self, message: Message) -> int:
         name = codec.schema_name(message)
         if name not in self._schemas:
-            self._schemas[name] = self._writer.register_schema(name, SCHEMA_ENCODING, _json_schema(type(message)))
+            self._schemas[name] = self._writer.register_schema(name, SCHEMA_ENCODING, json_schema(type(message)))
         return self._schemas[name]
 
     def _finish(self) -> None:
@@ -207,7 +207,8 @@ class Recording:
 
 
 @cache
-def _json_schema(kind: type[Message]) -> bytes:
+def json_schema(kind: type[Message]) -> bytes:
+    """Return the JSON Schema that stands in a recording beside messages of a kind."""
     return schemas.committed(schemas.file_name(kind)).encode()
 
 

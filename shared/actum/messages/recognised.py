@@ -38,6 +38,8 @@ REPLAY = "replay"
 """The origin of the marks of a recording that is played."""
 AUTO = "auto"
 """The origin of the marks that the classifier puts itself, where it has found an action that nobody marked."""
+CUT = "cut"
+"""The origin of marks that `actum record --times` or `actum label cut` cut out of a recording."""
 
 
 class Segment(Message):
@@ -58,7 +60,8 @@ class Segment(Message):
     """What is done, in recordings to learn from; it is never used to recognise."""
     origin: Name | None = None
     """Who put it: manual, a person at a switch; simulator, the scene; replay, a recording; auto, the
-    classifier itself, which answers it, and no other does; null, a program of yours."""
+    classifier itself, which answers it, and no other does; cut, `actum record --times` or `actum label cut`; null, a
+    program of yours."""
 
 
 class Action(Message):
