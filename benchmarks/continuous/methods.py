@@ -5,8 +5,8 @@ from dataclasses import replace
 from typing import Protocol, TypeVar
 
 from actum_model_trainer.continuous.detections import Detection, Found, point_fractions
-from actum_model_trainer.continuous.left_out import with_points
 from actum_model_trainer.continuous.scoring import scores_of
+from actum_model_trainer.continuous_cross_validation import with_points
 
 from .streams import Fold, Stream
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from actum_model_trainer.answering import encoded
 from actum_model_trainer.continuous.detections import Detection
 from actum_model_trainer.continuous.watching import found_by
-from actum_model_trainer.training import train
+from actum_model_trainer.training import train_to_spot
 from som_classifier.model import Model
 from som_classifier.presets import DEFAULT
 
@@ -18,7 +18,8 @@ ModelOf = Callable[[tuple[Stream, ...]], Model]
 
 def trained(training: tuple[Stream, ...]) -> Model:
     """Train the default preset on streams."""
-    return train([sample for stream in training for sample in stream.taught.usable], DEFAULT, SEED)
+    samples = [sample for stream in training for sample in stream.taught.usable]
+    return train_to_spot(samples, [each for stream in training for each in stream.taught.streams], DEFAULT, SEED)
 
 
 class OncePerTraining:

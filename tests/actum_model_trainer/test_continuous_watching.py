@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 from actum.messages import AUTO, Action, Message, Posture, Segment
 from actum.node import Counters, Tick
 from actum.recording import Recording
-from actum_model_trainer.continuous import left_out, watching
+from actum_model_trainer import continuous_cross_validation
+from actum_model_trainer.continuous import watching
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
-from actum_model_trainer.continuous.left_out import found_without_each, models_without, with_points
 from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.continuous.watching import NoSpotterError, found_by, watched
+from actum_model_trainer.continuous_cross_validation import found_without_each, models_without, with_points
 from actum_model_trainer.training import TrainingError
 from people import FRAME_NS, STANDING, skeleton
 from performers import TINY, mark, performance
@@ -138,7 +139,7 @@ def test_each_person_is_watched_by_a_model_of_all_others(
         return Found([Detection(own, 1, 0, 200, 200, "lift", 0.9)], [truth], [Stretch(own, 1, 0, 1000)])
 
     tested: list[tuple[list[str], list[str]]] = []
-    monkeypatch.setattr(left_out, "found_by", found)
+    monkeypatch.setattr(continuous_cross_validation, "found_by", found)
     pooled = found_without_each(three_people, models_without(three_people, TINY))
     assert tested == [(["2", "3"], ["1"]), (["1", "3"], ["2"]), (["1", "2"], ["3"])]
     assert [d.point_ns for d in pooled.detections] == [60, 60, 40]

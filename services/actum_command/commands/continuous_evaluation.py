@@ -10,9 +10,9 @@ from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import tell_unread
 from actum_command.commands.terminal import console, fail
 from actum_model_trainer.continuous.continuous_report import continuous_report
-from actum_model_trainer.continuous.left_out import found_without_each, models_without
 from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.continuous.watching import NoSpotterError, found_by
+from actum_model_trainer.continuous_cross_validation import found_without_each, models_without
 from actum_model_trainer.training import TrainingError
 from som_classifier.model import Model
 from som_classifier.presets import Preset

@@ -34,7 +34,8 @@ def record(
     marks: Annotated[
         str | None,
         typer.Option(
-            help="whose marks are stored: manual (yours and your programs'), simulator, replay, auto (found by the classifier); or all  "
+            help="whose marks are stored: manual (yours and your programs'), simulator, replay, auto (found by the "
+            "classifier); or all  "
             "[default: manual, with --times none]"
         ),
     ] = None,

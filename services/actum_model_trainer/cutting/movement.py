@@ -78,5 +78,5 @@ def _in_units(values: Array) -> Array:
 def _smoothed(values: Array) -> Array:
     """Average values (n,) with their neighbours."""
     reach = len(SMOOTHING) // 2
-    averaged: Array = np.convolve(np.pad(values, reach, mode="edge"), SMOOTHING, mode="valid")
+    averaged: Array = np.convolve(np.pad(values, reach, mode="edge"), SMOOTHING, mode="valid").astype(np.float64)
     return averaged
