@@ -4,7 +4,7 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-latency bench-maps bench-recognition bench-objects bench-paper bench-tracker picture pages docs schemas wheel clean
+.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture pages docs schemas wheel clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -61,6 +61,11 @@ bench-camera-latency: $(STAMP)  ## from a picture's capture to the event, beside
 	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera-latency needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
 	@test -d "$$ACTUM_DATA" || { echo "bench-camera-latency needs ACTUM_DATA: the folder that holds florence3d_rgb/" >&2; exit 1; }
 	$(BIN)/python benchmarks/camera_latency.py
+
+bench-continuous: $(STAMP)  ## finding actions that nobody marked, beside peers given the same frames
+	@test -d "$$ACTUM_DATA" || { echo "bench-continuous needs ACTUM_DATA: the folder that holds utkinect/ and msrc12/" >&2; exit 1; }
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
+	$(BIN)/python -m benchmarks.continuous
 
 bench-maps: $(STAMP)  ## the map library beside MiniSom
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"

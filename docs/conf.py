@@ -31,6 +31,7 @@ RESULTS = {
     "Recognition: what was tried": "benchmarks/recognition/README",
     "Objects": "benchmarks/objects/results",
     "Hands and objects": "benchmarks/bimacs",
+    "Cuts": "benchmarks/cutting",
     "Webcam": "benchmarks/camera/results",
     "Webcam: what was tried": "benchmarks/camera/README",
     "The paper": "benchmarks/paper/results",

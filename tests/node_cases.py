@@ -22,9 +22,11 @@ from pose_preprocessor.settings import Settings as PoseSettings
 from recognisers import tiny_model
 from scenes import START_NS, acting_on, action
 from som_classifier.node import SomClassifier
+from spotters import beating
 
 NOON_NS = 1_700_000_000 * SECOND_NS
 SHORT_FRAMES = 24
+BEAT_NS = 3 * SECOND_NS // 10
 WARM_UP = 4
 """Messages of each stream before the task: three may be lost to a stamp that was absurd before them."""
 
@@ -173,4 +175,14 @@ CASES = (
     ),
 )
 
+FINDING = Case(
+    "som_classifier that finds segments",
+    lambda: SomClassifier(beating(tiny_model(), period_ns=BEAT_NS)),
+    partial(_classified, slice(WARM_UP)),
+    partial(_classified, slice(WARM_UP, None)),
+    _any,
+)
+"""A task without marks. Its segments' names tell when the stream began, so a disturbance before it changes them."""
+
 every_node = pytest.mark.parametrize("case", CASES, ids=repr)
+every_node_finding_too = pytest.mark.parametrize("case", [*CASES, FINDING], ids=repr)

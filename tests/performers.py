@@ -7,7 +7,7 @@ from actum.messages import Segment, Skeleton
 from actum.som import Schedule
 from people import FRAME_NS, STANDING, skeleton
 from som_classifier.attention import MOVING, PostureInput
-from som_classifier.presets import BodyVariation, MapTraining, PaperPreset, Prior, PyramidPreset
+from som_classifier.presets import BodyVariation, MapTraining, PaperPreset, Prior, PyramidPreset, SpottingPreset
 
 FRAMES = 20
 PAUSE_FRAMES = 5
@@ -39,6 +39,18 @@ TINY = PyramidPreset(
     epochs=5,
     known_share=0.95,
     prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28, familiar_from_one=0.2, log_error=-2.5),
+    spotting=SpottingPreset(
+        interval_s=0.1,
+        lag_s=0.2,
+        overlap=0.15,
+        duration_weight=0.1,
+        windows=4,
+        shortest_quantile=0.1,
+        shrinkage=0.4,
+        most_windows=600,
+        folds=2,
+        thresholds=(0.3, 0.45, 0.6, 0.75),
+    ),
 )
 
 FALLING = Schedule(alpha=(0.5, 0.05), radius=(5.0, 0.6))

@@ -11,7 +11,7 @@ from actum.command_line import placeholder
 from actum.settings import ServiceSettings
 
 SERVICES = sorted(file.parent.name for file in (Path(__file__).parents[2] / "services").glob("*/settings.py"))
-UNITS = {"_ns": "ns", "_m": "m", "_deg": "°", "_s": "s", "_px": "px", "_hz": "Hz"}
+UNITS = {"_per_min": "1/min", "_ns": "ns", "_m": "m", "_deg": "°", "_s": "s", "_px": "px", "_hz": "Hz"}
 VALUES = {"INTEGER": "integer", "NUMBER": "number", "TEXT": "text", "PATH": "path"}
 OF_THIS_PROCESS = {"instance": "host and process id", "pose_model": "`~/.local/share/actum/` and its name"}
 """Defaults that differ from machine to machine."""
@@ -43,7 +43,7 @@ def _named(name: str, field: FieldInfo) -> list[str]:
 
 def _default(field: FieldInfo) -> str:
     default: Any = field.get_default(call_default_factory=True)
-    if default is None or default in ({}, [], ""):
+    if default is None or default in ({}, [], "", frozenset()):
         return ""
     if isinstance(default, bool):
         return "on" if default else "off"

@@ -15,6 +15,7 @@ with needs_extra("actum-command"):
         draw_command,
         import_commands,
         inspect_command,
+        label_commands,
         markers_command,
         pose_model_commands,
         recording_commands,
@@ -59,6 +60,7 @@ app.add_typer(segment_commands.app, name="segment")
 app.command("record")(recording_commands.record)
 app.command("play")(recording_commands.play)
 app.add_typer(takes_commands.app, name="takes")
+app.add_typer(label_commands.app, name="label")
 app.add_typer(import_commands.app, name="import")
 app.add_typer(pose_model_commands.app, name="models")
 app.command("draw")(draw_command.draw)

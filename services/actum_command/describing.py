@@ -25,6 +25,8 @@ from actum.skeletons import INDEX
 
 EPOCH_NS = 10**18  # September 2001: later stamps count from 1970, smaller ones from the start of the sensor's clock
 
+BAR = 5  # characters of the bar that shows how much of an action has been done
+
 
 def time_of(message: Message) -> str:
     """Return when a message was captured: the time of day, or seconds since the start of the sensor's clock."""
@@ -58,8 +60,22 @@ def describe_action(action: Action) -> str:
     if not action.valid:
         return f"[yellow]{escape(action.segment_id)} rejected: {escape(action.reason or '')}[/yellow]"
     kind = "final" if action.final else "so far"
-    answer = f"{escape(str(action.action))} {action.confidence:.2f}, {action.frames} frames"
+    done = "" if action.completeness is None else f" {_progress(action.completeness)}"
+    answer = f"{escape(str(action.action))}{done} {action.confidence:.2f}, {action.frames} frames"
     return f"{escape(action.segment_id)} {kind}: {answer}"
+
+
+def describe_ongoing(action: Action) -> str:
+    """Describe what a person seems to be doing, how far it is where that is known, and how likely it is."""
+    done = "" if action.completeness is None else f" {_progress(action.completeness)}"
+    return f"[dim]agent {action.agent}: {escape(str(action.action))}{done} {action.confidence:.2f}[/dim]"
+
+
+def _progress(completeness: float) -> str:
+    """Write how much of an action has been done, as a number and as a bar: `62 % ▆▆▆▁▁`."""
+    share = min(max(completeness, 0.0), 1.0)
+    full = round(BAR * share)
+    return f"{100 * share:.0f} % {'▆' * full}{'▁' * (BAR - full)}"
 
 
 @singledispatch

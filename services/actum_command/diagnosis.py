@@ -23,6 +23,12 @@ ENDED = "source ended"
 NO_MODEL = "no model"
 """The prefix of the state of a classifier that has had no model yet."""
 
+AND = "running; "
+"""The prefix of the state of a service that does well, and says in further words what is to be known of it."""
+
+UNUSED = ("nothing to do", "settings name")
+"""The prefixes of states in which a classifier does not do what its settings say."""
+
 OLD_MODEL = "model not renewed"
 """The prefix of the state of a classifier whose model file was replaced by one that cannot be used."""
 
@@ -33,7 +39,7 @@ PROGRAMS = {"sensor_gateway": "'python -m sensor_gateway', for the simulated sce
 
 @dataclass(frozen=True)
 class Finding:
-    """The result of the check of one service: its own report, in words, and its problems."""
+    """The result of the check of one service: its own report, in words, its problems, and what is no problem."""
 
     service: str
     instances: int
@@ -45,6 +51,8 @@ class Finding:
     latency: str
     problems: tuple[str, ...]
     source: str = ""
+    counts: str = ""
+    remarks: tuple[str, ...] = ()
 
 
 def examine(client: Client) -> list[Finding]:
@@ -88,6 +96,8 @@ def _finding(name: str, instances: list[str], infos: list[Info], status: Status 
         drops=", ".join(f"{_short(key, status)} {n}" for key, n in status.drops.items()) if status else "",
         latency=_latency(status.latency_ms) if status else "",
         problems=tuple(_problems(name, instances, infos, status)),
+        counts=", ".join(f"{kind} {n}" for kind, n in status.counts.items()) if status else "",
+        remarks=tuple(_remarks(name, status)) if status else (),
     )
 
 
@@ -140,6 +150,14 @@ def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
         yield f"{name}: {status.state}, so every action is rejected; name one in --model or ACTUM_MODEL"
     elif status.state.startswith(OLD_MODEL):
         yield f"{name}: {status.state}; it goes on with the model before"
+    elif status.state.startswith(UNUSED):
+        yield f"{name}: {status.state}"
+
+
+def _remarks(name: str, status: Status) -> Iterator[str]:
+    """Yield what a service that does well says of itself besides."""
+    if status.state.startswith(AND):
+        yield from (f"{name}: {remark}" for remark in status.state.removeprefix(AND).split("; "))
 
 
 def _versions(info: Info) -> list[str]:

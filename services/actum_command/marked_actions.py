@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 from actum import codec, keys
 from actum.mcap_file import StoredMessage
-from actum.messages import Action, Event, Message, Segment, Truth
+from actum.messages import AUTO, MANUAL, Action, Event, Message, Segment, Truth
 from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum.rewriting import Change
@@ -54,11 +55,13 @@ def bounds_ns(recording: Recording, segment_id: str) -> tuple[int | None, int | 
 
 
 def relabelled(segment_id: str, label: str) -> Change:
-    """Return the change that gives a segment another label."""
+    """Return the change that gives a segment another label; one that a classifier found is then the user's."""
 
     def edit(message: Message) -> Message:
-        is_start = isinstance(message, Segment) and message.kind == "start"
-        return message.model_copy(update={"label": label}) if is_start else message
+        if not isinstance(message, Segment):
+            return message
+        named = {"label": label} if message.kind == "start" else {}
+        return _mended(message, named)
 
     return _of_segment(segment_id, edit)
 
@@ -71,9 +74,16 @@ def trimmed(segment_id: str, later_start_ns: int, later_end_ns: int) -> Change:
             return message
         assert message.stamp_ns is not None
         later_ns = later_start_ns if message.kind == "start" else later_end_ns
-        return message.model_copy(update={"stamp_ns": message.stamp_ns + later_ns})
+        return _mended(message, {"stamp_ns": message.stamp_ns + later_ns})
 
     return _of_segment(segment_id, edit)
+
+
+def _mended(mark: Segment, update: dict[str, Any]) -> Segment:
+    """Return a mark as somebody has mended it: one of a classifier's is then that person's."""
+    origin = {"origin": MANUAL} if mark.origin == AUTO else {}
+    changed = update | origin
+    return mark.model_copy(update=changed) if changed else mark
 
 
 def dropped(segment_id: str) -> Change:

@@ -5,7 +5,7 @@ from typing import Any
 
 from actum import keys
 from actum.joining import joined
-from actum.messages import REPLAY, Message, Segment
+from actum.messages import AUTO, REPLAY, Message, Segment
 from actum.recording import Recording
 
 IMAGES = frozenset({keys.COLOR, keys.DEPTH})
@@ -24,8 +24,9 @@ def schedule(
     Stamps rise by a second or more between recordings; intervals and gaps in the numbers inside a recording are
     exact. Streams get the session id of this playback. Marks keep their ids, with `#2` … added where an earlier
     recording has used one; they get the origin `replay`, and lose their labels (no live service may know them) and
-    their numbers (this player numbers its own). `sensor` renames the viewpoint. Only messages of `topics` are played,
-    by default of each recording's `playable_topics`.
+    their numbers (this player numbers its own). Marks that a classifier put are left out, as its answers are: the one
+    that hears the playback finds segments of its own. `sensor` renames the viewpoint. Only messages of `topics` are
+    played, by default of each recording's `playable_topics`.
 
     Raises:
         RecordingError: a recording is damaged.
@@ -34,7 +35,8 @@ def schedule(
 
     def renamed(recording: Recording) -> Iterator[Message]:
         chosen = playable_topics(recording) if topics is None else topics
-        return map(_Names(session_id, sensor, taken).renamed, recording.messages(chosen))
+        given = (message for message in recording.messages(chosen) if not _is_found(message))
+        return map(_Names(session_id, sensor, taken).renamed, given)
 
     return joined(map(renamed, recordings), start_ns)
 
@@ -47,6 +49,11 @@ def playable_topics(recording: Recording) -> frozenset[keys.Topic]:
     if not IMAGES & recording.topics:
         chosen.add(keys.OBJECTS)
     return recording.topics & chosen
+
+
+def _is_found(message: Message) -> bool:
+    """Tell whether a message is the mark of a classifier."""
+    return isinstance(message, Segment) and message.origin == AUTO
 
 
 class _Names:

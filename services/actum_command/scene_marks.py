@@ -7,6 +7,7 @@ from actum import keys
 from actum.messages import SIMULATOR, Segment, Truth
 from actum.recording import Recorder
 from actum.runtime import Client
+from scene_simulator.everyday import Choice, chosen
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator, labelled_stream
 
@@ -14,13 +15,18 @@ POLL_S = 0.005  # a sixth of a frame's interval: marks come well before the next
 SUBSCRIBER_POLL_S = 0.5  # how soon a stop takes effect while nobody listens to marks
 
 
-def write_examples(output: Path, repetitions: int, actor: int, seed: int) -> None:
+def write_examples(
+    output: Path, repetitions: int, actor: int, seed: int, everyday: Choice = "none", minutes: float = 0.0
+) -> None:
     """Record a balanced programme of the simulated scene with its labels, without images.
+
+    Everyday doings between the actions fill the scene up to a number of minutes; with `only` it has no actions.
 
     Raises:
         OSError: the file cannot be written.
     """
-    simulator = Simulator(balanced_programme(repetitions, seed, actor), actor, seed, image_hz=0)
+    programme = [] if everyday == "only" else balanced_programme(repetitions, seed, actor)
+    simulator = Simulator(programme, actor, seed, image_hz=0, everyday=chosen(everyday, minutes))
     with Recorder(output, person=f"simulated {actor}", source="simulator", seed=str(seed)) as recorder:
         for message in labelled_stream(simulator):
             recorder.write(message)

@@ -3,20 +3,34 @@
 import threading
 import time
 from collections.abc import Sequence
+from typing import Protocol
 
-from actum.messages import Skeleton
+from actum.codec import DecodeError
+from actum.messages import Message, Skeleton
 from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum.runtime import Client, Listening, Pace
 from actum_command.playing import schedule
-from actum_command.stream_recorder import StreamRecorder
 
 LEAD_IN_S = 0.3  # longer than a service takes to reset at a new session
 POLL_S = 0.005  # a sixth of a frame's interval
 ON_ITS_WAY_S = 0.3  # longest delay of a message that was put before the recording was stopped
 
 
-def store_all(listening: Listening, recorder: StreamRecorder, stop: threading.Event, deadline_s: float) -> None:
+class Storing(Protocol):
+    """What stores messages: `actum_command.stream_recorder`, or what stands before it."""
+
+    def take(self, message: Message, received_ns: int) -> None:
+        """Take one message and the time it was received at (ns)."""
+
+    def reject(self, error: DecodeError) -> None:
+        """Take note of a payload that does not decode."""
+
+    def close(self) -> None:
+        """Store what is still held back."""
+
+
+def store_all(listening: Listening, recorder: Storing, stop: threading.Event, deadline_s: float) -> None:
     """Store messages until stopped or until the deadline (monotonic clock), then those that were put before."""
     while not stop.is_set() and time.monotonic() < deadline_s:
         if not _store(listening, recorder):
@@ -27,7 +41,7 @@ def store_all(listening: Listening, recorder: StreamRecorder, stop: threading.Ev
     recorder.close()
 
 
-def _store(listening: Listening, recorder: StreamRecorder) -> bool:
+def _store(listening: Listening, recorder: Storing) -> bool:
     """Store one message if one has come; tell whether one had."""
     received = listening.take()
     if received is None:

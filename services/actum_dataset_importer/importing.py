@@ -10,6 +10,8 @@ from actum.recording import Recorder
 from actum_dataset_importer import bimacs, msr_action3d, msrc12, utkinect
 from actum_dataset_importer.bimacs import HandsTake
 from actum_dataset_importer.clips import Naming, check_names, clip_files, read_clip
+from actum_dataset_importer.msrc12_composed import STREAMS, composed
+from actum_dataset_importer.msrc12_cuts import trimmed
 from actum_dataset_importer.takes import Take
 from sensor_gateway.optics import Optics
 from sensor_gateway.people.pose_estimator import Estimator
@@ -121,6 +123,28 @@ def import_msrc12(src: Path, out: Path, progress: Progress) -> ImportReport:
     streams = msrc12.stream_names(src)
     takes = (msrc12.read_stream(file, name, SENSOR) for file, name in streams)
     return import_takes("msrc12", takes, len(streams), out, progress)
+
+
+def import_msrc12_trimmed(src: Path, out: Path, progress: Progress) -> ImportReport:
+    """Write one recording per stream, each repetition a segment from where it starts to where it ends.
+
+    Raises:
+        DatasetError: `src` does not hold the set, or a file of it is damaged.
+    """
+    names = msrc12.stream_names_by_file(src)
+    takes = (take for file, of_file in names.items() for take in trimmed(file, of_file, SENSOR))
+    return import_takes("msrc12", takes, sum(map(len, names.values())), out, progress)
+
+
+def import_msrc12_composed(src: Path, out: Path, progress: Progress) -> ImportReport:
+    """Write two recordings per person in which they do all gestures in mixed order, `out/composed_p01_1.mcap`.
+
+    Raises:
+        DatasetError: `src` does not hold the set, a file of it is damaged, or its gestures cannot be mixed.
+    """
+    names = msrc12.stream_names_by_file(src)
+    takes = (take for file, of_file in names.items() for take in composed(file, of_file, SENSOR))
+    return import_takes("msrc12", takes, STREAMS * len(names), out, progress)
 
 
 def import_bimacs(src: Path, out: Path, progress: Progress) -> ImportReport:

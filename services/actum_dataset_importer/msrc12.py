@@ -8,6 +8,7 @@ nobody was found, `NAME.t_us` (frames,) and `NAME.tags_us` (points,), all intege
 
 import re
 import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -63,14 +64,42 @@ class Stream:
     """One stream as it is stored.
 
     Attributes:
+        name: such as `P3_1_10A_p01`.
         xyz_mm: (frames, 20, 3).
         stamps_us: (frames,), rising.
         points_us: (points,), rising.
     """
 
+    name: str
     xyz_mm: Integers
     stamps_us: Integers
     points_us: Integers
+
+    @property
+    def named(self) -> dict[str, str]:
+        """What its name tells, by kind: instruction, set, gesture, number, person."""
+        match = NAME.fullmatch(self.name)
+        assert match is not None
+        return match.groupdict()
+
+    @property
+    def label(self) -> str:
+        """The gesture that is repeated."""
+        return GESTURES[int(self.named["number"]) - 1]
+
+    @property
+    def person(self) -> str:
+        """Who acts."""
+        return str(int(self.named["person"]))
+
+    @property
+    def seen(self) -> NDArray[np.bool_]:
+        """Whether anybody was found, by frame, (frames,)."""
+        return np.asarray(self.xyz_mm.any(axis=(1, 2)))
+
+    def segment_id(self, point: int) -> str:
+        """Return the id of the segment about an action point, given its index."""
+        return f"{self.name}-{point + 1:02d}"
 
 
 def stream_names(path: Path) -> list[tuple[Path, str]]:
@@ -82,8 +111,20 @@ def stream_names(path: Path) -> list[tuple[Path, str]]:
     return [(file, name) for file in files_of(path, PATTERN) for name in _names(file)]
 
 
-def read_stream(path: Path, name: str, sensor: str) -> Take:
-    """Read one stream and mark a segment about each action point; frames without a skeleton become invalid frames.
+def stream_names_by_file(path: Path) -> dict[Path, list[str]]:
+    """List the streams of each file, and so of each person.
+
+    Raises:
+        DatasetError: there is no file, or one is damaged.
+    """
+    names: dict[Path, list[str]] = {}
+    for file, name in stream_names(path):
+        names.setdefault(file, []).append(name)
+    return names
+
+
+def stored_stream(path: Path, name: str) -> Stream:
+    """Read one stream.
 
     Raises:
         DatasetError: the name or the content is not of the set's form.
@@ -91,16 +132,41 @@ def read_stream(path: Path, name: str, sensor: str) -> Take:
     match = NAME.fullmatch(name)
     if match is None or not 1 <= int(match["number"]) <= len(GESTURES):
         raise DatasetError(f"{path}: {name!r} is not named like P1_1_10A_p01; keep the set's own names")
-    stream = _stream(path, name)
-    label = GESTURES[int(match["number"]) - 1]
-    spans_us = spans_about(stream.points_us, int(stream.stamps_us[0]), int(stream.stamps_us[-1]))
-    ids = {f"{name}-{number:02d}": span_us for number, span_us in enumerate(spans_us, start=1)}
+    try:
+        with path.open("rb") as stored, np.load(stored) as arrays:
+            xyz_mm, stamps_us, points_us = (arrays[f"{name}.{part}"] for part in PARTS)
+    except (KeyError, *DAMAGED):
+        raise DatasetError(f"{path}: {name} is not whole there; fetch it anew") from None
+    stamps_rise = stamps_us.size and (np.diff(stamps_us) > 0).all()
+    if xyz_mm.shape != (len(stamps_us), SOURCE_JOINTS, 3) or not stamps_rise or not (np.diff(points_us) > 0).all():
+        raise DatasetError(f"{path}: {name} is not frames of {SOURCE_JOINTS} joints with rising stamps; fetch it anew")
+    return Stream(name, xyz_mm, stamps_us, points_us)
+
+
+def read_stream(path: Path, name: str, sensor: str) -> Take:
+    """Read one stream and mark a segment about each action point; frames without a skeleton become invalid frames.
+
+    Raises:
+        DatasetError: the name or the content is not of the set's form.
+    """
+    stream = stored_stream(path, name)
+    return take_of(stream, spans_about(stream.points_us, int(stream.stamps_us[0]), int(stream.stamps_us[-1])), sensor)
+
+
+def take_of(stream: Stream, spans_us: Sequence[tuple[int, int] | None], sensor: str) -> Take:
+    """Return a stream as a take, with a labelled segment from start to end (µs) for each of its action points.
+
+    None stands for a segment that cannot be marked.
+    """
+    ids = {stream.segment_id(number): span_us for number, span_us in enumerate(spans_us)}
     return Take(
-        name,
-        person=str(int(match["person"])),
-        frames=[_skeleton(*frame, sensor, name) for frame in zip(stream.stamps_us, stream.xyz_mm, strict=True)],
-        marks=[mark for segment_id, span_us in ids.items() for mark in _marks(span_us, sensor, segment_id, label)],
-        metadata={kind: match[kind] for kind in ("instruction", "set", "gesture")},
+        stream.name,
+        person=stream.person,
+        frames=[_skeleton(*frame, sensor, stream.name) for frame in zip(stream.stamps_us, stream.xyz_mm, strict=True)],
+        marks=[
+            mark for segment_id, span_us in ids.items() for mark in _marks(span_us, sensor, segment_id, stream.label)
+        ],
+        metadata={kind: stream.named[kind] for kind in ("instruction", "set", "gesture")},
         skipped=[segment_id for segment_id, span_us in ids.items() if span_us is None],
     )
 
@@ -121,6 +187,13 @@ def spans_about(points_us: Integers, first_us: int, last_us: int) -> list[tuple[
     return [span if span[0] < span[1] else None for span in spans]
 
 
+def skeleton(stamp_ns: int, joints_m: list[list[float]], sensor: str, session_id: str) -> Skeleton:
+    """Return the frame of one person by their twenty joints (20, 3) in the set's axes."""
+    own: list[list[float]] = to_actum(joints_m, "kinect-v1-20")
+    agent = Agent(agent=1, joints=camera_joints(own), confidence=[1.0] * len(JOINTS))
+    return Skeleton(stamp_ns=stamp_ns, sensor=sensor, agents=[agent], session_id=session_id)
+
+
 def _names(file: Path) -> list[str]:
     try:
         with file.open("rb") as stored, np.load(stored) as arrays:
@@ -129,25 +202,11 @@ def _names(file: Path) -> list[str]:
         raise DatasetError(f"{file}: not a file of streams; fetch it anew") from None
 
 
-def _stream(path: Path, name: str) -> Stream:
-    try:
-        with path.open("rb") as stored, np.load(stored) as arrays:
-            xyz_mm, stamps_us, points_us = (arrays[f"{name}.{part}"] for part in PARTS)
-    except (KeyError, *DAMAGED):
-        raise DatasetError(f"{path}: {name} is not whole there; fetch it anew") from None
-    stamps_rise = stamps_us.size and (np.diff(stamps_us) > 0).all()
-    if xyz_mm.shape != (len(stamps_us), SOURCE_JOINTS, 3) or not stamps_rise or not (np.diff(points_us) > 0).all():
-        raise DatasetError(f"{path}: {name} is not frames of {SOURCE_JOINTS} joints with rising stamps; fetch it anew")
-    return Stream(xyz_mm, stamps_us, points_us)
-
-
 def _skeleton(stamp_us: int, joints_mm: Integers, sensor: str, session_id: str) -> Skeleton:
     stamp_ns = int(stamp_us) * 1000
     if not joints_mm.any():
         return frame_without_person(stamp_ns, sensor, session_id)
-    joints_m: list[list[float]] = to_actum((joints_mm / 1000).tolist(), "kinect-v1-20")
-    agent = Agent(agent=1, joints=camera_joints(joints_m), confidence=[1.0] * len(JOINTS))
-    return Skeleton(stamp_ns=stamp_ns, sensor=sensor, agents=[agent], session_id=session_id)
+    return skeleton(stamp_ns, (joints_mm / 1000).tolist(), sensor, session_id)
 
 
 def _marks(span_us: tuple[int, int] | None, sensor: str, segment_id: str, label: str) -> list[Segment]:

@@ -1,7 +1,9 @@
 """One take of a public data set of skeletons, and functions that the readers of all such sets share."""
 
+import json
 import warnings
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,6 +12,7 @@ from numpy.typing import NDArray
 
 from actum.messages import Segment, Skeleton
 from actum.node import SECOND_NS
+from actum.recording import ACTION_POINTS
 
 
 class DatasetError(ValueError):
@@ -33,6 +36,10 @@ class Take:
     metadata: dict[str, str] = field(default_factory=dict)
     oddities: Counter[str] = field(default_factory=Counter)
     skipped: list[str] = field(default_factory=list)
+
+    def set_action_points(self, points_ns: Mapping[str, int]) -> None:
+        """Write annotated action points (ns) by segment id into the metadata."""
+        self.metadata[ACTION_POINTS] = json.dumps(points_ns)
 
 
 def files_of(path: Path, pattern: str) -> list[Path]:

@@ -1,7 +1,7 @@
 """Data augmentation: variants of each sample, rotated and with the proportions and tempos of other bodies."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -35,6 +35,11 @@ class Variant:
         return Variant(mirrored(self.postures), mirrored(self.velocities))
 
 
+def augmentation_for(people: Sequence[str], preset: PyramidPreset) -> PyramidPreset:
+    """Return the preset whose augmentation suits the people of all samples: few show less of how bodies differ."""
+    return replace(preset, others=preset.others_of_few) if len(set(people)) <= preset.few_people else preset
+
+
 def variants(
     sample: SegmentSample, preset: PyramidPreset, mirrors: bool, rng: np.random.Generator
 ) -> Iterator[Variant]:
@@ -48,16 +53,23 @@ def variants(
     """
     measured = Variant(sample.postures, sample.velocities)
     as_read = measured.mirrored if mirrors and sample.acting_hands[-1] == "left" else measured
-    yield as_read
+    yield from varied(as_read, sample.depth_inferred, preset, rng)
+
+
+def varied(
+    measured: Variant, depth_inferred: bool, preset: PyramidPreset, rng: np.random.Generator
+) -> Iterator[Variant]:
+    """Yield postures and velocities as measured, then rotated, then with other bodies' proportions and tempo."""
+    yield measured
     for yaw_deg, pitch_deg in zip(preset.turns_deg, preset.leans_deg, strict=True):
-        pitch = pitch_rotation(np.radians(pitch_deg if sample.depth_inferred else 0.0))
+        pitch = pitch_rotation(np.radians(pitch_deg if depth_inferred else 0.0))
         rotation = yaw_rotation(np.radians(yaw_deg)) @ pitch
-        yield Variant(as_read.postures @ rotation, as_read.velocities @ rotation)
+        yield Variant(measured.postures @ rotation, measured.velocities @ rotation)
     for _ in range(preset.others.count):
         factors = np.exp(rng.normal(0.0, preset.others.build_sd, len(_BONE_NAMES)))
         scaling = bone_scaling(dict(zip(_BONE_NAMES, factors, strict=True)))
-        velocities = preset.others.tempo * _applied(scaling, as_read.velocities)
-        yield Variant(_applied(scaling, as_read.postures), velocities)
+        velocities = preset.others.tempo * _applied(scaling, measured.velocities)
+        yield Variant(_applied(scaling, measured.postures), velocities)
 
 
 def yaw_rotation(radians: float) -> Array:

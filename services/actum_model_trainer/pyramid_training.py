@@ -1,7 +1,6 @@
 """Training of the default recogniser, layer after layer: first maps, discriminants, action map, neurons."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 from actum.arrays import Floats, Indices
 from actum.node import SECOND_NS
 from actum.som import Som
-from actum_model_trainer.augmentation import Variant, variants
+from actum_model_trainer.augmentation import Variant, augmentation_for, variants
 from actum_model_trainer.confidence import expected_log_errors, familiarity_threshold, inverse_temperatures
 from actum_model_trainer.discriminants import FittedStage, fit_discriminants, folds_of
 from actum_model_trainer.hand_preference import people_prefer_one_hand
@@ -42,8 +41,7 @@ def train(samples: Sequence[SegmentSample], preset: PyramidPreset, seed: int, pr
     targets = np.array([labels.index(sample.label) for sample in samples])
     rng = np.random.default_rng(seed)
     mirrors = people_prefer_one_hand(samples)
-    few_people = len({sample.person for sample in samples}) <= preset.few_people
-    augmentation = replace(preset, others=preset.others_of_few) if few_people else preset
+    augmentation = augmentation_for([sample.person for sample in samples], preset)
     augmented = [list(variants(sample, augmentation, mirrors, rng)) for sample in samples]
     first = _first_maps([variant for of_sample in augmented for variant in of_sample], preset, rng, progress)
     pooled = Pooling(first, Pyramid(preset.levels, preset.overlap), mirrors).vectors(samples, augmented, preset.stages)

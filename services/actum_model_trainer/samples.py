@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from actum import keys
 from actum.arrays import Array
-from actum.messages import Hand, Message, Posture, Segment, Skeleton
+from actum.messages import REPLAY, Hand, Message, Posture, Segment, Skeleton
 from actum.node import Counters, Numbering, Tick, replay
 from actum.recording import Recording
 from actum_model_trainer.progress import Progress, silent
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
+from som_classifier.frames import Frame
 from som_classifier.handedness import LimbSpreads, limb_moments
 from som_classifier.model import Model
 from som_classifier.segmenter import Segmenter
@@ -62,6 +63,33 @@ class SegmentSample:
         return [LimbSpreads.of(so_far).acting_hand for so_far in summed]
 
 
+@dataclass(frozen=True, eq=False)
+class LabelledStream:
+    """All n valid frames of one person in a recording, and what is done in them; the rest is background.
+
+    Attributes:
+        stamps_ns: (n,), rising.
+        motion: (n, 5), mean displacement of each body part since the frame before, metres.
+        postures: (n, 15, 3), scaled joints in the upright frame, low-passed, NaN where missing.
+        velocities: (n, 15, 3), of the postures.
+        segments: start and end (ns) and label of each labelled segment, in the order in which they end.
+        person: whose recording it is.
+        file: the recording's path.
+        agent: the person's number in it.
+        depth_inferred: whether some distances were inferred from an image and a standard body's size.
+    """
+
+    stamps_ns: NDArray[np.int64]
+    motion: Array
+    postures: Array
+    velocities: Array
+    segments: tuple[tuple[int, int, str], ...]
+    person: str
+    file: str
+    agent: int
+    depth_inferred: bool = False
+
+
 @dataclass(frozen=True)
 class Unusable:
     """A labelled segment that no sample can be made of, and the reason."""
@@ -74,9 +102,15 @@ class Unusable:
 
 @dataclass(frozen=True)
 class Samples:
-    """The labelled segments of recordings, in the order in which they end."""
+    """What recordings hold to learn from.
+
+    Attributes:
+        segments: the labelled segments, in the order in which they end.
+        streams: the people's streams in which they lie.
+    """
 
     segments: list[SegmentSample | Unusable]
+    streams: list[LabelledStream]
 
     @cached_property
     def usable(self) -> list[SegmentSample]:
@@ -119,30 +153,43 @@ def classifier_input(recording: Recording, sensor: str) -> Iterator[tuple[int, M
     preprocessor, numbering = PosePreprocessor(PoseSettings.defaults()), Numbering()
     for message in recording.messages(STREAMS):
         if message.sensor == sensor:
-            arriving = preprocessor.handle(message) if isinstance(message, Skeleton) else [message]
+            arriving = preprocessor.handle(message) if isinstance(message, Skeleton) else [_played(message)]
             for posture_or_mark in arriving:
                 yield message.stamp_ns, numbering.numbered(posture_or_mark)
 
 
+def _played(mark: Message) -> Message:
+    """Return a mark as `actum play` puts it: whoever put it first, the classifier is to answer it."""
+    return mark.model_copy(update={"origin": REPLAY}) if isinstance(mark, Segment) else mark
+
+
 def samples_from(recordings: Sequence[Recording], progress: Progress = silent) -> Samples:
-    """Cut every labelled segment out of the recordings.
+    """Read every person's stream in the recordings, and cut every labelled segment out.
 
     Raises:
         RecordingError: a file is damaged.
     """
     segments: list[SegmentSample | Unusable] = []
+    streams: list[LabelledStream] = []
     for done, recording in enumerate(recordings):
         progress("reading recordings", done, len(recordings))
         for sensor in sensors(recording):
-            closed = closed_segments(classifier_input(recording, sensor))
-            segments += [_sample(recording, sensor, each, each.label) for each in closed if each.label is not None]
+            collected = FrameCollector()
+            for _ in replay(collected, classifier_input(recording, sensor)):
+                raise AssertionError("the collector puts nothing")
+            labelled = [(each, each.label) for each in collected.closed if each.label is not None]
+            segments += [_sample(recording, sensor, each, label) for each, label in labelled]
+            streams += [
+                _stream(recording, agent, frames, [each for each in labelled if each[0].agent == agent])
+                for agent, frames in collected.frames.items()
+            ]
     progress("reading recordings", len(recordings), len(recordings))
-    return Samples(segments)
+    return Samples(segments, streams)
 
 
 def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[ClosedSegment]:
     """Return the segments of a stream of stamped (ns) messages as the classifier cuts them, in the order they end."""
-    collector = _Collector()
+    collector = SegmentCollector()
     for _ in replay(collector, messages):
         raise AssertionError("the collector puts nothing")
     return collector.closed
@@ -156,7 +203,7 @@ def why_unusable(closed: ClosedSegment) -> str | None:
     return closed.reason
 
 
-class _Collector:
+class SegmentCollector:
     """A node that collects the segments that the classifier's segmenter closes."""
 
     name = "collector"
@@ -168,14 +215,34 @@ class _Collector:
         self._segmenter = Segmenter(self.counters)
 
     def handle(self, message: Message | Tick) -> list[Message]:
+        """Take a posture, a mark or a tick; put nothing."""
         match message:
             case Posture():
-                self.closed += self._segmenter.posture(message)[1]
+                frame, closed = self._segmenter.posture(message)
+                self.closed += closed
+                if frame is not None:
+                    self.take(message.agent, frame)
             case Segment():
                 self.closed += self._segmenter.mark(message)
             case Tick():
                 self.closed += self._segmenter.tick(message)
         return []
+
+    def take(self, agent: int, frame: Frame) -> None:
+        """Take an agent's next frame."""
+
+
+class FrameCollector(SegmentCollector):
+    """The same, which also keeps each person's valid frames in order, by agent."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.frames: dict[int, list[Frame]] = {}
+
+    def take(self, agent: int, frame: Frame) -> None:
+        """Keep an agent's next frame if it is valid."""
+        if frame.valid:
+            self.frames.setdefault(agent, []).append(frame)
 
 
 def _sample(recording: Recording, sensor: str, closed: ClosedSegment, label: str) -> SegmentSample | Unusable:
@@ -196,4 +263,21 @@ def _sample(recording: Recording, sensor: str, closed: ClosedSegment, label: str
         closed.segment_id,
         any(frame.depth_inferred for frame in frames),
         sensor,
+    )
+
+
+def _stream(
+    recording: Recording, agent: int, frames: Sequence[Frame], labelled: Sequence[tuple[ClosedSegment, str]]
+) -> LabelledStream:
+    kinematics = [frame.kinematics for frame in frames if frame.kinematics is not None]
+    return LabelledStream(
+        np.array([frame.stamp_ns for frame in frames]),
+        np.array([frame.motion for frame in frames]),
+        np.array([each.posture for each in kinematics]),
+        np.array([each.velocity for each in kinematics]),
+        tuple((segment.start_ns, segment.end_ns, label) for segment, label in labelled if segment.reason is None),
+        recording.person,
+        str(recording.path),
+        agent,
+        any(frame.depth_inferred for frame in frames),
     )

@@ -1,6 +1,6 @@
 """The actor: body proportions and habits drawn from a seed, and the inverse kinematics of reaching."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -80,11 +80,23 @@ class Actor:
 
 @dataclass(frozen=True)
 class Stance:
-    """The stance over T frames: pelvis_m (T, 3) in the camera frame, heading_rad (T,), lean_rad (T,) of the trunk."""
+    """The stance over T frames.
+
+    Attributes:
+        pelvis_m: (T, 3), in the camera frame.
+        heading_rad: (T,), of the hips; 0 faces the camera, positive turns to the person's right.
+        lean_rad: (T,), of the trunk.
+        twist_rad: (T,) or (1,), turn of the shoulders to the left, besides that towards the acting hand.
+        reaching: (T,) or (1,), how far the trunk turns and leans after the acting hand, 0 to 1.
+        legs_rad: (T, 2, 2) or (1, 2, 2), left and right leg: the thigh's swing forward, and the bend of the knee.
+    """
 
     pelvis_m: Array
     heading_rad: Array
     lean_rad: Array
+    twist_rad: Array = field(default_factory=lambda: np.zeros(1))
+    reaching: Array = field(default_factory=lambda: np.ones(1))
+    legs_rad: Array = field(default_factory=lambda: np.zeros((1, 2, 2)))
 
     def axes(self) -> tuple[Array, Array, Array]:
         """Return the person's left, up and forward directions, each (T, 3). Heading 0 faces the camera."""
@@ -152,16 +164,20 @@ class _Trunk:
         self._height_m = actor.height_m
         self._pelvis = stance.pelvis_m
         self._side = actor.side
+        self._reaching = stance.reaching[:, None]
         self.left, self.vertical, self.forward = stance.axes()
         aside, ahead = self._level(hand_m - self._pelvis)
+        aside = self._reaching * aside
         self._towards = _unit(aside * self.left + np.maximum(ahead, LEAST_AHEAD_M) * self.forward)
         self._across = self.left
         self._lean_to(stance.lean_rad)
         aside, ahead = self._level(hand_m - self.shoulder(self._side))
         twist = actor.twist_gain * np.arctan2(aside, np.maximum(ahead, LEAST_AHEAD_M))
+        twist = self._reaching * twist + stance.twist_rad[:, None]
         self._across = np.cos(twist) * self.left - np.sin(twist) * self.forward
+        self._ahead = np.sin(twist) * self.left + np.cos(twist) * self.forward
         self._lean_to(stance.lean_rad)
-        self._lean_to(stance.lean_rad + self._needed_lean(actor, stance.lean_rad, hand_m))
+        self._lean_to(stance.lean_rad + stance.reaching * self._needed_lean(actor, stance.lean_rad, hand_m))
 
     def along(self, share: float) -> Array:
         """Return the point (T, 3) of the spine at a distance from the hips, given as a share of stature."""
@@ -171,6 +187,18 @@ class _Trunk:
         """Return a shoulder joint (T, 3); side +1 is the left."""
         across = side * SHOULDER_SIDE * self._height_m * self._leant_across
         return np.asarray(self.along(TRUNK - SHOULDER_DROP) + across)
+
+    def elbow_pole(self, side: int, outward: float, along: Array) -> Array:
+        """Return the direction (T, 3) in which the elbow of an arm along `along` (T, 3) points.
+
+        While reaching for something on the table it points down, outward and a little back. Otherwise, as hands go
+        anywhere, it turns with the arm: back while the arm hangs, down before the body, forward and outward above.
+        """
+        reaching = side * outward * self.left - self.vertical - 0.3 * self.forward
+        up, ahead = ((along * axis).sum(-1, keepdims=True) for axis in (self.vertical, self._ahead))
+        outwards = side * (outward + np.maximum(up, 0.0) ** 2)
+        free = up * self._ahead - (ahead + 0.3) * self.vertical + outwards * self._across
+        return np.asarray(self._reaching * reaching + (1 - self._reaching) * free)
 
     def _lean_to(self, lean_rad: Array) -> None:
         """Rotate the spine and the shoulder line from upright towards the hand by angles (T,)."""
@@ -205,11 +233,11 @@ def _soft_minimum(stretch: Array) -> Array:
 
 
 def _bend_arm(actor: Actor, trunk: _Trunk, side: int, shoulder: Array, hand: Array) -> tuple[Array, Array]:
-    """Solve the inverse kinematics of the two-link arm: elbow and hand (T, 3); the elbow points down, out and back."""
+    """Solve the inverse kinematics of the two-link arm: elbow and hand (T, 3)."""
     upper, fore = UPPER_ARM * actor.height_m, FOREARM * actor.height_m
     along = _unit(hand - shoulder)
     distance = np.minimum(np.linalg.norm(hand - shoulder, axis=-1), FULL_STRETCH * actor.arm_m)[:, None]
-    pole = side * actor.elbow_out * trunk.left - trunk.vertical - 0.3 * trunk.forward
+    pole = trunk.elbow_pole(side, actor.elbow_out, along)
     pole = _unit(pole - (pole * along).sum(-1, keepdims=True) * along)
     foot = (upper**2 - fore**2 + distance**2) / (2 * distance)
     height = np.sqrt(np.maximum(upper**2 - foot**2, 0.0))
@@ -221,9 +249,20 @@ def _place_leg(joints: Array, actor: Actor, stance: Stance, name: str, side: int
     left, up, forward = stance.axes()
     hip = stance.pelvis_m + side * HIP_SIDE * actor.height_m * left
     foot = hip - (HIP_HEIGHT - FOOT_HEIGHT) * actor.height_m * up + 0.02 * forward + 0.02 * side * left
+    knee = hip + KNEE_SHARE * (foot - hip) + 0.02 * forward
+    swing, bend = stance.legs_rad[:, 0 if side == 1 else 1].T
+    knee_moved = _turned(knee - hip, left, swing) - (knee - hip)
+    foot_moved = _turned(foot - knee, left, swing - bend) - (foot - knee)
     joints[:, INDEX[f"{name}_hip"]] = hip
-    joints[:, INDEX[f"{name}_knee"]] = hip + KNEE_SHARE * (foot - hip) + 0.02 * forward
-    joints[:, INDEX[f"{name}_foot"]] = foot
+    joints[:, INDEX[f"{name}_knee"]] = knee + knee_moved
+    joints[:, INDEX[f"{name}_foot"]] = foot + knee_moved + foot_moved
+
+
+def _turned(vectors: Array, left: Array, forward_rad: Array) -> Array:
+    """Turn vectors (T, 3) that hang down forward about the axis `left` (T, 3) by angles (T,) or (1,)."""
+    cos, sin = np.cos(forward_rad)[:, None], np.sin(forward_rad)[:, None]
+    along = (vectors * left).sum(-1, keepdims=True)
+    return np.asarray(vectors * cos + np.cross(left, vectors) * sin + along * (1 - cos) * left)
 
 
 def _unit(vectors: Array) -> Array:

@@ -4,6 +4,8 @@ from collections.abc import Iterator
 
 from actum.messages import Message
 from actum.node import SECOND_NS, Counters, Source
+from scene_simulator.everyday import chosen
+from scene_simulator.group import Group
 from scene_simulator.programme import balanced_programme
 from scene_simulator.settings import Settings
 from scene_simulator.simulator import GATEWAY, Simulator
@@ -43,13 +45,28 @@ class EndlessSimulator:
             start_ns, seed = newest_ns + SECOND_NS, seed + 1
 
 
-def _simulator(settings: Settings, start_ns: int, session_id: str | None = None) -> Simulator:
+def _simulator(settings: Settings, start_ns: int, session_id: str | None = None) -> Source:
+    repetitions = 0 if settings.everyday == "only" else settings.repetitions
+    actors = range(settings.actor, settings.actor + settings.actors)
+    programmes = [balanced_programme(repetitions, settings.seed, actor) for actor in actors]
+    everyday = chosen(settings.everyday, settings.minutes)
+    if len(programmes) > 1:
+        return Group(
+            programmes,
+            actor_seed=settings.actor,
+            seed=settings.seed,
+            everyday=everyday,
+            sensor=settings.sensor,
+            start_ns=start_ns,
+            session_id=session_id,
+        )
     return Simulator(
-        balanced_programme(settings.repetitions, settings.seed, settings.actor),
+        programmes[0],
         actor_seed=settings.actor,
         seed=settings.seed,
         sensor=settings.sensor,
         image_hz=settings.image_hz,
         start_ns=start_ns,
         session_id=session_id,
+        everyday=everyday,
     )

@@ -26,6 +26,11 @@ class CameraParameters(Section):
     height_m: float
     frame_rate_hz: int
 
+    @property
+    def half_view(self) -> float:
+        """Largest |x| / z that the camera sees."""
+        return self.width / 2 / self.focal_px
+
 
 class TableParameters(Section):
     """The table: its top's height above the floor, distances from the camera, and size."""
@@ -124,6 +129,14 @@ class PauseParameters(Section):
     hop_m: float
 
 
+class EverydayParameters(Section):
+    """What happens between the actions of a person with everyday doings."""
+
+    rest_range_s: Pair
+    at_once_probability: float
+    most_doings: int
+
+
 class SwayParameters(Section):
     """The sway of quiet standing."""
 
@@ -161,6 +174,7 @@ class Parameters(Section):
     trial: TrialParameters
     pantomime: PantomimeParameters
     pause: PauseParameters
+    everyday: EverydayParameters
     sway: SwayParameters
     noise: NoiseParameters
     image: ImageParameters
@@ -169,6 +183,23 @@ class Parameters(Section):
     def table_y_m(self) -> float:
         """Position of the table top in the camera frame (y down)."""
         return self.camera.height_m - self.table.height_m
+
+    def moved(self, right_m: float, away_m: float) -> "Parameters":
+        """Return the parameters with table and objects further to the camera's right, and further away from it."""
+        table, objects = self.table, self.objects
+        near_z_m, far_z_m = table.near_z_m + away_m, table.far_z_m + away_m
+        near, far = objects.place_z_range_m
+        first, middle, last = objects.place_x_m
+        placed = {
+            "place_x_m": (first + right_m, middle + right_m, last + right_m),
+            "place_z_range_m": (near + away_m, far + away_m),
+        }
+        return self.model_copy(
+            update={
+                "table": table.model_copy(update={"near_z_m": near_z_m, "far_z_m": far_z_m}),
+                "objects": objects.model_copy(update=placed),
+            }
+        )
 
 
 @cache

@@ -5,6 +5,8 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field
 
 from actum.settings import ServiceSettings
+from scene_simulator.everyday import Choice
+from scene_simulator.group import MOST_PEOPLE
 
 
 def _number(text: object) -> object:
@@ -20,3 +22,6 @@ class Settings(ServiceSettings):
     image_hz: Annotated[Literal[0, 5, 10, 15, 30], BeforeValidator(_number)] = Field(
         15, description="colour images a second; 0 for none"
     )
+    everyday: Choice = Field("none", description="what people do between actions; only: nothing else")
+    minutes: float = Field(1.0, ge=0, description="least length of a scene with everyday doings, which fill it up")
+    actors: int = Field(1, ge=1, le=MOST_PEOPLE, description="how many act side by side; several have no images")

@@ -1,7 +1,8 @@
 """The simulated scene over time: the ground truth of each frame, without noise."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import count
 from typing import Literal
 
 import numpy as np
@@ -9,13 +10,14 @@ import numpy as np
 from actum.arrays import Array
 from scene_simulator.actor import Stance, draw_actor, fingertip, pose
 from scene_simulator.conditions import PLAIN, Conditions
+from scene_simulator.everyday import Everyday, EverydayPerson
 from scene_simulator.noise import Sway
 from scene_simulator.pantomime import draw_pantomime
 from scene_simulator.parameters import Parameters, load_parameters
 from scene_simulator.programme import Task
 from scene_simulator.random_streams import random_stream
 from scene_simulator.timeline import Episode, acting, resetting, still
-from scene_simulator.trial import Trial, draw_trial
+from scene_simulator.trial import Layout, Trial, draw_layout, draw_trial
 
 Mark = Literal["start", "end"]
 CLOSED = 0.5
@@ -35,9 +37,11 @@ class SceneState:
         riser_tops_m: (n, 3), the top of the riser under each object.
         grip: closure of the acting hand, 0 (open) to 1.
         pointing: extension of the index finger, 0 to 1.
-        target: index of the object acted on; None in a pantomime.
+        target: index of the object acted on; None in a pantomime and in everyday doings.
         segment: number of the current repetition; None in a pause.
         mark: whether the repetition starts or ends with this frame.
+        doing: the everyday doing, one of `doings.KINDS`; None in repetitions and pauses.
+        in_view: whether the camera sees the person.
     """
 
     frame: int
@@ -52,6 +56,8 @@ class SceneState:
     finger_overlap_m: float
     segment: int | None
     mark: Mark | None
+    doing: str | None = None
+    in_view: bool = True
 
     @property
     def held(self) -> int | None:
@@ -70,8 +76,11 @@ class SceneState:
 class Scene:
     """An actor at a table who does a programme with three marked objects; the same arguments give the same scene.
 
+    With `everyday`, the actor does other things between the actions, or, with an empty programme, nothing else. The
+    table, with all that belongs to it, stands by `place_m` further to the camera's right and further away.
+
     Raises:
-        ValueError: the programme is empty.
+        ValueError: the programme is empty, and there are no everyday doings.
     """
 
     def __init__(
@@ -81,16 +90,21 @@ class Scene:
         seed: int,
         parameters: Parameters | None = None,
         conditions: Conditions = PLAIN,
+        everyday: Everyday | None = None,
+        place_m: tuple[float, float] = (0.0, 0.0),
     ) -> None:
-        if not programme:
-            raise ValueError("the programme is empty: give at least one task")
+        if not programme and everyday is None:
+            raise ValueError("the programme is empty: give at least one task, or everyday doings")
         self.conditions = conditions
-        self.parameters = conditions.arranged(parameters or load_parameters())
+        self.parameters = conditions.arranged(parameters or load_parameters()).moved(*place_m)
         self.items = self.parameters.objects.items
-        self.actor = draw_actor(self.parameters.actor, actor_seed)
+        actor = draw_actor(self.parameters.actor, actor_seed)
+        self.actor = replace(actor, stand_x_m=actor.stand_x_m + place_m[0])
         self.places_x_m = random_stream("places", seed).permutation(self.parameters.objects.place_x_m)
         self.seeds = (actor_seed, seed)
         self.trials = tuple(self._trial(number, task) for number, task in enumerate(programme))
+        self._least_s = everyday.least_s if everyday else 0.0
+        self._person = EverydayPerson(everyday, self.parameters, self.actor, self.seeds) if everyday else None
 
     def states(self, tail_s: float = 3.0) -> Iterator[SceneState]:
         """Yield the state of every frame: a lead-in, the programme with its pauses, and `tail_s` of return to rest."""
@@ -105,21 +119,50 @@ class Scene:
         draw = draw_pantomime if task.is_pantomime else draw_trial
         return draw(self.parameters, self.actor, task, self.places_x_m, rng)
 
+    def _layouts(self) -> list[Layout]:
+        """Return the layout of each task; without tasks, one for the whole scene."""
+        if self.trials:
+            return [trial.layout for trial in self.trials]
+        rng = random_stream("layout", *self.seeds)
+        return [draw_layout(self.parameters, self.actor, "", self.places_x_m, None, rng)]
+
     def _episodes(self, tail_s: float) -> Iterator[Episode]:
-        yield still(self.parameters, self.trials[0], self.parameters.pause.lead_in_s)
-        following = [*self.trials[1:], self.trials[-1]]
+        """Yield the programme, and then everyday doings until the scene is as long as it has to be."""
+        frames = 0
+        for episode in self._programme(tail_s):
+            frames += len(episode)
+            yield episode
+        layout = self._layouts()[-1]
+        pauses = (self._doings(number, layout) for number in count(len(self.trials)))
+        while frames < self._least_s * self.parameters.camera.frame_rate_hz:
+            for episode in next(pauses):
+                frames += len(episode)
+                yield episode
+
+    def _programme(self, tail_s: float) -> Iterator[Episode]:
+        layouts, pause = self._layouts(), self.parameters.pause
+        yield still(self.parameters, layouts[0], pause.lead_in_s)
+        following = [*layouts[1:], layouts[-1]]
         pauses = [*(trial.pause_s for trial in self.trials[:-1]), tail_s]
         column = 0 if self.actor.hand == "left" else 1
         for number, trial in enumerate(self.trials):
+            yield from self._doings(number, trial.layout)
             done = acting(self.parameters, trial, number, column)
             yield done
-            yield resetting(self.parameters, done, following[number], pauses[number])
+            return_s = pause.return_share * trial.pause_s
+            yield resetting(self.parameters, done, following[number], pauses[number], return_s)
+
+    def _doings(self, number: int, layout: Layout) -> Sequence[Episode]:
+        """Return what the person does before the task of a number: nothing without everyday doings."""
+        return [] if self._person is None else self._person.pause(number, layout)
 
     def _posed(self, episode: Episode, first: int, sway: Sway) -> Iterator[SceneState]:
         """Yield the states of an episode, with the swaying person's joints."""
         shift = sway.at(np.arange(first, first + len(episode)) / self.parameters.camera.frame_rate_hz)
         pelvis = episode.pelvis_m + np.insert(shift[:, :2], 1, 0.0, axis=1)
-        stance = Stance(pelvis, episode.heading_rad, self.actor.lean_rad + shift[:, 2])
+        lean = self.actor.lean_rad + shift[:, 2] + episode.lean_rad
+        stance = Stance(pelvis, episode.heading_rad, lean, episode.twist_rad, episode.reaching, episode.legs_rad)
+        in_view = np.abs(pelvis[:, 0]) < self.parameters.camera.half_view * pelvis[:, 2]
         joints = pose(self.actor, stance, episode.hands_m)
         tips = fingertip(self.actor, joints)
         for i in range(len(episode)):
@@ -132,10 +175,12 @@ class Scene:
                 riser_tops_m=episode.riser_tops_m[i],
                 grip=float(episode.grip[i]),
                 pointing=float(episode.pointing[i]),
-                target=episode.trial.target,
-                finger_overlap_m=episode.trial.finger_overlap_m,
+                target=None if episode.trial is None else episode.trial.target,
+                finger_overlap_m=0.0 if episode.trial is None else episode.trial.finger_overlap_m,
                 segment=episode.segment,
                 mark=_mark(episode, i),
+                doing=episode.doings[i],
+                in_view=bool(in_view[i]),
             )
 
 

@@ -6,9 +6,10 @@ import cv2
 import numpy as np
 
 from actum.messages import SIMULATOR, Agent, Image, Message, Segment, Skeleton, Truth
-from actum.node import SECOND_NS, Counters
+from actum.node import SECOND_NS, Counters, Source
 from scene_simulator.conditions import PLAIN, Conditions
 from scene_simulator.drawing_primitives import Canvas, Pinhole
+from scene_simulator.everyday import Everyday
 from scene_simulator.exposure import states_while_open
 from scene_simulator.noise import SkeletonNoise
 from scene_simulator.programme import Task
@@ -17,7 +18,7 @@ from scene_simulator.render import Renderer
 from scene_simulator.simulated_scene import Scene, SceneState
 
 AGENT = 1
-"""Number of the only person in a scene."""
+"""Number of the person, who usually is the only one."""
 GATEWAY = "sensor_gateway"
 """Name of the service that the simulator stands in for: consumers need not know which of the two a sensor has."""
 
@@ -27,11 +28,12 @@ class Simulator:
 
     `image_hz` must divide the frame rate; 0 means no images. The first and the last frame of each action have a
     `Truth`; the last one tells the object's displacement in the camera frame. The truth of a pantomime has the object
-    id `NO_OBJECT`, an empty name and no displacement.
+    id `NO_OBJECT`, an empty name and no displacement. `everyday` doings have no truth; while the person is out of view
+    the skeletons have no agent. The glass and the phone of everyday doings are not drawn.
 
     Raises:
-        ValueError: the programme is empty, `image_hz` does not divide the frame rate, or there is no room for a
-            pantomime.
+        ValueError: the programme is empty without `everyday`, `image_hz` does not divide the frame rate, or there is no
+            room for a pantomime.
     """
 
     name = GATEWAY
@@ -49,16 +51,20 @@ class Simulator:
         session_id: str | None = None,
         tail_s: float = 3.0,
         conditions: Conditions = PLAIN,
+        everyday: Everyday | None = None,
+        agent: int = AGENT,
+        place_m: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         self.counters = Counters()
         self.programme = tuple(programme)
-        self.scene = Scene(programme, actor_seed, seed, conditions=conditions)
+        self.scene = Scene(programme, actor_seed, seed, None, conditions, everyday, place_m)
         self._rate_hz = self.scene.parameters.camera.frame_rate_hz
         if image_hz and (image_hz < 0 or self._rate_hz % image_hz):
             raise ValueError(f"image_hz {image_hz} does not divide the frame rate {self._rate_hz}")
         self._frames_per_image = self._rate_hz // image_hz if image_hz else 0
         self._open_share = min(conditions.exposure_s * self._rate_hz, 1.0)
         self._seeds = (actor_seed, seed)
+        self._agent = agent
         self._sensor, self._start_ns, self._tail_s = sensor, start_ns, tail_s
         self._session_id = session_id or f"simulator-{actor_seed}-{seed}"
 
@@ -95,9 +101,12 @@ class Simulator:
 
     def _skeleton(self, state: SceneState, noise: SkeletonNoise) -> Skeleton:
         joints, confidence = noise.measure(state.joints_m)
-        agent = Agent(agent=AGENT, joints=joints.tolist(), confidence=confidence)
+        agent = Agent(agent=self._agent, joints=joints.tolist(), confidence=confidence)
         return Skeleton(
-            stamp_ns=self.stamp_ns(state.frame), sensor=self._sensor, agents=[agent], session_id=self._session_id
+            stamp_ns=self.stamp_ns(state.frame),
+            sensor=self._sensor,
+            agents=[agent] if state.in_view else [],
+            session_id=self._session_id,
         )
 
     def _truth(self, state: SceneState, start: SceneState) -> Truth:
@@ -109,7 +118,7 @@ class Simulator:
             sensor=self._sensor,
             kind=state.mark,
             segment_id=self.segment_id(state.segment),
-            agent=AGENT,
+            agent=self._agent,
             hand=self.scene.actor.hand,
             action=task.action,
             object_id=task.object_id,
@@ -135,8 +144,8 @@ class Simulator:
         )
 
 
-def labelled_stream(simulator: Simulator) -> Iterator[Message]:
-    """Yield a simulator's messages with a labelled mark after each truth, as in a training recording."""
+def labelled_stream(simulator: Source) -> Iterator[Message]:
+    """Yield a simulated scene's messages with a labelled mark after each truth, as in a training recording."""
     for messages in simulator.frames():
         for message in messages:
             yield message

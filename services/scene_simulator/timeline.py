@@ -15,7 +15,7 @@ from scene_simulator.trajectories import (
     set_down_displacement,
     straight_displacement,
 )
-from scene_simulator.trial import Trial
+from scene_simulator.trial import Layout, Trial
 
 CLOSING_S = 0.2
 """Seconds in which the hand closes or opens."""
@@ -25,13 +25,15 @@ OPENING_SHARE = 0.3
 
 @dataclass(frozen=True)
 class Episode:
-    """T frames of one repetition or of the pause after it (`segment` is None).
+    """T frames of one repetition, or without one (`segment` is None): of a pause, or of everyday doings.
 
+    `trial` is the repetition of which this is a part or the end, `doings` (T) names the everyday doing of each frame.
     Shapes: `pelvis_m` (T, 3), `heading_rad` (T,), `hands_m` (T, 2, 3), objects' `positions_m` (T, n, 3) and
-    `yaw_rad` (T, n), `riser_tops_m` (T, n, 3), `grip` and `pointing` (T,).
+    `yaw_rad` (T, n), `riser_tops_m` (T, n, 3), `grip` and `pointing` (T,). The trunk's `lean_rad` (T,) is added to the
+    person's own; it, `twist_rad` (T,), `reaching` (T,) and `legs_rad` (T, 2, 2) are as in `actor.Stance`.
     """
 
-    trial: Trial
+    trial: Trial | None
     segment: int | None
     pelvis_m: Array
     heading_rad: Array
@@ -41,19 +43,23 @@ class Episode:
     riser_tops_m: Array
     grip: Array
     pointing: Array
+    lean_rad: Array
+    twist_rad: Array
+    reaching: Array
+    legs_rad: Array
+    doings: tuple[str | None, ...]
 
     def __len__(self) -> int:
         return len(self.grip)
 
 
-def still(parameters: Parameters, trial: Trial, seconds: float) -> Episode:
-    """Return an episode of a number of seconds in which everything rests in a repetition's layout."""
-    layout = trial.layout
+def still(parameters: Parameters, layout: Layout, seconds: float) -> Episode:
+    """Return an episode of a number of seconds in which everything rests in a layout."""
     count = round(seconds * parameters.camera.frame_rate_hz)
     tops = layout.positions_m.copy()
     tops[:, 1] = parameters.table_y_m - layout.riser_heights_m
     return Episode(
-        trial=trial,
+        trial=None,
         segment=None,
         pelvis_m=_repeated(layout.pelvis_m, count),
         heading_rad=np.full(count, layout.heading_rad),
@@ -63,13 +69,18 @@ def still(parameters: Parameters, trial: Trial, seconds: float) -> Episode:
         riser_tops_m=_repeated(tops, count),
         grip=np.zeros(count),
         pointing=np.zeros(count),
+        lean_rad=np.zeros(count),
+        twist_rad=np.zeros(count),
+        reaching=np.ones(count),
+        legs_rad=np.zeros((count, 2, 2)),
+        doings=(None,) * count,
     )
 
 
 def acting(parameters: Parameters, trial: Trial, segment: int, column: int) -> Episode:
     """Return the episode of one repetition: reach, grasp, effect, hold; `column` is 0 if the left hand acts, else 1."""
     rate = parameters.camera.frame_rate_hz
-    base = still(parameters, trial, trial.timing.duration_s + 1 / rate)
+    base = still(parameters, trial.layout, trial.timing.duration_s + 1 / rate)
     time = np.arange(len(base)) / rate
     share = elapsed_share(time, 0.0, trial.timing.reach_s)
     moved = _moved(trial, time)
@@ -79,15 +90,21 @@ def acting(parameters: Parameters, trial: Trial, segment: int, column: int) -> E
         positions[:, trial.target] += moved
     pointing = minimum_jerk(share) * (trial.task.action == "point")
     return replace(
-        base, segment=segment, hands_m=hands, positions_m=positions, grip=_grip(trial, time), pointing=pointing
+        base,
+        trial=trial,
+        segment=segment,
+        hands_m=hands,
+        positions_m=positions,
+        grip=_grip(trial, time),
+        pointing=pointing,
     )
 
 
-def resetting(parameters: Parameters, done: Episode, following: Trial, seconds: float) -> Episode:
-    """Return the episode of a pause: hands and objects move to the layout of the following repetition."""
+def resetting(parameters: Parameters, done: Episode, following: Layout, seconds: float, return_s: float) -> Episode:
+    """Return the episode of a pause: within `return_s` hands and objects move to the layout of what follows."""
     goal = still(parameters, following, seconds)
     time = np.arange(1, len(goal) + 1) / parameters.camera.frame_rate_hz
-    share = elapsed_share(time, 0.0, parameters.pause.return_share * done.trial.pause_s)
+    share = elapsed_share(time, 0.0, return_s)
     opened = 1 - minimum_jerk(elapsed_share(share, 0.0, OPENING_SHARE))
     hop = bump(share)[:, None, None] * np.array([0.0, -parameters.pause.hop_m, 0.0])
     return replace(

@@ -129,6 +129,11 @@ class Model(ABC):
         return None
 
     @property
+    def background_s(self) -> float | None:
+        """How long (s) people did none of the actions in the training data; None where that is not known."""
+        return None
+
+    @property
     def labels(self) -> list[str]:
         """The actions it tells apart."""
         return self.metadata.labels

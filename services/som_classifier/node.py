@@ -1,22 +1,22 @@
-"""The classifier's pure step: postures and segment marks become partial and final actions."""
+"""The classifier's pure step: postures, and marks where there are any, become partial and final actions."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from actum import keys
-from actum.messages import Action, Message, Posture, Segment, Tensor
+from actum.messages import AUTO, Action, Message, Posture, Segment
 from actum.node import Counters, Tick
-from actum.skeletons import JOINTS
+from som_classifier.answers import final_action, ongoing_action, own_mark, partial_action, tensor
 from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.recognition import Recognition
 from som_classifier.segmenter import Segmenter
 from som_classifier.segments import ClosedSegment, OpenSegment
 from som_classifier.settings import Settings
+from som_classifier.spotting.search import Search
+from som_classifier.spotting.spotted import Ongoing, SpottedSegment
 from som_classifier.watched_model import WatchedModel
+from som_classifier.wishes import ANYTHING, Wishes
 
 POLL_TICKS = 5
 """Ticks between two checks of the model file, half a second: a new model seems to be used at once."""
@@ -31,16 +31,24 @@ class ModelSource(Protocol):
 
 
 class SomClassifier:
-    """Estimates the action while a segment is open, and answers it once when it closes."""
+    """Estimates the action while a segment is open, and answers it once when it closes.
+
+    It answers the segments that are marked, and marks and answers those that it finds by itself.
+    """
 
     name = "som_classifier"
     inputs = (keys.POSTURE, keys.SEGMENT)
 
     def __init__(
-        self, model: Model | None = None, source: ModelSource | None = None, publish_maps: bool = False
+        self,
+        model: Model | None = None,
+        source: ModelSource | None = None,
+        publish_maps: bool = False,
+        wishes: Wishes = ANYTHING,
     ) -> None:
         self.counters = Counters(state="running" if model else "no model")
         self._segmenter = Segmenter(self.counters)
+        self._wishes = wishes
         self._model: Model | None = None
         if model is not None:
             self._use(model)
@@ -52,25 +60,35 @@ class SomClassifier:
     @classmethod
     def configured(cls, settings: Settings) -> "SomClassifier":
         """Build the node as the settings say; the model file need not exist yet."""
-        node = cls(source=WatchedModel(settings.model) if settings.model else None, publish_maps=settings.publish_maps)
+        source = WatchedModel(settings.model) if settings.model else None
+        node = cls(None, source, settings.publish_maps, settings.wishes)
         if settings.model is None:
             node.counters.state = "no model: --model (ACTUM_MODEL) names none"
         node._reload()
         return node
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
-        """Take a posture, a mark or a tick; return the partial and final actions that follow from it."""
+        """Take a posture, a mark or a tick; return the marks, partial and final actions that follow from it."""
         if isinstance(message, Message):
             self._sensor = message.sensor
         match message:
             case Posture():
                 return list(self._posture(message))
             case Segment():
-                return [self._final(closed) for closed in self._segmenter.mark(message)]
+                return self._mark(message)
             case Tick():
                 return self._tick(message)
             case _:
                 return []
+
+    def _mark(self, mark: Segment) -> list[Message]:
+        """Answer a mark, but not one that a classifier put: it has put the answer as well."""
+        if mark.origin == AUTO:
+            return []
+        if self._wishes.segments == "auto":
+            self.counters.counts["marks_ignored"] += 1
+            return []
+        return [self._final(closed) for closed in self._segmenter.mark(mark)]
 
     def _tick(self, tick: Tick) -> list[Message]:
         self._ticks += 1
@@ -84,36 +102,59 @@ class SomClassifier:
             self._use(model)
 
     def _use(self, model: Model) -> None:
-        self._model, self.counters.state = model, "running"
+        self._model, self.counters.state = model, self._wishes.state(model)
         self.counters.details["model"] = model.id
-        self._segmenter.use(lambda: model.encoder().encode)
+        self._segmenter.use(lambda: model.encoder().encode, self._wishes.plan(model))
 
-    def _posture(self, posture: Posture) -> Iterator[Action]:
+    def _posture(self, posture: Posture) -> Iterator[Message]:
         frame, closed = self._segmenter.posture(posture)
         if frame is not None:
             for segment in self._segmenter.open_at(posture.agent, posture.stamp_ns):
                 yield from self._partial(segment, posture)
         for answer in closed:
             yield self._final(answer)
+        search = self._segmenter.search_of(posture.agent)
+        if frame is not None and search is not None:
+            spotted = search.step(frame)
+            for found in spotted.segments:
+                yield from self._found(found, search, posture.agent)
+            if spotted.ongoing is not None:
+                yield from self._ongoing(spotted.ongoing, search, posture)
 
     def _partial(self, segment: OpenSegment, posture: Posture) -> Iterator[Action]:
         frames = self._segmenter.frames_of(segment)
         recognition = self._recognise(frames, complete=False)
         if recognition is not None and segment.start_ns is not None:
-            yield Action(
-                stamp_ns=posture.stamp_ns,
-                sensor=posture.sensor,
-                agent=posture.agent,
-                segment_id=segment.segment_id,
-                start_ns=segment.start_ns,
-                end_ns=None,
-                final=False,
-                **_recognised_fields(recognition),
-                frames=sum(frame.valid for frame in frames),
-                missed=sum(frame.missed for frame in frames),
-                hand=segment.hand,
-                missing_joints=_missing(frames),
-            )
+            yield partial_action(segment, recognition, frames, posture)
+
+    def _found(self, found: SpottedSegment, search: Search, agent: int) -> Iterator[Message]:
+        """Mark and answer a segment that was found, unless it is not to be told; count what becomes of it."""
+        closed = self._segmenter.cut(OpenSegment(search.next_id, found.start_ns, agent, None, None, found.end_ns))
+        recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
+        fate = self._fate(closed, recognition, search)
+        self.counters.counts.update(["found", fate])
+        if fate == "told":
+            search.count_told()
+            yield own_mark("start", closed, self._sensor)
+            yield own_mark("end", closed, self._sensor)
+            yield self._answer(closed, recognition, None)
+
+    def _fate(self, closed: ClosedSegment, recognition: Recognition | None, search: Search) -> str:
+        """Decide what becomes of a segment that was found: `told`, or why it is not.
+
+        The user's options hold for the action that would be told.
+        """
+        if recognition is None:
+            return "unanswerable"
+        if self._segmenter.is_marked(closed.agent, closed.start_ns, closed.end_ns):
+            return "marked"
+        return search.admission.admit(recognition.label, closed.start_ns, closed.end_ns) or "told"
+
+    def _ongoing(self, ongoing: Ongoing, search: Search, posture: Posture) -> Iterator[Action]:
+        """Say what seems to be going on, unless it is marked or would not be told."""
+        bounds = posture.agent, ongoing.start_ns, posture.stamp_ns
+        if not self._segmenter.is_marked(*bounds) and not search.admission.hindrance(ongoing.label, ongoing.start_ns):
+            yield ongoing_action(search.next_id, ongoing, self._segmenter.frames_between(*bounds), posture)
 
     def _recognise(self, frames: list[Frame], complete: bool) -> Recognition | None:
         usable = [frame for frame in frames if frame.valid]
@@ -126,56 +167,21 @@ class SomClassifier:
         reason = closed.reason or (None if recognition else self._why_not(closed))
         if reason:
             self.counters.reject("rejected_segment", f"{closed.segment_id}: {reason}")
-        return Action(
-            stamp_ns=closed.end_ns,
-            sensor=self._sensor,
-            valid=reason is None,
-            reason=reason,
-            agent=closed.agent,
-            segment_id=closed.segment_id,
-            start_ns=closed.start_ns,
-            end_ns=closed.end_ns,
-            final=True,
-            **_recognised_fields(recognition),
-            frames=sum(frame.valid for frame in closed.frames),
-            missed=closed.missed,
-            hand=closed.hand,
-            unknown=recognition.unknown if recognition else False,
-            familiarity=recognition.familiarity if recognition else None,
-            missing_joints=_missing(closed.frames),
-            **(self._map_fields(closed.frames) if recognition and self._publish_maps else {}),
-        )
+        return self._answer(closed, recognition, reason)
+
+    def _answer(self, closed: ClosedSegment, recognition: Recognition | None, reason: str | None) -> Action:
+        explained = self._map_fields(closed.frames) if recognition and self._publish_maps else {}
+        return final_action(closed, recognition, reason, self._sensor, **explained)
 
     def _map_fields(self, frames: list[Frame]) -> dict[str, Any]:
         """Return the fields that explain an answer: each map's activity, and the trajectory over the first."""
         assert self._model is not None
         usable = [frame for frame in frames if frame.valid]
-        maps = {name: _tensor(activity) for name, activity in self._model.maps(usable).items()}
-        return {"maps": maps, "trace": _tensor(self._model.trace(usable))}
+        maps = {name: tensor(activity) for name, activity in self._model.maps(usable).items()}
+        return {"maps": maps, "trace": tensor(self._model.trace(usable))}
 
     def _why_not(self, closed: ClosedSegment) -> str:
         if self._model is None:
             return "no model"
         frames = sum(frame.valid for frame in closed.frames)
         return f"too few frames: {frames}, at least {self._model.min_frames} are needed"
-
-
-def _recognised_fields(recognition: Recognition | None) -> dict[str, Any]:
-    if recognition is None:
-        return {"action": None, "confidence": 0.0, "activations": {}, "part": None}
-    return {
-        "action": recognition.label,
-        "confidence": recognition.confidence,
-        "activations": recognition.activations,
-        "part": recognition.part,
-    }
-
-
-def _missing(frames: list[Frame]) -> list[str]:
-    """Name the joints that some frame lacked, in the order of `JOINTS`."""
-    return [JOINTS[joint] for joint in sorted({joint for frame in frames for joint in frame.missing})]
-
-
-def _tensor(array: NDArray[Any]) -> Tensor:
-    little = np.ascontiguousarray(array, dtype="<f4")
-    return Tensor(dtype="<f4", shape=list(little.shape), data=little.tobytes())

@@ -90,6 +90,35 @@ class PaperPreset:
 
 
 @dataclass(frozen=True)
+class SpottingPreset:
+    """What the search for actions without marks depends on.
+
+    Attributes:
+        interval_s: time between two decisions.
+        lag_s: how long after its end an action is decided.
+        overlap: the share of its duration by which an action may reach into the one before it.
+        duration_weight: by how much completeness counts less per unit of log-likelihood of the duration.
+        windows: how many durations of windows there are.
+        shortest_quantile: of the training segments' durations, the shortest window; the longest is at one minus this.
+        shrinkage: of the heads, in units of the mean squared length of the pooled vectors.
+        most_windows: training windows; more make the heads hardly better, and their training costs n³.
+        folds: of cross-validation, by people.
+        thresholds: completeness at which recall and false alarms are counted, rising.
+    """
+
+    interval_s: float
+    lag_s: float
+    overlap: float
+    duration_weight: float
+    windows: int
+    shortest_quantile: float
+    shrinkage: float
+    most_windows: int
+    folds: int
+    thresholds: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class PyramidPreset:
     """Everything that a training of the default recogniser depends on beside its samples and its seed.
 
@@ -123,6 +152,7 @@ class PyramidPreset:
         epochs: how often the third layer is shown every training vector.
         known_share: the share of held-out samples that are to count as known actions.
         prior: for calibration.
+        spotting: of the search for actions without marks.
     """
 
     name: str
@@ -151,6 +181,7 @@ class PyramidPreset:
     epochs: int
     known_share: float
     prior: Prior
+    spotting: SpottingPreset
 
 
 Preset = PaperPreset | PyramidPreset
@@ -198,6 +229,18 @@ PYRAMID = PyramidPreset(
     epochs=10,
     known_share=0.95,
     prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28, familiar_from_one=0.2, log_error=-2.5),
+    spotting=SpottingPreset(
+        interval_s=0.1,
+        lag_s=0.2,
+        overlap=0.15,
+        duration_weight=0.1,
+        windows=8,
+        shortest_quantile=0.04,
+        shrinkage=0.4,
+        most_windows=4500,
+        folds=3,
+        thresholds=tuple(n / 20 for n in range(5, 19)),
+    ),
 )
 """The default. benchmarks/recognition says how its numbers were chosen, and on which people."""
 

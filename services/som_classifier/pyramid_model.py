@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from operator import mul
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,10 @@ from som_classifier.ordered_vector import without_repeats
 from som_classifier.pyramid import PrefixSums, Pyramid
 from som_classifier.recognition import Recognition
 from som_classifier.second_layer import ActionMap
+from som_classifier.spotting.completeness import CompletenessHeads
+from som_classifier.spotting.pyramid_spotter import PyramidSpotter
+from som_classifier.spotting.spotted import SpottingOptions
+from som_classifier.spotting.spotting_model import SpottingMetadata, SpottingModel
 from som_classifier.stage_discriminants import StageDiscriminants, familiarity_of
 from som_classifier.supervised import SupervisedLayer
 
@@ -57,6 +61,7 @@ class PyramidMetadata(ModelMetadata):
         familiar: the open-set threshold: with a lower familiarity an action may be none of those trained.
         usual_log_errors: for each action, the mean log(d²) of its postures from the map of postures that a person not
             trained on may well reach, d in metres over all joints of a standard body.
+        spotting: of the search for actions without marks; None where the model was not trained for that.
     """
 
     kind: Literal["pyramid"] = "pyramid"
@@ -74,6 +79,7 @@ class PyramidMetadata(ModelMetadata):
     gains: list[Positive]
     familiar: Finite
     usual_log_errors: list[Finite]
+    spotting: SpottingMetadata | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +91,7 @@ class PyramidModel(Model):
         stages: the discriminants on the maps' pooled activities.
         action_map: the second layer, a map of the discriminants' scores.
         layer3: one neuron per action on the second layer's activity.
+        heads: of the search for actions without marks; None where the model was not trained for that.
     """
 
     first: FirstMaps
@@ -92,6 +99,7 @@ class PyramidModel(Model):
     action_map: ActionMap
     layer3: SupervisedLayer
     metadata: PyramidMetadata
+    heads: CompletenessHeads | None = None
 
     def __post_init__(self) -> None:
         if problem := self._metadata_problem() or self._array_problem():
@@ -100,7 +108,7 @@ class PyramidModel(Model):
     @property
     def arrays(self) -> Arrays:
         """All weights by the names they are stored under, maps as component planes (rows, cols, dim)."""
-        return {
+        weights: dict[str, NDArray[Any]] = {
             "postures": self.first.postures.planes,
             "velocities": self.first.velocities.planes,
             "arms": self.first.arms.planes,
@@ -110,6 +118,9 @@ class PyramidModel(Model):
             "concept_mean": self.action_map.mean,
             "layer3": self.layer3.weights,
         }
+        if self.heads is not None:
+            weights |= {"completeness_axes": self.heads.axes, "completeness_offsets": self.heads.offsets}
+        return weights
 
     @classmethod
     def restored(cls, metadata: str, arrays: Arrays) -> "PyramidModel":
@@ -123,12 +134,16 @@ class PyramidModel(Model):
         postures, velocities, arms = (Som.of_planes(arrays[name]) for name in ("postures", "velocities", "arms"))
         contrasts = stored.posture_contrast, stored.velocity_contrast, stored.arm_contrast
         durations = stored.log_duration_mean, stored.log_duration_sd
+        heads = None
+        if stored.spotting is not None:
+            heads = CompletenessHeads(arrays["completeness_axes"], arrays["completeness_offsets"])
         return cls(
             FirstMaps(postures, velocities, arms, contrasts, (stored.arm_shares[0], stored.arm_shares[1])),
             StageDiscriminants(arrays["axes"], arrays["offsets"], tuple(stored.fractions), *durations),
             ActionMap(action_som, stored.concept_contrast, arrays["concept_mean"]),
             SupervisedLayer(arrays["layer3"]),
             stored,
+            heads,
         )
 
     @cached_property
@@ -163,6 +178,16 @@ class PyramidModel(Model):
             familiarity=familiarity,
             unknown=complete and familiarity < self.metadata.familiar,
         )
+
+    def spotter(self, options: SpottingOptions) -> PyramidSpotter | None:
+        """Return a search for actions in one person's stream; None where the model was not trained for that."""
+        if self.heads is None or self.metadata.spotting is None:
+            return None
+        return PyramidSpotter(self, SpottingModel(self.heads, self.metadata.spotting), options)
+
+    def pooled(self, frames: Sequence[Frame]) -> NDArray[np.float32]:
+        """Return the pyramid vector of valid frames, each with the activity that its encoder gave, (inputs,)."""
+        return self.pyramid.vector(self.prefix_sums([frame.activity for frame in frames]))
 
     def prefix_sums(self, activities: Sequence[FrameActivity]) -> PrefixSums:
         """Return a segment's prefix sums, of the actor as seen or mirrored."""
@@ -239,6 +264,9 @@ class PyramidModel(Model):
             "its mean": (self.action_map.mean.shape, (units,)),
             "third layer": (self.layer3.weights.shape, (actions, units)),
         }
+        if self.heads is not None:
+            shapes["completeness heads"] = (self.heads.axes.shape, (self.pyramid.cells * first.units, actions))
+            shapes["offsets of these"] = (self.heads.offsets.shape, (actions,))
         wrong = (
             f"its {name} is of shape {has}, not {should}" for name, (has, should) in shapes.items() if has != should
         )

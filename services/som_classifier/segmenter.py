@@ -5,6 +5,7 @@ A segment closes once its posture stream has reached the end, or after two secon
 
 from collections import OrderedDict, deque
 from collections.abc import Callable
+from itertools import chain
 
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
 from actum.messages import Posture, Segment
@@ -13,10 +14,13 @@ from actum.stamps import Order
 from som_classifier.answered_segments import AnsweredSegments
 from som_classifier.frames import Frame
 from som_classifier.segments import ClosedSegment, OpenSegment, why_no_recognition, with_cause
-from som_classifier.streams import Encode, Streams
+from som_classifier.spotting.search import NO_SEARCH, Search, SearchPlan
+from som_classifier.streams import Encode, Stream, Streams
 
 LATE_FOR = 16
 """Segments remembered of those that closed before all their frames had come; their postures are counted as late."""
+MARKED = 256
+"""Closed marked segments remembered, more than anybody marks in minutes: they win over found ones."""
 FAR_FUTURE_NS = 2**62
 """Stands for the end of a segment without one: later than any stamp."""
 NO_END = "start without end: no end within 60 s"
@@ -30,12 +34,13 @@ class Segmenter:
         self._streams = Streams()
         self._open: OrderedDict[str, OpenSegment] = OrderedDict()
         self._answered = AnsweredSegments(counters)
+        self._marked: deque[OpenSegment] = deque(maxlen=MARKED)
         self._late: deque[tuple[int, range]] = deque(maxlen=LATE_FOR)
         self._session: str | None = None
 
-    def use(self, encoders: Callable[[], Encode]) -> None:
-        """Encode every agent's frames by an encoder of its own, those remembered and those to come."""
-        self._streams.use(encoders)
+    def use(self, encoders: Callable[[], Encode], plan: SearchPlan = NO_SEARCH) -> None:
+        """Encode every agent's frames by an encoder of its own, kept ones and those to come; search the latter."""
+        self._streams.use(encoders, plan)
 
     def posture(self, posture: Posture) -> tuple[Frame | None, list[ClosedSegment]]:
         """Take the next posture; return its frame, None if it is stale, and the segments it closes."""
@@ -50,6 +55,7 @@ class Segmenter:
             self._counters.reject("bad_posture", f"{detail}: missing, non-finite or absurd joints or motion")
         if order is Order.RESTART:
             closed += self._close_all("the source started anew")
+            self._marked.clear()
         elif late:
             self._counters.reject("late", f"{detail}, after its segment was answered")
         self._note_progress(posture.stamp_ns)
@@ -78,12 +84,37 @@ class Segmenter:
         """List the open segments of an agent that hold this instant."""
         return [segment for segment in self._open.values() if segment.known_agent == agent and segment.holds(stamp_ns)]
 
+    def search_of(self, agent: int) -> Search | None:
+        """Return the search for unmarked actions in an agent's stream, if there is one."""
+        stream = self._streams.of(agent)
+        return None if stream is None else stream.search
+
+    def is_marked(self, agent: int, start_ns: int, end_ns: int) -> bool:
+        """Tell whether a marked segment, open or answered, shares a frame with these bounds.
+
+        It may be the agent's or, as long as nobody knows whose it is, anybody's.
+        """
+        return any(
+            segment.known_agent in (agent, None) and segment.overlaps(start_ns, end_ns)
+            for segment in chain(self._open.values(), self._marked)
+        )
+
+    def cut(self, found: OpenSegment) -> ClosedSegment:
+        """Close a segment that nobody marked, of a known agent whose frames have come up to its end."""
+        assert found.known_agent is not None
+        stream = self._streams.of(found.known_agent)
+        return found.rejected("no person") if stream is None else _cut(found, found.known_agent, stream)
+
+    def frames_between(self, agent: int, start_ns: int, end_ns: int) -> list[Frame]:
+        """List an agent's frames with start <= stamp <= end."""
+        stream = self._streams.of(agent)
+        return [] if stream is None else stream.between(start_ns, end_ns)
+
     def frames_of(self, segment: OpenSegment) -> list[Frame]:
         """List the frames an open segment holds so far."""
-        stream = None if segment.known_agent is None else self._streams.of(segment.known_agent)
-        if stream is None or segment.start_ns is None:
+        if segment.known_agent is None or segment.start_ns is None:
             return []
-        return stream.between(segment.start_ns, segment.end_ns or FAR_FUTURE_NS)
+        return self.frames_between(segment.known_agent, segment.start_ns, segment.end_ns or FAR_FUTURE_NS)
 
     def _why_no_end(self, segment: OpenSegment) -> str:
         newest_ns = self._streams.newest_ns
@@ -175,13 +206,9 @@ class Segmenter:
             return self._reject(segment, NO_END)
         if stream.newest_ns < segment.end_ns:
             self._late.append((agent, range(start_ns, segment.end_ns + 1)))
-        frames = stream.between(start_ns, segment.end_ns)
-        missed = sum(frame.missed for frame in frames) + stream.missed_after(segment.end_ns)
+        segment.nearest = agent
         self._forget(segment)
-        return ClosedSegment(
-            segment.segment_id, start_ns, segment.end_ns, agent, segment.hand, segment.label, frames, missed,
-            why_no_recognition(frames),
-        )  # fmt: skip
+        return _cut(segment, agent, stream)
 
     def _reject(self, segment: OpenSegment, reason: str) -> ClosedSegment:
         self._forget(segment)
@@ -190,6 +217,7 @@ class Segmenter:
     def _forget(self, segment: OpenSegment) -> None:
         """Move a segment from the open to the answered ones."""
         del self._open[segment.segment_id]
+        self._marked.append(segment)
         self._answered.remember(segment.segment_id, segment.start_ns, segment.end_ns)
 
     def _restart(self, session_id: str) -> list[ClosedSegment]:
@@ -202,6 +230,7 @@ class Segmenter:
         closed = self._close_all("the source started anew")
         self._streams.clear()
         self._answered.clear()
+        self._marked.clear()
         self._late.clear()
         return closed
 
@@ -210,3 +239,15 @@ class Segmenter:
             self._close(segment) if segment.end_ns is not None else self._reject(segment, reason)
             for segment in list(self._open.values())
         ]
+
+
+def _cut(segment: OpenSegment, agent: int, stream: Stream) -> ClosedSegment:
+    """Return a segment that has an end, closed, with the frames of its agent's stream that have come."""
+    assert segment.end_ns is not None
+    start_ns = segment.start_ns if segment.start_ns is not None else 0
+    frames = stream.between(start_ns, segment.end_ns)
+    missed = sum(frame.missed for frame in frames) + stream.missed_after(segment.end_ns)
+    return ClosedSegment(
+        segment.segment_id, start_ns, segment.end_ns, agent, segment.hand, segment.label, frames, missed,
+        why_no_recognition(frames),
+    )  # fmt: skip

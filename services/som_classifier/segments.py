@@ -5,6 +5,7 @@ A segment is the frames with start <= stamp <= end; which belong to it is decide
 
 from dataclasses import dataclass, field
 
+from actum.limits import MAX_SEGMENT_NS
 from actum.messages import Hand, Segment
 from som_classifier.frames import Frame
 
@@ -51,6 +52,13 @@ class OpenSegment:
         return (
             self.start_ns is not None and self.start_ns <= stamp_ns and (self.end_ns is None or stamp_ns <= self.end_ns)
         )
+
+    def overlaps(self, start_ns: int, end_ns: int) -> bool:
+        """Tell whether it shares an instant with these bounds; it lasts no longer than a segment may."""
+        if self.start_ns is None:
+            return False
+        longest_ns = self.start_ns + MAX_SEGMENT_NS
+        return self.start_ns <= end_ns and start_ns <= min(longest_ns, self.end_ns or longest_ns)
 
     def rejected(self, reason: str) -> "ClosedSegment":
         """Return the segment closed, without frames and with the reason for which it is rejected."""

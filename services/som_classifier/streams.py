@@ -10,6 +10,7 @@ from actum.messages import Posture
 from actum.stamps import LostFrames, Order, StampGuard
 from som_classifier.frames import Frame, frame_of
 from som_classifier.kinematics import KinematicsFilter
+from som_classifier.spotting.search import NO_SEARCH, Search, SearchPlan
 
 Encode = Callable[[Frame], Any]
 """Returns what a model needs of a valid frame; called with one agent's frames in order."""
@@ -19,9 +20,14 @@ MEMORY_NS = MAX_SEGMENT_NS + MAX_SKEW_NS
 
 
 class Stream:
-    """One agent's postures, stamps rising."""
+    """One agent's postures, stamps rising.
 
-    def __init__(self, encode: Encode | None = None) -> None:
+    Attributes:
+        search: finds the actions in it that nobody marked; None where a stream is only to be cut by marks.
+    """
+
+    def __init__(self, encode: Encode | None = None, search: Search | None = None) -> None:
+        self.search = search
         self._frames: deque[Frame] = deque()
         self._order = StampGuard()
         self._lost = LostFrames()
@@ -46,6 +52,8 @@ class Stream:
             return order, None
         if order is Order.RESTART:
             self._frames.clear()
+            if self.search is not None:
+                self.search.restart()
         frame = frame_of(posture, self._lost.before(posture.seq, order), self._smoothing)
         self._encode_valid(frame)
         self._frames.append(frame)
@@ -88,13 +96,16 @@ class Streams:
     def __init__(self) -> None:
         self._streams: dict[int, Stream] = {}
         self._encoders: Callable[[], Encode] | None = None
+        self._plan = NO_SEARCH
         self.newest_ns: int | None = None
 
-    def use(self, encoders: Callable[[], Encode]) -> None:
-        """Encode every agent's frames by an encoder of its own, those remembered and those to come."""
-        self._encoders = encoders
+    def use(self, encoders: Callable[[], Encode], plan: SearchPlan = NO_SEARCH) -> None:
+        """Encode every agent's frames by an encoder of its own, kept ones and those to come; search the latter."""
+        self._encoders, self._plan = encoders, plan
         for stream in self._streams.values():
             stream.use(encoders())
+            if stream.search is not None:
+                stream.search.use(plan)
 
     def __iter__(self) -> Iterator[Frame]:
         return chain.from_iterable(self._streams.values())
@@ -111,7 +122,8 @@ class Streams:
     def add(self, posture: Posture) -> tuple[Order, Frame | None]:
         """Keep the next posture of its agent, as `Stream.add` does."""
         if posture.agent not in self._streams:
-            self._streams[posture.agent] = Stream(self._encoders() if self._encoders else None)
+            encode = self._encoders() if self._encoders else None
+            self._streams[posture.agent] = Stream(encode, Search(posture, self._plan))
         order, frame = self._streams[posture.agent].add(posture)
         if frame is not None:
             self._advance(posture.stamp_ns)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 from pydantic.fields import FieldInfo
-from pydantic_settings import CliSettingsSource
+from pydantic_settings import CliSettingsSource, NoDecode
 
 from actum.settings import ServiceSettings
 
@@ -36,13 +36,15 @@ def from_command_line(settings_type: type[S], program: str) -> S:
 def explained(field: FieldInfo) -> str:
     """Return a setting's help: its description, and its default where there is one."""
     default = field.get_default(call_default_factory=True)
-    if default is None or default in ({}, [], ""):
+    if default is None or default in ({}, [], "", frozenset()):
         return field.description or ""
     return f"{field.description} (default: {_worded(default)})"
 
 
 def placeholder(field: FieldInfo) -> str:
     """Return the placeholder after a setting's flag; "" for a switch."""
+    if NoDecode in field.metadata:
+        return PLACEHOLDERS[str]
     annotation = _without_none(field.annotation)
     if get_origin(annotation) is Literal:
         return f"{{{','.join(map(str, get_args(annotation)))}}}"

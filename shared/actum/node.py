@@ -29,12 +29,14 @@ class Tick:
 class Counters:
     """A node's counters: rejected inputs by kind, the text of the newest error, and the node's state in a word or two.
 
-    `details` names the `model`, the `calibration` or the `source` in use, for the message `info`.
+    `counts` is of what else happened and is no fault. `details` names the `model`, the `calibration` or the `source` in
+    use, for the message `info`.
     """
 
     rejects: Counter[str] = field(default_factory=Counter)
     last_error: str | None = None
     state: str = "running"
+    counts: Counter[str] = field(default_factory=Counter)
     details: dict[str, str] = field(default_factory=dict)
 
     def reject(self, kind: str, detail: str = "") -> None:

@@ -4,6 +4,7 @@
 record `actum.recording` holds `person`, `source` and free fields.
 """
 
+import json
 from collections import Counter
 from collections.abc import Collection, Iterator
 from functools import cache, cached_property
@@ -25,6 +26,8 @@ __all__ = ["Recorder", "Recording", "RecordingError"]
 
 METADATA = "actum.recording"
 """The name of the metadata record."""
+ACTION_POINTS = "action_points_ns"
+"""The metadata field of annotated action points: a JSON object with a stamp (ns) for each segment's id."""
 MESSAGE_ENCODING = "msgpack"
 """MCAP's name for the encoding of the messages."""
 SCHEMA_ENCODING = "jsonschema"
@@ -99,7 +102,7 @@ class Recorder:
     def _schema(self, message: Message) -> int:
         name = codec.schema_name(message)
         if name not in self._schemas:
-            self._schemas[name] = self._writer.register_schema(name, SCHEMA_ENCODING, _json_schema(type(message)))
+            self._schemas[name] = self._writer.register_schema(name, SCHEMA_ENCODING, json_schema(type(message)))
         return self._schemas[name]
 
     def _finish(self) -> None:
@@ -135,6 +138,20 @@ class Recording:
     def source(self) -> str:
         """Where the recording comes from, or "" where the file does not say."""
         return self.metadata.get("source", "")
+
+    @property
+    def action_points_ns(self) -> dict[str, int]:
+        """The annotated action points, the instants at which actions can be recognised, by segment id; mostly none.
+
+        Raises:
+            RecordingError: the field of the metadata is not of its form.
+        """
+        try:
+            points: dict[str, int] = json.loads(self.metadata.get(ACTION_POINTS, "{}"))
+            return {segment_id: int(stamp_ns) for segment_id, stamp_ns in points.items()}
+        except (ValueError, TypeError, AttributeError):
+            problem = f"{ACTION_POINTS} in its metadata is no JSON object of a stamp for each segment's id"
+            raise RecordingError(self.path, problem, "import it anew") from None
 
     @cached_property
     def topics(self) -> frozenset[keys.Topic]:
@@ -190,7 +207,8 @@ class Recording:
 
 
 @cache
-def _json_schema(kind: type[Message]) -> bytes:
+def json_schema(kind: type[Message]) -> bytes:
+    """Return the JSON Schema that stands in a recording beside messages of a kind."""
     return schemas.committed(schemas.file_name(kind)).encode()
 
 

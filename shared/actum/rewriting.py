@@ -1,8 +1,9 @@
-"""Rewrites a recording with some messages changed or left out; all other records are copied unchanged."""
+"""Rewrites a recording with some messages changed, left out or added; all other records are copied unchanged."""
 
 import os
 import shutil
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import BinaryIO, cast
@@ -10,15 +11,26 @@ from typing import BinaryIO, cast
 from mcap.records import Attachment, Channel, Header, McapRecord, Message, Metadata, Schema
 from mcap.writer import Writer
 
+from actum import codec, messages
 from actum.mcap_file import McapFile, StoredMessage, encoding_of
-from actum.recording import CHUNK_BYTES
+from actum.recording import CHUNK_BYTES, MESSAGE_ENCODING, SCHEMA_ENCODING, json_schema
 
 Change = Callable[[StoredMessage], StoredMessage | None]
 """Returns the message to write in place of the given one (only payload and stamp count), or None to leave it out."""
 
 
-def rewrite(path: Path, change: Change) -> None:
+def unchanged(stored: StoredMessage) -> StoredMessage:
+    """Return the message as it is: the change that changes nothing."""
+    return stored
+
+
+def rewrite(path: Path, change: Change, added: Iterable[messages.Message] = ()) -> None:
     """Write the changed recording to a temporary file beside it, which replaces it once complete.
+
+    Args:
+        path: the recording.
+        change: what becomes of each message.
+        added: messages with stamps, written behind all others; readers sort by stamp.
 
     Raises:
         RecordingError: the file is no recording, or damaged.
@@ -28,7 +40,7 @@ def rewrite(path: Path, change: Change) -> None:
     with NamedTemporaryFile("wb", dir=target.parent, prefix=f"{target.name}.", suffix=".part", delete=False) as file:
         temporary = Path(file.name)
         try:
-            _copy(McapFile(path), cast(BinaryIO, file), change)
+            _copy(McapFile(path), cast(BinaryIO, file), change, added)
             file.flush()
             os.fsync(file.fileno())
             shutil.copymode(target, temporary)
@@ -38,11 +50,13 @@ def rewrite(path: Path, change: Change) -> None:
             raise
 
 
-def _copy(source: McapFile, file: BinaryIO, change: Change) -> None:
+def _copy(source: McapFile, file: BinaryIO, change: Change, added: Iterable[messages.Message]) -> None:
     writer = Writer(file, chunk_size=CHUNK_BYTES)
     copying = _Copying(writer, change)
     for record in source.records():
         copying.take(record)
+    for message in added:
+        copying.add(message)
     writer.finish()  # type: ignore[no-untyped-call]
 
 
@@ -56,6 +70,8 @@ class _Copying:
         self._schema_names: dict[int, str] = {}
         self._channels: dict[int, int] = {}
         self._channel_records: dict[int, Channel] = {}
+        self._numbers: Counter[str] = Counter()
+        self._new_channels: dict[str, int] = {}
 
     def take(self, record: McapRecord) -> None:
         match record:
@@ -78,8 +94,34 @@ class _Copying:
                     record.create_time, record.log_time, record.name, record.media_type, record.data
                 )
 
+    def add(self, message: messages.Message) -> None:
+        """Write a message on the channel of its key, a new one where there is none."""
+        assert message.stamp_ns is not None
+        frame = codec.encode(message)
+        self._writer.add_message(
+            channel_id=self._channel_of(frame, message),
+            log_time=message.stamp_ns,
+            data=frame.payload,
+            publish_time=message.stamp_ns,
+            sequence=self._numbers[frame.key],
+        )
+        self._numbers[frame.key] += 1
+
+    def _channel_of(self, frame: codec.Frame, message: messages.Message) -> int:
+        for number, channel in self._channel_records.items():
+            if channel.topic == frame.key and channel.metadata.get("encoding") == frame.encoding:
+                return self._channels[number]
+        if frame.key not in self._new_channels:
+            name = codec.schema_name(message)
+            schema = self._writer.register_schema(name, SCHEMA_ENCODING, json_schema(type(message)))
+            self._new_channels[frame.key] = self._writer.register_channel(
+                frame.key, MESSAGE_ENCODING, schema, {"encoding": frame.encoding}
+            )
+        return self._new_channels[frame.key]
+
     def _message(self, record: Message) -> None:
         channel = self._channel_records[record.channel_id]
+        self._numbers[channel.topic] = max(self._numbers[channel.topic], record.sequence + 1)
         encoding = encoding_of(channel, self._schema_names.get(channel.schema_id, ""))
         changed = self._change(StoredMessage(record.publish_time, channel.topic, record.data, encoding))
         if changed is not None:

@@ -251,3 +251,20 @@ def test_a_file_that_is_no_mcap_is_an_error(tmp_path: Path, content: bytes) -> N
 def test_a_missing_file_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="No such file"):
         Recording(tmp_path / "a.mcap")
+
+
+def test_action_points_are_read_from_the_metadata(tmp_path: Path) -> None:
+    with Recorder(tmp_path / "a.mcap", person="1", source="test", action_points_ns='{"x-01": 5}'):
+        pass
+    with Recorder(tmp_path / "b.mcap", person="1", source="test"):
+        pass
+    assert Recording(tmp_path / "a.mcap").action_points_ns == {"x-01": 5}
+    assert Recording(tmp_path / "b.mcap").action_points_ns == {}
+
+
+@pytest.mark.parametrize("points", ["", "[1]", '{"x": "soon"}', '{"x": null}'])
+def test_action_points_of_another_form_are_an_error_that_names_the_file(tmp_path: Path, points: str) -> None:
+    with Recorder(tmp_path / "a.mcap", person="1", source="test", action_points_ns=points):
+        pass
+    with pytest.raises(RecordingError, match=r"a\.mcap: action_points_ns in its metadata is no JSON object"):
+        _ = Recording(tmp_path / "a.mcap").action_points_ns

@@ -1,3 +1,4 @@
+import json
 import re
 import signal
 import socket
@@ -12,12 +13,14 @@ import typer
 from typer.testing import CliRunner
 
 from actum import __version__
-from actum.recording import Recorder
+from actum.messages import Segment
+from actum.recording import Recorder, Recording
 from actum.runtime import RouterUnreachableError
 from actum.settings import ServiceSettings
 from actum_command import processes
 from actum_command.__main__ import app
 from actum_command.commands import (
+    continuous_evaluation,
     demo_command,
     recording_options,
     segment_commands,
@@ -26,8 +29,10 @@ from actum_command.commands import (
     training_commands,
 )
 from actum_command.preset_settings import preset_named
+from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from people import FRAME_NS
 from performers import mark, performance
+from recognisers import tiny_model
 from som_classifier.attention import PostureInput
 from som_classifier.presets import PAPER, PaperPreset
 
@@ -186,6 +191,49 @@ def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
     command = ["evaluate", str(tmp_path / "m.npz"), str(tmp_path / "a.mcap"), "--json", str(report)]
     assert "accuracy" in runner.invoke(app, command).output
     assert '"predictions"' in report.read_text()
+
+
+def test_a_model_that_cannot_find_actions_by_itself_says_what_to_do(examples: Path, tmp_path: Path) -> None:
+    model = str(tmp_path / "m.npz")
+    assert CliRunner().invoke(app, ["train", str(examples), "-o", model, "--preset", "paper"]).exit_code == 0
+    assert "cannot find actions without marks; train it anew" in refusal(
+        "evaluate", "--continuous", model, str(examples)
+    )
+
+
+def test_what_is_found_without_marks_is_told_and_written(
+    examples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No model is needed to see how it is told: this one finds the first action alone."""
+
+    def found(_model: object, _recordings: object, _progress: object) -> Found:
+        return Found([first], [truth, truth_missed], [Stretch("a.mcap", 1, 0, 60 * 10**9)])
+
+    first = Detection("a.mcap", 1, 0, 10**9, 2 * 10**9, "lift", 0.9)
+    truth, truth_missed = Truth("a.mcap", 1, 0, 10**9, "lift"), Truth("a.mcap", 1, 5 * 10**9, 6 * 10**9, "push")
+    monkeypatch.setattr(training_commands, "load_model", lambda _: tiny_model())
+    monkeypatch.setattr(continuous_evaluation, "found_by", found)
+    report = tmp_path / "report.json"
+    done = CliRunner().invoke(app, ["evaluate", "--continuous", "m.npz", str(examples), "--json", str(report)])
+    assert "1 of 2 actions found, 0 false detections" in done.output
+    written = json.loads(report.read_text())
+    assert (written["detections"][0]["label"], written["truths"][1]["label"]) == ("lift", "push")
+    assert written["scores"]["event_f1"] == pytest.approx(2 / 3)
+
+
+def test_everyday_doings_lengthen_an_example_and_are_not_marked(tmp_path: Path) -> None:
+    def simulated(*choices: str) -> tuple[float, int]:
+        path = tmp_path / f"{choices[1]}.mcap"
+        assert CliRunner().invoke(app, ["simulate", str(path), "--repetitions", "1", *choices]).exit_code == 0
+        messages = list(Recording(path).messages())
+        return messages[-1].stamp_ns / 1e9, sum(isinstance(message, Segment) for message in messages)
+
+    plain_s, marks = simulated("--everyday", "none")
+    lively_s, marks_among_doings = simulated("--everyday", "familiar")
+    idle_s, marks_without_actions = simulated("--everyday", "only", "--minutes", "2")
+    assert lively_s > 2 * plain_s
+    assert marks == marks_among_doings == 10
+    assert (idle_s >= 120, marks_without_actions) == (True, 0)
 
 
 def test_an_unknown_topic_to_watch_is_refused_with_the_known_ones() -> None:

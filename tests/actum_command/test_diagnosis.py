@@ -14,7 +14,11 @@ from actum_command import __main__, diagnosis
 from actum_command.commands import doctor_command
 from actum_command.commands.doctor_command import show
 from actum_command.diagnosis import EXPECTED, Finding, examine
+from recognisers import tiny_model
 from scene_simulator.endless_simulator import DESCRIPTION
+from som_classifier.spotting.spotted import SpottingOptions
+from som_classifier.wishes import CANNOT, NO_BACKGROUND, Wishes
+from spotters import finding
 
 
 def status(service: str, **fields: Any) -> Status:
@@ -200,3 +204,24 @@ def test_a_state_that_looks_like_markup_is_shown_as_it_is(monkeypatch: pytest.Mo
     code, output = diagnosed(monkeypatch, System(status("som_classifier", state="camera lost [/x]")))
     assert code == 1
     assert "som_classifier: camera lost [/x]" in output
+
+
+def test_what_a_model_cannot_is_told_and_is_no_problem(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The states are those of the classifier, so that they are known again."""
+    for note in (CANNOT, NO_BACKGROUND):
+        code, output = diagnosed(monkeypatch, System(status("som_classifier", state=f"running; {note}")))
+        assert code == 0
+        assert f"som_classifier: {note}\n" in output
+
+
+def test_settings_that_have_no_effect_are_a_problem() -> None:
+    model, wrong = tiny_model(), SpottingOptions(disabled=frozenset({"wvae"}))
+    searching = Wishes(options=wrong).state(finding(model))
+    for state in (Wishes("auto").state(model), searching):
+        assert examined(state=state).problems == (f"som_classifier: {state}",)
+
+
+def test_what_was_found_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert examined(counts={"found": 3, "told": 2}).counts == "found 3, told 2"
+    _, output = diagnosed(monkeypatch, System(status("som_classifier")))
+    assert "counted" not in output

@@ -7,7 +7,7 @@ import pytest
 
 from actum import keys
 from actum.joining import PAUSE_NS
-from actum.messages import REPLAY, Image, Message, Objects, Posture, Segment, Skeleton
+from actum.messages import AUTO, REPLAY, Image, Message, Objects, Posture, Segment, Skeleton
 from actum.recording import Recorder, Recording
 from actum_command.playing import playable_topics, schedule
 from empty_messages import action, image, mark, skeleton
@@ -129,3 +129,10 @@ def test_the_viewpoint_can_be_renamed(record: Record) -> None:
 def test_a_played_mark_says_that_it_is_one(record: Record) -> None:
     played = schedule([record("first", mark("start", 1, origin="manual"), mark("end", 2))], "play", start_ns=0)
     assert [message.origin for message in played if isinstance(message, Segment)] == [REPLAY, REPLAY]
+
+
+def test_what_a_classifier_has_found_is_left_to_be_found_again(record: Record) -> None:
+    found = [mark("start", 1, "auto-1", origin=AUTO), mark("end", 2, "auto-1", origin=AUTO)]
+    recording = record("first", skeleton(1), mark("start", 1), *found, skeleton(2), mark("end", 2))
+    played = schedule([recording], "play", start_ns=0)
+    assert [m.segment_id for m in played if isinstance(m, Segment)] == ["one", "one"]

@@ -1,5 +1,6 @@
 """`actum record` and `actum play` tell what they did, and what they could not."""
 
+import sys
 import threading
 from pathlib import Path
 
@@ -10,13 +11,15 @@ from mcap.writer import Writer
 from typer.testing import CliRunner
 
 from actum import codec, keys
-from actum.messages import MANUAL, SIMULATOR, Message
+from actum.messages import CUT, MANUAL, SIMULATOR, Message, Segment
 from actum.recording import Recorder, Recording
 from actum.runtime import Received
-from actum_command import streaming
+from actum_command import repetition_recorder, streaming
 from actum_command.__main__ import app
 from actum_command.commands import recording_commands
 from empty_messages import image, mark, skeleton, status
+from repeating import FRAME_NS as REPEATED_FRAME_NS
+from repeating import five_waves, rest
 
 
 class Live:
@@ -104,6 +107,50 @@ def test_whose_actions_are_stored_and_whose_are_not_is_told(live: Live, tmp_path
     assert "3 marked actions" in told
     assert "1 marked by simulator, without a label" in told
     assert "left out" not in told
+
+
+def test_what_is_done_five_times_is_counted_cut_and_shown(live: Live, tmp_path: Path) -> None:
+    stream = five_waves().then(rest(6))
+    live.comes(*stream.skeletons(), mark("start", 2, "mine", origin=MANUAL))
+    told = actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5, "--person", "anna").stdout
+    assert "do 'wave' 5 times" in told
+    assert "5 of 5" in told
+    assert "that was the last: stopping" in told
+    assert "5 marked by cut, labelled 'wave'" in told
+    assert "  sure: " in told
+    recording = Recording(tmp_path / "a.mcap")
+    marks = [message for message in recording.messages((keys.SEGMENT,)) if isinstance(message, Segment)]
+    assert recording.person == "anna"
+    assert [(each.segment_id, each.kind, each.origin) for each in marks] == [
+        (f"cut-{number}", kind, CUT) for number in range(1, 6) for kind in ("start", "end")
+    ]
+    near_ns = [first * REPEATED_FRAME_NS for first, _ in stream.truths]
+    assert [each.stamp_ns for each in marks[::2]] == pytest.approx(near_ns, abs=4e8)
+
+
+def test_what_is_repeated_with_nobody_there_is_told(live: Live, tmp_path: Path) -> None:
+    live.comes(skeleton(1))
+    assert "nobody was seen moving" in actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5).stdout
+
+
+def test_times_need_a_label(live: Live, tmp_path: Path) -> None:
+    assert "--times needs --label" in refused("record", tmp_path / "a.mcap", "--times", 5)
+
+
+def test_marks_by_hand_are_stored_beside_the_cuts_where_they_are_asked_for(live: Live, tmp_path: Path) -> None:
+    live.comes(*five_waves().skeletons(), mark("start", 2, "mine", origin=MANUAL), mark("end", 3, "mine"))
+    told = actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5, "--marks", "manual").stdout
+    assert "1 marked by manual" in told
+    assert "5 marked by cut" in told
+
+
+def test_a_kill_before_the_end_leaves_no_recording_of_that_name(live: Live, tmp_path: Path) -> None:
+    live.comes(*five_waves().skeletons())
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(repetition_recorder, "cut", lambda *_: sys.exit("killed"))
+        actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5)
+    assert [path.name for path in tmp_path.iterdir()] == ["a.mcap.part"]
+    assert list(Recording(tmp_path / "a.mcap.part").messages())
 
 
 def test_what_came_before_the_stop_is_stored(live: Live, tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from mcap.reader import make_reader
 
 from actum import keys
 from actum.limits import MAX_SKEW_NS
-from actum.messages import MANUAL, REPLAY, SIMULATOR, Image, Message, Segment, Skeleton, Truth
+from actum.messages import AUTO, MANUAL, REPLAY, SIMULATOR, Image, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS, Counters
 from actum.recording import Recorder, Recording
 from actum_command.commands import segment_commands
@@ -170,3 +170,14 @@ def test_the_scene_and_the_switch_say_that_marks_are_theirs() -> None:
     assert segment_commands._mark("start", "a").origin == MANUAL
     labelled = labelled_stream(Simulator(balanced_programme(1, 0), image_hz=0))
     assert next(m for m in labelled if isinstance(m, Segment)).origin == SIMULATOR
+
+
+def test_what_the_classifier_has_found_is_recorded_on_request(take: Take) -> None:
+    """Without a label nothing is learnt from it; the label of the recording names it as it names a mark by hand."""
+    found = [mark("start", 7, "auto-1", origin=AUTO), mark("end", 9, "auto-1", origin=AUTO)]
+    stream = [skeleton(10), *found, action(7, 9, "auto-1")]
+    assert take.marks(*stream) == []
+    take.path.unlink()
+    recorded = take.record(*stream, origins=(MANUAL, AUTO), label="wave")
+    marks = [(m.kind, m.label, m.origin) for m in recorded if isinstance(m, Segment)]
+    assert marks == [("start", "wave", AUTO), ("end", None, AUTO)]

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from actum.messages import Message, Segment, Skeleton
+from actum.messages import AUTO, MANUAL, Message, Segment, Skeleton
 from actum.recording import Recorder, Recording
 from actum_command.__main__ import app
 from actum_model_trainer.samples import samples_from
@@ -133,3 +133,21 @@ def test_a_recording_without_marks_says_so(tmp_path: Path) -> None:
         == f"{tmp_path / 'bare.mcap'}, person (unknown)\n  no marked action\n0 marked actions, 0 usable\n"
     )
     assert "nothing is marked" in refused("drop", tmp_path / "bare.mcap", "a")
+
+
+def test_what_a_classifier_has_found_is_listed_and_becomes_the_users_once_mended(tmp_path: Path) -> None:
+    found = [
+        mark(kind, frame * FRAME_NS, name).model_copy(update={"origin": AUTO})
+        for name, first in (("auto-1", 0), ("auto-2", 30))
+        for kind, frame in (("start", first), ("end", first + 20))
+    ]
+    path = tmp_path / "found.mcap"
+    with Recorder(path, person="anna", source="test") as recorder:
+        for message in [*reaches(FRAMES), *found]:
+            recorder.write(message)
+    assert "not usable: no label" in takes(path)
+    takes("relabel", path, "auto-1", "wave")
+    takes("trim", path, "auto-2", "--start", "0.1")
+    assert {m.origin for m in Recording(path).messages() if isinstance(m, Segment)} == {MANUAL}
+    (sample,) = samples_from([Recording(path)]).usable
+    assert (sample.segment_id, sample.label) == ("auto-1", "wave")

@@ -7,7 +7,7 @@ import pytest
 
 from actum.messages import Action, Agent, Message, Posture, Segment, Skeleton
 from actum.node import SECOND_NS, TICK_NS, Node, Tick
-from node_cases import CASES, NOON_NS, Case
+from node_cases import CASES, FINDING, NOON_NS, Case
 
 MINUTE_S = 60
 FILLED_S = 70
@@ -54,7 +54,8 @@ def traced() -> Iterator[None]:
 
 @pytest.mark.parametrize(
     ("case", "renumbered"),
-    [(case, False) for case in CASES] + [(case, True) for case in CASES if case.name != "marker_tracker"],
+    [(case, False) for case in [*CASES, FINDING]]
+    + [(case, True) for case in [*CASES, FINDING] if case.name != "marker_tracker"],
     ids=lambda value: {False: "one person", True: "renumbered every second"}.get(value) or repr(value),
 )
 @pytest.mark.usefixtures("traced")

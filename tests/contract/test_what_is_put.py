@@ -9,12 +9,13 @@ from hypothesis import strategies as st
 from actum import keys, messages
 from actum.messages import Info, Message, Status, Truth
 from actum.node import SECOND_NS, TICK_NS, Tick
-from node_cases import CASES, Case, every_node
+from node_cases import CASES, Case, every_node_finding_too
 from wire import Wire, packed
 
 PUTS = {
     "pose_preprocessor": r"actum/kinect0/posture/\d+",
     "som_classifier": r"actum/kinect0/action/\d+",
+    "som_classifier that finds segments": r"actum/kinect0/(segment|action/\d+)",
     "marker_tracker": r"actum/kinect0/objects",
     "action_fusion": r"actum/kinect0/event/\d+",
 }
@@ -33,14 +34,14 @@ STRANGERS: tuple[Message, ...] = (
 )  # fmt: skip
 
 
-@every_node
+@every_node_finding_too
 def test_it_puts_on_its_own_keys(case: Case) -> None:
     outputs = Wire(case.build()).send(*case.messages())
     assert outputs
     assert all(re.fullmatch(PUTS[case.name], keys.key_of(output)) for output in outputs)
 
 
-@every_node
+@every_node_finding_too
 @settings(max_examples=10)
 @given(seed=st.integers(), share=st.floats(0.5, 1.0))
 def test_the_same_input_gives_the_same_output_to_the_last_bit(case: Case, seed: int, share: float) -> None:
@@ -57,7 +58,7 @@ def test_the_same_input_gives_the_same_output_to_the_last_bit(case: Case, seed: 
     assert outputs() == outputs()
 
 
-@every_node
+@every_node_finding_too
 def test_what_is_not_meant_for_it_is_met_with_silence(case: Case) -> None:
     taken = tuple(topic.message for topic in case.build().inputs)
     foreign = [m for other in CASES for m in other.one_of_each() if not isinstance(m, taken)] + list(STRANGERS)
@@ -68,7 +69,7 @@ def test_what_is_not_meant_for_it_is_met_with_silence(case: Case) -> None:
     assert list(map(packed, disturbed.send(*case.messages()))) == list(map(packed, alone.send(*case.messages())))
 
 
-@every_node
+@every_node_finding_too
 def test_idle_ticks_by_the_thousand_change_nothing(case: Case) -> None:
     ticked, alone = Wire(case.build()), Wire(case.build())
     assert not any(ticked.handle(Tick(i)) for i in range(0, 10**4 * TICK_NS, TICK_NS))

@@ -1,8 +1,12 @@
-"""The rate of the scene's images can be given as text: by a flag or by the environment."""
+"""The settings of the simulated scene, given as flags or by the environment."""
+
+from itertools import islice, pairwise
 
 import pytest
 from pydantic import ValidationError
 
+from actum.messages import Skeleton, Truth
+from scene_simulator.endless_simulator import simulator_of
 from scene_simulator.settings import Settings
 
 
@@ -17,3 +21,29 @@ def test_other_rates_are_refused(rate: str, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setenv("ACTUM_IMAGE_HZ", rate)
     with pytest.raises(ValidationError, match="image_hz"):
         Settings()
+
+
+@pytest.mark.parametrize(
+    ("chosen", "agents", "has_truth"),
+    [
+        ({}, 1, True),
+        ({"everyday": "all"}, 1, True),
+        ({"everyday": "only"}, 1, False),
+        ({"everyday": "familiar", "actors": 4}, 4, True),
+    ],
+)
+def test_doings_and_people_of_a_scene_are_chosen_by_settings(chosen: dict, agents: int, has_truth: bool) -> None:
+    settings = Settings(image_hz=0, repetitions=1, minutes=1.0, **chosen)
+    messages = [message for frame in simulator_of(settings, start_ns=0).frames() for message in frame]
+    skeletons = [message for message in messages if isinstance(message, Skeleton)]
+
+    assert len(skeletons[0].agents) == agents
+    assert any(isinstance(message, Truth) for message in messages) == has_truth
+    assert len(skeletons) >= 60 * 30 or not chosen
+
+
+def test_everyday_doings_without_an_end_go_on_in_one_stream_of_rising_stamps() -> None:
+    endless = simulator_of(Settings(image_hz=0, everyday="only", minutes=0.2), start_ns=0)
+    stamps_ns = [messages[-1].stamp_ns for messages in islice(endless.frames(), 2 * 60 * 30)]
+
+    assert all(before < after for before, after in pairwise(stamps_ns))

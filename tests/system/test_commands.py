@@ -13,6 +13,8 @@ from actum.recording import Recording
 from actum.runtime import Listening
 from live import PATIENCE_S, System, collect, wait_until
 from people import FRAME_NS, reaches
+from scene_simulator.programme import Task
+from scene_simulator.simulator import Simulator
 
 pytestmark = pytest.mark.system
 QUICK_DEMO = Path(__file__).parents[1] / "quick_demo.py"
@@ -158,6 +160,30 @@ def test_what_is_recorded_holds_the_streams_and_the_resolved_marks(
         ("start", final.start_ns, "push"),
         ("end", final.end_ns, None),
     ]
+
+
+def test_what_is_done_five_times_in_the_scene_is_recorded_until_the_last_and_labelled(
+    running: System, tmp_path: Path
+) -> None:
+    running.start_router()
+    file, killed = tmp_path / "five.mcap", tmp_path / "killed.mcap"
+    simulator = Simulator([Task("put", 1)] * 5, actor_seed=3, seed=3, image_hz=0, tail_s=10.0)
+    with running.client() as client:
+        told = ("--person", "anna", "--label", "put", "--times", "5")
+        record = running.start("actum_command", "record", str(file), *told)
+        other = running.start("actum_command", "record", str(killed), *told)
+        for each in (record, other):
+            wait_until(lambda each=each: "5 times" in each.said(), "it records")
+        for number, messages in enumerate(simulator.frames()):
+            client.put(messages[-1])
+            if number == 600:
+                other.process.kill()
+        assert record.process.wait(timeout=PATIENCE_S) == 0
+    assert "that was the last: stopping" in record.said()
+    marks = [mark for mark in Recording(file).messages((keys.SEGMENT,)) if isinstance(mark, Segment)]
+    assert [(mark.kind, mark.origin) for mark in marks] == [("start", "cut"), ("end", "cut")] * 5
+    assert {mark.label for mark in marks[::2]} == {"put"}
+    assert not killed.exists()
 
 
 @pytest.mark.timeout(240)

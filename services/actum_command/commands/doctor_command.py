@@ -23,6 +23,8 @@ def doctor() -> None:
     with connect() as client:
         findings = examine(client)
     show(findings, console)
+    for remark in (remark for finding in findings for remark in finding.remarks):
+        say(remark, style="yellow")
     problems = [*misspelt(os.environ), *(problem for finding in findings for problem in finding.problems)]
     for problem in problems:
         say(problem, style="red")
@@ -68,15 +70,17 @@ def _coloured(finding: Finding, text: str) -> str:
 
 
 def _columns(findings: list[Finding]) -> dict[str, Callable[[Finding], str]]:
-    """Return the function that reads each column from a finding, by heading; drops only where there are any."""
+    """Return the function that reads each column from a finding, by heading; rare ones only where there are any."""
     columns: dict[str, Callable[[Finding], str]] = {
         "version": attrgetter("version"),
         "state": attrgetter("state"),
         "rates (Hz)": attrgetter("rates"),
         "rejected": attrgetter("rejects"),
         "dropped": attrgetter("drops"),
+        "counted": attrgetter("counts"),
         "latency p50/p99 (ms)": attrgetter("latency"),
     }
-    if not any(finding.drops for finding in findings):
-        del columns["dropped"]
+    for rare in ("dropped", "counted"):
+        if not any(columns[rare](finding) for finding in findings):
+            del columns[rare]
     return columns

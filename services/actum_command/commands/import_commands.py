@@ -17,6 +17,8 @@ from actum_dataset_importer.importing import (
     import_bimacs,
     import_msr_action3d,
     import_msrc12,
+    import_msrc12_composed,
+    import_msrc12_trimmed,
     import_utkinect,
     import_video,
 )
@@ -43,9 +45,22 @@ def utkinect(source: Source, out: Out) -> None:
 
 
 @app.command("msrc12")
-def msrc12(source: Source, out: Out) -> None:
+def msrc12(
+    source: Source,
+    out: Out,
+    trimmed: Annotated[
+        bool, typer.Option("--trimmed", help="segments from where a gesture starts to where it ends, as far as is seen")
+    ] = False,
+    composed: Annotated[
+        bool,
+        typer.Option("--composed", help="two streams of each person instead, all gestures mixed, trimmed likewise"),
+    ] = False,
+) -> None:
     """Import MSRC-12: one recording per stream, with a labelled segment of up to 3 s about each action point."""
-    _run(import_msrc12, source, out)
+    if trimmed and composed:
+        fail("composed streams are trimmed anyway: name one of --trimmed and --composed")
+    importer = import_msrc12_composed if composed else import_msrc12_trimmed if trimmed else import_msrc12
+    _run(importer, source, out)
 
 
 @app.command("bimacs")

@@ -1,5 +1,6 @@
 """`actum record` and `actum play`: streams to files and back."""
 
+import threading
 import time
 from collections import Counter
 from pathlib import Path
@@ -8,11 +9,13 @@ from typing import Annotated
 import typer
 
 from actum import keys
-from actum.messages import MANUAL
+from actum.messages import CUT, MANUAL
 from actum.recording import Recorder, RecordingError
 from actum.runtime import stop_on_signals
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
 from actum_command.commands.terminal import connect, fail, refuse_ending, refuse_unwritable, say
+from actum_command.cut_lines import cut_lines
+from actum_command.repetition_recorder import RepetitionRecorder
 from actum_command.stream_recorder import IMAGES, STREAMS, StreamRecorder
 from actum_command.streaming import put_all, store_all
 
@@ -25,29 +28,74 @@ def record(
     output: Annotated[Path, typer.Argument(help="the file to write")],
     person: Annotated[str, typer.Option(help="who acts; kept in the file, used to split training from test")] = "",
     label: Annotated[str | None, typer.Option(help="what is done in the segments marked while recording")] = None,
+    times: Annotated[
+        int | None, typer.Option(min=2, help="how often --label is done in front of the camera: it is cut by itself")
+    ] = None,
     marks: Annotated[
-        str, typer.Option(help="whose marks are stored: manual (yours and your programs'), simulator, replay; or all")
-    ] = MANUAL,
+        str | None,
+        typer.Option(
+            help="whose marks are stored: manual (yours and your programs'), simulator, replay, auto (found by the "
+            "classifier); or all  "
+            "[default: manual, with --times none]"
+        ),
+    ] = None,
     images: Annotated[bool, typer.Option(help="also store images (faces are personal data)")] = False,
     seconds: Annotated[float | None, typer.Option(min=0, help="stop by itself; default: at Ctrl-C")] = None,
 ) -> None:
-    """Record a sensor's streams and your marks to a file."""
+    """Record a sensor's streams and your marks to a file; with --times, mark the repetitions of one action."""
     refuse_unwritable(output)
     refuse_ending(output, ".mcap")
     if output.exists():
         fail(f"{output} is there already: name another file, or remove it")
-    origins = None if marks == ALL else [origin.strip() for origin in marks.split(",")]
+    if times is not None and label is None:
+        fail("--times needs --label: what is done so many times?")
     stop = stop_on_signals()
     deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
+    topics = STREAMS | IMAGES if images else STREAMS
     try:
         with connect() as client, Recorder(output, person=person, source=client.sensor) as recorder:
-            stream = StreamRecorder(recorder, STREAMS | IMAGES if images else STREAMS, label, origins)
+            stream = StreamRecorder(recorder, topics, label, _origins(marks, times))
             listening = client.listen(keys.everything(client.sensor))
             say(f"recording actum/{client.sensor}/** to {output}; Ctrl-C ends")
-            store_all(listening, stream, stop, deadline_s)
+            storing = stream if times is None or label is None else _repeating(stream, label, times, stop)
+            store_all(listening, storing, stop, deadline_s)
     except OSError as error:
         fail(f"{output} cannot be written ({error.strerror}); what there is lies in {output}.part")
     _report(stream, output, label)
+    if isinstance(storing, RepetitionRecorder):
+        _report_cuts(storing, output)
+
+
+def _origins(marks: str | None, times: int | None) -> list[str] | None:
+    """Return the origins of the marks to store, None for all."""
+    if marks == ALL:
+        return None
+    named = MANUAL if marks is None and times is None else marks or ""
+    return [origin.strip() for origin in named.split(",") if origin.strip()] + ([CUT] if times is not None else [])
+
+
+def _repeating(stream: StreamRecorder, label: str, times: int, stop: threading.Event) -> RepetitionRecorder:
+    """Tell the person what to do, and return what counts it and stops at the end."""
+    say(f"do {label!r} {times} times and stand still for a second or two before each; stand still at the end", "bold")
+
+    def done() -> None:
+        if not stop.is_set():
+            say("that was the last: stopping")
+        stop.set()
+
+    return RepetitionRecorder(stream, label, times, lambda count: say(f"{min(count, times)} of {times}"), done)
+
+
+def _report_cuts(repeating: RepetitionRecorder, output: Path) -> None:
+    """Print the cuts, what may be wrong with them, and how to mend it."""
+    if repeating.cuts is None or repeating.first_ns is None:
+        say("nobody was seen moving, so nothing was cut", style="yellow")
+        return
+    for line in cut_lines(repeating.cuts, repeating.first_ns):
+        say(line)
+    for doubt in repeating.cuts.doubts:
+        say(doubt, style="yellow")
+    say(f"see them: actum label picture {output} -o {output.with_suffix('.png')}; mend them: actum label --help")
 
 
 def _report(stream: StreamRecorder, output: Path, label: str | None) -> None:

@@ -2,12 +2,14 @@
 
 import json
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from actum.recording import RecordingError
+from actum.recording import Recording, RecordingError
+from actum_command.commands.continuous_evaluation import evaluate_continuously
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
 from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say
@@ -16,8 +18,9 @@ from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import Evaluation, evaluate
 from actum_model_trainer.report import report
 from actum_model_trainer.samples import samples_from
-from actum_model_trainer.training import TrainingError, train
+from actum_model_trainer.training import TrainingError, train_to_spot
 from actum_model_trainer.warnings import warnings_of
+from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
 
@@ -52,7 +55,7 @@ def train_command(
             say(f"left out {unusable.segment_id} of {unusable.file}: {unusable.reason}")
         tell_unread(recordings)
         with bars() as progress:
-            model = train(samples.usable, chosen_preset, seed, progress)
+            model = train_to_spot(samples.usable, samples.streams, chosen_preset, seed, progress)
         model.save(output)
     except (RecordingError, TrainingError, OSError) as error:
         fail(str(error))
@@ -64,12 +67,15 @@ def train_command(
         say(warning, style="yellow")
 
 
-def evaluate_command(
+def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     files: Annotated[list[Path], typer.Argument(help="MODEL and recordings, or only recordings")],
     person: PersonOption = None,
     json_file: Annotated[Path | None, typer.Option("--json", help="write every prediction here")] = None,
     by_person: Annotated[
         bool, typer.Option("--leave-one-person-out", help="train anew without each person, test on them")
+    ] = False,
+    continuous: Annotated[
+        bool, typer.Option("--continuous", help="give whole recordings without their marks: actions are to be found")
     ] = False,
     preset: PresetOption = DEFAULT.name,
     settings: SetOption = None,
@@ -77,7 +83,6 @@ def evaluate_command(
     with_excluded: AllOption = False,
 ) -> None:
     """Test a model on labelled recordings, or a preset on each person with all others as training."""
-    began_s = time.monotonic()
     if json_file is not None:
         _refuse_place(json_file)
         refuse_ending(json_file, ".json")
@@ -85,13 +90,25 @@ def evaluate_command(
         fail(f"{files[0]} alone cannot be evaluated: name a model and then recordings, or use --leave-one-person-out")
     try:
         model = None if by_person else load_model(files[0])
-        recordings = chosen(files if by_person else files[1:], person, with_excluded)
+    except ModelError as error:
+        fail(str(error))
+    recordings = chosen(files if by_person else files[1:], person, with_excluded)
+    evaluate_them = evaluate_continuously if continuous else _evaluate_segments
+    evaluate_them(model, recordings, _preset(preset, settings), seed, json_file)
+
+
+def _evaluate_segments(
+    model: Model | None, recordings: Sequence[Recording], preset: Preset, seed: int, json_file: Path | None
+) -> None:
+    """Recognise labelled segments by a model, or without one each person's by all others, and tell the scores."""
+    began_s = time.monotonic()
+    try:
         with bars() as progress:
             if model is None:
-                result = leave_one_person_out(recordings, _preset(preset, settings), seed, progress)
+                result = leave_one_person_out(recordings, preset, seed, progress)
             else:
                 result = evaluate(model, recordings, progress)
-    except (RecordingError, TrainingError, ModelError) as error:
+    except (RecordingError, TrainingError) as error:
         fail(str(error))
     tell_unread(recordings)
     _show(result, time.monotonic() - began_s)

@@ -29,6 +29,7 @@ from actum.messages.base import (
 )
 from actum.messages.recognised import (
     AUTO,
+    CUT,
     MANUAL,
     REPLAY,
     SIMULATOR,
@@ -60,6 +61,7 @@ MESSAGES: tuple[type[Message], ...] = (
 
 __all__ = [
     "AUTO",
+    "CUT",
     "MANUAL",
     "MESSAGES",
     "MOST_AGENTS",

@@ -38,6 +38,8 @@ REPLAY = "replay"
 """The origin of the marks of a recording that is played."""
 AUTO = "auto"
 """The origin of the marks that the classifier puts itself, where it has found an action that nobody marked."""
+CUT = "cut"
+"""The origin of marks that `actum record --times` or `actum label cut` cut out of a recording."""
 
 
 class Segment(Message):
@@ -58,17 +60,18 @@ class Segment(Message):
     """What is done, in recordings to learn from; it is never used to recognise."""
     origin: Name | None = None
     """Who put it: manual, a person at a switch; simulator, the scene; replay, a recording; auto, the
-    classifier itself; null, a program of yours."""
+    classifier itself, which answers it, and no other does; cut, `actum record --times` or `actum label cut`; null, a
+    program of yours."""
 
 
 class Action(Message):
-    """What the classifier sees in a segment: partial per frame while it is open, `final` once at its end."""
+    """What the classifier sees: partial per frame while an action goes on, marked or not; `final` once it has ended."""
 
     SCHEMA = "actum.action"
     agent: AgentId
     """Who acts; 0 where nobody is sure who it is."""
     segment_id: SegmentId
-    """The segment's name, as it was marked."""
+    """The segment's name, as it was marked; of what goes on that nobody marked, the name that it will get."""
     start_ns: Stamp
     """The stamp of the segment's start (ns)."""
     end_ns: Stamp | None
@@ -80,7 +83,7 @@ class Action(Message):
     confidence: FiniteFloat
     """The probability that `action` is right, calibrated on people held out, 0 to 1."""
     activations: dict[str, FiniteFloat]
-    """The activity of each trained action's neuron, by the action's name."""
+    """The activity of each trained action's neuron, by the action's name; empty in partial ones that nobody marked."""
     part: Name | None
     """The body part that moved most: right_arm, left_arm, right_leg, left_leg or body; null where none is known."""
     frames: Count

@@ -31,6 +31,9 @@ class Status(Message):
     """Milliseconds from a message's arrival to the last put of its answer, over the recent past: `p50` and `p99`."""
     state: str
     """What the service is doing, in words, such as `running`."""
+    counts: dict[str, int] = Field({})
+    """What else happened since the start and is no fault, by kind: the classifier counts here the actions that it
+    found without marks, and what became of them."""
 
 
 class Info(Message):

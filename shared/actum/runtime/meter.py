@@ -85,6 +85,7 @@ class Meter:
             last_error=self._counters.last_error,
             latency_ms=_percentiles(list(self._latencies_ms)),
             state=self._counters.state,
+            counts=dict(self._counters.counts),
         )
 
     def info(self) -> Info:

@@ -1,0 +1,85 @@
+"""What all parts share: the sets, every method, and what has been trained on each fold."""
+
+from collections.abc import Iterator, Sequence
+
+from benchmarks.recognition.scores import table
+
+from actum_model_trainer.continuous.detections import Found
+from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
+
+from .energy import Energy
+from .methods import Fitted, Method, found
+from .ours import Bound, ModelOf, OncePerTraining, Ours, trained
+from .rocket_windows import RocketWindows
+from .streams import ContinuousSets, Fold, Stream
+
+HEADER = (
+    "method",
+    "events F1",
+    "F1@.1",
+    "F1@.25",
+    "F1@.5",
+    "false / min (in background)",
+    "latency, s: median (90 %)",
+    "recall at 1 false / min",
+    "split, merged",
+)
+POINTS = "action points F1"
+
+
+class Bench:
+    """The sets, and what has been trained on them."""
+
+    def __init__(self, data: ContinuousSets, model_of: ModelOf = trained) -> None:
+        self.data = data
+        self.model_of = OncePerTraining(model_of)
+        self._fitted: dict[tuple[str, tuple[Stream, ...]], Fitted] = {}
+
+    @property
+    def methods(self) -> tuple[Method, ...]:
+        """Ours, its peers, and the bound."""
+        return Ours(self.model_of), RocketWindows(), Energy(self.model_of), Bound(self.model_of)
+
+    def found(self, folds: Sequence[Fold]) -> dict[str, Found]:
+        """Ask every method about the test streams of every fold, and pool what it finds, by the method's name."""
+        pooled = {method.name: Found() for method in self.methods}
+        for fold in folds:
+            for method in self.methods:
+                pooled[method.name] += found(self._fit(method, fold), fold)
+        return pooled
+
+    def _fit(self, method: Method, fold: Fold) -> Fitted:
+        key = method.name, fold.training
+        if key not in self._fitted:
+            self._fitted[key] = method.fit(fold.training)
+        return self._fitted[key]
+
+
+def scores_table(pooled: dict[str, Found]) -> str:
+    """Tabulate the scores of each method."""
+    scores = {name: scores_of(own) for name, own in pooled.items()}
+    with_points = any(own.point_f1 is not None for own in scores.values())
+    header = [*HEADER, POINTS] if with_points else HEADER
+    return table(header, ([name, *_cells(own)] for name, own in scores.items()))
+
+
+def _cells(scores: ContinuousScores) -> Iterator[str]:
+    yield share(scores.event.f1)
+    yield from (share(value) for value in scores.f1_at_iou.values())
+    yield f"{number(scores.false_per_min)} ({number(scores.alarms_per_min)})"
+    median_s, ninth_decile_s = scores.latency_s or (None, None)
+    yield f"{number(median_s)} ({number(ninth_decile_s)})"
+    yield "–" if scores.recall_at_rate is None else share(scores.recall_at_rate)
+    yield f"{scores.fragmentations}, {scores.merges}"
+    if scores.point_f1 is not None:
+        yield share(scores.point_f1)
+
+
+def share(value: float) -> str:
+    """Write a share with three digits."""
+    return f"{value:.3f}"
+
+
+def number(value: float | None) -> str:
+    """Write a number with two digits; a dash where there is none."""
+    return "–" if value is None else f"{value:.2f}"

@@ -1,0 +1,186 @@
+"""The public sets as continuous streams, each with its frames as our classifier gets them and as its peers do."""
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from benchmarks.recognition.datasets import with_joints
+from numpy.typing import NDArray
+
+from actum.messages import Message, Posture
+from actum.node import Counters, Tick
+from actum.recording import Recording
+from actum_dataset_importer.importing import (
+    ImportReport,
+    Progress,
+    import_msrc12_composed,
+    import_msrc12_trimmed,
+    import_utkinect,
+)
+from actum_model_trainer.continuous.detections import Detection, Stretch, Truth
+from actum_model_trainer.continuous.watching import sensors_of, watched
+from actum_model_trainer.samples import Samples, SegmentSample, samples_from, select
+from som_classifier.frames import Frame
+from som_classifier.streams import Streams
+
+Array = NDArray[np.float64]
+Import = Callable[[Path, Path, Progress], ImportReport]
+FOLDS = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Stream:
+    """One recording of one person.
+
+    Attributes:
+        whole: all of its valid frames as one sample without a label.
+        camera_m: (n, 15, 3), the same frames in camera axes, bones of standard length, from the middle of the hips.
+        agent: the person's number in it.
+        truths: what was done.
+        seen: when the person was seen.
+        taught: what can be learnt from it.
+    """
+
+    recording: Recording
+    whole: SegmentSample
+    camera_m: Array
+    agent: int
+    truths: list[Truth]
+    seen: list[Stretch]
+    taught: Samples
+
+    @property
+    def person(self) -> int:
+        return int(self.recording.person)
+
+    @property
+    def stamps_ns(self) -> NDArray[np.int64]:
+        """The stamps of its frames, (n,)."""
+        return self.whole.stamps_ns
+
+    @cached_property
+    def rows(self) -> NDArray[np.float32]:
+        """`camera_m` as rows (n, 45), 0 for what was never seen."""
+        return np.nan_to_num(self.camera_m).reshape(-1, 45).astype(np.float32)
+
+    def detection(self, first: int, last: int, decided: int, label: str, confidence: float) -> Detection:
+        """Return the detection of an action between two of its frames, decided at a third."""
+        start_ns, end_ns, decided_ns = (int(self.stamps_ns[i]) for i in (first, last, decided))
+        return Detection(str(self.recording.path), self.agent, start_ns, end_ns, decided_ns, label, confidence)
+
+    def frames_of(self, truth: Truth) -> tuple[int, int]:
+        """Return the first and the last of its frames within a truth; the last is before the first where none is."""
+        first = np.searchsorted(self.stamps_ns, truth.start_ns, side="left")
+        last = np.searchsorted(self.stamps_ns, truth.end_ns, side="right") - 1
+        return int(first), int(last)
+
+
+@dataclass(frozen=True, eq=False)
+class Fold:
+    """Who is learnt from and who is tested."""
+
+    training: tuple[Stream, ...]
+    test: tuple[Stream, ...]
+
+
+class ContinuousSets:
+    """The sets below one folder; each is imported into another when first asked for."""
+
+    def __init__(self, originals: Path, imported: Path) -> None:
+        self.originals, self.imported = originals, imported
+
+    @classmethod
+    def from_environment(cls, imported: Path) -> "ContinuousSets":
+        """Find the folder that ACTUM_DATA names."""
+        folder = os.environ.get("ACTUM_DATA")
+        if not folder or not Path(folder).is_dir():
+            raise SystemExit("set ACTUM_DATA to the folder that holds utkinect/ and msrc12/")
+        return cls(Path(folder), imported)
+
+    @cached_property
+    def utkinect(self) -> list[Stream]:
+        return self._streams("utkinect", import_utkinect)
+
+    @cached_property
+    def composed(self) -> list[Stream]:
+        """Two streams of mixed gestures of each person of MSRC-12."""
+        return self._streams("msrc12", import_msrc12_composed)
+
+    @cached_property
+    def natural(self) -> list[Stream]:
+        """The first file of each gesture and person of MSRC-12 in which the gesture was marked."""
+        import_msrc12_trimmed(self.originals / "msrc12", self.imported / "natural", lambda done, total: None)
+        first: dict[tuple[str, str], Recording] = {}
+        for recording in select([self.imported / "natural"]):
+            first.setdefault((recording.person, recording.metadata["gesture"].rstrip("A")), recording)
+        return [stream_of(recording) for recording in first.values() if recording.action_points_ns]
+
+    def _streams(self, name: str, import_set: Import) -> list[Stream]:
+        out = self.imported / import_set.__name__
+        import_set(self.originals / name, out, lambda done, total: None)
+        return [stream_of(recording) for recording in select([out])]
+
+
+def folds(training: Sequence[Stream], test: Sequence[Stream]) -> list[Fold]:
+    """Sort the people; fold f tests people f, f + 5, … and learns from all others."""
+    people = sorted({stream.person for stream in training})
+    left_out = [set(people[fold::FOLDS]) for fold in range(FOLDS)]
+    return [
+        Fold(
+            tuple(stream for stream in training if stream.person not in tested),
+            tuple(stream for stream in test if stream.person in tested),
+        )
+        for tested in left_out
+    ]
+
+
+def stream_of(recording: Recording) -> Stream:
+    """Read a recording of one person before one sensor."""
+    (sensor,) = sensors_of(recording)
+    collector = _Collector()
+    known = watched(collector, recording, sensor, str(recording.path))
+    (agent,) = collector.agents
+    whole = _sample(collector.frames, recording)
+    (example,) = with_joints([whole], [recording])
+    taught = samples_from([recording])
+    return Stream(recording, whole, example.camera_m, agent, list(known.truths), list(known.seen), taught)
+
+
+class _Collector:
+    """A node that keeps the valid frames as the classifier does, and whose they are, and finds nothing."""
+
+    name = "collector"
+    inputs = ()
+
+    def __init__(self) -> None:
+        self.counters = Counters()
+        self.frames: list[Frame] = []
+        self.agents: set[int] = set()
+        self._streams = Streams()
+
+    def handle(self, message: Message | Tick) -> Iterable[Message]:
+        if isinstance(message, Posture):
+            _, frame = self._streams.add(message)
+            if frame is not None and frame.valid:
+                self.frames.append(frame)
+                self.agents.add(message.agent)
+        return []
+
+
+def _sample(frames: Sequence[Frame], recording: Recording) -> SegmentSample:
+    kinematics = [frame.kinematics for frame in frames if frame.kinematics is not None]
+    return SegmentSample(
+        "",
+        np.array([frame.stamp_ns for frame in frames]),
+        np.array([frame.joints for frame in frames]),
+        np.array([frame.motion for frame in frames]),
+        np.array([each.posture for each in kinematics]),
+        np.array([each.velocity for each in kinematics]),
+        recording.person,
+        str(recording.path),
+        "whole",
+        any(frame.depth_inferred for frame in frames),
+    )

@@ -1,0 +1,263 @@
+"""`actum label`: lists the segments of a recording, draws and mends them."""
+
+from collections.abc import Iterable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from actum.messages import CUT, MANUAL, Message
+from actum.node import SECOND_NS
+from actum.recording import Recording, RecordingError
+from actum.rewriting import Change, rewrite, unchanged
+from actum_command.commands.plain_help import PlainGroup, PlainTyper
+from actum_command.commands.recording_options import tell_unread
+from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
+from actum_command.cut_lines import cut_lines
+from actum_command.labelled_segments import (
+    LabelledSegment,
+    LabellingError,
+    check_span,
+    cut_anew,
+    first_stamp_ns,
+    free_names,
+    labelled_segments,
+    marks_between,
+    marks_of,
+    moved,
+    only_sensor,
+    segment_of,
+    without,
+)
+from actum_command.marked_actions import relabelled
+from som_classifier.model_loading import ModelError, load_model
+
+LISTS = "list"
+"""The default command of `actum label`."""
+LONGEST_LABEL = 200  # characters allowed in the field of a mark
+
+
+class _ListsByDefault(PlainGroup):
+    """`actum label REC` is `actum label list REC`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        if args and args[0] not in (*self.commands, "--help"):
+            args = [LISTS, *args]
+        return super().parse_args(ctx, args)
+
+
+app = PlainTyper(
+    cls=_ListsByDefault,
+    no_args_is_help=True,
+    help="List the segments of a recording, actum label REC, draw and mend them. Times are seconds from its start.",
+)
+
+Rec = Annotated[Path, typer.Argument(metavar="REC", help="the recording", exists=True, dir_okay=False)]
+Number = Annotated[int, typer.Argument(metavar="N", help="the segment, as the list numbers it")]
+Label = Annotated[str, typer.Argument(metavar="LABEL", help="what is done")]
+Agent = Annotated[int | None, typer.Option(min=1, help="who acts; default: who is nearest to the camera")]
+
+
+@app.command(LISTS)
+def list_command(file: Rec) -> None:
+    """List the segments: number, start, end, label, who marked it, who acts, and the recorded answer."""
+    recording, segments, first_ns = _opened(file)
+    say(f"{file}, person {recording.person or '(unknown)'}")
+    rows = [_row(segment, first_ns) for segment in segments]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        cells = (
+            cell.rjust(width) if right else cell.ljust(width)
+            for cell, width, right in zip(row, widths, RIGHT_ALIGNED, strict=True)
+        )
+        say("  " + "  ".join(cells).rstrip())
+    tell_unread([recording])
+    say(f"{len(segments)} segments")
+
+
+@app.command("move")
+def move(
+    file: Rec,
+    number: Number,
+    start: Annotated[
+        str | None, typer.Option(help="new start, e.g. 12.3; +0.2 is later than now, -0.1 earlier; default: stays")
+    ] = None,
+    end: Annotated[str | None, typer.Option(help="new end, likewise; default: stays")] = None,
+) -> None:
+    """Move the start or the end of a segment; what was answered stays."""
+    _, segments, first_ns = _opened(file)
+    segment = _of_number(segments, number)
+    if segment.start_ns is None or segment.end_ns is None:
+        fail(
+            f"segment {number} has no {'start' if segment.start_ns is None else 'end'} mark: delete it and add it anew"
+        )
+    start_ns, end_ns = _moved_to(start, segment.start_ns, first_ns), _moved_to(end, segment.end_ns, first_ns)
+    others = [other for other in segments if other.number != number]
+    _checked(others, start_ns, end_ns, segment.agent, first_ns)
+    _rewrite(file, moved(segment, start_ns, end_ns))
+    say(f"segment {number} lasts from {_seconds(start_ns, first_ns)} to {_seconds(end_ns, first_ns)} in {file}")
+
+
+@app.command("delete")
+def delete(file: Rec, number: Number) -> None:
+    """Take a segment out: its marks and what was answered; the frames stay."""
+    _, segments, _ = _opened(file)
+    segment = _of_number(segments, number)
+    _rewrite(file, without([segment.segment_id]))
+    say(f"segment {number} ({segment.label or 'no label'}) is no longer in {file}; later ones have one number less")
+
+
+@app.command("rename")
+def rename(file: Rec, number: Number, label: Label) -> None:
+    """Give a segment another label."""
+    _, segments, _ = _opened(file)
+    segment = _of_number(segments, number)
+    _refuse_length(label)
+    if segment.start_ns is None:
+        fail(f"segment {number} has no start mark, which a label belongs to: delete it")
+    _rewrite(file, relabelled(segment.segment_id, label))
+    say(f"segment {number} is labelled {label!r} in {file}")
+
+
+@app.command("add")
+def add(
+    file: Rec,
+    start: Annotated[float, typer.Argument(metavar="START", help="where it starts (s)")],
+    end: Annotated[float, typer.Argument(metavar="END", help="where it ends (s)")],
+    label: Label,
+    agent: Agent = None,
+) -> None:
+    """Add a segment."""
+    recording, segments, first_ns = _opened(file)
+    _refuse_length(label)
+    start_ns, end_ns = (first_ns + round(seconds * SECOND_NS) for seconds in (start, end))
+    _checked(segments, start_ns, end_ns, agent, first_ns)
+    try:
+        sensor = only_sensor(recording)
+    except LabellingError as error:
+        fail(str(error))
+    name = next(free_names(segments, "added"))
+    _rewrite(file, unchanged, marks_between(sensor, name, start_ns, end_ns, label, agent, MANUAL))
+    say(f"{label!r} from {start:.2f} s to {end:.2f} s is in {file}")
+
+
+@app.command("cut")
+def cut(
+    file: Rec,
+    times: Annotated[int, typer.Argument(metavar="TIMES", min=1, help="how often it is done")],
+    label: Label,
+) -> None:
+    """Cut the repetitions of one action anew, in place of those that were cut before; marks by hand stay."""
+    recording, segments, first_ns = _opened(file)
+    _refuse_length(label)
+    try:
+        cuts, sensor = cut_anew(recording, segments, times), only_sensor(recording)
+    except LabellingError as error:
+        fail(str(error))
+    kept = [segment for segment in segments if segment.origin != CUT]
+    marks = marks_of(cuts, free_names(kept, CUT), label, sensor)
+    _rewrite(file, without([segment.segment_id for segment in segments if segment.origin == CUT]), marks)
+    for line in cut_lines(cuts, first_ns):
+        say(line)
+    for doubt in cuts.doubts:
+        say(doubt, style="yellow")
+    say(f"{len(cuts.repetitions)} segments labelled {label!r} are in {file}")
+
+
+@app.command("picture")
+def picture(
+    file: Rec,
+    output: Annotated[Path, typer.Option("-o", "--output", help="the picture to write, .png or .svg")],
+    model: Annotated[
+        Path | None, typer.Option(help="a model file whose answers are drawn; default: the recorded ones")
+    ] = None,
+) -> None:
+    """Draw the stream: how fast people move, the segments with their labels, and what was answered."""
+    if find_spec("matplotlib") is None:
+        fail("matplotlib draws the picture and is not installed: pip install 'actum[model-inspector]'")
+    from actum_command.recording_picture import write_picture
+
+    refuse_unwritable(output)
+    refuse_ending(output, ".png", ".svg")
+    recording, segments, first_ns = _opened(file)
+    try:
+        write_picture(recording, segments, first_ns, load_model(model) if model is not None else None, output)
+    except (RecordingError, ModelError, OSError) as error:
+        fail(str(error))
+    say(f"{len(segments)} segments drawn: {output}")
+
+
+RIGHT_ALIGNED = (True, True, True, True, False, False, False, False)
+"""Which columns of the list hold numbers."""
+
+
+def _row(segment: LabelledSegment, first_ns: int) -> tuple[str, ...]:
+    """Return the cells of a segment's line: number, start, end, duration, label, origin, agent, answer."""
+    spans = (segment.start_ns, segment.end_ns)
+    start, end = ("-" if stamp_ns is None else _seconds(stamp_ns, first_ns) for stamp_ns in spans)
+    lasts = "-"
+    if segment.start_ns is not None and segment.end_ns is not None:
+        lasts = f"({(segment.end_ns - segment.start_ns) / SECOND_NS:.2f} s)"
+    return (
+        str(segment.number),
+        start,
+        end,
+        lasts,
+        segment.label or "(no label)",
+        segment.origin or "-",
+        "nearest" if segment.agent is None else f"agent {segment.agent}",
+        f"answered {segment.answer}" if segment.answer else "",
+    )
+
+
+def _seconds(stamp_ns: int, first_ns: int) -> str:
+    return f"{(stamp_ns - first_ns) / SECOND_NS:.2f} s"
+
+
+def _moved_to(text: str | None, now_ns: int, first_ns: int) -> int:
+    """Return the stamp that a time means: absolute, or with a sign relative to where it is now."""
+    if text is None:
+        return now_ns
+    try:
+        offset_ns = round(float(text) * SECOND_NS)
+    except (ValueError, OverflowError):
+        fail(f"{text!r} is no time: give seconds such as 12.3, or +0.2 or -0.1 from where it is")
+    return (now_ns if text[:1] in "+-" else first_ns) + offset_ns
+
+
+def _opened(file: Path) -> tuple[Recording, list[LabelledSegment], int]:
+    """Open a recording; return it, its segments and the stamp that times count from, or fail."""
+    try:
+        recording = Recording(file)
+        return recording, labelled_segments(recording), first_stamp_ns(recording)
+    except (RecordingError, LabellingError) as error:
+        fail(str(error))
+
+
+def _of_number(segments: list[LabelledSegment], number: int) -> LabelledSegment:
+    try:
+        return segment_of(segments, number)
+    except LabellingError as error:
+        fail(str(error))
+
+
+def _checked(segments: list[LabelledSegment], start_ns: int, end_ns: int, agent: int | None, first_ns: int) -> None:
+    try:
+        check_span(segments, start_ns, end_ns, agent, first_ns)
+    except LabellingError as error:
+        fail(str(error))
+
+
+def _refuse_length(label: str) -> None:
+    if not 0 < len(label) <= LONGEST_LABEL:
+        fail(f"a label has 1 to {LONGEST_LABEL} characters")
+
+
+def _rewrite(file: Path, change: Change, added: Iterable[Message] = ()) -> None:
+    try:
+        rewrite(file, change, added)
+    except RecordingError as error:
+        fail(str(error))
+    except OSError as error:
+        fail(f"{file} cannot be written anew ({error.strerror}); it is as it was")

@@ -1,0 +1,246 @@
+"""The segments of one recording, numbered in order of time, and how `actum label` changes them."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from actum import codec, keys
+from actum.mcap_file import StoredMessage
+from actum.messages import CUT, Action, Event, Segment
+from actum.node import SECOND_NS
+from actum.recording import Recording
+from actum.rewriting import Change
+from actum_command.marked_actions import dropped
+from actum_model_trainer.cutting.courses import recorded_courses
+from actum_model_trainer.cutting.repetitions import Cuts, cut
+
+FRAMES = (keys.SKELETON, keys.POSTURE)
+"""What a person is seen in; a recording of made-up postures has no skeletons."""
+
+
+class LabellingError(ValueError):
+    """What cannot be done to a recording's segments; the text says why and what to do."""
+
+
+@dataclass(frozen=True)
+class LabelledSegment:
+    """One marked segment of a recording.
+
+    Attributes:
+        number: from 1, in order of start.
+        segment_id: as its marks name it.
+        sensor: of its marks.
+        start_ns: None where it has no start mark.
+        end_ns: None where it has no end mark.
+        label: the action; None where nobody said.
+        origin: who marked it; None where the marks do not say.
+        agent: who acts; None where the classifier is to find out.
+        answer: the recorded answer in words; None where there is none.
+    """
+
+    number: int
+    segment_id: str
+    sensor: str
+    start_ns: int | None
+    end_ns: int | None
+    label: str | None
+    origin: str | None
+    agent: int | None
+    answer: str | None = None
+
+    def overlaps(self, start_ns: int, end_ns: int, agent: int | None) -> bool:
+        """Tell whether a segment of that agent within these stamps would share time with this one."""
+        if self.start_ns is None or self.end_ns is None:
+            return False
+        same_person = agent is None or self.agent is None or agent == self.agent
+        return same_person and self.start_ns < end_ns and start_ns < self.end_ns
+
+
+def first_stamp_ns(recording: Recording) -> int:
+    """Return the stamp from which a recording's times count: that of its first frame, or else of its first mark.
+
+    Raises:
+        RecordingError: the file is damaged.
+        LabellingError: there is neither.
+    """
+    for topics in (FRAMES, (keys.SEGMENT,)):
+        first = next(iter(recording.messages(topics)), None)
+        if first is not None and first.stamp_ns is not None:
+            return first.stamp_ns
+    raise LabellingError(f"{recording.path}: neither frames nor marks in it; name a recording of a person")
+
+
+def labelled_segments(recording: Recording) -> list[LabelledSegment]:
+    """List a recording's segments in order of start, each with the recorded answer to it.
+
+    Raises:
+        RecordingError: the file is damaged.
+    """
+    marks: dict[tuple[str, str], dict[str, Segment]] = {}
+    answers: list[Action | Event] = []
+    for message in recording.messages((keys.SEGMENT, keys.ACTION, keys.EVENT)):
+        if isinstance(message, Segment):
+            marks.setdefault((message.sensor, message.segment_id), {}).setdefault(message.kind, message)
+        elif isinstance(message, Event) or (isinstance(message, Action) and message.final):
+            answers.append(message)
+    ordered = sorted(marks.values(), key=lambda pair: min(mark.stamp_ns or 0 for mark in pair.values()))
+    listed = [_segment(number, pair) for number, pair in enumerate(ordered, start=1)]
+    return [replace(segment, answer=_answer_to(segment, answers)) for segment in listed]
+
+
+def segment_of(segments: Sequence[LabelledSegment], number: int) -> LabelledSegment:
+    """Return the segment of that number.
+
+    Raises:
+        LabellingError: there is none.
+    """
+    if not 1 <= number <= len(segments):
+        there = f"there are 1 to {len(segments)}" if segments else "nothing is marked"
+        raise LabellingError(f"no segment {number}: {there}, as actum label lists them")
+    return segments[number - 1]
+
+
+def check_span(
+    segments: Sequence[LabelledSegment], start_ns: int, end_ns: int, agent: int | None, first_ns: int
+) -> None:
+    """Refuse a span that a segment cannot have beside these others.
+
+    Raises:
+        LabellingError: it ends before it starts, starts before the recording does, or overlaps another segment.
+    """
+    start_s, end_s = (start_ns - first_ns) / SECOND_NS, (end_ns - first_ns) / SECOND_NS
+    if end_ns <= start_ns:
+        raise LabellingError(f"it would start at {start_s:.2f} s and end at {end_s:.2f} s: the end has to be later")
+    if start_ns < first_ns:
+        raise LabellingError(f"it would start at {start_s:.2f} s, before the recording does")
+    for other in segments:
+        if other.overlaps(start_ns, end_ns, agent):
+            assert other.start_ns is not None and other.end_ns is not None
+            span = f"{(other.start_ns - first_ns) / SECOND_NS:.2f} to {(other.end_ns - first_ns) / SECOND_NS:.2f} s"
+            raise LabellingError(
+                f"{start_s:.2f} to {end_s:.2f} s overlaps segment {other.number} ({span}): move or delete that first"
+            )
+
+
+def moved(segment: LabelledSegment, start_ns: int, end_ns: int) -> Change:
+    """Return the change that gives a segment's marks other stamps; recorded answers stay."""
+
+    def change(stored: StoredMessage) -> StoredMessage:
+        try:
+            if keys.parse(stored.key).topic is not keys.SEGMENT:
+                return stored
+            mark = codec.decode(stored.key, stored.payload, stored.encoding)
+        except (keys.InvalidKeyError, codec.DecodeError):
+            return stored
+        if not isinstance(mark, Segment) or mark.segment_id != segment.segment_id:
+            return stored
+        stamp_ns = start_ns if mark.kind == "start" else end_ns
+        payload = codec.encode(mark.model_copy(update={"stamp_ns": stamp_ns})).payload
+        return replace(stored, payload=payload, publish_ns=stamp_ns)
+
+    return change
+
+
+def without(segment_ids: Sequence[str]) -> Change:
+    """Return the change that leaves out these segments: their marks, their answers and their ground truth."""
+    changes = [dropped(segment_id) for segment_id in segment_ids]
+
+    def change(stored: StoredMessage) -> StoredMessage | None:
+        kept: StoredMessage | None = stored
+        for drop in changes:
+            kept = None if kept is None else drop(kept)
+        return kept
+
+    return change
+
+
+def marks_between(
+    sensor: str, segment_id: str, start_ns: int, end_ns: int, label: str, agent: int | None, origin: str
+) -> list[Segment]:
+    """Return the start and the end mark of a new segment."""
+    names = {"sensor": sensor, "segment_id": segment_id, "agent": agent, "origin": origin}
+    return [
+        Segment.model_validate({"kind": "start", "stamp_ns": start_ns, "label": label, **names}),
+        Segment.model_validate({"kind": "end", "stamp_ns": end_ns, **names}),
+    ]
+
+
+def marks_of(cuts: Cuts, names: Iterator[str], label: str, sensor: str) -> list[Segment]:
+    """Return the marks of all repetitions, each a segment with the next of the names."""
+    return [
+        mark
+        for name, each in zip(names, cuts.repetitions, strict=False)
+        for mark in marks_between(sensor, name, each.start_ns, each.end_ns, label, cuts.course.agent, CUT)
+    ]
+
+
+def free_names(segments: Sequence[LabelledSegment], stem: str) -> Iterator[str]:
+    """Yield names `stem-1`, `stem-2` … that no segment has."""
+    taken, number = {segment.segment_id for segment in segments}, 0
+    while True:
+        number += 1
+        if f"{stem}-{number}" not in taken:
+            yield f"{stem}-{number}"
+
+
+def only_sensor(recording: Recording) -> str:
+    """Return the sensor whose frames a recording holds.
+
+    Raises:
+        RecordingError: the file is damaged.
+        LabellingError: there is none, or there are several.
+    """
+    names = sorted({message.sensor for message in recording.messages(FRAMES)})
+    if len(names) != 1:
+        raise LabellingError(f"{recording.path}: frames of {', '.join(names) or 'nobody'}; one sensor is needed")
+    return names[0]
+
+
+def cut_anew(recording: Recording, segments: Sequence[LabelledSegment], asked: int) -> Cuts:
+    """Cut so many repetitions out of a recording, beside the segments that were not cut before.
+
+    Raises:
+        RecordingError: the file is damaged.
+        LabellingError: nobody moves, or a repetition would overlap a segment of another origin.
+    """
+    sensor, first_ns = only_sensor(recording), first_stamp_ns(recording)
+    cuts = cut(recorded_courses(recording, sensor), asked, first_ns)
+    if cuts is None:
+        raise LabellingError(f"{recording.path}: nobody is seen moving in it, so nothing can be cut")
+    kept = [segment for segment in segments if segment.origin != CUT]
+    for repetition in cuts.repetitions:
+        check_span(kept, repetition.start_ns, repetition.end_ns, cuts.course.agent, first_ns)
+    return cuts
+
+
+def _segment(number: int, pair: dict[str, Segment]) -> LabelledSegment:
+    start, end = pair.get("start"), pair.get("end")
+    either = start or pair["end"]
+    return LabelledSegment(
+        number,
+        either.segment_id,
+        either.sensor,
+        None if start is None else start.stamp_ns,
+        None if end is None else end.stamp_ns,
+        either.label,
+        either.origin,
+        either.agent,
+    )
+
+
+def _answer_to(segment: LabelledSegment, answers: Sequence[Action | Event]) -> str | None:
+    """Return the last answer to a segment, or, where none names it, the answer that shares most of its time."""
+    own = [answer for answer in answers if answer.segment_id == segment.segment_id]
+    if own or segment.start_ns is None or segment.end_ns is None:
+        return _in_words(own[-1]) if own else None
+    shared_ns = [
+        min(answer.end_ns or answer.start_ns, segment.end_ns) - max(answer.start_ns, segment.start_ns)
+        for answer in answers
+    ]
+    best = max(range(len(answers)), key=lambda index: shared_ns[index], default=None)
+    return _in_words(answers[best]) if best is not None and shared_ns[best] > 0 else None
+
+
+def _in_words(answer: Action | Event) -> str:
+    if not answer.valid or answer.action is None:
+        return "rejected"
+    return f"{answer.action} {answer.confidence:.2f}" + (" (unknown)" if answer.unknown else "")

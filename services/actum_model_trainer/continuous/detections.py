@@ -1,0 +1,134 @@
+"""What was found in recordings without marks, what was done in them, and when anybody was seen; as JSON."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Protocol
+
+
+class Interval(Protocol):
+    """A span of one person's time: both ends are stamps of frames (ns) and belong to it."""
+
+    @property
+    def file(self) -> str:
+        """The recording's path; with the sensor behind it where the recording holds several."""
+        ...
+
+    @property
+    def agent(self) -> int:
+        """Whose time it is."""
+        ...
+
+    @property
+    def start_ns(self) -> int:
+        """Stamp of its first frame."""
+        ...
+
+    @property
+    def end_ns(self) -> int:
+        """Stamp of its last frame."""
+        ...
+
+
+@dataclass(frozen=True)
+class Detection:
+    """An action that was found.
+
+    Attributes:
+        file: the recording's path; with the sensor behind it where the recording holds several.
+        agent: who is said to act.
+        decided_ns: stamp of the newest posture when the answer came.
+        confidence: of the label, 0 to 1.
+        point_ns: the action point that it claims, a single instant of the action; None for its middle.
+    """
+
+    file: str
+    agent: int
+    start_ns: int
+    end_ns: int
+    decided_ns: int
+    label: str
+    confidence: float
+    point_ns: int | None = None
+
+    @property
+    def claimed_point_ns(self) -> int:
+        """The action point that it claims."""
+        return (self.start_ns + self.end_ns) // 2 if self.point_ns is None else self.point_ns
+
+
+@dataclass(frozen=True)
+class Truth:
+    """An action that was done.
+
+    Attributes:
+        file: the recording's path; with the sensor behind it where the recording holds several.
+        agent: who acted; 0 where nobody was seen meanwhile.
+        point_ns: its annotated action point, the instant at which it can be recognised; None where there is none.
+    """
+
+    file: str
+    agent: int
+    start_ns: int
+    end_ns: int
+    label: str
+    point_ns: int | None = None
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A time in which a person was seen without a longer break.
+
+    Attributes:
+        file: the recording's path; with the sensor behind it where the recording holds several.
+        agent: who was seen.
+    """
+
+    file: str
+    agent: int
+    start_ns: int
+    end_ns: int
+
+
+@dataclass(frozen=True)
+class Found:
+    """Everything that is scored: what was found in some recordings, what was done there, and who was seen when."""
+
+    detections: Sequence[Detection] = ()
+    truths: Sequence[Truth] = ()
+    seen: Sequence[Stretch] = ()
+
+    def __add__(self, other: "Found") -> "Found":
+        return Found(
+            (*self.detections, *other.detections), (*self.truths, *other.truths), (*self.seen, *other.seen)
+        )  # fmt: skip
+
+    def as_json(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        return {
+            "detections": [asdict(detection) for detection in self.detections],
+            "truths": [asdict(truth) for truth in self.truths],
+            "seen": [asdict(stretch) for stretch in self.seen],
+        }
+
+    @classmethod
+    def of_json(cls, values: Mapping[str, Any]) -> "Found":
+        """Read what `as_json` returned; other keys are ignored.
+
+        Raises:
+            KeyError, TypeError: a key is missing, or another one is in its place.
+        """
+        return cls(
+            tuple(Detection(**each) for each in values["detections"]),
+            tuple(Truth(**each) for each in values["truths"]),
+            tuple(Stretch(**each) for each in values["seen"]),
+        )
+
+
+def point_fractions(truths: Iterable[Truth]) -> dict[str, float]:
+    """Return where in an action its action point lies, by label: the median fraction (0 to 1) of its duration."""
+    fractions: dict[str, list[float]] = {}
+    for truth in truths:
+        if truth.point_ns is not None and truth.end_ns > truth.start_ns:
+            fraction = (truth.point_ns - truth.start_ns) / (truth.end_ns - truth.start_ns)
+            fractions.setdefault(truth.label, []).append(fraction)
+    return {label: sorted(of_label)[len(of_label) // 2] for label, of_label in fractions.items()}

@@ -1,0 +1,160 @@
+"""Courses: what one person does without a break, at an even rate."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum import keys
+from actum.arrays import Array
+from actum.messages import Posture, Skeleton
+from actum.node import SECOND_NS
+from actum.recording import Recording
+from actum.skeletons import JOINTS
+from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
+from som_classifier.frames import frame_of
+from som_classifier.kinematics import LAG_TIME_CONSTANT_S, KinematicsFilter
+
+RATE_HZ = 15.0
+"""Rate of a course: the slowest camera's, and enough for a movement of a third of a second."""
+BREAK_S = 5.0
+"""A person who is not seen for longer begins another course: whatever was done meanwhile, it was not seen."""
+LEAST_FRAMES = 15
+"""Frames that a course needs: a second at the slowest camera's rate; less holds no repetition and its rest."""
+NOISE_SHARE = 0.2
+"""Share of the time in which a joint is taken to be at rest: its speed then is the sensor's noise."""
+ABOVE_NOISE = 1.5
+"""A joint moves where it is faster than its noise by this factor."""
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """One person's movement without a break, at `RATE_HZ`.
+
+    Attributes:
+        agent: the person's number.
+        start_ns: stamp of the first of the n instants.
+        postures: (n, 15, 3), upright, scaled to the standard body's metres, smoothed; missing joints interpolated.
+        speeds_mps: (n,), root mean square over the joints of what exceeds each joint's noise.
+        distance_m: median distance from the camera; infinite where unknown.
+    """
+
+    agent: int
+    start_ns: int
+    postures: Array
+    speeds_mps: Array
+    distance_m: float
+
+    def stamp_ns(self, index: float) -> int:
+        """Return the stamp at an index, which need not be whole."""
+        return self.start_ns + round(index / RATE_HZ * SECOND_NS)
+
+
+@dataclass(frozen=True, eq=False)
+class _Instant:
+    """What a course keeps of a frame: stamp, joints (15, 3) with NaN where missing, speeds (15,) in m/s, distance."""
+
+    stamp_ns: int
+    joints: NDArray[np.float32]
+    speeds_mps: NDArray[np.float32]
+    distance_m: float
+
+
+class PersonTracks:
+    """Collects each person's postures from skeletons, as the classifier would get them."""
+
+    def __init__(self) -> None:
+        self._preprocessor = PosePreprocessor(PoseSettings.defaults())
+        self._filters: dict[int, KinematicsFilter] = {}
+        self._instants: dict[int, list[_Instant]] = {}
+
+    def take(self, skeleton: Skeleton) -> None:
+        """Take the next frame of one sensor."""
+        for posture in self._preprocessor.handle(skeleton):
+            if isinstance(posture, Posture) and posture.agent:
+                self._add(posture)
+
+    def courses(self) -> list[Course]:
+        """Return the courses so far, by person, those of one person in order."""
+        return [
+            _course(agent, unbroken)
+            for agent, instants in sorted(self._instants.items())
+            for unbroken in _without_breaks(instants)
+            if len(unbroken) >= LEAST_FRAMES
+        ]
+
+    def _add(self, posture: Posture) -> None:
+        smoothing = self._filters.setdefault(posture.agent, KinematicsFilter())
+        frame = frame_of(posture, 0, smoothing)
+        if frame.kinematics is None:
+            return
+        speeds_mps = np.linalg.norm(frame.kinematics.velocity, axis=1) / LAG_TIME_CONSTANT_S
+        joints = frame.kinematics.posture.astype(np.float32)
+        instant = _Instant(frame.stamp_ns, joints, speeds_mps.astype(np.float32), frame.distance_m)
+        self._instants.setdefault(posture.agent, []).append(instant)
+
+
+def recorded_courses(recording: Recording, sensor: str) -> list[Course]:
+    """Return the courses of all people whom one sensor of a recording saw.
+
+    Raises:
+        RecordingError: the file is damaged.
+    """
+    tracks = PersonTracks()
+    for message in recording.messages((keys.SKELETON,)):
+        if isinstance(message, Skeleton) and message.sensor == sensor:
+            tracks.take(message)
+    return tracks.courses()
+
+
+def course_of(agent: int, stamps_ns: Sequence[int], joints: Array, speeds_mps: Array, distance_m: float) -> Course:
+    """Bring a person's frames to an even rate.
+
+    Args:
+        agent: the person's number.
+        stamps_ns: (m,), rising.
+        joints: (m, 15, 3), NaN where missing.
+        speeds_mps: (m, 15), NaN where missing.
+        distance_m: from the camera.
+    """
+    times_s = (np.asarray(stamps_ns) - stamps_ns[0]) / SECOND_NS
+    even_s = np.arange(int(times_s[-1] * RATE_HZ + 1e-6) + 1) / RATE_HZ
+    postures = _resampled(times_s, joints.reshape(len(joints), -1), even_s).reshape(-1, len(JOINTS), 3)
+    speeds = _resampled(times_s, speeds_mps, even_s)
+    noise = ABOVE_NOISE * np.quantile(speeds, NOISE_SHARE, axis=0)
+    moving = np.sqrt(np.maximum(speeds**2 - noise**2, 0).mean(axis=1))
+    return Course(agent, stamps_ns[0], postures, moving, distance_m)
+
+
+def _course(agent: int, instants: Sequence[_Instant]) -> Course:
+    return course_of(
+        agent,
+        [instant.stamp_ns for instant in instants],
+        np.array([instant.joints for instant in instants], dtype=np.float64),
+        np.array([instant.speeds_mps for instant in instants], dtype=np.float64),
+        float(np.median([instant.distance_m for instant in instants])),
+    )
+
+
+def _resampled(times_s: Array, values: Array, even_s: Array) -> Array:
+    """Interpolate columns (m, c), NaN where unknown, at even times (n,). A column that is never known is zero."""
+    resampled = np.zeros((len(even_s), values.shape[1]))
+    for column in range(values.shape[1]):
+        known = ~np.isnan(values[:, column])
+        if known.any():
+            resampled[:, column] = np.interp(even_s, times_s[known], values[known, column])
+    return resampled
+
+
+def _without_breaks(instants: Iterable[_Instant]) -> Iterator[list[_Instant]]:
+    """Yield the runs of frames between which the person is seen; a clock that begins anew ends a run, too."""
+    run: list[_Instant] = []
+    for instant in instants:
+        if run and not 0 < instant.stamp_ns - run[-1].stamp_ns <= BREAK_S * SECOND_NS:
+            yield run
+            run = []
+        run.append(instant)
+    if run:
+        yield run

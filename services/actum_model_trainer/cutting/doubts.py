@@ -1,0 +1,67 @@
+"""What may be wrong with some cuts, in sentences."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from actum.arrays import Array
+from actum.node import SECOND_NS
+from actum_model_trainer.cutting.choice import Chain
+from actum_model_trainer.cutting.courses import RATE_HZ, Course
+
+UNLIKE = 0.3
+"""A repetition less like the most typical one is told: in MSRC-12 a sixth of such ones are none, of others one in 40"""
+TWICE = 1.6
+"""A repetition that takes longer than the median by this factor may be two."""
+STOP = 0.5
+"""Two have run together where the activity falls below this share of the repetition's mean in its middle."""
+MIDDLE = 0.2
+"""Share of a repetition, at its start and at its end, in which no seam of two is sought."""
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+
+
+def doubts_of(
+    course: Course, activity: Array, chain: Chain, asked: int | None, likeliest: int, first_ns: int
+) -> Iterator[str]:
+    """Yield what may be wrong with a chain; times count from a stamp.
+
+    Args:
+        course: what the chain was found in.
+        activity: (n,), of the course.
+        chain: its bursts.
+        asked: the number of repetitions there should be; None where nobody knows.
+        likeliest: the number that would explain the movement best.
+        first_ns: the stamp.
+    """
+    offset_s, found = (course.start_ns - first_ns) / SECOND_NS, len(chain.bursts)
+    seams = [
+        f"the {_ordinal(number)} and {_ordinal(number + 1)} may have run together at {offset_s + seam / RATE_HZ:.1f} s"
+        for number, seam in _seams(activity, chain)
+    ]
+    if asked is not None and found < asked:
+        yield ": ".join([f"{found} found, {asked} asked", *seams[: asked - found]])
+    elif asked is not None and likeliest != found:
+        yield f"{asked} were asked for, but {likeliest} would explain the movement better"
+    if asked is None or found == asked:
+        yield from seams
+    for number, ((start, end), likeness) in enumerate(zip(chain.bursts, chain.likeness, strict=True), start=1):
+        if likeness < UNLIKE:
+            span = f"{offset_s + start / RATE_HZ:.1f} to {offset_s + end / RATE_HZ:.1f} s"
+            yield f"the {_ordinal(number)} ({span}) is unlike the others"
+
+
+def _seams(activity: Array, chain: Chain) -> Iterator[tuple[int, int]]:
+    """Yield the number of each burst that may be two, counted as if it were, and its instant of least activity."""
+    lengths = chain.bursts[:, 1] - chain.bursts[:, 0]
+    before = 0
+    for number, (start, end) in enumerate(chain.bursts, start=1):
+        edge = round(MIDDLE * (end - start))
+        seam = int(start + edge + np.argmin(activity[start + edge : end - edge]))
+        if end - start > TWICE * np.median(lengths) and activity[seam] < STOP * activity[start:end].mean():
+            yield number + before, seam
+            before += 1
+
+
+def _ordinal(number: int) -> str:
+    """Return a number as an ordinal: in letters up to the tenth."""
+    return ORDINALS[number - 1] if number <= len(ORDINALS) else f"{number}th"

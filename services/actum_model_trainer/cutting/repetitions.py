@@ -1,0 +1,124 @@
+"""The repetitions in what several people did: who repeats something, and from when to when each time."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from actum.arrays import Array
+from actum.node import SECOND_NS
+from actum_model_trainer.cutting.choice import MOST_REPETITIONS, Chain, Chains
+from actum_model_trainer.cutting.courses import Course
+from actum_model_trainer.cutting.doubts import doubts_of
+from actum_model_trainer.cutting.movement import rest_postures
+
+MARGIN = 3
+"""Instants of rest (at `RATE_HZ`) that a cut has before and after its burst, 0.2 s, as marks by hand have."""
+AS_GOOD = 0.1
+"""Of people whose repetitions are worth the same within this, the nearest to the camera is meant."""
+LEAST_SPEED_MPS = 0.03
+"""Who never is faster than this (root mean square over the joints) has done nothing: a slow wave of a hand is."""
+OTHER_NUMBER = 0.5
+"""How sure the cuts are, at most, where another number of repetitions would explain the movement better."""
+
+
+@dataclass(frozen=True)
+class Repetition:
+    """One repetition: stamps of its start and end (ns), and how like the most typical one it is, 0 to 1."""
+
+    start_ns: int
+    end_ns: int
+    likeness: float
+
+
+@dataclass(frozen=True, eq=False)
+class Cuts:
+    """What was found of one person's repetitions.
+
+    Attributes:
+        course: the movement they are cut from.
+        activity: (n,), of the course: 0 at rest, about 1 in the midst of a movement.
+        repetitions: in order; they do not overlap.
+        sureness: 0 to 1; of those above 0.5, nearly all are right.
+        doubts: sentences that say what may be wrong and where; times count from the start of the recording.
+    """
+
+    course: Course
+    activity: Array
+    repetitions: tuple[Repetition, ...]
+    sureness: float
+    doubts: tuple[str, ...]
+
+    @property
+    def resting_s(self) -> float:
+        """How long the person has been at rest since the last repetition; 0 where there is none (s)."""
+        if not self.repetitions:
+            return 0.0
+        return (self.course.stamp_ns(len(self.activity) - 1) - self.repetitions[-1].end_ns) / SECOND_NS
+
+    @property
+    def longest_pause_s(self) -> float:
+        """The longest time between two repetitions (s); 0 where there are no two."""
+        pauses_ns = [after.start_ns - before.end_ns for before, after in pairwise(self.repetitions)]
+        return max(pauses_ns, default=0) / SECOND_NS
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """The best chain of one course, the activity about its posture of rest, and the number that would be likeliest."""
+
+    course: Course
+    activity: Array
+    chain: Chain
+    likeliest_number: int
+
+    def rank(self, asked: int | None) -> tuple[int, float]:
+        """Return what a course is chosen by: enough repetitions, then how well they explain the movement."""
+        return min(len(self.chain.bursts), asked or 2), self.chain.worth
+
+
+def cut(courses: Sequence[Course], asked: int | None, first_ns: int) -> Cuts | None:
+    """Cut the repetitions of one action out of what people did; None where nobody moved.
+
+    Args:
+        courses: of everybody who was seen.
+        asked: how many repetitions there should be; None where nobody knows.
+        first_ns: stamp from which doubts count their times.
+    """
+    found = [best for best in (_best_chain(course, asked) for course in courses) if best is not None]
+    if not found:
+        return None
+    most = max(each.rank(asked) for each in found)
+    as_good = [each for each in found if each.rank(asked) >= (most[0], most[1] - AS_GOOD)]
+    chosen = min(as_good, key=lambda each: (each.course.distance_m, -each.chain.worth))
+    repetitions = tuple(_repetitions(chosen))
+    sureness = float(chosen.chain.likeness.min())
+    if chosen.likeliest_number != len(repetitions) or asked not in (None, len(repetitions)):
+        sureness = min(sureness, OTHER_NUMBER)
+    doubts = doubts_of(chosen.course, chosen.activity, chosen.chain, asked, chosen.likeliest_number, first_ns)
+    return Cuts(chosen.course, chosen.activity, repetitions, sureness, tuple(doubts))
+
+
+def _best_chain(course: Course, asked: int | None) -> _Found | None:
+    """Return the best chain about any posture of rest; None where the person does not move."""
+    if course.speeds_mps.max() < LEAST_SPEED_MPS:
+        return None
+    found = []
+    for rest in rest_postures(course):
+        chains = Chains(course, rest, max(asked or 0, MOST_REPETITIONS))
+        if chains.longest:
+            number = min(asked or chains.likeliest_number, chains.longest)
+            found.append(_Found(course, chains.activity, chains.chain(number), chains.likeliest_number))
+    return max(found, key=lambda each: each.rank(asked), default=None)
+
+
+def _repetitions(found: _Found) -> Iterator[Repetition]:
+    """Yield the chain's bursts with some rest before and after; two that are close share it, an instant apart."""
+    starts, ends = found.chain.bursts[:, 0], found.chain.bursts[:, 1] - 1
+    middles = (ends[:-1] + starts[1:]) / 2
+    earliest = np.concatenate([[0.0], middles + 0.5])
+    latest = np.concatenate([middles - 0.5, [len(found.activity) - 1.0]])
+    bounds = np.stack([np.maximum(starts - MARGIN, earliest), np.minimum(ends + MARGIN, latest)], axis=1)
+    for (start, end), likeness in zip(bounds, found.chain.likeness, strict=True):
+        yield Repetition(found.course.stamp_ns(start), found.course.stamp_ns(end), float(likeness))

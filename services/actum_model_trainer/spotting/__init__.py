@@ -1,0 +1,1 @@
+"""Trains the search for actions without marks, on whole streams."""

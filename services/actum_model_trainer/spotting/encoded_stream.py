@@ -1,0 +1,47 @@
+"""A person's stream through the first layer, and the pyramid vectors of any of its windows."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum_model_trainer.augmentation import Variant
+from actum_model_trainer.samples import LabelledStream
+from som_classifier.handedness import LimbSpreads, limb_moments
+from som_classifier.pyramid import Prefix, PrefixSums, quantised
+from som_classifier.pyramid_model import PyramidModel
+
+_UM_PER_M = 1e6
+
+
+class EncodedStream:
+    """The prefix sums of a stream's n frames, as seen and mirrored.
+
+    Args:
+        model: whose first layer and pyramid are used.
+        stream: at least one frame.
+        variant: its frames as measured or augmented; as measured unless given.
+    """
+
+    def __init__(self, model: PyramidModel, stream: LabelledStream, variant: Variant | None = None) -> None:
+        self._pyramid, self._mirrors = model.pyramid, model.metadata.mirrors
+        seen = variant or Variant(stream.postures, stream.velocities)
+        sides = [seen, seen.mirrored] if self._mirrors else [seen]
+        summed = [_sums(quantised(model.first.activities(side.postures, side.velocities))) for side in sides]
+        steps_um = np.rint(stream.motion.sum(axis=1) * _UM_PER_M).astype(np.int64)
+        travelled_um = [0, *np.cumsum(steps_um).tolist()]
+        self._prefixes = [
+            Prefix(tuple(sums), um) for *sums, um in zip(*summed, travelled_um, strict=True)
+        ]  # fmt: skip
+        moments = np.array([limb_moments(posture) for posture in stream.postures])
+        self._moments = np.concatenate([np.zeros_like(moments[:1]), np.cumsum(moments, axis=0)])
+
+    def vector(self, first: int, last: int) -> NDArray[np.float32]:
+        """Return the pyramid vector of the frames from `first` to `last`, both included, (inputs,)."""
+        limbs = self._moments[last + 1] - self._moments[first]
+        side = int(self._mirrors and LimbSpreads.of(limbs).left_handed)
+        return self._pyramid.vector(PrefixSums(self._prefixes[first : last + 2], side))
+
+
+def _sums(activities: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
+    np.cumsum(activities, axis=0, out=sums[1:])
+    return sums

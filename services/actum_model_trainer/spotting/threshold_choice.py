@@ -1,0 +1,127 @@
+"""The threshold of the search, chosen by what it finds in streams of people left out of the heads' training."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.arrays import Array, Floats, Indices
+from actum.node import SECOND_NS
+from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
+from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
+from actum_model_trainer.samples import LabelledStream
+from som_classifier.spotting.decoding import Decoder
+from som_classifier.spotting.spotting_model import SpottingModel
+
+BEARABLE_PER_MIN = 1.0
+"""False alarms in a minute of background that cost nothing in the choice of the threshold."""
+COST_PER_MIN = 0.03
+"""What each further one costs, in units of F1."""
+SHORTEST_BACKGROUND_MIN = 0.5
+"""Minutes of background below which false alarms a minute are not counted: too few to tell."""
+IOU = 0.5
+"""Overlap at which bounds count as right in that choice."""
+
+
+@dataclass(frozen=True, eq=False)
+class ScannedStream:
+    """A stream with its live windows and what heads that were trained without it answer.
+
+    Attributes:
+        stream: with its labelled segments.
+        windows: (n, 2), first and last frame.
+        completeness: (n, actions).
+    """
+
+    stream: LabelledStream
+    windows: Indices
+    completeness: Floats
+
+
+@dataclass(frozen=True)
+class ThresholdChoice:
+    """What each threshold gives, and the best.
+
+    Attributes:
+        threshold: the best.
+        false_alarms_per_min: by threshold; empty where there is too little background.
+        recalls: by threshold.
+    """
+
+    threshold: float
+    false_alarms_per_min: list[float]
+    recalls: list[float]
+
+
+def chosen_threshold(
+    scanned: Sequence[ScannedStream], learned: SpottingModel, labels: Sequence[str], thresholds: Sequence[float]
+) -> ThresholdChoice:
+    """Search the streams with each threshold, and choose the best after smoothing over neighbouring ones."""
+    scores = [scores_of(found(scanned, learned, labels, threshold)) for threshold in thresholds]
+    worth = np.array([_worth(score) for score in scores])
+    smoothed = np.convolve(np.pad(worth, 1, mode="edge"), np.full(3, 1 / 3), mode="valid")
+    counted = scores[0].background_min >= SHORTEST_BACKGROUND_MIN
+    rates = [score.false_per_min or 0.0 for score in scores] if counted else []
+    return ThresholdChoice(
+        float(thresholds[int(smoothed.argmax())]),
+        np.minimum.accumulate(rates).tolist() if rates else [],
+        [score.event.recall for score in scores],
+    )
+
+
+def found(scanned: Sequence[ScannedStream], learned: SpottingModel, labels: Sequence[str], threshold: float) -> Found:
+    """Return what a search with this threshold finds in the streams."""
+    detections, truths, seen = [], [], []
+    for each in scanned:
+        stream = each.stream
+        file, agent = stream.file, stream.agent
+        detections += [
+            Detection(file, agent, start_ns, end_ns, decided_ns, labels[action], 1.0)
+            for start_ns, end_ns, decided_ns, action in _decided(each, learned, threshold)
+        ]
+        truths += [Truth(file, agent, *segment) for segment in stream.segments]
+        seen.append(Stretch(file, agent, int(stream.stamps_ns[0]), int(stream.stamps_ns[-1])))
+    return Found(detections, truths, seen)
+
+
+def _decided(each: ScannedStream, learned: SpottingModel, threshold: float) -> list[tuple[int, int, int, int]]:
+    """Return start, end and decision (ns) and the action of each segment found in a stream."""
+    metadata, stamps_ns = learned.metadata, each.stream.stamps_ns
+    longest_ns = round((metadata.window_durations_s[-1] + metadata.lag_s) * SECOND_NS)
+    decoder = Decoder(round(metadata.lag_s * SECOND_NS), longest_ns, metadata.overlap)
+    starts_ns, ends_ns = stamps_ns[each.windows[:, 0]], stamps_ns[each.windows[:, 1]]
+    candidates = learned.candidates(starts_ns, ends_ns, each.completeness, threshold)
+    by_end = {end_ns: list(of_end) for end_ns, of_end in groupby(candidates, key=lambda each: each.end_ns)}
+    return [
+        (segment.start_ns, segment.end_ns, now_ns, segment.action)
+        for now_ns in np.unique(ends_ns).tolist()
+        for segment in decoder.step(now_ns, by_end.get(now_ns, ()))
+    ]
+
+
+def _worth(score: ContinuousScores) -> float:
+    false = 0.0
+    if score.background_min >= SHORTEST_BACKGROUND_MIN and score.false_per_min is not None:
+        false = max(score.false_per_min - BEARABLE_PER_MIN, 0.0)
+    return score.event.f1 + score.f1_at_iou[IOU] - COST_PER_MIN * false
+
+
+def logistic_fit(answers: Array, is_right: NDArray[np.bool_]) -> tuple[float, float]:
+    """Return slope and intercept of the logistic regression of outcomes (n,) on the heads' answers (n,).
+
+    By Newton's method, with one more sample of either outcome at the mean answer so that it stays finite.
+    """
+    x = np.append(answers, [answers.mean()] * 2)
+    y = np.append(is_right.astype(float), [0.0, 1.0])
+    inputs = np.stack([x, np.ones_like(x)], axis=1)
+    weights = np.zeros(2)
+    for _ in range(50):
+        p = 1 / (1 + np.exp(-np.clip(inputs @ weights, -30, 30)))
+        curvature = inputs.T @ (inputs * (p * (1 - p))[:, None]) + 1e-3 * np.eye(2)
+        step = np.linalg.solve(curvature, inputs.T @ (y - p) - 1e-3 * weights)
+        weights = weights + step
+        if np.abs(step).max() < 1e-6:
+            break
+    return float(weights[0]), float(weights[1])

@@ -1,0 +1,116 @@
+"""The messages in which the classifier answers."""
+
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.messages import AUTO, Action, Posture, Segment, Tensor
+from actum.skeletons import JOINTS
+from som_classifier.frames import Frame
+from som_classifier.recognition import Recognition
+from som_classifier.segments import ClosedSegment, OpenSegment
+from som_classifier.spotting.spotted import Ongoing
+
+
+def partial_action(segment: OpenSegment, recognition: Recognition, frames: list[Frame], posture: Posture) -> Action:
+    """Say what an open segment shows so far, at a posture's instant."""
+    assert segment.start_ns is not None
+    return Action(
+        stamp_ns=posture.stamp_ns,
+        sensor=posture.sensor,
+        agent=posture.agent,
+        segment_id=segment.segment_id,
+        start_ns=segment.start_ns,
+        end_ns=None,
+        final=False,
+        **_recognised_fields(recognition),
+        frames=sum(frame.valid for frame in frames),
+        missed=sum(frame.missed for frame in frames),
+        hand=segment.hand,
+        missing_joints=_missing(frames),
+    )
+
+
+def ongoing_action(segment_id: str, ongoing: Ongoing, frames: list[Frame], posture: Posture) -> Action:
+    """Say what seems to be going on though nobody marked it, at a posture's instant."""
+    return Action(
+        stamp_ns=posture.stamp_ns,
+        sensor=posture.sensor,
+        agent=posture.agent,
+        segment_id=segment_id,
+        start_ns=ongoing.start_ns,
+        end_ns=None,
+        final=False,
+        action=ongoing.label,
+        confidence=ongoing.confidence,
+        activations={},
+        part=None,
+        frames=sum(frame.valid for frame in frames),
+        missed=sum(frame.missed for frame in frames),
+        missing_joints=_missing(frames),
+        completeness=ongoing.completeness,
+    )
+
+
+def final_action(
+    closed: ClosedSegment, recognition: Recognition | None, reason: str | None, sensor: str, **explained: Any
+) -> Action:
+    """Answer a segment: with what was recognised, or with the reason why it is rejected.
+
+    Args:
+        closed: the segment.
+        recognition: None where there is none.
+        reason: None where there is none.
+        sensor: the viewpoint.
+        explained: the fields `maps` and `trace`, where they are wanted.
+    """
+    return Action(
+        stamp_ns=closed.end_ns,
+        sensor=sensor,
+        valid=reason is None,
+        reason=reason,
+        agent=closed.agent,
+        segment_id=closed.segment_id,
+        start_ns=closed.start_ns,
+        end_ns=closed.end_ns,
+        final=True,
+        **_recognised_fields(recognition),
+        frames=sum(frame.valid for frame in closed.frames),
+        missed=closed.missed,
+        hand=closed.hand,
+        unknown=recognition.unknown if recognition else False,
+        familiarity=recognition.familiarity if recognition else None,
+        missing_joints=_missing(closed.frames),
+        **explained,
+    )
+
+
+def own_mark(kind: Literal["start", "end"], closed: ClosedSegment, sensor: str) -> Segment:
+    """Mark one end of a segment that was found without marks."""
+    stamp_ns = closed.start_ns if kind == "start" else closed.end_ns
+    return Segment(
+        stamp_ns=stamp_ns, sensor=sensor, kind=kind, segment_id=closed.segment_id, agent=closed.agent, origin=AUTO
+    )
+
+
+def tensor(array: NDArray[Any]) -> Tensor:
+    """Return an array as a message carries it."""
+    little = np.ascontiguousarray(array, dtype="<f4")
+    return Tensor(dtype="<f4", shape=list(little.shape), data=little.tobytes())
+
+
+def _recognised_fields(recognition: Recognition | None) -> dict[str, Any]:
+    if recognition is None:
+        return {"action": None, "confidence": 0.0, "activations": {}, "part": None}
+    return {
+        "action": recognition.label,
+        "confidence": recognition.confidence,
+        "activations": recognition.activations,
+        "part": recognition.part,
+    }
+
+
+def _missing(frames: list[Frame]) -> list[str]:
+    """Name the joints that some frame lacked, in the order of `JOINTS`."""
+    return [JOINTS[joint] for joint in sorted({joint for frame in frames for joint in frame.missing})]

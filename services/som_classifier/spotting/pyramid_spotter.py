@@ -1,0 +1,103 @@
+"""The search for actions in one person's stream, by the default recogniser."""
+
+from collections.abc import Sequence
+from typing import ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.node import SECOND_NS
+from som_classifier.frames import Frame
+from som_classifier.recognition import Recognition
+from som_classifier.spotting.completeness import iou_of_completeness
+from som_classifier.spotting.decoding import Candidate, Decoder
+from som_classifier.spotting.spotted import Ongoing, Spotted, SpottedSegment, SpottingOptions
+from som_classifier.spotting.spotting_model import SpottingModel
+from som_classifier.spotting.windows import RecentFrames
+
+ONGOING_FROM = 0.25
+"""Completeness from which an action counts as going on: that of a window that overlaps it by 40 %."""
+
+
+class Recogniser(Protocol):
+    """What the search asks of its model."""
+
+    min_frames: ClassVar[int]
+
+    @property
+    def labels(self) -> list[str]:
+        """The actions it tells apart."""
+        ...
+
+    def pooled(self, frames: Sequence[Frame]) -> NDArray[np.float32]:
+        """Return the pyramid vector of valid frames, (inputs,)."""
+        ...
+
+    def recognise(self, frames: Sequence[Frame], complete: bool) -> Recognition:
+        """Recognise the action of a segment."""
+        ...
+
+
+class PyramidSpotter:
+    """Looks at all windows that end now, several times a second, and decides which of them were actions.
+
+    An action is told only where the model, asked about the frames found, does not call it unknown: the heads know no
+    more than the background that was shown to them.
+
+    Args:
+        model: the recogniser.
+        learned: its heads and durations.
+        options: what is asked of the search.
+    """
+
+    def __init__(self, model: Recogniser, learned: SpottingModel, options: SpottingOptions) -> None:
+        self._model, self._learned = model, learned
+        metadata = learned.metadata
+        self._threshold = metadata.threshold_for(options.false_alarms_per_min)
+        self._interval_ns = round(metadata.interval_s * SECOND_NS)
+        memory_ns = round((metadata.window_durations_s[-1] + metadata.lag_s) * SECOND_NS)
+        self._recent = RecentFrames(metadata.window_durations_s, memory_ns)
+        self._decoder = Decoder(round(metadata.lag_s * SECOND_NS), memory_ns, metadata.overlap)
+        self._next_decision_ns = 0
+        self._ongoing: Ongoing | None = None
+
+    def step(self, frame: Frame) -> Spotted:
+        """Take the next frame, valid or not; return what it shows."""
+        if frame.valid and not self._recent.add(frame):
+            self._decoder.forget()
+            self._ongoing, self._next_decision_ns = None, frame.stamp_ns
+        if not frame.valid or frame.stamp_ns < self._next_decision_ns:
+            return Spotted(ongoing=self._ongoing)
+        self._next_decision_ns = frame.stamp_ns + self._interval_ns
+        return self._decision(frame.stamp_ns)
+
+    def _decision(self, now_ns: int) -> Spotted:
+        windows = self._recent.windows()
+        if not windows:
+            return Spotted()
+        starts_ns = np.array([window[0].stamp_ns for window in windows])
+        completeness = np.stack([self._learned.heads.completeness(self._model.pooled(window)) for window in windows])
+        ends_ns = np.full(len(windows), now_ns)
+        candidates = self._learned.candidates(starts_ns, ends_ns, completeness, self._threshold)
+        decided = self._decoder.step(now_ns, candidates)
+        self._ongoing = self._likeliest(starts_ns.tolist(), now_ns, completeness)
+        return Spotted(tuple(self._segment(each) for each in decided if self._is_familiar(each)), self._ongoing)
+
+    def _segment(self, candidate: Candidate) -> SpottedSegment:
+        frames = self._recent.between(candidate.start_ns, candidate.end_ns)
+        return SpottedSegment(frames[0].stamp_ns, candidate.end_ns, self._model.labels[candidate.action])
+
+    def _is_familiar(self, candidate: Candidate) -> bool:
+        frames = self._recent.between(candidate.start_ns, candidate.end_ns)
+        return len(frames) >= self._model.min_frames and not self._model.recognise(frames, complete=True).unknown
+
+    def _likeliest(self, starts_ns: Sequence[int], now_ns: int, completeness: NDArray[np.float32]) -> Ongoing | None:
+        """Return the action to which a window that ends now belongs most surely, None where none belongs to any."""
+        free = [n for n, start_ns in enumerate(starts_ns) if self._decoder.is_free(start_ns, now_ns)]
+        if not free or completeness[free].max() < ONGOING_FROM:
+            return None
+        window = max(free, key=lambda n: float(completeness[n].max()))
+        action = int(completeness[window].argmax())
+        answer = float(completeness[window, action])
+        probability = self._learned.probability(answer)
+        return Ongoing(starts_ns[window], self._model.labels[action], probability, iou_of_completeness(answer))

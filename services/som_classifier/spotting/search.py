@@ -1,0 +1,73 @@
+"""The search for unmarked actions in one person's stream: its spotter, what of it is told, and the names it gives."""
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from actum.messages import Posture
+from som_classifier.frames import Frame
+from som_classifier.spotting.admission import Admission
+from som_classifier.spotting.spotted import NOTHING, Spotted, Spotter, SpottingOptions
+
+SESSION_DIGITS = 6
+"""Hexadecimal digits that stand for a session in a segment's id: clocks may begin alike in two sessions."""
+
+
+@dataclass(frozen=True)
+class SearchPlan:
+    """How all streams are searched.
+
+    Attributes:
+        spotter: makes the spotter of one stream; None where there is no search.
+        options: what a user asks of it.
+    """
+
+    spotter: Callable[[], Spotter | None] = lambda: None
+    options: SpottingOptions = field(default_factory=SpottingOptions)
+
+
+NO_SEARCH = SearchPlan()
+"""Only marked segments are wanted, or there is no model."""
+
+
+class Search:
+    """Searches the stream that begins with a posture.
+
+    The segments' ids name the agent, the session, the stamp of that posture (µs) and a running number: they are the
+    same whenever the same stream is searched, and differ where a service, a sensor or a person begins anew.
+
+    Attributes:
+        admission: decides which of the actions found are told.
+    """
+
+    def __init__(self, first: Posture, plan: SearchPlan) -> None:
+        session = hashlib.sha256(first.session_id.encode()).hexdigest()[:SESSION_DIGITS]
+        self._stream_id = f"auto-{first.agent}-{session}-{first.stamp_ns // 1000}"
+        self._told = 0
+        self._begin(plan)
+
+    @property
+    def next_id(self) -> str:
+        """The id that the next segment gets."""
+        return f"{self._stream_id}-{self._told + 1}"
+
+    def count_told(self) -> None:
+        """Use up `next_id`, for a segment that is told."""
+        self._told += 1
+
+    def use(self, plan: SearchPlan) -> None:
+        """Go on with another model's spotter, which knows nothing of the frames before; cooldowns go on."""
+        self._plan, self._spotter = plan, plan.spotter()
+        self.admission.options = plan.options
+
+    def restart(self) -> None:
+        """Begin anew, since the stream's clock has: nothing before counts but the numbers that are used up."""
+        self._begin(self._plan)
+
+    def step(self, frame: Frame) -> Spotted:
+        """Search the next frame of the stream."""
+        return NOTHING if self._spotter is None else self._spotter.step(frame)
+
+    def _begin(self, plan: SearchPlan) -> None:
+        self._plan, self._spotter = plan, plan.spotter()
+        self.admission = Admission(plan.options)

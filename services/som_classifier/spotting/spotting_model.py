@@ -1,0 +1,125 @@
+"""What a model has learned beside its answers so that it finds actions without marks."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from actum.arrays import Array, Floats
+from actum.node import SECOND_NS
+from som_classifier.spotting.completeness import CompletenessHeads
+from som_classifier.spotting.decoding import Candidate
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Stamps = NDArray[np.int64]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+
+SHORTEST_S = 0.1
+"""Shorter windows count as this long (s): the logarithm of 0 is infinite."""
+LARGEST_Z2 = 9.0
+"""Squared standard score of a duration from which on it costs no more: a slow action is rare, not impossible."""
+
+
+class SpottingMetadata(BaseModel):
+    """What a model file holds of it beside the weights; field names are keys of the stored JSON.
+
+    Attributes:
+        interval_s: time between two decisions; each looks at all windows that end then.
+        lag_s: how long after its end an action is decided.
+        overlap: the share by which an action may reach into the one before it.
+        duration_weight: by how much completeness counts less per unit of log-likelihood of the duration.
+        window_durations_s: durations of the windows, rising.
+        log_duration_means: for each action, the mean of the logarithm of its durations (s).
+        log_duration_sds: for each action, the standard deviation of that logarithm.
+        thresholds: completeness that a window must exceed, rising: one for each entry of `false_alarms_per_min`.
+        false_alarms_per_min: cross-validated false segments in a minute of background, by threshold; empty where there
+            was no background to count them in.
+        recalls: the cross-validated share of actions that are found, by threshold.
+        threshold: the one that is used unless a rate of false alarms is asked for.
+        probability: slope and intercept of the logistic regression that turns a head's answer into a probability.
+        background_s: how long people did none of the actions in training.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="ignore", strict=True)
+
+    interval_s: Positive
+    lag_s: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    overlap: Annotated[float, Field(ge=0, lt=1)]
+    duration_weight: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    window_durations_s: Annotated[list[Positive], Field(min_length=1)]
+    log_duration_means: list[Finite]
+    log_duration_sds: list[Positive]
+    thresholds: list[Finite]
+    false_alarms_per_min: list[Finite]
+    recalls: list[Finite]
+    threshold: Finite
+    probability: Annotated[list[Finite], Field(min_length=2, max_length=2)]
+    background_s: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+
+    def threshold_for(self, false_alarms_per_min: float | None) -> float:
+        """Return the lowest threshold with no more false alarms a minute than these, the highest where none has so few.
+
+        Args:
+            false_alarms_per_min: as asked for; None for the threshold that was chosen in training.
+        """
+        if false_alarms_per_min is None or not self.false_alarms_per_min:
+            return self.threshold
+        rates = zip(self.thresholds, self.false_alarms_per_min, strict=True)
+        return next((threshold for threshold, rate in rates if rate <= false_alarms_per_min), self.thresholds[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class SpottingModel:
+    """Heads and durations.
+
+    Attributes:
+        heads: one for each action.
+        metadata: everything else.
+    """
+
+    heads: CompletenessHeads
+    metadata: SpottingMetadata
+
+    def candidates(self, starts_ns: Stamps, ends_ns: Stamps, completeness: Floats, threshold: float) -> list[Candidate]:
+        """Return for each window the action that it is most likely to be, where it is one.
+
+        Args:
+            starts_ns: (n,), the windows' first stamps.
+            ends_ns: (n,), their last stamps.
+            completeness: (n, actions), the heads' answers.
+            threshold: completeness that must be exceeded.
+        """
+        gains = self.gains((ends_ns - starts_ns) / SECOND_NS, completeness, threshold)
+        actions = gains.argmax(axis=1)
+        return [
+            Candidate(
+                int(starts_ns[n]), int(ends_ns[n]), int(action), float(completeness[n, action]), float(gains[n, action])
+            )
+            for n, action in enumerate(actions)
+            if gains[n, action] > 0
+        ]
+
+    def gains(self, durations_s: Array, completeness: Floats, threshold: float) -> Array:
+        """Return what windows (n,) are worth as each action, shape (n, actions).
+
+        gain = (completeness + weight * log-likelihood of the duration - threshold) * duration / mean duration, the
+        durations of each action being log-normally distributed.
+        """
+        means, sds = self._log_durations
+        z2 = np.square((np.log(np.maximum(durations_s, SHORTEST_S))[:, None] - means) / sds)
+        log_likelihoods = -0.5 * np.minimum(z2, LARGEST_Z2)
+        worth = completeness + self.metadata.duration_weight * log_likelihoods - threshold
+        gains: Array = worth * (durations_s / np.exp(means).mean())[:, None]
+        return gains
+
+    def probability(self, completeness: float) -> float:
+        """Return how probable it is that an action is going on for which a head answers this much."""
+        slope, intercept = self.metadata.probability
+        return float(1.0 / (1.0 + np.exp(-(slope * completeness + intercept))))
+
+    @cached_property
+    def _log_durations(self) -> tuple[Array, Array]:
+        return np.array(self.metadata.log_duration_means), np.array(self.metadata.log_duration_sds)

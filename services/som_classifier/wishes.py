@@ -1,0 +1,55 @@
+"""What a user wants to be found in the streams, held against what a model can find."""
+
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+from som_classifier.model import Model
+from som_classifier.spotting.search import NO_SEARCH, SearchPlan
+from som_classifier.spotting.spotted import SpottingOptions
+
+Sought = Literal["marks", "auto", "both"]
+"""Which segments are answered: the marked ones, those that the classifier finds by itself, or both."""
+CANNOT = "finds no segments by itself: the model was trained without continuous recordings"
+"""What the state says of a model without a spotter."""
+NO_BACKGROUND = "no background in the training data: none is a guess"
+"""What the state says of a model that has never seen people do anything else."""
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What a user wants, whichever model there is.
+
+    Attributes:
+        segments: which ones are answered.
+        options: what is asked of the search.
+        enabled: the only actions that are told of those found; empty where all are.
+    """
+
+    segments: Sought = "both"
+    options: SpottingOptions = field(default_factory=SpottingOptions)
+    enabled: frozenset[str] = frozenset()
+
+    def plan(self, model: Model) -> SearchPlan:
+        """Return how a model is to search the streams; it does not where only marked segments are wanted."""
+        if self.segments == "marks":
+            return NO_SEARCH
+        others = frozenset(model.labels) - self.enabled if self.enabled else frozenset()
+        options = replace(self.options, disabled=self.options.disabled | others)
+        return SearchPlan(lambda: model.spotter(options), options)
+
+    def state(self, model: Model) -> str:
+        """Describe how far a model does as wanted: `running`, and after a semicolon each thing to know."""
+        if self.segments == "marks":
+            return "running"
+        finds = model.spotter(self.options) is not None
+        if self.segments == "auto" and not finds:
+            return f"nothing to do: marks are not wanted (segments auto), and it {CANNOT}"
+        named = self.options.disabled | self.options.cooldown_s.keys() | self.enabled
+        if unknown := sorted(named - set(model.labels)):
+            return f"settings name actions that the model does not know: {', '.join(unknown)}"
+        notes = [NO_BACKGROUND] if finds and model.background_s == 0 else [] if finds else [CANNOT]
+        return "; ".join(["running", *notes])
+
+
+ANYTHING = Wishes()
+"""What is wanted where nothing is said."""

@@ -1,0 +1,164 @@
+"""The segments of a recording are listed, drawn and mended by their numbers."""
+
+import re
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from actum.messages import Message, Segment
+from actum.recording import Recorder, Recording
+from actum_command.__main__ import app
+from empty_messages import action
+from performers import mark
+from repeating import FRAME_NS, Stream, five_waves, rest
+
+FIRST_NS = 10**9
+"""Stamp of the first frame: times count from it, not from the clock's start."""
+
+
+@pytest.fixture
+def waves() -> Stream:
+    return five_waves()
+
+
+@pytest.fixture
+def path(tmp_path: Path, waves: Stream) -> Path:
+    """Five waves; the first two are marked, the first one answered."""
+    at = [(FIRST_NS + a * FRAME_NS, FIRST_NS + b * FRAME_NS) for a, b in waves.truths]
+    marks = [
+        mark("start", at[1][0], "second"),
+        mark("end", at[1][1], "second"),
+        mark("start", at[0][0], "first", "wave"),
+        mark("end", at[0][1], "first"),
+    ]
+    with Recorder(tmp_path / "anna.mcap", person="anna", source="test") as recorder:
+        for message in [*waves.skeletons(first_ns=FIRST_NS), *marks, action(*at[0], "first")]:
+            recorder.write(message)
+    return tmp_path / "anna.mcap"
+
+
+def label(*arguments: object) -> str:
+    done = CliRunner().invoke(app, ["label", *map(str, arguments)])
+    assert done.exit_code == 0, done.output
+    return done.stdout
+
+
+def refused(*arguments: object) -> str:
+    ended = CliRunner().invoke(app, ["label", *map(str, arguments)])
+    assert ended.exit_code == 1, ended.output
+    assert ended.stderr.count("\n") == 1
+    return ended.stderr
+
+
+def rows(path: Path) -> list[str]:
+    return [" ".join(line.split()) for line in label(path).splitlines() if line.startswith("  ")]
+
+
+def unmarked(path: Path) -> list[Message]:
+    return [message for message in Recording(path).messages() if not isinstance(message, Segment)]
+
+
+def marks_of(path: Path, segment_id: str) -> list[Segment]:
+    return [m for m in Recording(path).messages() if isinstance(m, Segment) and m.segment_id == segment_id]
+
+
+def test_segments_are_numbered_in_order_of_time_with_their_answers(path: Path) -> None:
+    assert label(path).startswith(f"{path}, person anna\n")
+    assert rows(path) == [
+        "1 1.20 s 2.57 s (1.37 s) wave - nearest answered push 1.00",
+        "2 3.80 s 5.17 s (1.37 s) (no label) - nearest",
+    ]
+    assert label("list", path) == label(path)
+
+
+def test_bounds_are_moved_to_a_time_or_by_a_difference(path: Path) -> None:
+    frames = unmarked(path)
+    label("move", path, 1, "--start", "1.0", "--end", "+0.2")
+    assert rows(path)[0].startswith("1 1.00 s 2.77 s")
+    label("move", path, 1, "--end", "-0.2")
+    assert rows(path)[0].startswith("1 1.00 s 2.57 s")
+    assert unmarked(path) == frames
+
+
+def test_a_segment_is_renamed_and_deleted_with_its_answers(path: Path) -> None:
+    label("rename", path, 2, "drink")
+    assert [each.label for each in marks_of(path, "second")] == ["drink", None]
+    label("delete", path, 1)
+    assert rows(path)[0].startswith("1 3.80 s 5.17 s (1.37 s) drink")
+    assert all(getattr(message, "segment_id", None) != "first" for message in Recording(path).messages())
+
+
+def test_a_segment_is_added_and_taken_out_again(path: Path) -> None:
+    before = list(Recording(path).messages())
+    label("add", path, 6.4, 7.8, "wave", "--agent", 1)
+    assert rows(path)[2] == "3 6.40 s 7.80 s (1.40 s) wave manual agent 1"
+    label("delete", path, 3)
+    assert list(Recording(path).messages()) == before
+
+
+def test_repetitions_are_cut_beside_marks_by_hand_and_cut_anew(path: Path, waves: Stream) -> None:
+    label("delete", path, 1)
+    label("delete", path, 1)
+    frames = unmarked(path)
+    assert "5 segments labelled 'wave'" in label("cut", path, 5, "wave")
+    starts = [float(row.split()[1]) for row in rows(path)]
+    assert starts == pytest.approx([first * FRAME_NS / 1e9 for first, _ in waves.truths], abs=0.4)
+    assert all(" wave cut agent 1" in row for row in rows(path))
+    label("rename", path, 2, "other")
+    label("cut", path, 5, "greet")
+    assert len(rows(path)) == 5
+    assert all(" greet cut agent 1" in row for row in rows(path))
+    assert unmarked(path) == frames
+
+
+@pytest.mark.parametrize("ending", ["png", "svg"])
+def test_the_stream_is_drawn_with_and_without_answers(path: Path, tmp_path: Path, ending: str) -> None:
+    assert "2 segments drawn" in label("picture", path, "-o", tmp_path / f"stream.{ending}")
+    assert (tmp_path / f"stream.{ending}").stat().st_size > 1000
+
+
+def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) -> None:
+    path = tmp_path / "bare.mcap"
+    with Recorder(path, person="", source="test") as recorder:
+        for frame in Stream().then(rest(2)).skeletons():
+            recorder.write(frame)
+    assert label(path).endswith("0 segments\n")
+    assert "0 segments drawn" in label("picture", path, "-o", tmp_path / "bare.png")
+    assert "nobody is seen moving" in refused("cut", path, 5, "wave")
+    label("add", path, 0.5, 1.5, "stand")
+    assert rows(path) == ["1 0.50 s 1.50 s (1.00 s) stand manual nearest"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (("delete", 3), "no segment 3: there are 1 to 2"),
+        (("move", 0, "--start", "1"), "no segment 0"),
+        (("move", 1, "--start", "2", "--end", "1.5"), "start at 2.00 s and end at 1.50 s: the end has to be later"),
+        (("move", 1, "--end", "+3"), r"1.20 to 5.57 s overlaps segment 2 \(3.80 to 5.17 s\)"),
+        (("move", 1, "--start", "-9"), "before the recording does"),
+        (("move", 1, "--start", "soon"), "'soon' is no time"),
+        (("move", 1, "--start", "nan"), "'nan' is no time"),
+        (("add", 2.0, 3.0, "wave"), "overlaps segment 1"),
+        (("rename", 1, ""), "a label has 1 to 200 characters"),
+        (("cut", 5, "wave"), "overlaps segment 1"),
+    ],
+)
+def test_what_cannot_be_done_is_refused_and_changes_nothing(
+    arguments: tuple[str, ...], reason: str, path: Path
+) -> None:
+    before = path.read_bytes()
+    command, *others = arguments
+    assert re.search(reason, refused(command, path, *others))
+    assert path.read_bytes() == before
+
+
+def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.mcap").write_text("nothing")
+    assert "no MCAP file" in refused(tmp_path / "a.mcap")
+
+
+def test_a_picture_of_another_kind_is_refused(path: Path, tmp_path: Path) -> None:
+    assert "does not end in .png or .svg" in refused("picture", path, "-o", tmp_path / "a.gif")
+    assert "no such file" in refused("picture", path, "-o", tmp_path / "a.png", "--model", tmp_path / "m.npz").lower()
