@@ -1,6 +1,7 @@
 """The repetitions that are cut out of streams nobody has marked, on public recordings, as a page of Markdown.
 
 python benchmarks/cutting.py [--people development|held-out], by default the people held out; needs ACTUM_DATA.
+benchmarks/cutting.md is what it printed.
 """
 
 import argparse

@@ -8,8 +8,7 @@ from actum.node import SECOND_NS
 from actum_command.labelled_segments import free_names, marks_of
 from actum_command.stream_recorder import StreamRecorder
 from actum_model_trainer.cutting.courses import PersonTracks
-from actum_model_trainer.cutting.doubts import UNLIKE
-from actum_model_trainer.cutting.repetitions import Cuts, cut
+from actum_model_trainer.cutting.repetitions import Cuts, cut, cut_so_far
 
 COUNT_EVERY_S = 0.5
 """Shortest time between two counts: a repetition is noticed soon after its end."""
@@ -74,11 +73,11 @@ class RepetitionRecorder:
 
     def _count_along(self, first_ns: int) -> None:
         """Count the repetitions so far, tell when there are more, and when the last is followed by a long rest."""
-        so_far = cut(self._tracks.courses(), None, first_ns)
+        so_far = cut_so_far(self._tracks.courses(), self._asked, first_ns)
         if so_far is None:
             return
-        count = sum(repetition.likeness >= UNLIKE for repetition in so_far.repetitions)
-        if count > self._count:
+        count = len(so_far.repetitions)
+        if count > max(self._count, 1):
             self._count = count
             self._counted(count)
         if count >= self._asked and so_far.resting_s > max(LAST_REST_S, REST_RATIO * so_far.longest_pause_s):

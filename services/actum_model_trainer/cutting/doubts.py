@@ -10,7 +10,7 @@ from actum_model_trainer.cutting.choice import Chain
 from actum_model_trainer.cutting.courses import RATE_HZ, Course
 
 UNLIKE = 0.3
-"""A repetition less like the most typical one is told: in MSRC-12 a sixth of such ones are none, of others one in 40"""
+"""A repetition less like the most typical one is told: of such in MSRC-12 a sixth are none, of others one in 40."""
 TWICE = 1.6
 """A repetition that takes longer than the median by this factor may be two."""
 STOP = 0.5

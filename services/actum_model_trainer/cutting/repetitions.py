@@ -1,6 +1,6 @@
 """The repetitions in what several people did: who repeats something, and from when to when each time."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -19,6 +19,8 @@ AS_GOOD = 0.1
 """Of people whose repetitions are worth the same within this, the nearest to the camera is meant."""
 LEAST_SPEED_MPS = 0.03
 """Who never is faster than this (root mean square over the joints) has done nothing: a slow wave of a hand is."""
+ALIKE = 0.4
+"""Repetitions count along while the least like of them is at least so like the most typical one."""
 OTHER_NUMBER = 0.5
 """How sure the cuts are, at most, where another number of repetitions would explain the movement better."""
 
@@ -86,7 +88,23 @@ def cut(courses: Sequence[Course], asked: int | None, first_ns: int) -> Cuts | N
         asked: how many repetitions there should be; None where nobody knows.
         first_ns: stamp from which doubts count their times.
     """
-    found = [best for best in (_best_chain(course, asked) for course in courses) if best is not None]
+    return _cut(courses, asked, first_ns, lambda chains: min(asked or chains.likeliest_number, chains.longest))
+
+
+def cut_so_far(courses: Sequence[Course], asked: int, first_ns: int) -> Cuts | None:
+    """Cut as many repetitions, up to the number asked, as are alike: of a stream that still goes on; else as `cut`."""
+
+    def number_alike(chains: Chains) -> int:
+        numbers = range(min(asked, chains.longest), 1, -1)
+        return next((number for number in numbers if chains.chain(number).likeness.min() >= ALIKE), 1)
+
+    return _cut(courses, None, first_ns, number_alike)
+
+
+def _cut(
+    courses: Sequence[Course], asked: int | None, first_ns: int, number_of: Callable[[Chains], int]
+) -> Cuts | None:
+    found = [best for best in (_best_chain(course, asked, number_of) for course in courses) if best is not None]
     if not found:
         return None
     most = max(each.rank(asked) for each in found)
@@ -100,7 +118,7 @@ def cut(courses: Sequence[Course], asked: int | None, first_ns: int) -> Cuts | N
     return Cuts(chosen.course, chosen.activity, repetitions, sureness, tuple(doubts))
 
 
-def _best_chain(course: Course, asked: int | None) -> _Found | None:
+def _best_chain(course: Course, asked: int | None, number_of: Callable[[Chains], int]) -> _Found | None:
     """Return the best chain about any posture of rest; None where the person does not move."""
     if course.speeds_mps.max() < LEAST_SPEED_MPS:
         return None
@@ -108,8 +126,8 @@ def _best_chain(course: Course, asked: int | None) -> _Found | None:
     for rest in rest_postures(course):
         chains = Chains(course, rest, max(asked or 0, MOST_REPETITIONS))
         if chains.longest:
-            number = min(asked or chains.likeliest_number, chains.longest)
-            found.append(_Found(course, chains.activity, chains.chain(number), chains.likeliest_number))
+            chain = chains.chain(number_of(chains))
+            found.append(_Found(course, chains.activity, chain, chains.likeliest_number))
     return max(found, key=lambda each: each.rank(asked), default=None)
 
 
