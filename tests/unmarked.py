@@ -43,7 +43,9 @@ class Scene:
     acts: tuple[Act, ...]
 
     def skeletons(self, first_ns: int = 0, session: str = "test") -> list[Skeleton]:
-        return [skeleton(first_ns + i * FRAME_NS, each, seq=i, session_id=session) for i, each in enumerate(self.joints)]
+        return [
+            skeleton(first_ns + i * FRAME_NS, each, seq=i, session_id=session) for i, each in enumerate(self.joints)
+        ]
 
     def marks(self) -> list[Segment]:
         return [

@@ -2,7 +2,7 @@
 
 import gc
 from collections.abc import Iterator, Sequence
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def candidates(draw: st.DrawFn) -> list[Candidate]:
 
 def is_disjoint(chosen: Sequence[Candidate]) -> bool:
     in_order = sorted(chosen, key=lambda each: each.start_ns)
-    return all(a.end_ns < b.start_ns for a, b in zip(in_order, in_order[1:], strict=False))
+    return all(a.end_ns < b.start_ns for a, b in pairwise(in_order))
 
 
 def gain_of(chosen: Sequence[Candidate]) -> float:

@@ -10,8 +10,9 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from actum.arrays import Array, Floats
 from actum.node import SECOND_NS
+from som_classifier.kinematics import GAP_NS
 from som_classifier.spotting.completeness import CompletenessHeads
-from som_classifier.spotting.decoding import Candidate
+from som_classifier.spotting.decoding import Candidate, Decoder
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Stamps = NDArray[np.int64]
@@ -82,6 +83,16 @@ class SpottingModel:
 
     heads: CompletenessHeads
     metadata: SpottingMetadata
+
+    def decoder(self) -> Decoder:
+        """Return the decoder of one person's stream.
+
+        A candidate is decided once its lag is over or, while others that overlap it are worth more, theirs: a longest
+        window later at most, and with the first decision after that.
+        """
+        metadata = self.metadata
+        waited_ns = round((metadata.window_durations_s[-1] + metadata.lag_s + metadata.interval_s) * SECOND_NS)
+        return Decoder(round(metadata.lag_s * SECOND_NS), waited_ns + GAP_NS, metadata.overlap)
 
     def candidates(self, starts_ns: Stamps, ends_ns: Stamps, completeness: Floats, threshold: float) -> list[Candidate]:
         """Return for each window the action that it is most likely to be, where it is one.
