@@ -12,7 +12,7 @@ from som_classifier.frames import Frame
 from som_classifier.recognition import Recognition
 from som_classifier.spotting.completeness import CompletenessHeads
 from som_classifier.spotting.pyramid_spotter import PyramidSpotter
-from som_classifier.spotting.spotted import Ongoing, Spotted, SpottedSegment, SpottingOptions
+from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSegment, SpottingOptions
 from som_classifier.spotting.spotting_model import SpottingMetadata, SpottingModel
 
 MS = SECOND_NS // 1000
@@ -127,6 +127,19 @@ def test_between_two_decisions_the_same_is_going_on() -> None:
     stamps_ms = list(range(0, 3001, 50))
     shown = spotted({(2000, 2500): 0.5}, stamps_ms)
     assert [ms for ms, each in zip(stamps_ms, shown, strict=True) if each.ongoing] == [2500, 2550]
+
+
+def test_of_frames_that_hold_no_posture_nothing_is_said() -> None:
+    shown = spotted({(2000, 2500): 0.5}, TENTHS, invalid=range(2501, 3501))
+    assert [ms for ms, each in zip(TENTHS, shown, strict=True) if each.ongoing] == [2500]
+    assert all(each == NOTHING for each in shown[26:])
+
+
+def test_where_too_few_frames_are_left_to_look_at_nothing_goes_on() -> None:
+    """Frames are lost, though without a gap."""
+    stamps_ms = [*range(0, 2501, 100), 2990, 3040, 3080]
+    shown = spotted({(2000, 2500): 0.5}, stamps_ms, durations_s=[0.5])
+    assert [ms for ms, each in zip(stamps_ms, shown, strict=True) if each.ongoing] == [2500]
 
 
 def test_what_was_decided_is_not_going_on_any_more() -> None:
