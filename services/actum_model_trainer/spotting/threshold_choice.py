@@ -8,12 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array
-from actum.node import SECOND_NS
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
 from actum_model_trainer.spotting.scanning import ScannedStream
 from som_classifier.kinematics import GAP_NS
-from som_classifier.spotting.decoding import Decoder
 from som_classifier.spotting.spotting_model import SpottingModel
 
 BEARABLE_PER_MIN = 1.0
@@ -92,9 +90,7 @@ def false_alarms(
 
 def _decided(each: ScannedStream, learned: SpottingModel, threshold: float) -> list[tuple[int, int, int, int]]:
     """Return start, end and decision (ns) and the action of each segment found in a stream."""
-    metadata, stamps_ns = learned.metadata, each.stream.stamps_ns
-    longest_ns = round((metadata.window_durations_s[-1] + metadata.lag_s) * SECOND_NS)
-    decoder = Decoder(round(metadata.lag_s * SECOND_NS), longest_ns, metadata.overlap)
+    decoder, stamps_ns = learned.decoder(), each.stream.stamps_ns
     starts_ns, ends_ns = stamps_ns[each.windows[:, 0]], stamps_ns[each.windows[:, 1]]
     candidates = learned.candidates(starts_ns, ends_ns, each.completeness, threshold)
     by_end = {end_ns: list(of_end) for end_ns, of_end in groupby(candidates, key=lambda each: each.end_ns)}
