@@ -33,7 +33,10 @@ CHUNK = 256
 def with_spotting(
     model: PyramidModel, streams: Sequence[LabelledStream], preset: PyramidPreset, seed: int, progress: Progress
 ) -> PyramidModel:
-    """Return the model with the search, trained on whole streams; as it is where no stream holds any of its actions."""
+    """Return the model with the search, trained on whole streams.
+
+    It is returned as it is where no stream holds any of its actions, or all are too short between gaps to be searched.
+    """
     search = preset.spotting
     usable = [stream for stream in streams if len(stream.stamps_ns) >= FEWEST_FRAMES]
     durations_s, log_means, log_sds = _durations(usable, model.labels, search)
@@ -58,6 +61,8 @@ def with_spotting(
         background_s=_background_s(streams),
     )
     scanned = _scanned(model, usable, heads, folds, metadata, progress)
+    if not any(len(each.windows) for each in scanned):
+        return model
     choice = chosen_threshold(scanned, SpottingModel(heads.all, metadata), model.labels, search.thresholds)
     learned = metadata.model_copy(update=asdict(choice) | {"probability": _probability(scanned, model.labels)})
     return replace(model, heads=heads.all, metadata=model.metadata.model_copy(update={"spotting": learned}))
@@ -143,7 +148,7 @@ def _heads(
     of_fold = [folds.of(stream, each.frames) for stream, each in zip(streams, drawn, strict=True)]
     vectors = np.concatenate([each.vectors for each in drawn])
     completeness = np.concatenate([each.completeness for each in drawn])
-    return fit_heads(vectors, completeness, np.concatenate(of_fold), search.shrinkage)
+    return fit_heads(vectors, completeness, np.concatenate(of_fold), search.folds, search.shrinkage)
 
 
 def _scanned(
