@@ -25,7 +25,7 @@ from som_classifier.presets import DEFAULT
 TRAINERS = (ACTOR, *range(1001, 1009))
 """Actors of the training, none of whom is among any number of others that the test may have."""
 TRAINING_REPETITIONS = 2
-"""Of each action by each of them: many people teach more than many repetitions, and these are learnt in half a minute."""
+"""Of each action by each of them: many people teach more than many repetitions, and half a minute is enough."""
 PAUSES: Pauses = "short"
 """At most one everyday doing between two actions: the test of nine people then takes seven minutes, not fifteen."""
 

@@ -8,6 +8,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from actum.messages import Message
+from actum.node import SECOND_NS
 from actum_command.demo_score import TABLE_2, objects_by_majority, paper_table, verdict
 from actum_command.describing import describe_event
 from actum_command.performance import Performance
@@ -15,10 +16,13 @@ from actum_model_trainer.continuous.detections import Detection, Found, Truth
 from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.evaluation import wilson_interval
 
+LATEST_NS = 3 * SECOND_NS
+"""An action that nothing was told of so long after its end (ns) is not found: deciding and fusion take less."""
 
-@dataclass(frozen=True)
+
+@dataclass
 class PersonWitness:
-    """Hears one person's scene, and says of each event what was done at that time.
+    """Hears one person's scene, says of each event what was done at that time, and of each action if it is not found.
 
     Attributes:
         performance: what is heard.
@@ -31,6 +35,7 @@ class PersonWitness:
     before: int
     total: int
     longest_s: float
+    _over: int = 0
 
     @property
     def satisfied(self) -> bool:
@@ -38,10 +43,9 @@ class PersonWitness:
         return self.performance.over
 
     def take(self, message: Message) -> list[str]:
-        """Take a message; return a line for an event, and at the end of the scene one for each action not found."""
+        """Take a message; return a line for an event, and one for each action that is not found."""
         told = self.performance.take(message)
-        lines = [] if told is None else [self._line(told)]
-        return [*lines, *self._missed()] if self.satisfied else lines
+        return [*self._not_found(), *([] if told is None else [self._line(told)])]
 
     def _line(self, told: Detection) -> str:
         truth = self.performance.answered().get(told)
@@ -54,10 +58,13 @@ class PersonWitness:
         named = verdict("object", self.performance.object_right(told, truth))
         return f"{self._done(truth)}  {action}  {named}  {sentence}"
 
-    def _missed(self) -> list[str]:
-        answered = self.performance.answered().values()
-        missed = [truth for truth in self.performance.done if truth not in answered]
-        return [f"{self._done(truth)}  [red]not found[/red]" for truth in missed]
+    def _not_found(self) -> list[str]:
+        """Return a line for each action that is over for long enough now, and has no event."""
+        latest_ns = self.performance.newest_ns - LATEST_NS
+        over = [truth for truth in self.performance.done if truth.end_ns <= latest_ns or self.satisfied]
+        newly_over, self._over = over[self._over :], len(over)
+        answered = self.performance.answered().values() if newly_over else ()
+        return [f"{self._done(truth)}  [red]not found[/red]" for truth in newly_over if truth not in answered]
 
     def _done(self, truth: Truth) -> str:
         """Return which of all actions one is, and what was done to what."""
@@ -95,7 +102,7 @@ def unmarked_summary(performances: Sequence[Performance], learned: str, people: 
     low, high = wilson_interval(right, done)
     answered = sum(len(performance.answered()) for performance in performances)
     median_s, ninth_decile_s = scores.latency_s or (float("nan"), float("nan"))
-    tested = f"{people} others of other heights, tempos and handedness" if people else "one of them"
+    tested = f"{people} other{'s' * (people > 1)} of other heights, tempos and handedness" if people else "one of them"
     majority = objects_by_majority(each for performance in performances for each in performance.done.values())
     return (
         f"found by itself: {right} of {done} actions (95 % interval {low:.0%} to {high:.0%}); "
