@@ -74,10 +74,6 @@ during any true action, counted once; silent: the share of background postures w
     yield table(header, [_row(name, _heard(bench, of_set)) for name, of_set in sets.items()])
 
 
-def _heard(bench: Bench, people: Sequence[Fold]) -> list[Heard]:
-    return [heard(bench.model_of(fold.training), stream) for fold in people for stream in fold.test]
-
-
 def heard(model: Model, stream: Stream) -> Heard:
     """Listen while a recording is replayed without its marks."""
     listener = Listener(SomClassifier(model))
@@ -122,6 +118,10 @@ def silent(own: Heard) -> tuple[int, int]:
         each.label for agent, said in own.said.items() for each in said if not _is_during(each, own, agent)
     ]  # fmt: skip
     return outside.count(None), len(outside)
+
+
+def _heard(bench: Bench, people: Sequence[Fold]) -> list[Heard]:
+    return [heard(bench.model_of(fold.training), stream) for fold in people for stream in fold.test]
 
 
 def _row(name: str, everything: Sequence[Heard]) -> list[str]:
