@@ -29,6 +29,7 @@ PAGES = [
 RESULTS = {
     "Recognition": "benchmarks/recognition/results",
     "Recognition: what was tried": "benchmarks/recognition/README",
+    "Without marks": "benchmarks/continuous/results",
     "Without marks: what was tried": "benchmarks/continuous/README",
     "Objects": "benchmarks/objects/results",
     "Hands and objects": "benchmarks/bimacs",
