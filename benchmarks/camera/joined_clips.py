@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from actum.messages import Segment
 from actum.node import SECOND_NS
 from actum_dataset_importer.clips import clip_files
+from actum_dataset_importer.takes import segment_marks
 from sensor_gateway.devices.video import pictures_of
 
 from ..recognition.videos import FLORENCE_NAMING
@@ -23,7 +24,6 @@ STILL_FRAMES = 12
 """For how long a clip's last picture stays, and the first of the next one before it begins: 0.6 s each."""
 BACKGROUND = ("tight lace", "read watch")
 """Actions that nobody labels: what people do besides."""
-SENSOR = "camera0"
 
 Picture = NDArray[np.uint8]
 
@@ -41,14 +41,6 @@ class Part:
     first: int
     last: int
 
-    def marks(self, number: int) -> list[Segment]:
-        """Return the labelled marks of the stretch; the video's first frame has stamp 0."""
-        bounds = {"start": self.first, "end": self.last}
-        return [
-            Segment(stamp_ns=stamp_ns(frame), sensor=SENSOR, kind=kind, segment_id=f"{number:03d}", label=self.label)
-            for kind, frame in bounds.items()
-        ]
-
 
 @dataclass(frozen=True)
 class Joined:
@@ -59,14 +51,15 @@ class Joined:
     parts: tuple[Part, ...]
 
     @property
-    def frames(self) -> int:
-        """How many frames it has."""
-        return self.parts[-1].last + 1 + STILL_FRAMES
-
-    @property
     def actions(self) -> list[Part]:
         """What is to be found."""
         return [part for part in self.parts if part.label not in BACKGROUND]
+
+    def marks(self, sensor: str) -> list[Segment]:
+        """Return the labelled marks of the actions; the first frame has stamp 0."""
+        named = [(f"{part.first:05d}", part) for part in self.actions]
+        bounds = [segment_marks(stamp_ns(p.first), stamp_ns(p.last), sensor, name, p.label) for name, p in named]
+        return list(chain.from_iterable(bounds))
 
 
 def stamp_ns(frame: int) -> int:
