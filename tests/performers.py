@@ -50,6 +50,7 @@ TINY = PyramidPreset(
         most_windows=600,
         folds=2,
         thresholds=(0.3, 0.45, 0.6, 0.75),
+        false_alarm_threshold=0.4,
     ),
 )
 

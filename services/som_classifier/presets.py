@@ -104,6 +104,7 @@ class SpottingPreset:
         most_windows: training windows; more make the heads hardly better, and their training costs n³.
         folds: of cross-validation, by people.
         thresholds: completeness at which recall and false alarms are counted, rising.
+        false_alarm_threshold: completeness from which windows of background are false alarms to learn from.
     """
 
     interval_s: float
@@ -116,6 +117,7 @@ class SpottingPreset:
     most_windows: int
     folds: int
     thresholds: tuple[float, ...]
+    false_alarm_threshold: float
 
 
 @dataclass(frozen=True)
@@ -237,9 +239,10 @@ PYRAMID = PyramidPreset(
         windows=8,
         shortest_quantile=0.04,
         shrinkage=0.4,
-        most_windows=4500,
+        most_windows=3500,
         folds=3,
         thresholds=tuple(n / 20 for n in range(5, 19)),
+        false_alarm_threshold=0.4,
     ),
 )
 """The default. benchmarks/recognition says how its numbers were chosen, and on which people."""

@@ -179,6 +179,11 @@ class PyramidModel(Model):
             unknown=complete and familiarity < self.metadata.familiar,
         )
 
+    @property
+    def background_s(self) -> float | None:
+        """How long (s) people did none of the actions in the training data; None without a search."""
+        return None if self.metadata.spotting is None else self.metadata.spotting.background_s
+
     def spotter(self, options: SpottingOptions) -> PyramidSpotter | None:
         """Return a search for actions in one person's stream; None where the model was not trained for that."""
         if self.heads is None or self.metadata.spotting is None:
@@ -244,13 +249,14 @@ class PyramidModel(Model):
             return "its maps are not of the same precision"
         if len(set(stored.labels)) < actions or len(stored.gains) != stages or len(stored.usual_log_errors) != actions:
             return "its labels or its stages do not fit together"
-        return None
+        return None if stored.spotting is None else stored.spotting.problem(actions)
 
     def _array_problem(self) -> str | None:
         """Return the first inconsistency of an array with the metadata or other arrays, None where there is none."""
         first, units = self.first, len(self.action_map.som.weights)
         actions, stages = len(self.metadata.labels), len(self.metadata.fractions)
-        outside_maps = (self.stages.axes, self.stages.offsets, self.action_map.mean)
+        outside_maps = [self.stages.axes, self.stages.offsets, self.action_map.mean]
+        outside_maps += [] if self.heads is None else [self.heads.axes, self.heads.offsets]
         if not all(array.dtype == np.float32 and np.isfinite(array).all() for array in outside_maps):
             return "its axes, their offsets or its mean are not finite single-precision numbers"
         shapes = {

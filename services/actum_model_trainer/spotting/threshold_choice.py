@@ -7,12 +7,11 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array, Floats, Indices
-from actum.node import SECOND_NS
+from actum.arrays import Array
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
-from actum_model_trainer.samples import LabelledStream
-from som_classifier.spotting.decoding import Decoder
+from actum_model_trainer.spotting.scanning import ScannedStream
+from som_classifier.kinematics import GAP_NS
 from som_classifier.spotting.spotting_model import SpottingModel
 
 BEARABLE_PER_MIN = 1.0
@@ -23,21 +22,6 @@ SHORTEST_BACKGROUND_MIN = 0.5
 """Minutes of background below which false alarms a minute are not counted: too few to tell."""
 IOU = 0.5
 """Overlap at which bounds count as right in that choice."""
-
-
-@dataclass(frozen=True, eq=False)
-class ScannedStream:
-    """A stream with its live windows and what heads that were trained without it answer.
-
-    Attributes:
-        stream: with its labelled segments.
-        windows: (n, 2), first and last frame.
-        completeness: (n, actions).
-    """
-
-    stream: LabelledStream
-    windows: Indices
-    completeness: Floats
 
 
 @dataclass(frozen=True)
@@ -63,7 +47,7 @@ def chosen_threshold(
     worth = np.array([_worth(score) for score in scores])
     smoothed = np.convolve(np.pad(worth, 1, mode="edge"), np.full(3, 1 / 3), mode="valid")
     counted = scores[0].background_min >= SHORTEST_BACKGROUND_MIN
-    rates = [score.false_per_min or 0.0 for score in scores] if counted else []
+    rates = [score.alarms_per_min or 0.0 for score in scores] if counted else []
     return ThresholdChoice(
         float(thresholds[int(smoothed.argmax())]),
         np.minimum.accumulate(rates).tolist() if rates else [],
@@ -86,25 +70,46 @@ def found(scanned: Sequence[ScannedStream], learned: SpottingModel, labels: Sequ
     return Found(detections, truths, seen)
 
 
+def false_alarms(
+    scanned: Sequence[ScannedStream], learned: SpottingModel, labels: Sequence[str], threshold: float
+) -> list[list[Detection]]:
+    """Return for each stream what a search with this threshold finds where no action is done."""
+    alarms = []
+    for each in scanned:
+        detections = found([each], learned, labels, threshold).detections
+        segments = each.stream.segments
+        alarms.append(
+            [
+                own
+                for own in detections
+                if not any(own.start_ns < end and start < own.end_ns for start, end, _ in segments)
+            ]
+        )
+    return alarms
+
+
 def _decided(each: ScannedStream, learned: SpottingModel, threshold: float) -> list[tuple[int, int, int, int]]:
     """Return start, end and decision (ns) and the action of each segment found in a stream."""
-    metadata, stamps_ns = learned.metadata, each.stream.stamps_ns
-    longest_ns = round((metadata.window_durations_s[-1] + metadata.lag_s) * SECOND_NS)
-    decoder = Decoder(round(metadata.lag_s * SECOND_NS), longest_ns, metadata.overlap)
+    decoder, stamps_ns = learned.decoder(), each.stream.stamps_ns
     starts_ns, ends_ns = stamps_ns[each.windows[:, 0]], stamps_ns[each.windows[:, 1]]
     candidates = learned.candidates(starts_ns, ends_ns, each.completeness, threshold)
     by_end = {end_ns: list(of_end) for end_ns, of_end in groupby(candidates, key=lambda each: each.end_ns)}
-    return [
-        (segment.start_ns, segment.end_ns, now_ns, segment.action)
-        for now_ns in np.unique(ends_ns).tolist()
-        for segment in decoder.step(now_ns, by_end.get(now_ns, ()))
-    ]
+    gaps = np.flatnonzero(np.diff(stamps_ns) > GAP_NS) + 1
+    decisions_ns = np.union1d(ends_ns, stamps_ns[gaps])
+    restarts_ns = set(stamps_ns[gaps].tolist())
+    decided = []
+    for now_ns in decisions_ns.tolist():
+        if now_ns in restarts_ns:
+            decoder.forget()
+        found_now = decoder.step(now_ns, by_end.get(now_ns, ()))
+        decided += [(segment.start_ns, segment.end_ns, now_ns, segment.action) for segment in found_now]
+    return decided
 
 
 def _worth(score: ContinuousScores) -> float:
     false = 0.0
-    if score.background_min >= SHORTEST_BACKGROUND_MIN and score.false_per_min is not None:
-        false = max(score.false_per_min - BEARABLE_PER_MIN, 0.0)
+    if score.background_min >= SHORTEST_BACKGROUND_MIN and score.alarms_per_min is not None:
+        false = max(score.alarms_per_min - BEARABLE_PER_MIN, 0.0)
     return score.event.f1 + score.f1_at_iou[IOU] - COST_PER_MIN * false
 
 

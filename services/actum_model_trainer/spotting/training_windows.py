@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
+from actum_model_trainer.continuous.detections import Detection
 from actum_model_trainer.samples import LabelledStream
 from som_classifier.kinematics import GAP_NS
 from som_classifier.spotting.completeness import completeness_of_iou
@@ -33,6 +34,8 @@ BACKGROUND = 2
 """Windows anywhere in the stream, for each action in it and at least for each five seconds."""
 BACKGROUND_S = 5.0
 """See `BACKGROUND`: streams without any action count, too."""
+FALSE_ALARM = 6
+"""Windows about each false alarm, bounds moved a little: as many as hold half or more of an action."""
 COVERED_SHARE = 0.6
 """Share of a window over which there must be frames."""
 NS = 1e9
@@ -72,6 +75,20 @@ def training_windows(
             frames.append((first, last))
     windows = np.array(frames, dtype=np.intp).reshape(-1, 2)
     return TrainingWindows(windows, true_completeness(stream, windows, labels))
+
+
+def with_false_alarms(
+    stream: LabelledStream, windows: TrainingWindows, alarms: Sequence[Detection], rng: np.random.Generator
+) -> TrainingWindows:
+    """Add windows about each false alarm in a stream, which hold none of the actions."""
+    frames = []
+    for alarm in alarms:
+        duration_ns = alarm.end_ns - alarm.start_ns
+        for shift_start, shift_end in rng.uniform(-JITTER, JITTER, (FALSE_ALARM, 2)) * duration_ns:
+            frames.append(_frames_within(stream.stamps_ns, alarm.start_ns + shift_start, alarm.end_ns + shift_end))
+    added = np.array([each for each in frames if each[1] - each[0] + 1 >= FEWEST_FRAMES], dtype=np.intp).reshape(-1, 2)
+    none = np.zeros((len(added), windows.completeness.shape[1]))
+    return TrainingWindows(np.concatenate([windows.frames, added]), np.concatenate([windows.completeness, none]))
 
 
 def true_completeness(stream: LabelledStream, frames: Indices, labels: Sequence[str]) -> Array:

@@ -32,19 +32,20 @@ class Decoder:
 
     Args:
         lag_ns: how long after its end a candidate is decided.
-        memory_ns: how long a candidate is remembered after its end: as long as the longest window.
+        memory_ns: how long a candidate is remembered after its end.
         overlap: the share of its duration by which a candidate may reach into the one decided before it. That much is
             cut off: the end of an action is often found a little late.
     """
 
     def __init__(self, lag_ns: int, memory_ns: int, overlap: float) -> None:
-        self._lag_ns, self._memory_ns, self._overlap = lag_ns, memory_ns, overlap
+        self.memory_ns = memory_ns
+        self._lag_ns, self._overlap = lag_ns, overlap
         self._pending: list[Candidate] = []
         self._decided_ns = -1
 
     def step(self, now_ns: int, candidates: Iterable[Candidate]) -> list[Candidate]:
         """Take the candidates that end now; return those that are decided thereby, in order."""
-        remembered = [each for each in self._pending if each.end_ns >= now_ns - self._memory_ns]
+        remembered = [each for each in self._pending if each.end_ns >= now_ns - self.memory_ns]
         self._pending = [each for each in (*remembered, *candidates) if self.is_free(each.start_ns, each.end_ns)]
         decided = [each for each in best_set(self._pending) if each.end_ns <= now_ns - self._lag_ns]
         starts_ns = [max(each.start_ns, self._decided_ns + 1) for each in decided]

@@ -10,8 +10,8 @@ from actum.node import SECOND_NS
 from som_classifier.frames import Frame
 from som_classifier.recognition import Recognition
 from som_classifier.spotting.completeness import iou_of_completeness
-from som_classifier.spotting.decoding import Candidate, Decoder
-from som_classifier.spotting.spotted import Ongoing, Spotted, SpottedSegment, SpottingOptions
+from som_classifier.spotting.decoding import Candidate
+from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSegment, SpottingOptions
 from som_classifier.spotting.spotting_model import SpottingModel
 from som_classifier.spotting.windows import RecentFrames
 
@@ -55,9 +55,9 @@ class PyramidSpotter:
         metadata = learned.metadata
         self._threshold = metadata.threshold_for(options.false_alarms_per_min)
         self._interval_ns = round(metadata.interval_s * SECOND_NS)
-        memory_ns = round((metadata.window_durations_s[-1] + metadata.lag_s) * SECOND_NS)
-        self._recent = RecentFrames(metadata.window_durations_s, memory_ns)
-        self._decoder = Decoder(round(metadata.lag_s * SECOND_NS), memory_ns, metadata.overlap)
+        longest_ns = round(metadata.window_durations_s[-1] * SECOND_NS)
+        self._decoder = learned.decoder()
+        self._recent = RecentFrames(metadata.window_durations_s, self._decoder.memory_ns + longest_ns)
         self._next_decision_ns = 0
         self._ongoing: Ongoing | None = None
 
@@ -66,7 +66,9 @@ class PyramidSpotter:
         if frame.valid and not self._recent.add(frame):
             self._decoder.forget()
             self._ongoing, self._next_decision_ns = None, frame.stamp_ns
-        if not frame.valid or frame.stamp_ns < self._next_decision_ns:
+        if not frame.valid:
+            return NOTHING
+        if frame.stamp_ns < self._next_decision_ns:
             return Spotted(ongoing=self._ongoing)
         self._next_decision_ns = frame.stamp_ns + self._interval_ns
         return self._decision(frame.stamp_ns)
@@ -74,7 +76,8 @@ class PyramidSpotter:
     def _decision(self, now_ns: int) -> Spotted:
         windows = self._recent.windows()
         if not windows:
-            return Spotted()
+            self._ongoing = None
+            return NOTHING
         starts_ns = np.array([window[0].stamp_ns for window in windows])
         completeness = np.stack([self._learned.heads.completeness(self._model.pooled(window)) for window in windows])
         ends_ns = np.full(len(windows), now_ns)

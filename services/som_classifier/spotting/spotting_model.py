@@ -9,13 +9,16 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from actum.arrays import Array, Floats
+from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
 from actum.node import SECOND_NS
+from som_classifier.kinematics import GAP_NS
 from som_classifier.spotting.completeness import CompletenessHeads
-from som_classifier.spotting.decoding import Candidate
+from som_classifier.spotting.decoding import Candidate, Decoder
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Stamps = NDArray[np.int64]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Duration = Annotated[float, Field(gt=0, le=MAX_SEGMENT_NS / SECOND_NS)]
 
 SHORTEST_S = 0.1
 """Shorter windows count as this long (s): the logarithm of 0 is infinite."""
@@ -46,18 +49,28 @@ class SpottingMetadata(BaseModel):
     model_config = ConfigDict(frozen=True, extra="ignore", strict=True)
 
     interval_s: Positive
-    lag_s: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    lag_s: Annotated[float, Field(ge=0, le=MAX_SKEW_NS / SECOND_NS)]
     overlap: Annotated[float, Field(ge=0, lt=1)]
     duration_weight: Annotated[float, Field(ge=0, allow_inf_nan=False)]
-    window_durations_s: Annotated[list[Positive], Field(min_length=1)]
+    window_durations_s: Annotated[list[Duration], Field(min_length=1)]
     log_duration_means: list[Finite]
     log_duration_sds: list[Positive]
-    thresholds: list[Finite]
+    thresholds: Annotated[list[Finite], Field(min_length=1)]
     false_alarms_per_min: list[Finite]
     recalls: list[Finite]
     threshold: Finite
     probability: Annotated[list[Finite], Field(min_length=2, max_length=2)]
     background_s: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+
+    def problem(self, actions: int) -> str | None:
+        """Return the first inconsistency with itself or with the number of actions, None where there is none."""
+        if {len(self.log_duration_means), len(self.log_duration_sds)} != {actions}:
+            return "the durations of its search are not those of its actions"
+        if any(list(rising) != sorted(rising) for rising in (self.window_durations_s, self.thresholds)):
+            return "the windows or thresholds of its search do not rise"
+        if len(self.false_alarms_per_min) not in (0, len(self.thresholds)):
+            return "the false alarms of its search are not those of its thresholds"
+        return None
 
     def threshold_for(self, false_alarms_per_min: float | None) -> float:
         """Return the lowest threshold with no more false alarms a minute than these, the highest where none has so few.
@@ -82,6 +95,16 @@ class SpottingModel:
 
     heads: CompletenessHeads
     metadata: SpottingMetadata
+
+    def decoder(self) -> Decoder:
+        """Return the decoder of one person's stream.
+
+        A candidate is decided once its lag is over or, while others that overlap it are worth more, theirs: a longest
+        window later at most, and with the first decision after that.
+        """
+        metadata = self.metadata
+        waited_ns = round((metadata.window_durations_s[-1] + metadata.lag_s + metadata.interval_s) * SECOND_NS)
+        return Decoder(round(metadata.lag_s * SECOND_NS), waited_ns + GAP_NS, metadata.overlap)
 
     def candidates(self, starts_ns: Stamps, ends_ns: Stamps, completeness: Floats, threshold: float) -> list[Candidate]:
         """Return for each window the action that it is most likely to be, where it is one.

@@ -1,0 +1,88 @@
+"""What heads answer to all windows that a live search would look at in streams of people they were not trained on."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.arrays import Floats, Indices
+from actum.node import SECOND_NS
+from actum_model_trainer.progress import Progress
+from actum_model_trainer.samples import LabelledStream
+from actum_model_trainer.spotting.encoded_stream import EncodedStream
+from actum_model_trainer.spotting.heads_training import FoldedHeads
+from actum_model_trainer.spotting.training_windows import live_windows
+from som_classifier.pyramid_model import PyramidModel
+from som_classifier.spotting.spotting_model import SpottingMetadata
+
+CHUNK = 256
+"""Windows whose vectors are held at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class ScannedStream:
+    """A stream with its live windows and what heads that were trained without it answer.
+
+    Attributes:
+        stream: with its labelled segments.
+        windows: (n, 2), first and last frame.
+        completeness: (n, actions).
+    """
+
+    stream: LabelledStream
+    windows: Indices
+    completeness: Floats
+
+
+class Folds:
+    """The folds of cross-validation: people, or parts of each stream where there are fewer people than folds.
+
+    Args:
+        streams: of the training.
+        count: how many folds.
+    """
+
+    def __init__(self, streams: Sequence[LabelledStream], count: int) -> None:
+        self._people = sorted({stream.person for stream in streams})
+        self._count = count
+
+    def of(self, stream: LabelledStream, windows: Indices) -> Indices:
+        """Return the fold of each window (n, 2; first and last frame) of a stream, (n,)."""
+        if len(self._people) >= self._count:
+            return np.full(len(windows), self._people.index(stream.person) % self._count)
+        parts: Indices = windows.sum(axis=1) * self._count // (2 * len(stream.stamps_ns))
+        return parts
+
+
+def scanned(
+    model: PyramidModel,
+    streams: Sequence[LabelledStream],
+    heads: FoldedHeads,
+    folds: Folds,
+    metadata: SpottingMetadata,
+    progress: Progress,
+) -> list[ScannedStream]:
+    """Answer all live windows of the streams, each by heads that were trained without its fold."""
+    durations_ns = np.rint(np.array(metadata.window_durations_s) * SECOND_NS).astype(np.int64)
+    answered = []
+    for done, stream in enumerate(streams):
+        progress("searching streams", done, len(streams))
+        windows = live_windows(stream.stamps_ns, durations_ns, round(metadata.interval_s * SECOND_NS))
+        answered.append(ScannedStream(stream, windows, _answers(model, stream, windows, heads, folds)))
+    progress("searching streams", len(streams), len(streams))
+    return answered
+
+
+def _answers(
+    model: PyramidModel, stream: LabelledStream, windows: Indices, heads: FoldedHeads, folds: Folds
+) -> NDArray[np.float32]:
+    """Return the answers (n, actions) to windows (n, 2) of a stream."""
+    encoded, of_fold = EncodedStream(model, stream), folds.of(stream, windows)
+    answers = np.zeros((len(windows), len(heads.all.offsets)), np.float32)
+    for fold in np.unique(of_fold):
+        in_fold = np.flatnonzero(of_fold == fold)
+        for chunk in np.array_split(in_fold, -(-len(in_fold) // CHUNK)):
+            vectors = np.stack([encoded.vector(first, last) for first, last in windows[chunk].tolist()])
+            answers[chunk] = vectors @ heads.without[fold].axes + heads.without[fold].offsets
+    return answers

@@ -1,0 +1,119 @@
+"""People who act now and then, with nobody marking it, and a small model that has learned to find their actions."""
+
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.messages import Posture, Segment, Skeleton
+from actum.recording import Recorder, Recording
+from actum_model_trainer.samples import Samples, samples_from
+from actum_model_trainer.training import train_to_spot
+from people import FRAME_NS, STANDING, skeleton
+from performers import HAND_PATHS, TINY, mark, posed
+from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
+from repeating import eased
+from som_classifier.model import Model
+from som_classifier.pyramid_model import PyramidModel
+
+SCRATCH_M = {4: np.array([0.0, -0.1, -0.1]), 5: np.array([-0.15, -0.45, -0.10])}
+"""What people also do: how far the left elbow and hand go to the chin."""
+Joints = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Act:
+    """An action in a stream: its first and its last frame."""
+
+    first: int
+    last: int
+    action: str
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A person's joints (frames, 15, 3), and what is done when."""
+
+    joints: Joints
+    acts: tuple[Act, ...]
+
+    def skeletons(self, first_ns: int = 0, session: str = "test") -> list[Skeleton]:
+        return [
+            skeleton(first_ns + i * FRAME_NS, each, seq=i, session_id=session) for i, each in enumerate(self.joints)
+        ]
+
+    def marks(self) -> list[Segment]:
+        return [
+            mark(kind, frame * FRAME_NS, str(number), act.action if kind == "start" else None)
+            for number, act in enumerate(self.acts)
+            for kind, frame in (("start", act.first), ("end", act.last))
+        ]
+
+
+@cache
+def scene(actions: tuple[str, ...] = tuple(HAND_PATHS) * 2, seed: int = 0, height: float = 1.0) -> Scene:
+    """Each action takes 0.7 to 1.1 s; between two of them there is a rest or, every second time, a scratch as well."""
+    rng = np.random.default_rng(seed)
+    joints: list[Joints] = []
+    acts: list[Act] = []
+    for number, action in enumerate(actions):
+        joints += _still(rng.integers(20, 35), height, rng)
+        if number % 2:
+            joints += _scratch(rng.integers(20, 30), height, rng) + _still(15, height, rng)
+        frames = int(rng.integers(21, 33))
+        acts.append(Act(len(joints), len(joints) + frames - 1, action))
+        joints += [posed(action, phase, height, rng) for phase in eased(frames)]
+    return Scene(np.array([*joints, *_still(30, height, rng)]), tuple(acts))
+
+
+def _still(frames: int, height: float, rng: np.random.Generator) -> list[Joints]:
+    return [(STANDING + rng.normal(0, 0.0005, (15, 3))) * height for _ in range(frames)]
+
+
+def _scratch(frames: int, height: float, rng: np.random.Generator) -> list[Joints]:
+    poses = [(STANDING + rng.normal(0, 0.0005, (15, 3))) for _ in range(frames)]
+    for phase, pose in zip(eased(frames), poses, strict=True):
+        for joint, way_m in SCRATCH_M.items():
+            pose[joint] += phase * way_m
+    return [pose * height for pose in poses]
+
+
+def recorded(folder: Path, name: str, messages: Iterable[Skeleton | Segment], person: str = "1") -> Recording:
+    with Recorder(folder / f"{name}.mcap", person=person, source="test") as recorder:
+        for message in messages:
+            recorder.write(message)
+    return Recording(folder / f"{name}.mcap")
+
+
+@cache
+def taught() -> Samples:
+    """What two people of different height show: every action six times each."""
+    with tempfile.TemporaryDirectory() as folder:
+        scenes = [scene(tuple(HAND_PATHS) * 6, seed, height) for seed, height in ((1, 0.95), (2, 1.1))]
+        recordings = [
+            recorded(Path(folder), str(n), [*each.skeletons(), *each.marks()], str(n)) for n, each in enumerate(scenes)
+        ]
+        return samples_from(recordings)
+
+
+@cache
+def spotting_model() -> PyramidModel:
+    """A model that finds lift, push and swing, trained on two people."""
+    model: Model = train_to_spot(taught().usable, taught().streams, TINY)
+    assert isinstance(model, PyramidModel)
+    return model
+
+
+def postures(skeletons: Iterable[Skeleton]) -> Iterator[Posture]:
+    node = PosePreprocessor(PoseSettings.defaults())
+    for each in skeletons:
+        yield from (message for message in node.handle(each) if isinstance(message, Posture))
+
+
+def bounds_ns(acts: Sequence[Act], first_ns: int = 0) -> list[tuple[int, int, str]]:
+    return [(first_ns + act.first * FRAME_NS, first_ns + act.last * FRAME_NS, act.action) for act in acts]
