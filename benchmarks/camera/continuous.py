@@ -154,7 +154,7 @@ def live(video: Path, model: Path, mirrored: bool) -> Watched:
         for program in processes.services(LIVE, model, {}, {}):
             supervisor.start(replace(program, arguments=ARGUMENTS.get(program.name, ())))
         client = stack.enter_context(Client(LIVE, wait_s=READY_S))
-        for topic in (keys.SKELETON, keys.POSTURE):
+        for topic in (keys.SKELETON, keys.SEGMENT):
             assert client.wait_for_subscriber(topic, READY_S)
         for topic in (keys.SKELETON, keys.ACTION):
             client.tap(keys.pattern(topic), ear.arrived)
