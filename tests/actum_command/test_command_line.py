@@ -206,7 +206,7 @@ def test_what_is_found_without_marks_is_told_and_written(
 ) -> None:
     """No model is needed to see how it is told: this one finds the first action alone."""
 
-    def found(_model: object, _recordings: object, _progress: object) -> Found:
+    def found(*_: object) -> Found:
         return Found([first], [truth, truth_missed], [Stretch("a.mcap", 1, 0, 60 * 10**9)])
 
     first = Detection("a.mcap", 1, 0, 10**9, 2 * 10**9, "lift", 0.9)
