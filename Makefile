@@ -4,7 +4,7 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture pages docs schemas wheel clean
+.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture pages docs schemas wheel clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -57,6 +57,11 @@ bench-camera: $(STAMP)  ## real people in video clips, beside the same peers, ab
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
 	$(BIN)/python -m benchmarks.camera
 
+bench-camera-continuous: $(STAMP)  ## real people in joined clips, found live without marks, about ten minutes
+	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera-continuous needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
+	@test -d "$$ACTUM_DATA" || { echo "bench-camera-continuous needs ACTUM_DATA: the folder that holds florence3d_rgb/ and people_video/" >&2; exit 1; }
+	$(BIN)/python -m benchmarks.camera.continuous
+
 bench-camera-latency: $(STAMP)  ## from a picture's capture to the event, beside the pose model's own time
 	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera-latency needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
 	@test -d "$$ACTUM_DATA" || { echo "bench-camera-latency needs ACTUM_DATA: the folder that holds florence3d_rgb/" >&2; exit 1; }
@@ -76,7 +81,7 @@ bench-recognition: $(STAMP)  ## the recogniser beside its peers on public record
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
 	$(BIN)/python -m benchmarks.recognition
 
-bench-objects: $(STAMP)  ## the right object in simulated scenes that are hard to see, about ten minutes
+bench-objects: $(STAMP)  ## the right object in simulated scenes that are hard to see, about fifteen minutes
 	$(BIN)/python -m benchmarks.objects
 
 bench-paper: $(STAMP)  ## preset paper by the paper's own protocols, step by step, and its figures

@@ -18,6 +18,10 @@ OTHER: Mapping[Hand, Hand] = {"left": "right", "right": "left"}
 DOWN = np.array([0.0, 1.0, 0.0])
 LIFTED_M, IN_HAND_M = 0.08, 0.20
 """What is this much above where it stands is lifted; what is this near to a hand may be in it."""
+QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
+FOUND_LATE_S = ((-0.33, -0.23, -0.07, 0.03, 0.10, 0.22, 0.50), (-0.37, -0.29, -0.10, 0.03, 0.13, 0.36, 0.60))
+"""By how many seconds the starts and the ends that the classifier finds in the simulated scene are late, at these
+quantiles: the last table of `make bench-objects`."""
 STANDING = 0
 """The bowl, which stands all the while."""
 
@@ -112,12 +116,27 @@ def bounds_off(by_s: float) -> Change:
     """Mark starts and ends up to so much too early or too late."""
 
     def change(tracks: Tracks, rng: np.random.Generator) -> Tracks:
-        off = {name: (rng.uniform(-by_s, by_s, 2) * SECOND_NS).astype(int).tolist() for name in tracks.bounds}
-        first, last = int(tracks.stamps_ns[0]), int(tracks.stamps_ns[-1])
-        moved = {n: [min(max(b + o, first), last) for b, o in zip(tracks.bounds[n], off[n], strict=True)] for n in off}
-        return replace(tracks, bounds={n: (s, e) if s < e else tracks.bounds[n] for n, (s, e) in moved.items()})
+        return _bounds_moved(tracks, {name: rng.uniform(-by_s, by_s, 2) for name in tracks.bounds})
 
     return change
+
+
+def bounds_as_found(tracks: Tracks, rng: np.random.Generator) -> Tracks:
+    """Move starts and ends as those are off that the classifier finds in the simulated scene."""
+    shares = {name: rng.uniform(size=2) for name in tracks.bounds}
+    late_s = {
+        name: np.array([np.interp(share, QUANTILES, late) for share, late in zip(of, FOUND_LATE_S, strict=True)])
+        for name, of in shares.items()
+    }
+    return _bounds_moved(tracks, late_s)
+
+
+def _bounds_moved(tracks: Tracks, late_s: Mapping[str, Array]) -> Tracks:
+    """Move each segment's start and end (2,), but not out of the take, nor past each other."""
+    off = {name: (late_s[name] * SECOND_NS).astype(int).tolist() for name in tracks.bounds}
+    first, last = int(tracks.stamps_ns[0]), int(tracks.stamps_ns[-1])
+    moved = {n: [min(max(b + o, first), last) for b, o in zip(tracks.bounds[n], off[n], strict=True)] for n in off}
+    return replace(tracks, bounds={n: (s, e) if s < e else tracks.bounds[n] for n, (s, e) in moved.items()})
 
 
 def higher(by_m: float) -> Change:

@@ -1,4 +1,4 @@
-"""Measure all parts, or one, and write them as Markdown; about ten minutes on one core.
+"""Measure all parts, or one, and write them as Markdown; about fifteen minutes on one core.
 
 python -m benchmarks.objects [--only PART]
 """

@@ -5,10 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
 from actum.messages import Action, Event, Image, Message, Objects, Skeleton, Truth
-from actum.node import replay
 from actum.skeletons import INDEX
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import ObjectSpec
@@ -20,9 +18,11 @@ from scene_simulator.conditions import Conditions
 from scene_simulator.programme import Task
 from scene_simulator.simulator import Simulator
 
-from .trials import Trial
+from .trials import OURS, Trial
+from .unmarked import Unmarked, events_of, told_unmarked
 
-TAIL_S = 0.5
+TAIL_S = 1.5
+"""How long a scene goes on after its last action, so that it can be found."""
 MEASURES = {"proximity": Settings(measure="proximity"), "joint": Settings(measure="joint")}
 LEFT_M = 0.005
 """An object this near to where it ends has been left there."""
@@ -38,7 +38,7 @@ class Scene:
     image_hz: int
 
     def trials(self) -> list[Trial]:
-        """Draw the scene once, and let each measure judge the same sightings."""
+        """Draw the scene once; each measure judges the same sightings, and the joint one also where nobody marks."""
         simulator = Simulator(
             self.programme,
             self.person,
@@ -48,13 +48,19 @@ class Scene:
             conditions=self.conditions,
         )
         stream = list(_observed(simulator))
-        events = {name: _events(stream, settings) for name, settings in MEASURES.items()}
+        events = {name: events_of(stream, settings) for name, settings in MEASURES.items()}
+        unmarked = told_unmarked(stream, events[OURS], MEASURES[OURS])
         ends = [message for message in stream if isinstance(message, Truth) and message.kind == "end"]
-        return [_trial(simulator, stream, number, end, events) for number, end in enumerate(ends)]
+        return [_trial(simulator, stream, number, end, events, unmarked) for number, end in enumerate(ends)]
 
 
 def _trial(
-    simulator: Simulator, stream: Sequence[Message], number: int, end: Truth, events: Mapping[str, Sequence[Event]]
+    simulator: Simulator,
+    stream: Sequence[Message],
+    number: int,
+    end: Truth,
+    events: Mapping[str, Sequence[Event]],
+    unmarked: Sequence[Unmarked],
 ) -> Trial:
     return Trial(
         truth=end,
@@ -62,6 +68,7 @@ def _trial(
         line_right=_line_right(simulator, number),
         seen_left=_seen_left(simulator, stream, number, end),
         events={measure: of_measure[number] for measure, of_measure in events.items()},
+        unmarked=unmarked[number],
     )
 
 
@@ -104,11 +111,6 @@ def _recognised(end: Truth, start_ns: int) -> Action:
         frames=0,
         missed=0,
     )
-
-
-def _events(stream: Sequence[Message], settings: Settings) -> list[Event]:
-    answered = replay(ActionFusion(settings), [(message.stamp_ns, message) for message in stream])
-    return sorted((m for m in answered if isinstance(m, Event)), key=lambda event: event.start_ns)
 
 
 def _own_displacement(simulator: Simulator, number: int, end: Truth) -> np.ndarray | None:

@@ -1,9 +1,13 @@
 """What is measured: actions on objects, pointing from afar, and actions in empty space."""
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import chain, count
 
+import numpy as np
+
+from actum.node import SECOND_NS
 from scene_simulator.conditions import Conditions, load_conditions
 from scene_simulator.programme import NO_OBJECT, Task
 
@@ -27,6 +31,9 @@ STILL_IMAGE_HZ = 2
 
 FIRST_PERSON, FIRST_IN_CONTACT = 1001, 2001
 CONTACT_PEOPLE, POINTING_PEOPLE, EMPTY_PEOPLE = 6, 40, 3
+
+QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
+"""Of the errors of bounds: from the earliest to the latest."""
 
 Table = Callable[[], Iterator[str]]
 
@@ -66,11 +73,32 @@ def pantomimes() -> Iterator[str]:
         yield f"| {what} | {' | '.join(shares)} |"
 
 
+def unmarked() -> Iterator[str]:
+    """Put beside each other what is told of all these actions with marks and without."""
+    yield """Fusion is told what the classifier finds by itself. *Alarms* are events that tell of no action. *Lost* are
+objects that are right where the action is marked and not where it is found, and what would have mended each: the true
+start, the true end, either, or only both; *action* where it is the name of the action that is wrong."""
+    yield ""
+    yield "| | object, marked | found | named rightly | object, of those found | lost | alarms |"
+    yield "|---|---|---|---|---|---|---|"
+    contacts = {name: [t for spacing_m in SPACINGS_M for t in _contacts(name, spacing_m)] for name in load_conditions()}
+    everything = list(chain(*contacts.values()))
+    actions = {action: [t for t in everything if t.truth.action == action] for action in CONTACT}
+    pointed = list(chain(*map(_pointings, POINTING_DISTANCES_M)))
+    empty = list(chain(*map(_pantomimes, EMPTY_M)))
+    rows = {**contacts, **actions, "**all of these**": everything, "**pointing**": pointed, "**pantomimes**": empty}
+    for what, trials in rows.items():
+        yield _unmarked_row(what, trials)
+    yield ""
+    yield from _offsets([*everything, *pointed, *empty])
+
+
 PARTS: Mapping[str, tuple[str, Table]] = {
     **{name: (f"Push, pull, put, lift: {name}", lambda name=name: contact(name)) for name in load_conditions()},
     "contact": ("Push, pull, put, lift: all conditions", contact_in_all_conditions),
     "pointing": ("Pointing, objects 20 cm apart", pointing),
     "pantomimes": ("Pantomimes: push, pull, put, lift where nothing is", pantomimes),
+    "unmarked": ("The same actions, found without marks", unmarked),
 }
 
 
@@ -91,6 +119,33 @@ def _contact_row(what: str, trials: Sequence[Trial]) -> str:
     return f"| {what} | {' | '.join([*objects, *became])} |"
 
 
+def _unmarked_row(what: str, trials: Sequence[Trial]) -> str:
+    found = [t for t in trials if t.found]
+    lost = Counter(t.lost_by for t in trials if t.lost_by)
+    cells = [
+        share(trials, lambda t: t.object_right(OURS)),
+        share(trials, lambda t: t.found),
+        share(found, lambda t: t.named),
+        share(found, lambda t: t.unmarked_right),
+        ", ".join(f"{number} {why}" for why, number in sorted(lost.items())) or "0",
+        str(sum(t.unmarked.alarms for t in trials)),
+    ]
+    return f"| {what} | {' | '.join(cells)} |"
+
+
+def _offsets(trials: Sequence[Trial]) -> Iterator[str]:
+    """Tell how late the bounds found are, where the action is named rightly."""
+    found = [(t.unmarked.event, t.events[OURS]) for t in trials if t.unmarked.event is not None and t.named]
+    late_s = {
+        "start": [(event.start_ns - marked.start_ns) / SECOND_NS for event, marked in found],
+        "end": [(event.end_ns - marked.end_ns) / SECOND_NS for event, marked in found],
+    }
+    yield f"| found too late by, s | {' | '.join(f'{quantile:.0%}' for quantile in QUANTILES)} |"
+    yield f"|---|{'---|' * len(QUANTILES)}"
+    for bound, of_bound in late_s.items():
+        yield f"| {bound} | {' | '.join(f'{late:.2f}' for late in np.quantile(of_bound, QUANTILES))} |"
+
+
 @cache
 def _contacts(name: str, spacing_m: float) -> list[Trial]:
     conditions = load_conditions()[name].model_copy(update={"spacing_m": spacing_m})
@@ -102,6 +157,7 @@ def _contacts(name: str, spacing_m: float) -> list[Trial]:
     )
 
 
+@cache
 def _pointings(distance_m: float) -> list[Trial]:
     far = Conditions(spacing_m=POINTING_SPACING_M, distance_m=distance_m)
     programme = [Task("point", number) for number in IDS]
@@ -110,6 +166,7 @@ def _pointings(distance_m: float) -> list[Trial]:
     return _trials(Scene(programme, person, far, STILL_IMAGE_HZ) for person in people)
 
 
+@cache
 def _pantomimes(empty_m: float) -> list[Trial]:
     programme = [Task(action, NO_OBJECT) for action in CONTACT]
     people = count(FIRST_PERSON + round(1e5 * empty_m))

@@ -9,13 +9,15 @@ from actum.messages import Event, Truth
 from actum_model_trainer.evaluation import wilson_interval
 from scene_simulator.programme import NO_OBJECT
 
+from .unmarked import Unmarked
+
 OURS = "joint"
 NEAR_M, NEAR_SHARE = 0.02, 0.10
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What was done in truth, and each measure's event.
+    """What was done in truth, each measure's event, and what the joint one told where nobody marked.
 
     `displacement_m` (3,) is to the person's right, up and forward; `line_right` tells whether the true line from eye
     to fingertip passes its object nearer than the others, `seen_left` whether the object is seen where it ends.
@@ -26,10 +28,37 @@ class Trial:
     line_right: bool
     seen_left: bool
     events: Mapping[str, Event]
+    unmarked: Unmarked
 
     def object_right(self, measure: str) -> bool:
-        found = self.events[measure].object
-        return (NO_OBJECT if found is None else found.id) == self.truth.object_id
+        return self.names_object(self.events[measure])
+
+    def names_object(self, event: Event) -> bool:
+        """Whether an event names the object acted on, or none in a pantomime."""
+        return (NO_OBJECT if event.object is None else event.object.id) == self.truth.object_id
+
+    @property
+    def found(self) -> bool:
+        """Whether the action was found where nobody marked it, under whatever name."""
+        return self.unmarked.event is not None
+
+    @property
+    def named(self) -> bool:
+        """Whether it was found, and named rightly."""
+        return self.unmarked.event is not None and self.unmarked.event.action == self.truth.action
+
+    @property
+    def unmarked_right(self) -> bool:
+        """Whether it was found, and the object is right."""
+        return self.unmarked.event is not None and self.names_object(self.unmarked.event)
+
+    @property
+    def lost_by(self) -> str | None:
+        """Why the object is right where the action is marked, and wrong where it is found; None where it is not so."""
+        if not self.found or self.unmarked_right or not self.object_right(OURS):
+            return None
+        mended = [bound for bound, event in self.unmarked.with_true.items() if self.names_object(event)]
+        return "action" if not self.named and not mended else " or ".join(mended) or "start and end"
 
     def displacement_right(self) -> bool:
         """Whether the displacement is right wherever the person was thought to face: how far level, how far up."""
