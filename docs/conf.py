@@ -22,13 +22,15 @@ root_doc = "README"
 PAGES = [
     f"docs/{page}"
     for page in (
-        *("start", "cameras", "objects", "teaching", "messages", "som", "operating", "measured"),
+        *("start", "cameras", "objects", "teaching", "messages", "spotting", "som", "operating", "measured"),
         *("paper", "architecture"),
     )
 ]
 RESULTS = {
     "Recognition": "benchmarks/recognition/results",
     "Recognition: what was tried": "benchmarks/recognition/README",
+    "Without marks": "benchmarks/continuous/results",
+    "Without marks: what was tried": "benchmarks/continuous/README",
     "Objects": "benchmarks/objects/results",
     "Hands and objects": "benchmarks/bimacs",
     "Cuts": "benchmarks/cutting",

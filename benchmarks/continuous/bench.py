@@ -1,6 +1,6 @@
 """What all parts share: the sets, every method, and what has been trained on each fold."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from benchmarks.recognition.scores import table
 
@@ -13,18 +13,12 @@ from .ours import Bound, ModelOf, OncePerTraining, Ours, trained
 from .rocket_windows import RocketWindows
 from .streams import ContinuousSets, Fold, Stream
 
-HEADER = (
-    "method",
-    "events F1",
-    "F1@.1",
-    "F1@.25",
-    "F1@.5",
-    "false / min (in background)",
-    "latency, s: median (90 %)",
-    "recall at 1 false / min",
-    "split, merged",
-)
-POINTS = "action points F1"
+EVENTS, HALF, POINTS = "events F1", "F1@.5", "action points F1"
+FALSE, LATENCY = "false / min (in background)", "latency, s: median (90 %)"
+HEADER = ("method", EVENTS, "F1@.1", "F1@.25", HALF, FALSE, LATENCY, "recall at 1 false / min", "split, merged")
+Goals = Mapping[str, Mapping[str, str]]
+"""Rows below the methods: what ours is to reach, by column."""
+NO_GOALS: Goals = {}
 
 
 class Bench:
@@ -55,12 +49,14 @@ class Bench:
         return self._fitted[key]
 
 
-def scores_table(pooled: dict[str, Found]) -> str:
-    """Tabulate the scores of each method."""
+def scores_table(pooled: dict[str, Found], goals: Goals = NO_GOALS) -> str:
+    """Tabulate the scores of each method, and below them what ours is to reach."""
     scores = {name: scores_of(own) for name, own in pooled.items()}
     with_points = any(own.point_f1 is not None for own in scores.values())
     header = [*HEADER, POINTS] if with_points else HEADER
-    return table(header, ([name, *_cells(own)] for name, own in scores.items()))
+    rows = [[name, *_cells(own)] for name, own in scores.items()]
+    wanted = [[f"*{name}*", *(of.get(column, "") for column in header[1:])] for name, of in goals.items()]
+    return table(header, [*rows, *wanted])
 
 
 def _cells(scores: ContinuousScores) -> Iterator[str]:

@@ -49,7 +49,8 @@ def never_trained(bench: Bench) -> Iterator[str]:
             rows += _rows(bench, Fold(training, fold.test), unknown, how)
     yield f"""MSRC-12 composed; {LEFT_OUT} of the 12 gestures are never trained, in {DRAWS} draws, each tested on
 another fold of people. A gesture left out is answered where a detection that answers nothing else has more than half of
-it, or lies in it by more than half. Events are those of the trained gestures."""
+it, or lies in it by more than half. Events are those of the trained gestures. Required: a share of at
+most 0.12 at events F1 of at least 0.90; aimed at: 0.05."""
     yield table(("never trained", "in training", "method", "answered", "share", "events F1 of the others"), rows)
 
 

@@ -23,17 +23,17 @@ def trained(training: tuple[Stream, ...]) -> Model:
 
 
 class OncePerTraining:
-    """Trains a model the first time it is asked for, and keeps the newest: all methods of a fold share it."""
+    """Trains a model the first time it is asked for: all methods and parts share it."""
 
     def __init__(self, model_of: ModelOf = trained) -> None:
         self._model_of = model_of
-        self._newest: tuple[tuple[Stream, ...], Model] | None = None
+        self._models: dict[tuple[Stream, ...], Model] = {}
 
     def __call__(self, training: tuple[Stream, ...]) -> Model:
         """Return the model of these streams."""
-        if self._newest is None or self._newest[0] != training:
-            self._newest = training, self._model_of(training)
-        return self._newest[1]
+        if training not in self._models:
+            self._models[training] = self._model_of(training)
+        return self._models[training]
 
 
 @dataclass(frozen=True, eq=False)

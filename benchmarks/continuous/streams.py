@@ -23,8 +23,11 @@ from actum_dataset_importer.importing import (
 from actum_model_trainer.continuous.detections import Detection, Stretch, Truth
 from actum_model_trainer.continuous.watching import sensors_of, watched
 from actum_model_trainer.samples import Samples, SegmentSample, samples_from, select
+from scene_simulator.everyday import ALL, FAMILIAR, Everyday
 from som_classifier.frames import Frame
 from som_classifier.streams import Streams
+
+from .simulated import TAUGHT, TAUGHT_REPETITIONS, TESTED, TESTED_REPETITIONS, recording_of
 
 Array = NDArray[np.float64]
 Import = Callable[[Path, Path, Progress], ImportReport]
@@ -117,6 +120,18 @@ class ContinuousSets:
         for recording in select([self.imported / "natural"]):
             first.setdefault((recording.person, recording.metadata["gesture"].rstrip("A")), recording)
         return [stream_of(recording) for recording in first.values() if recording.action_points_ns]
+
+    @cached_property
+    def simulated(self) -> "Fold":
+        """The people of the simulated scene: who teaches, and others who do more kinds of things besides."""
+        taught = [
+            recording_of(person, TAUGHT_REPETITIONS, Everyday(FAMILIAR), self.imported / "simulated")
+            for person in TAUGHT
+        ]
+        tested = [
+            recording_of(person, TESTED_REPETITIONS, Everyday(ALL), self.imported / "simulated") for person in TESTED
+        ]
+        return Fold(tuple(map(stream_of, taught)), tuple(map(stream_of, tested)))
 
     def _streams(self, name: str, import_set: Import) -> list[Stream]:
         out = self.imported / import_set.__name__

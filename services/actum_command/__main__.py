@@ -24,6 +24,7 @@ with needs_extra("actum-command"):
         system_commands,
         takes_commands,
         training_commands,
+        tune_command,
         watch_command,
     )
     from actum_command.commands.plain_help import PlainTyper
@@ -68,6 +69,7 @@ app.command("markers")(markers_command.markers)
 app.add_typer(calibrate_commands.app, name="calibrate")
 app.command("train")(training_commands.train_command)
 app.command("evaluate")(training_commands.evaluate_command)
+app.command("tune")(tune_command.tune)
 app.command("inspect")(inspect_command.inspect)
 app.command("simulate")(scene_commands.simulate)
 app.command("scene")(scene_commands.scene)

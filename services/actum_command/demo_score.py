@@ -1,7 +1,7 @@
 """The demo's score: its events compared with the ground truth, and its results beside the paper's table 2."""
 
-from collections import Counter
-from collections.abc import Mapping
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
@@ -53,8 +53,15 @@ class Score:
 
     def objects_by_majority(self) -> int:
         """Count the objects that are right if each action's most frequent object is answered for all its segments."""
-        object_counts = [Counter(self.truths[name].object_id for name in self.of(action)) for action in TABLE_2]
-        return sum(max(counts.values(), default=0) for counts in object_counts)
+        return objects_by_majority(self.truths[name] for action in TABLE_2 for name in self.of(action))
+
+
+def objects_by_majority(done: Iterable[Truth]) -> int:
+    """Count the objects that are right if each action's most frequent object is answered whenever it is done."""
+    objects: defaultdict[str, Counter[int]] = defaultdict(Counter)
+    for truth in done:
+        objects[truth.action][truth.object_id] += 1
+    return sum(max(counts.values()) for counts in objects.values())
 
 
 def line(score: Score, event: Event) -> str:
@@ -63,19 +70,24 @@ def line(score: Score, event: Event) -> str:
     if truth is None:
         return f"[yellow]{escape(event.segment_id)} is of no action of the scene[/yellow]"
     done = f'{truth.action} {truth.object_id} "{truth.object_name}"'
-    verdict = [
-        _verdict("action", score.action_right(event.segment_id)),
-        _verdict("object", score.object_right(event.segment_id)),
+    verdicts = [
+        verdict("action", score.action_right(event.segment_id)),
+        verdict("object", score.object_right(event.segment_id)),
     ]
-    return f"{len(score.events):3}/{score.expected}  {escape(done):16}  {'  '.join(verdict)}  {describe_event(event)}"
+    return f"{len(score.events):3}/{score.expected}  {escape(done):16}  {'  '.join(verdicts)}  {describe_event(event)}"
 
 
 def table(score: Score) -> Table:
     """Lay out the paper's table 2 beside this run."""
+    return paper_table({action: _counts(score, action) for action in TABLE_2})
+
+
+def paper_table(counted: Mapping[str, tuple[int, int, int]]) -> Table:
+    """Lay out the paper's table 2 beside a run's numbers of tests, of right actions and of right objects, by action."""
     result = Table("action", title="table 2 of the paper, and this run")
     for heading in ("paper: tests", "action", "object", "here: tests", "action", "object"):
         result.add_column(heading, justify="right", overflow="fold")
-    rows = {action: (*counts, *_counts(score, action)) for action, counts in TABLE_2.items()}
+    rows = {action: (*counts, *counted[action]) for action, counts in TABLE_2.items()}
     for action, counts in rows.items():
         result.add_row(action, *_cells(counts))
     result.add_section()
@@ -99,7 +111,8 @@ def summary(score: Score, learned: Evaluation, baseline: Evaluation, people: int
     )
 
 
-def _verdict(what: str, right: bool) -> str:
+def verdict(what: str, right: bool) -> str:
+    """Write as console markup whether something is right."""
     return f"[green]{what} ✓[/green]" if right else f"[red]{what} ✗[/red]"
 
 

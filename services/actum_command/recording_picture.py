@@ -11,11 +11,13 @@ from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum_command.labelled_segments import LabelledSegment
 from actum_model_inspector.answered import encoded
-from actum_model_inspector.stream_picture import Span, SpeedLine, stream_picture
+from actum_model_inspector.stream_picture import Lane, Span, SpeedLine, stream_picture
 from actum_model_inspector.style import save
+from actum_model_trainer.continuous.watching import found_by
 from actum_model_trainer.cutting.courses import RATE_HZ, Course, recorded_courses
 from actum_model_trainer.samples import classifier_input, closed_segments, sensors
 from som_classifier.model import Model
+from som_classifier.spotting.spotted import SpottingOptions
 
 REJECTED = "rejected"
 """What stands in place of an answer to a segment that was not recognised."""
@@ -25,6 +27,8 @@ def write_picture(
     recording: Recording, segments: Sequence[LabelledSegment], first_ns: int, model: Model | None, output: Path
 ) -> None:
     """Draw a recording with its segments, and a model's answers to them or the recorded ones.
+
+    Of a model that can, what it finds without the marks is drawn, too.
 
     Raises:
         RecordingError: the file is damaged.
@@ -37,16 +41,20 @@ def write_picture(
         for each in segments
         if each.start_ns is not None and each.end_ns is not None
     ]
-    answered = list(_recorded(recording, first_ns) if model is None else _recognised(recording, first_ns, model))
-    whose = "the recorded answers" if model is None else f"the answers of model {model.id}"
+    lanes = _recorded(recording, first_ns) if model is None else _of_model(recording, first_ns, model)
+    whose = (
+        "the recorded answers"
+        if model is None
+        else f"what model {model.id} answers to the marks, and finds without them"
+    )
     acting = [segment.agent for segment in segments if segment.agent is not None]
     save(
         stream_picture(
             f"{recording.path.name}: {len(segments)} segments",
             _speed_lines(courses, acting, first_ns),
             marked,
-            answered,
-            whose if answered else "",
+            lanes,
+            whose,
         ),
         output,
     )
@@ -66,12 +74,29 @@ def _speed_lines(courses: Sequence[Course], acting: Sequence[int], first_ns: int
     return lines
 
 
-def _recorded(recording: Recording, first_ns: int) -> Iterator[Span]:
-    for message in recording.messages((keys.ACTION,)):
-        if isinstance(message, Action) and message.final and message.end_ns is not None:
-            known = message.valid and message.action is not None
-            note = f"{message.confidence:.2f}" if known else REJECTED
-            yield _span(message.start_ns, message.end_ns, first_ns, message.action if known else None, note)
+def _recorded(recording: Recording, first_ns: int) -> list[Lane]:
+    """Return the recorded answers, where there are any."""
+    answers = [
+        _span(message.start_ns, message.end_ns, first_ns, message.action, f"{message.confidence:.2f}")
+        if message.valid and message.action is not None
+        else _span(message.start_ns, message.end_ns, first_ns, None, REJECTED)
+        for message in recording.messages((keys.ACTION,))
+        if isinstance(message, Action) and message.final and message.end_ns is not None
+    ]
+    return [Lane("answer", answers)] if answers else []
+
+
+def _of_model(recording: Recording, first_ns: int, model: Model) -> list[Lane]:
+    """Return a model's answers to the marked segments, where there are any, and what it finds without their marks."""
+    answers = list(_recognised(recording, first_ns, model))
+    lanes = [Lane("answer", answers)] if answers else []
+    if model.spotter(SpottingOptions()) is not None:
+        found = [
+            _span(each.start_ns, each.end_ns, first_ns, each.label, f"{each.confidence:.2f}")
+            for each in found_by(model, [recording]).detections
+        ]
+        lanes.append(Lane("found", found))
+    return lanes
 
 
 def _recognised(recording: Recording, first_ns: int, model: Model) -> Iterator[Span]:

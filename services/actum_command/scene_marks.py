@@ -7,7 +7,7 @@ from actum import keys
 from actum.messages import SIMULATOR, Segment, Truth
 from actum.recording import Recorder
 from actum.runtime import Client
-from scene_simulator.everyday import Choice, chosen
+from scene_simulator.everyday import Choice, Pauses, chosen
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator, labelled_stream
 
@@ -16,7 +16,13 @@ SUBSCRIBER_POLL_S = 0.5  # how soon a stop takes effect while nobody listens to 
 
 
 def write_examples(
-    output: Path, repetitions: int, actor: int, seed: int, everyday: Choice = "none", minutes: float = 0.0
+    output: Path,
+    repetitions: int,
+    actor: int,
+    seed: int,
+    everyday: Choice = "none",
+    minutes: float = 0.0,
+    pauses: Pauses = "long",
 ) -> None:
     """Record a balanced programme of the simulated scene with its labels, without images.
 
@@ -26,7 +32,7 @@ def write_examples(
         OSError: the file cannot be written.
     """
     programme = [] if everyday == "only" else balanced_programme(repetitions, seed, actor)
-    simulator = Simulator(programme, actor, seed, image_hz=0, everyday=chosen(everyday, minutes))
+    simulator = Simulator(programme, actor, seed, image_hz=0, everyday=chosen(everyday, minutes, pauses))
     with Recorder(output, person=f"simulated {actor}", source="simulator", seed=str(seed)) as recorder:
         for message in labelled_stream(simulator):
             recorder.write(message)

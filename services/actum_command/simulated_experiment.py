@@ -1,22 +1,17 @@
 """The paper's experiment with simulated people: training on one, then recognition of others by live processes."""
 
-import threading
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-from rich.markup import escape
-
 from actum import keys
-from actum.messages import Event, Truth
+from actum.messages import Event, Message, Truth
 from actum.recording import Recording
-from actum.runtime import Client, Listening
 from actum.settings import ServiceSettings
 from actum_command import processes
 from actum_command.demo_score import Score, line
+from actum_command.live_test import Appearance, LiveTest
 from actum_command.scene_marks import write_examples
-from actum_command.startup import log_file
-from actum_command.supervising import Supervisor
 from actum_model_trainer.baseline import nearest_neighbour
 from actum_model_trainer.evaluation import Evaluation, evaluate
 from actum_model_trainer.progress import Progress
@@ -31,21 +26,7 @@ PEOPLE = 9  # actors of the test: the paper tests each action 9 times, here once
 TRAINING_SEED = 1
 TEST_SEED = 2  # another than in training, so that no repetition is the same as in training
 TRAINING_REPETITIONS = 12  # enough samples of each action that more no longer help
-READY_S = 30.0  # enough for all processes to start, also on a slow machine
 LONGEST_SAMPLE_S = 4.5  # more than an action of the simulated scene takes with the pause after it
-POLL_S = 0.01  # a third of a frame's interval
-SUBSCRIBER_POLL_S = 0.5  # how soon a stop takes effect while the services start
-
-Tell = Callable[[str], object]
-"""Called with each line of console markup that says what has happened."""
-
-
-class ExperimentError(RuntimeError):
-    """The experiment did not finish; the text says why and names its log."""
-
-
-class TerminatedError(Exception):
-    """The experiment was asked to stop."""
 
 
 def train_model(training: Path, model_file: Path, progress: Progress) -> Evaluation:
@@ -69,67 +50,50 @@ def nearest_neighbour_baseline(training: Path, folder: Path, actors: Sequence[in
     return nearest_neighbour([Recording(training)], [Recording(test) for test in tests])
 
 
-class LiveTest:
-    """Runs router, services and simulated scene as processes of their own, and collects one event for each sample."""
+def run_marked(live: LiveTest, here: ServiceSettings, model: Path, actors: Sequence[int], repetitions: int) -> Score:
+    """Let one actor after the other act, with every action marked, and return the score of all events.
 
-    def __init__(self, here: ServiceSettings, stop: threading.Event, tell: Tell) -> None:
-        self._here = here
-        self._stop = stop
-        self._tell = tell
-        self._log = log_file("demo", here)
+    Raises:
+        ExperimentError: the services do not come up.
+        TerminatedError: the run was asked to stop.
+        RouterUnreachableError, SettingsError, UnusableError: the processes cannot run as they are set.
+    """
+    samples_each = repetitions * len(ACTIONS)
+    score = Score(expected=len(actors) * samples_each)
+    programs = [*processes.services(here, model, processes.simulated_objects()), processes.scene(here)]
+    live.run(programs, keys.TRUTH, _appearances(score, actors, repetitions))
+    return score
 
-    def run(self, model: Path, actors: Sequence[int], repetitions: int) -> Score:
-        """Start every process, let one actor after the other act, and return the score of all events.
 
-        Raises:
-            ExperimentError: the services do not come up.
-            TerminatedError: the run was asked to stop.
-            RouterUnreachableError, SettingsError, UnusableError: the processes cannot run as they are set.
-        """
-        samples_each = repetitions * len(ACTIONS)
-        score = Score(expected=len(actors) * samples_each)
-        with Supervisor(self._log) as supervisor:
-            services = processes.services(self._here, model, processes.simulated_objects())
-            for program in (processes.router(self._here), *services, processes.scene(self._here)):
-                supervisor.start(program)
-            with Client(self._here, READY_S) as client:
-                self._wait_until_ready(client)
-                self._tell(f"router, {', '.join(processes.SERVICES)} and scene_simulator run as processes of their own")
-                listening = client.listen(keys.everything(self._here.sensor))
-                for done, actor in enumerate(actors, start=1):
-                    scene = {"--actor": actor, "--seed": TEST_SEED, "--repetitions": repetitions}
-                    arguments = [word for flag, value in scene.items() for word in (flag, str(value))]
-                    simulator = processes.simulator(self._here, arguments)
-                    supervisor.start(simulator)
-                    self._collect(listening, score, done * samples_each, supervisor)
-                    supervisor.end(simulator)
-        return score
+def _appearances(score: Score, actors: Sequence[int], repetitions: int) -> Iterator[Appearance]:
+    samples_each = repetitions * len(ACTIONS)
+    for done, actor in enumerate(actors, start=1):
+        scene = {"--actor": actor, "--seed": TEST_SEED, "--repetitions": repetitions}
+        yield Appearance(scene, MarkedWitness(score, done * samples_each))
 
-    def _wait_until_ready(self, client: Client) -> None:
-        deadline_s = time.monotonic() + READY_S
-        while time.monotonic() < deadline_s:
-            self._end_if_stopped()
-            running = {key.split("/")[-2] for key in client.alive()}
-            if running >= set(processes.SERVICES) and client.wait_for_subscriber(keys.TRUTH, SUBSCRIBER_POLL_S):
-                return
-        raise ExperimentError(f"the services are not all up after {READY_S:g} s; see {self._log}")
 
-    def _collect(self, listening: Listening, score: Score, until: int, supervisor: Supervisor) -> None:
-        """Add truths and events to the score until it has `until` events, or they take too long."""
-        deadline_s = time.monotonic() + (until - len(score.events)) * LONGEST_SAMPLE_S + READY_S
-        while len(score.events) < until and time.monotonic() < deadline_s:
-            self._end_if_stopped()
-            received = listening.take()
-            if received is None:
-                time.sleep(POLL_S)
-                for ended in supervisor.restart_ended():
-                    self._tell(f"[yellow]{escape(ended)}[/yellow]")
-            elif isinstance(received.message, Truth):
-                score.truths[received.message.segment_id] = received.message
-            elif isinstance(received.message, Event):
-                score.events[received.message.segment_id] = received.message
-                self._tell(line(score, received.message))
+@dataclass
+class MarkedWitness:
+    """Adds truths and events to the score until it has `until` events."""
 
-    def _end_if_stopped(self) -> None:
-        if self._stop.is_set():
-            raise TerminatedError
+    score: Score
+    until: int
+
+    @property
+    def satisfied(self) -> bool:
+        """Whether all events have come."""
+        return len(self.score.events) >= self.until
+
+    @property
+    def longest_s(self) -> float:
+        """Seconds that the actions may take which have no event yet."""
+        return (self.until - len(self.score.events)) * LONGEST_SAMPLE_S
+
+    def take(self, message: Message) -> list[str]:
+        """Take a message; return a line for an event."""
+        if isinstance(message, Truth):
+            self.score.truths[message.segment_id] = message
+        elif isinstance(message, Event):
+            self.score.events[message.segment_id] = message
+            return [line(self.score, message)]
+        return []

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -46,6 +47,14 @@ class Span:
     note: str = ""
 
 
+@dataclass(frozen=True)
+class Lane:
+    """Answers in a row beneath the speeds: a short name beside it, and the answers."""
+
+    name: str
+    answers: Sequence[Span]
+
+
 @dataclass(frozen=True, eq=False)
 class SpeedLine:
     """How fast one person's joints move: times (n,) in s, speeds (n,) in m/s, root mean square over
@@ -58,34 +67,34 @@ class SpeedLine:
 
 @in_house_style
 def stream_picture(
-    title: str, speeds: Sequence[SpeedLine], marked: Sequence[Span], answered: Sequence[Span], answers_of: str
+    title: str, speeds: Sequence[SpeedLine], marked: Sequence[Span], lanes: Sequence[Lane], answers_of: str
 ) -> Figure:
-    """Draw speeds, the first person's stronger, segments as bands (their notes are numbers), and answers beneath.
+    """Draw speeds, the first person's stronger, segments as bands (their notes are numbers), and lanes of answers.
 
-    `answers_of` says in words who answered; "" leaves the answers out.
+    `answers_of` says in words who answered, where there are lanes.
     """
     end_s = max([1.0, *(float(line.times_s[-1]) for line in speeds), *(span.end_s for span in marked)])
     rows = min(math.ceil(end_s / ROW_S), MOST_ROWS)
-    row_s, lane_in = end_s / rows, LANE_IN if answers_of else 0.0
-    row_in = SPEED_IN + lane_in + GAP_IN
+    row_s, lanes_in = end_s / rows, LANE_IN * len(lanes)
+    row_in = SPEED_IN + lanes_in + GAP_IN
     above_in = TITLE_IN + (NAMES_IN if len(speeds) > 1 else 0)
     figure = figure_without_layout(WIDTH_IN, above_in + rows * row_in - GAP_IN + FOOT_IN, title)
-    labels = sorted({span.label for span in (*marked, *answered) if span.label is not None})
+    labels = sorted({span.label for span in chain(marked, *(lane.answers for lane in lanes)) if span.label})
     colours = dict(zip(labels, action_colours(len(labels)), strict=True))
     tallest = HEADROOM * max([0.1, *(float(np.nanmax(line.speeds_mps)) for line in speeds)])
     for row in range(rows):
         shown_s = row * row_s, (row + 1) * row_s
         bottom_in = FOOT_IN + (rows - 1 - row) * row_in
-        axes = _axes(figure, bottom_in + lane_in, SPEED_IN, shown_s)
+        axes = _axes(figure, bottom_in + lanes_in, SPEED_IN, shown_s)
         _draw_speeds(axes, speeds, tallest)
         _draw_marked(axes, marked, colours, tallest)
         if row == 0:
             _name_people(axes, speeds)
-        if answers_of:
+        for below, lane in enumerate(lanes, start=1):
             axes.tick_params(labelbottom=False, bottom=False)
-            axes = _axes(figure, bottom_in, lane_in, shown_s)
-            _draw_answers(axes, answered, colours)
-    axes.set_xlabel("time since the start (s)" + (f"; strips: {answers_of}" if answers_of else ""))
+            axes = _axes(figure, bottom_in + lanes_in - below * LANE_IN, LANE_IN, shown_s)
+            _draw_answers(axes, lane, colours)
+    axes.set_xlabel("time since the start (s)" + (f"; strips: {answers_of}" if lanes else ""))
     return figure
 
 
@@ -115,18 +124,18 @@ def _draw_marked(axes: Axes, marked: Sequence[Span], colours: dict[str, Array], 
         _write(axes, span, 0.98 * tallest, name, "top")
 
 
-def _draw_answers(lane: Axes, answered: Sequence[Span], colours: dict[str, Array]) -> None:
+def _draw_answers(axes: Axes, lane: Lane, colours: dict[str, Array]) -> None:
     """Draw each answer as a strip in its action's colour; what was rejected is an empty strip."""
-    for span in answered:
+    for span in lane.answers:
         colour = colours[span.label] if span.label is not None else np.ones(3)
-        lane.barh(0.5, span.end_s - span.start_s, 1.0, span.start_s, color=colour, edgecolor=FAINT, linewidth=0.6)
+        axes.barh(0.5, span.end_s - span.start_s, 1.0, span.start_s, color=colour, edgecolor=FAINT, linewidth=0.6)
         name = f"{span.label} {span.note}".strip() if span.label is not None else span.note
-        room = _room(lane, span)
+        room = _room(axes, span)
         if room >= LEAST_ROOM:
-            _write(lane, span, 0.5, name if columns(name) <= room else shortened(span.label or name, room), "center")
-    lane.set_ylim(0, 1)
-    lane.set_yticks([0.5], ["answer"])
-    lane.tick_params(axis="y", length=0)
+            _write(axes, span, 0.5, name if columns(name) <= room else shortened(span.label or name, room), "center")
+    axes.set_ylim(0, 1)
+    axes.set_yticks([0.5], [lane.name])
+    axes.tick_params(axis="y", length=0)
 
 
 def _write(axes: Axes, span: Span, height: float, text: str, align: str) -> None:

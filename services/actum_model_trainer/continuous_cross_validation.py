@@ -11,6 +11,7 @@ from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import TrainingError, train_to_spot
 from som_classifier.model import Model
 from som_classifier.presets import Preset
+from som_classifier.wishes import ANYTHING, Wishes
 
 ModelWithout = Callable[[str, Progress], Model]
 """Trains a model on everybody but one person."""
@@ -35,9 +36,12 @@ def models_without(
 
 
 def found_without_each(
-    recordings: Sequence[Recording], model_without: ModelWithout, progress: Progress = silent
+    recordings: Sequence[Recording],
+    model_without: ModelWithout,
+    progress: Progress = silent,
+    wishes: Wishes = ANYTHING,
 ) -> Found:
-    """Watch each person with a model trained on all others, and pool what is found.
+    """Watch each person with a model trained on all others, and with these settings; pool what is found.
 
     Where the recordings have action points, those of the others say where in a detection its own is claimed.
 
@@ -53,7 +57,7 @@ def found_without_each(
     for person in people:
         model = model_without(person, _prefixed(f"without {person or 'unnamed'}: ", progress))
         own = [recording for recording in recordings if recording.person == person]
-        found[person] = found_by(model, own, _prefixed(f"on {person or 'unnamed'}: ", progress))
+        found[person] = found_by(model, own, _prefixed(f"on {person or 'unnamed'}: ", progress), wishes)
     return sum((_with_points(person, found) for person in people), Found())
 
 

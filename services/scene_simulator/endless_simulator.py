@@ -49,7 +49,7 @@ def _simulator(settings: Settings, start_ns: int, session_id: str | None = None)
     repetitions = 0 if settings.everyday == "only" else settings.repetitions
     actors = range(settings.actor, settings.actor + settings.actors)
     programmes = [balanced_programme(repetitions, settings.seed, actor) for actor in actors]
-    everyday = chosen(settings.everyday, settings.minutes)
+    everyday = chosen(settings.everyday, settings.minutes, settings.pauses)
     if len(programmes) > 1:
         return Group(
             programmes,

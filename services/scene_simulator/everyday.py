@@ -24,6 +24,8 @@ FAMILIAR: tuple[str, ...] = tuple(kind for kind in ALL if kind not in KEPT_ASIDE
 """Kinds for training recordings, so that tests ask for more than what was learnt by heart."""
 Choice = Literal["none", "familiar", "all", "only"]
 """Which doings a scene has: none, those for training, all, or all and no actions."""
+Pauses = Literal["long", "short"]
+"""How much goes on between two actions: up to three doings and rests of seconds, or at most one and short rests."""
 LIKING = 2.0
 """Shape of the gamma distribution of a person's liking for a kind: some kinds are several times as frequent."""
 
@@ -35,6 +37,7 @@ class Everyday:
     Attributes:
         kinds: which doings, of `ALL`.
         least_s: the scene goes on with doings after the last action until it is this long.
+        pauses: how much goes on between two actions.
 
     Raises:
         ValueError: there is no such kind, or none at all.
@@ -42,6 +45,7 @@ class Everyday:
 
     kinds: tuple[str, ...] = ALL
     least_s: float = 0.0
+    pauses: Pauses = "long"
 
     def __post_init__(self) -> None:
         unknown = [kind for kind in self.kinds if kind not in ALL]
@@ -49,11 +53,11 @@ class Everyday:
             raise ValueError(f"no everyday doings {', '.join(unknown) or 'at all'}: use some of {', '.join(ALL)}")
 
 
-def chosen(choice: Choice, minutes: float) -> Everyday | None:
+def chosen(choice: Choice, minutes: float, pauses: Pauses = "long") -> Everyday | None:
     """Return the doings of a scene that lasts at least some minutes, or None."""
     if choice == "none":
         return None
-    return Everyday(FAMILIAR if choice == "familiar" else ALL, least_s=60 * minutes)
+    return Everyday(FAMILIAR if choice == "familiar" else ALL, 60 * minutes, pauses)
 
 
 class EverydayPerson:
@@ -61,6 +65,7 @@ class EverydayPerson:
 
     def __init__(self, everyday: Everyday, parameters: Parameters, actor: Actor, seeds: tuple[int, int]) -> None:
         self._parameters, self._actor, self._seeds = parameters, actor, seeds
+        self._pauses = parameters.everyday.long if everyday.pauses == "long" else parameters.everyday.short
         self._manner = Manner.of(actor, seeds[0])
         liking = dict(zip(ALL, random_stream("liking", seeds[0]).gamma(LIKING, size=len(ALL)), strict=True))
         self._kinds = everyday.kinds
@@ -70,17 +75,16 @@ class EverydayPerson:
     def pause(self, number: int, layout: Layout) -> Sequence[Episode]:
         """Return what comes before the action of a number: often doings and rests, sometimes nothing."""
         rng = random_stream("everyday", *self._seeds, number)
-        parameters = self._parameters.everyday
-        if rng.random() < parameters.at_once_probability:
+        if rng.random() < self._pauses.at_once_probability:
             return []
-        rest = still(self._parameters, layout, rng.uniform(*parameters.rest_range_s))
+        rest = still(self._parameters, layout, rng.uniform(*self._pauses.rest_range_s))
         return [rest, self._doings(layout, rng)]
 
     def _doings(self, layout: Layout, rng: np.random.Generator) -> Episode:
-        """Return one to three doings, from the rest at the table to it."""
+        """Return one doing or several, from the rest at the table to it."""
         motion = Motion(self._parameters, self._actor, self._manner, layout, rng)
-        low, high = self._parameters.everyday.rest_range_s
-        for _ in range(rng.integers(1, self._parameters.everyday.most_doings + 1)):
+        low, high = self._pauses.rest_range_s
+        for _ in range(rng.integers(1, self._pauses.most_doings + 1)):
             motion.doing = str(rng.choice(self._kinds, p=self._probabilities))
             KINDS[motion.doing](motion)
             stand_at_ease(motion)

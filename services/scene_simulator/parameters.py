@@ -129,12 +129,19 @@ class PauseParameters(Section):
     hop_m: float
 
 
-class EverydayParameters(Section):
+class PausesParameters(Section):
     """What happens between the actions of a person with everyday doings."""
 
     rest_range_s: Pair
     at_once_probability: float
     most_doings: int
+
+
+class EverydayParameters(Section):
+    """The pauses that there are to choose from."""
+
+    long: PausesParameters
+    short: PausesParameters
 
 
 class SwayParameters(Section):

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field
 
 from actum.settings import ServiceSettings
-from scene_simulator.everyday import Choice
+from scene_simulator.everyday import Choice, Pauses
 from scene_simulator.group import MOST_PEOPLE
 
 
@@ -24,4 +24,5 @@ class Settings(ServiceSettings):
     )
     everyday: Choice = Field("none", description="what people do between actions; only: nothing else")
     minutes: float = Field(1.0, ge=0, description="least length of a scene with everyday doings, which fill it up")
+    pauses: Pauses = Field("long", description="between actions up to three everyday doings and rests, or at most one")
     actors: int = Field(1, ge=1, le=MOST_PEOPLE, description="how many act side by side; several have no images")

@@ -44,11 +44,16 @@ class Wishes:
         finds = model.spotter(self.options) is not None
         if self.segments == "auto" and not finds:
             return f"nothing to do: marks are not wanted (segments auto), and it {CANNOT}"
-        named = self.options.disabled | self.options.cooldown_s.keys() | self.enabled
-        if unknown := sorted(named - set(model.labels)):
-            return f"settings name actions that the model does not know: {', '.join(unknown)}"
+        if problem := self.misnamed(model):
+            return problem
         notes = [NO_BACKGROUND] if finds and model.background_s == 0 else [] if finds else [CANNOT]
         return "; ".join(["running", *notes])
+
+    def misnamed(self, model: Model) -> str | None:
+        """Say which of the actions that are named the model does not know; None where it knows them all."""
+        named = self.options.disabled | self.options.cooldown_s.keys() | self.enabled
+        unknown = sorted(named - set(model.labels))
+        return f"settings name actions that the model does not know: {', '.join(unknown)}" if unknown else None
 
 
 ANYTHING = Wishes()

@@ -2,6 +2,7 @@
 
 import json
 import types
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
@@ -18,8 +19,8 @@ STRUCTURED = "JSON"
 """The placeholder of lists and maps."""
 
 
-def from_command_line(settings_type: type[S], program: str) -> S:
-    """Read settings from this process's flags, then from the environment and the configuration file.
+def from_command_line(settings_type: type[S], program: str, arguments: Sequence[str] | None = None) -> S:
+    """Read settings from this process's flags or given ones, then from the environment and the configuration file.
 
     Raises:
         ValueError: they cannot be used.
@@ -30,7 +31,7 @@ def from_command_line(settings_type: type[S], program: str) -> S:
         if field is not None:
             action.metavar = placeholder(field) or None
             action.help = explained(field).replace("%", "%%")
-    return settings_type(_cli_settings_source=source(args=True))
+    return settings_type(_cli_settings_source=source(args=True if arguments is None else list(arguments)))
 
 
 def explained(field: FieldInfo) -> str:

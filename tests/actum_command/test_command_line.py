@@ -206,7 +206,7 @@ def test_what_is_found_without_marks_is_told_and_written(
 ) -> None:
     """No model is needed to see how it is told: this one finds the first action alone."""
 
-    def found(_model: object, _recordings: object, _progress: object) -> Found:
+    def found(*_: object) -> Found:
         return Found([first], [truth, truth_missed], [Stretch("a.mcap", 1, 0, 60 * 10**9)])
 
     first = Detection("a.mcap", 1, 0, 10**9, 2 * 10**9, "lift", 0.9)
@@ -352,15 +352,17 @@ def supervised(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 @pytest.mark.parametrize(
     ("source", "beside", "told"),
     [
-        ("simulator", ["scene_simulator", "scene"], False),
-        ("camera", ["sensor_gateway"], True),
-        ("none", [], True),
+        (["simulator"], ["scene_simulator", "scene"], False),
+        (["simulator", "--segments", "both"], ["scene_simulator", "scene"], False),
+        (["simulator", "--segments", "auto"], ["scene_simulator"], True),
+        (["camera"], ["sensor_gateway"], True),
+        (["none"], [], True),
     ],
 )
 def test_what_runs_beside_the_services_and_whether_somebody_marks(
-    source: str, beside: list[str], told: bool, supervised: list[str]
+    source: list[str], beside: list[str], told: bool, supervised: list[str]
 ) -> None:
-    started = CliRunner().invoke(app, ["up", "--source", source])
+    started = CliRunner().invoke(app, ["up", "--source", *source])
     assert supervised == [*processes.SERVICES, *beside]
     assert ("nobody marks actions here" in started.stdout) == told
 
@@ -413,14 +415,16 @@ def _handlers() -> Iterator[None]:
 
 @pytest.mark.usefixtures("_handlers")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize(("way", "learning"), [([], "_train_to_spot"), (["--marked"], "_train")])
 def test_a_demo_ends_where_it_is_while_it_learns_and_leaves_no_files(
-    number: signal.Signals, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    number: signal.Signals, way: list[str], learning: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setattr(demo_command, "refuse_taken", lambda _: None)
-    monkeypatch.setattr(demo_command, "_train", lambda *_: signal.raise_signal(number))
-    monkeypatch.setattr(demo_command, "nearest_neighbour_baseline", lambda *_: pytest.fail("it went on"))
-    interrupted = CliRunner().invoke(app, ["demo"])
+    monkeypatch.setattr(demo_command, learning, lambda *_: signal.raise_signal(number))
+    for step in ("nearest_neighbour_baseline", "run_unmarked"):
+        monkeypatch.setattr(demo_command, step, lambda *_: pytest.fail("it went on"))
+    interrupted = CliRunner().invoke(app, ["demo", *way])
     assert isinstance(interrupted.exception, SystemExit), interrupted.exception
     assert interrupted.exit_code == 128 + number
     assert list(tmp_path.iterdir()) == []

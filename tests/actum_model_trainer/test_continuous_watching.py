@@ -132,7 +132,7 @@ def test_a_model_that_cannot_find_actions_says_so_and_what_to_do(lifts: Recordin
 def test_each_person_is_watched_by_a_model_of_all_others(
     three_people: list[Recording], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def found(model: Model, recordings: list[Recording], _progress: object) -> Found:
+    def found(model: Model, recordings: list[Recording], *_: object) -> Found:
         tested.append((model.metadata.persons, [recording.person for recording in recordings]))
         own = recordings[0].person
         truth = Truth(own, 1, 0, 100, "lift", 10 * int(own))

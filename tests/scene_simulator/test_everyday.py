@@ -1,6 +1,6 @@
 """What people do besides the actions: without marks, at human speeds, and never touching an object."""
 
-from itertools import pairwise
+from itertools import groupby, pairwise
 
 import numpy as np
 import pytest
@@ -101,6 +101,24 @@ def test_a_scene_without_actions_lasts_as_long_as_it_has_to_and_has_no_truth() -
 def test_every_kind_of_doing_occurs() -> None:
     scenes = [Scene([], actor, 0, everyday=Everyday(least_s=600)) for actor in range(3)]
     assert {state.doing for scene in scenes for state in scene.states()} == {None, *ALL}
+
+
+def test_short_pauses_have_one_doing_at_most_and_make_a_scene_half_as_long(busy: list[SceneState]) -> None:
+    programme = balanced_programme(3, 4)
+    states = list(Scene(programme, 1, 4, everyday=Everyday(pauses="short")).states())
+    pauses = split_at_actions(states)
+
+    assert len(states) < 0.6 * len(busy)
+    assert max(len(set(doings(pause))) for pause in pauses) == 1
+    assert any(not doings(pause) for pause in pauses)
+
+
+def split_at_actions(states: list[SceneState]) -> list[list[SceneState]]:
+    return [list(pause) for acts, pause in groupby(states, key=lambda s: s.segment is not None) if not acts]
+
+
+def doings(states: list[SceneState]) -> list[str]:
+    return [state.doing for state in states if state.doing is not None]
 
 
 def test_kinds_that_are_kept_aside_for_tests_do_not_occur_in_training() -> None:

@@ -187,12 +187,12 @@ def test_what_is_done_five_times_in_the_scene_is_recorded_until_the_last_and_lab
 
 
 @pytest.mark.timeout(240)
-def test_the_demo_runs_to_its_table_and_leaves_nothing(
+def test_the_marked_demo_runs_to_its_table_and_leaves_nothing(
     running: System, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "temporary").mkdir()
     monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
-    demo = running.actum("demo", "--people", "1", timeout_s=200)
+    demo = running.actum("demo", "--marked", "--people", "1", timeout_s=200)
     assert demo.returncode == 0, demo.stdout + demo.stderr
     assert len(re.findall(r"^ *\d+/5 ", demo.stdout, re.M)) == 5, demo.stdout
     assert re.search(r"total .*41 \(91.1%\)", demo.stdout)
@@ -200,8 +200,25 @@ def test_the_demo_runs_to_its_table_and_leaves_nothing(
     wait_until(lambda: pids_of(running) == set(), "no process is left")
 
 
-def test_a_demo_that_is_terminated_takes_its_processes_along(running: System) -> None:
+@pytest.mark.timeout(240)
+def test_the_demo_finds_actions_that_nobody_marks_and_leaves_nothing(
+    running: System, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
     demo = running.start_script(QUICK_DEMO, "demo", "--people", "1")
+    assert demo.process.wait(timeout=200) == 0, demo.said()
+    assert len(re.findall(r"^ *\d/5 .*(action . *object .|not found)", demo.said(), re.M)) == 5, demo.said()
+    assert re.search(r"total .*41 \(91.1%\)", demo.said())
+    assert re.search(r"found by itself: [1-5] of 5 actions", demo.said())
+    assert re.search(r"false alarms: \d+ in 0.6 minutes of everything else", demo.said())
+    assert list((tmp_path / "temporary").iterdir()) == []
+    wait_until(lambda: pids_of(running) == set(), "no process is left")
+
+
+@pytest.mark.parametrize("way", [(), ("--marked",)])
+def test_a_demo_that_is_terminated_takes_its_processes_along(running: System, way: tuple[str, ...]) -> None:
+    demo = running.start_script(QUICK_DEMO, "demo", "--people", "1", *way)
     wait_until(lambda: "run as processes of their own" in demo.said(), "the processes run", patience_s=90)
     demo.process.terminate()
     assert demo.process.wait(timeout=PATIENCE_S) == 143

@@ -8,7 +8,8 @@ from pathlib import Path
 from actum.recording import Recording, RecordingError
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import tell_unread
-from actum_command.commands.terminal import console, fail
+from actum_command.commands.terminal import console, fail, say
+from actum_command.search_settings import flags_for
 from actum_model_trainer.continuous.continuous_report import continuous_report
 from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.continuous.watching import NoSpotterError, found_by
@@ -16,19 +17,30 @@ from actum_model_trainer.continuous_cross_validation import found_without_each, 
 from actum_model_trainer.training import TrainingError
 from som_classifier.model import Model
 from som_classifier.presets import Preset
+from som_classifier.wishes import Wishes
 
 
 def evaluate_continuously(
-    model: Model | None, recordings: Sequence[Recording], preset: Preset, seed: int, json_file: Path | None
+    model: Model | None,
+    recordings: Sequence[Recording],
+    preset: Preset,
+    seed: int,
+    json_file: Path | None,
+    wishes: Wishes,
 ) -> None:
     """Watch recordings with a model, or without one each person with one of all others, and tell the scores."""
     began_s = time.monotonic()
+    if model is not None and (problem := wishes.misnamed(model)):
+        fail(problem)
+    if flags := flags_for(wishes):
+        say(f"with {flags}")
     try:
         with bars() as progress:
             if model is None:
-                found = found_without_each(recordings, models_without(recordings, preset, seed, progress), progress)
+                models = models_without(recordings, preset, seed, progress)
+                found = found_without_each(recordings, models, progress, wishes)
             else:
-                found = found_by(model, recordings, progress)
+                found = found_by(model, recordings, progress, wishes)
     except (RecordingError, TrainingError, NoSpotterError) as error:
         fail(str(error))
     tell_unread(recordings)

@@ -170,7 +170,10 @@ def picture(
     file: Rec,
     output: Annotated[Path, typer.Option("-o", "--output", help="the picture to write, .png or .svg")],
     model: Annotated[
-        Path | None, typer.Option(help="a model file whose answers are drawn; default: the recorded ones")
+        Path | None,
+        typer.Option(
+            help="a model file whose answers are drawn, and what it finds without marks; default: the recorded answers"
+        ),
     ] = None,
 ) -> None:
     """Draw the stream: how fast people move, the segments with their labels, and what was answered."""

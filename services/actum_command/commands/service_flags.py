@@ -1,7 +1,7 @@
 """Options for every setting of the services that a command starts, made from the services' declarations."""
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import wraps
 from typing import Annotated, Any
 
@@ -10,18 +10,36 @@ from pydantic.fields import FieldInfo
 
 from actum.command_line import explained, placeholder
 from actum.settings import ServiceSettings
+from actum_command.search_settings import CLASSIFIER, SEARCH_SETTINGS
 from actum_command.service_settings import DECLARED, flag_of, negated_flag_of
 
 
 def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
     """Add to a command an option for each setting of the services that it lacks; it gets their values as `given`."""
+    return _with_flags(
+        command,
+        (
+            (service, name)
+            for service, settings in DECLARED.items()
+            for name in settings.model_fields
+            if name not in ServiceSettings.model_fields
+        ),
+    )
+
+
+def with_search_flags(command: Callable[..., None]) -> Callable[..., None]:
+    """Add to a command an option for each setting of the search for actions; it gets their values as `given`."""
+    return _with_flags(command, ((CLASSIFIER, name) for name in SEARCH_SETTINGS))
+
+
+def _with_flags(command: Callable[..., None], settings: Iterable[tuple[str, str]]) -> Callable[..., None]:
+    """Add to a command an option for each setting, named by service and name, that it lacks."""
     command_parameters = dict(inspect.signature(command, eval_str=True).parameters)
     del command_parameters["given"]  # the command gets this one from the flags below
     flags = {
-        name: _flag(name, field, service)
-        for service, settings in DECLARED.items()
-        for name, field in settings.model_fields.items()
-        if name not in ServiceSettings.model_fields and name not in command_parameters
+        name: _flag(name, DECLARED[service].model_fields[name], service)
+        for service, name in settings
+        if name not in command_parameters
     }
 
     @wraps(command)

@@ -9,11 +9,15 @@ from typing import Annotated
 import typer
 
 from actum.recording import Recording, RecordingError
+from actum.settings import complaint
 from actum_command.commands.continuous_evaluation import evaluate_continuously
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
+from actum_command.commands.service_flags import with_search_flags
 from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say
 from actum_command.preset_settings import SETTINGS, PresetError, preset_named
+from actum_command.search_settings import wishes_of
+from actum_command.service_settings import Given, flag_of
 from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import Evaluation, evaluate
 from actum_model_trainer.report import report
@@ -23,6 +27,7 @@ from actum_model_trainer.warnings import warnings_of
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
+from som_classifier.wishes import Wishes
 
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of them")]
 PresetOption = Annotated[str, typer.Option(help=f"one of {', '.join(PRESETS)}")]
@@ -67,7 +72,9 @@ def train_command(
         say(warning, style="yellow")
 
 
+@with_search_flags
 def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
+    given: Given,
     files: Annotated[list[Path], typer.Argument(help="MODEL and recordings, or only recordings")],
     person: PersonOption = None,
     json_file: Annotated[Path | None, typer.Option("--json", help="write every prediction here")] = None,
@@ -92,9 +99,21 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         model = None if by_person else load_model(files[0])
     except ModelError as error:
         fail(str(error))
+    if given and not continuous:
+        fail(f"{flag_of(next(iter(given)))} is for what is found without marks: add --continuous")
     recordings = chosen(files if by_person else files[1:], person, with_excluded)
-    evaluate_them = evaluate_continuously if continuous else _evaluate_segments
-    evaluate_them(model, recordings, _preset(preset, settings), seed, json_file)
+    what = model, recordings, _preset(preset, settings), seed, json_file
+    if continuous:
+        evaluate_continuously(*what, _wishes(given))
+    else:
+        _evaluate_segments(*what)
+
+
+def _wishes(given: Given) -> Wishes:
+    try:
+        return wishes_of(given)
+    except ValueError as error:
+        fail(complaint(error))
 
 
 def _evaluate_segments(

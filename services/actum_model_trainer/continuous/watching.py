@@ -12,6 +12,7 @@ from actum_model_trainer.samples import SegmentCollector, classifier_input
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.spotting.spotted import SpottingOptions
+from som_classifier.wishes import ANYTHING, Wishes
 
 LONGEST_BREAK_NS = SECOND_NS
 """Time without a usable frame after which a person counts as away (ns): longer than any lost frames."""
@@ -70,8 +71,10 @@ class Watcher:
             self.answers.append((message, self._newest_ns))
 
 
-def found_by(model: Model, recordings: Sequence[Recording], progress: Progress = silent) -> Found:
-    """Replay whole recordings without their marks through preprocessor and classifier.
+def found_by(
+    model: Model, recordings: Sequence[Recording], progress: Progress = silent, wishes: Wishes = ANYTHING
+) -> Found:
+    """Replay whole recordings without their marks through preprocessor and a classifier with these settings.
 
     Raises:
         NoSpotterError: the model cannot find actions without marks.
@@ -82,12 +85,17 @@ def found_by(model: Model, recordings: Sequence[Recording], progress: Progress =
     found = Found()
     for done, recording in enumerate(recordings):
         progress("watching", done, len(recordings))
-        sensors = sensors_of(recording)
-        for sensor in sensors:
-            file = str(recording.path) if len(sensors) == 1 else f"{recording.path} ({sensor})"
-            found += watched(SomClassifier(model), recording, sensor, file)
+        for sensor, file in views_of(recording):
+            found += watched(SomClassifier(model, wishes=wishes), recording, sensor, file)
     progress("watching", len(recordings), len(recordings))
     return found
+
+
+def views_of(recording: Recording) -> list[tuple[str, str]]:
+    """Return each sensor whose skeletons a recording holds, and what stands for its part of it in what is found."""
+    sensors = sensors_of(recording)
+    path = str(recording.path)
+    return [(sensor, path if len(sensors) == 1 else f"{path} ({sensor})") for sensor in sensors]
 
 
 def sensors_of(recording: Recording) -> list[str]:

@@ -26,7 +26,7 @@ class EncodedStream:
         seen = variant or Variant(stream.postures, stream.velocities)
         sides = [seen, seen.mirrored] if self._mirrors else [seen]
         summed = [_sums(quantised(model.first.activities(side.postures, side.velocities))) for side in sides]
-        steps_um = np.rint(stream.motion.sum(axis=1) * _UM_PER_M).astype(np.int64)
+        steps_um = np.rint(stream.motion * _UM_PER_M).astype(np.int64).sum(axis=1)
         travelled_um = [0, *np.cumsum(steps_um).tolist()]
         self._prefixes = [
             Prefix(tuple(sums), um) for *sums, um in zip(*summed, travelled_um, strict=True)

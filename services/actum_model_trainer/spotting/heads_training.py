@@ -25,7 +25,9 @@ class FoldedHeads:
     without: Sequence[CompletenessHeads]
 
 
-def fit_heads(vectors: NDArray[np.float32], completeness: Array, folds: Indices, shrinkage: float) -> FoldedHeads:
+def fit_heads(
+    vectors: NDArray[np.float32], completeness: Array, folds: Indices, fold_count: int, shrinkage: float
+) -> FoldedHeads:
     """Fit completeness = vectors * axes + offsets by least squares + penalty * ‖axes‖².
 
     The penalty is `shrinkage` times the mean squared length of the centred vectors. The axes are sought in the span of
@@ -34,7 +36,8 @@ def fit_heads(vectors: NDArray[np.float32], completeness: Array, folds: Indices,
     Args:
         vectors: (n, inputs).
         completeness: (n, actions).
-        folds: (n,), 0 to folds - 1.
+        folds: (n,), 0 to fold_count - 1.
+        fold_count: how many there are; some may hold no window.
         shrinkage: relative penalty.
     """
     mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
@@ -50,4 +53,4 @@ def fit_heads(vectors: NDArray[np.float32], completeness: Array, folds: Indices,
         axes = centred[kept].T @ dual.astype(np.float32)
         return CompletenessHeads(axes, (kept_mean - mean @ axes).astype(np.float32))
 
-    return FoldedHeads(without(None), [without(fold) for fold in range(int(folds.max()) + 1)])
+    return FoldedHeads(without(None), [without(fold) for fold in range(fold_count)])

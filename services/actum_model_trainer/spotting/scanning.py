@@ -40,18 +40,18 @@ class Folds:
 
     Args:
         streams: of the training.
-        count: how many folds.
+        count: how many folds; some may hold no window.
     """
 
     def __init__(self, streams: Sequence[LabelledStream], count: int) -> None:
         self._people = sorted({stream.person for stream in streams})
-        self._count = count
+        self.count = count
 
     def of(self, stream: LabelledStream, windows: Indices) -> Indices:
         """Return the fold of each window (n, 2; first and last frame) of a stream, (n,)."""
-        if len(self._people) >= self._count:
-            return np.full(len(windows), self._people.index(stream.person) % self._count)
-        parts: Indices = windows.sum(axis=1) * self._count // (2 * len(stream.stamps_ns))
+        if len(self._people) >= self.count:
+            return np.full(len(windows), self._people.index(stream.person) % self.count)
+        parts: Indices = windows.sum(axis=1) * self.count // (2 * len(stream.stamps_ns))
         return parts
 
 

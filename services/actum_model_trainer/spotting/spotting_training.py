@@ -35,7 +35,7 @@ MIN_LOG_DURATION_SD = 0.15
 def with_spotting(
     model: PyramidModel, streams: Sequence[LabelledStream], preset: PyramidPreset, seed: int, progress: Progress
 ) -> PyramidModel:
-    """Return the model with the search, trained on whole streams; as it is where no stream holds any of its actions."""
+    """Return the model with the search, trained on whole streams; as it is where these hold no action or no window."""
     search, rng = preset.spotting, np.random.default_rng(seed)
     usable = [stream for stream in streams if len(stream.stamps_ns) >= FEWEST_FRAMES]
     untuned = _untuned(usable, model.labels, search)
@@ -50,6 +50,8 @@ def with_spotting(
     windows = [with_false_alarms(*each, rng) for each in zip(usable, windows, alarms, strict=True)]
     heads = trained_heads(model, usable, windows, folds, preset, rng, progress)
     answered = scanned(model, usable, heads, folds, untuned, progress)
+    if not any(len(each.windows) for each in answered):
+        return model
     choice = chosen_threshold(answered, SpottingModel(heads.all, untuned), model.labels, search.thresholds)
     learned = untuned.model_copy(update=asdict(choice) | {"probability": _probability(answered, model.labels)})
     return replace(model, heads=heads.all, metadata=model.metadata.model_copy(update={"spotting": learned}))

@@ -14,9 +14,9 @@ from actum_model_trainer.spotting.scanning import ScannedStream
 from som_classifier.kinematics import GAP_NS
 from som_classifier.spotting.spotting_model import SpottingModel
 
-BEARABLE_PER_MIN = 1.0
+BEARABLE_PER_MIN = 0.5
 """False alarms in a minute of background that cost nothing in the choice of the threshold."""
-COST_PER_MIN = 0.03
+COST_PER_MIN = 0.05
 """What each further one costs, in units of F1."""
 SHORTEST_BACKGROUND_MIN = 0.5
 """Minutes of background below which false alarms a minute are not counted: too few to tell."""

@@ -41,8 +41,8 @@ def trained_heads(
         completeness.append(each.completeness[kept])
         of_fold.append(folds.of(stream, each.frames[kept]))
     progress("windows of streams", len(streams), len(streams))
-    folded = np.concatenate(of_fold)
-    return fit_heads(np.concatenate(vectors), np.concatenate(completeness), folded, preset.spotting.shrinkage)
+    folded, shrinkage = np.concatenate(of_fold), preset.spotting.shrinkage
+    return fit_heads(np.concatenate(vectors), np.concatenate(completeness), folded, folds.count, shrinkage)
 
 
 def _vectors(

@@ -1,0 +1,74 @@
+"""`actum tune`: picks the settings of the search for actions from labelled continuous recordings."""
+
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum.recording import RecordingError
+from actum_command.commands.progress_bars import bars
+from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
+from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say
+from actum_command.search_settings import OtherSettingsError, flags_for, refuse_other_settings, settings_file
+from actum_model_trainer.continuous.watching import NoSpotterError
+from actum_model_trainer.tuning.tuning import NothingLabelledError, tuned
+from actum_model_trainer.tuning.tuning_report import tuning_report
+from som_classifier.model_loading import ModelError, load_model
+from som_classifier.wishes import Wishes
+
+
+def tune(
+    model: Annotated[Path, typer.Argument(metavar="MODEL", help="the model file")],
+    files: Annotated[list[Path], typer.Argument(metavar="REC...", help="labelled continuous recordings, or folders")],
+    false_alarms_per_min: Annotated[
+        float | None,
+        typer.Option(metavar="X", help="accept so many wrong actions in a minute of other doings; default: any"),
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="the settings file to write, .toml, for ACTUM_CONFIG")
+    ] = None,
+    person: PersonOption = None,
+    with_excluded: AllOption = False,
+) -> None:
+    """Pick sensitivity, shortest pause, cooldowns and actions to leave out, and say what they cost."""
+    began_s = time.monotonic()
+    if false_alarms_per_min is not None and not 0 < false_alarms_per_min < float("inf"):
+        fail(f"{false_alarms_per_min:g} is no rate to ask for: name more than 0 false alarms a minute")
+    if output is not None:
+        _refuse(output)
+    try:
+        loaded = load_model(model)
+        recordings = chosen(files, person, with_excluded)
+        with bars() as progress:
+            result = tuned(loaded, recordings, false_alarms_per_min, progress)
+    except (ModelError, RecordingError, NoSpotterError, NothingLabelledError) as error:
+        fail(str(error))
+    tell_unread(recordings)
+    console.print(tuning_report(result, false_alarms_per_min, time.monotonic() - began_s))
+    for doubt in result.doubts:
+        say(doubt, style="yellow")
+    wishes = Wishes(options=result.best.options)
+    flags = flags_for(wishes)
+    say(f"as flags: {flags}" if flags else "the model does best as it is: nothing is to be set")
+    if output is not None:
+        _write(output, settings_file(wishes, f"picked by actum tune for model {loaded.id}"))
+
+
+def _refuse(output: Path) -> None:
+    """Fail before long work where its result could not be written."""
+    refuse_unwritable(output)
+    refuse_ending(output, ".toml")
+    try:
+        refuse_other_settings(output)
+    except (OtherSettingsError, OSError) as error:
+        fail(str(error))
+
+
+def _write(output: Path, text: str) -> None:
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        output.write_text(text, encoding="utf-8")
+    except OSError as error:
+        fail(f"{output} cannot be written ({error.strerror})")
+    say(f"written to {output}: set ACTUM_CONFIG={output}")

@@ -1,0 +1,121 @@
+"""Simulated people who act one after another before router and services, each a process of its own, and are heard."""
+
+import threading
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from rich.markup import escape
+
+from actum import keys
+from actum.messages import Message
+from actum.runtime import Client, Listening
+from actum.settings import ServiceSettings
+from actum_command import processes
+from actum_command.startup import log_file
+from actum_command.supervising import Program, Supervisor
+
+READY_S = 30.0  # enough for all processes to start, also on a slow machine
+POLL_S = 0.01  # a third of a frame's interval
+SUBSCRIBER_POLL_S = 0.5  # how soon a stop takes effect while the services start
+
+Tell = Callable[[str], object]
+"""Called with each line of console markup that says what has happened."""
+
+
+class ExperimentError(RuntimeError):
+    """The experiment did not finish; the text says why and names its log."""
+
+
+class TerminatedError(Exception):
+    """The experiment was asked to stop."""
+
+
+class Witness(Protocol):
+    """Hears everything that is put while one person acts."""
+
+    @property
+    def longest_s(self) -> float:
+        """Seconds after which nothing more can come."""
+        ...
+
+    @property
+    def satisfied(self) -> bool:
+        """Whether everything that has to come has come."""
+        ...
+
+    def take(self, message: Message) -> list[str]:
+        """Take a message; return lines of console markup that say what has happened."""
+        ...
+
+
+@dataclass(frozen=True)
+class Appearance:
+    """One person's scene: the settings of the simulator by flag, and who hears what comes of it."""
+
+    scene: Mapping[str, object]
+    witness: Witness
+
+    @property
+    def arguments(self) -> list[str]:
+        """The simulator's arguments."""
+        return [word for flag, value in self.scene.items() for word in (flag, str(value))]
+
+
+class LiveTest:
+    """Runs router, services and simulated scene as processes of their own."""
+
+    def __init__(self, here: ServiceSettings, stop: threading.Event, tell: Tell) -> None:
+        self._here = here
+        self._stop = stop
+        self._tell = tell
+        self._log = log_file("demo", here)
+
+    def run(self, programs: Sequence[Program], listened: keys.Topic, appearances: Iterable[Appearance]) -> None:
+        """Start every program, and once somebody listens to a topic let one person after the other act.
+
+        Raises:
+            ExperimentError: the services do not come up.
+            TerminatedError: the run was asked to stop.
+            RouterUnreachableError, SettingsError, UnusableError: the processes cannot run as they are set.
+        """
+        with Supervisor(self._log) as supervisor:
+            for program in (processes.router(self._here), *programs):
+                supervisor.start(program)
+            with Client(self._here, READY_S) as client:
+                self._wait_until_ready(client, listened)
+                self._tell(f"router, {', '.join(processes.SERVICES)} and scene_simulator run as processes of their own")
+                listening = client.listen(keys.everything(self._here.sensor))
+                for appearance in appearances:
+                    simulator = processes.simulator(self._here, appearance.arguments)
+                    supervisor.start(simulator)
+                    self._hear(listening, appearance.witness, supervisor)
+                    supervisor.end(simulator)
+
+    def _wait_until_ready(self, client: Client, listened: keys.Topic) -> None:
+        deadline_s = time.monotonic() + READY_S
+        while time.monotonic() < deadline_s:
+            self._end_if_stopped()
+            running = {key.split("/")[-2] for key in client.alive()}
+            if running >= set(processes.SERVICES) and client.wait_for_subscriber(listened, SUBSCRIBER_POLL_S):
+                return
+        raise ExperimentError(f"the services are not all up after {READY_S:g} s; see {self._log}")
+
+    def _hear(self, listening: Listening, witness: Witness, supervisor: Supervisor) -> None:
+        """Let a witness hear what is put until it is satisfied, or the person takes too long."""
+        deadline_s = time.monotonic() + witness.longest_s + READY_S
+        while not witness.satisfied and time.monotonic() < deadline_s:
+            self._end_if_stopped()
+            received = listening.take()
+            if received is None:
+                time.sleep(POLL_S)
+                for ended in supervisor.restart_ended():
+                    self._tell(f"[yellow]{escape(ended)}[/yellow]")
+            elif received.message is not None:
+                for line in witness.take(received.message):
+                    self._tell(line)
+
+    def _end_if_stopped(self) -> None:
+        if self._stop.is_set():
+            raise TerminatedError

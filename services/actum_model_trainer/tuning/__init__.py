@@ -1,0 +1,1 @@
+"""Picks the settings of the search for actions from labelled continuous recordings."""

@@ -1,0 +1,73 @@
+"""How far a choice of settings can be trusted: how sure its rate of false alarms is, and what speaks against it."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+from actum_model_trainer.continuous.scoring import FALSE_ALARMS_PER_MIN, ContinuousScores
+from actum_model_trainer.tuning.weighing import Weighed
+from som_classifier.model import Model
+
+SURE = 0.95
+"""Probability with which the true rate lies within the interval that is told: what is usual."""
+FEWEST_ACTIONS = 20
+"""Done in the recordings: with fewer a single one moves the events F1 by more than settings do."""
+BISECTIONS = 60
+"""Of an interval for the mean of a count: to more than double precision."""
+
+
+def rate_bounds(events: int, minutes: float) -> tuple[float, float]:
+    """Return between which rates (1/min) the true one lies, `SURE` probably, where so many events were counted.
+
+    The events are independent of each other, a Poisson process; the bounds are the exact ones (Garwood 1936).
+    """
+    tail = (1 - SURE) / 2
+    least = _mean_where(1 - tail, events - 1) if events else 0.0
+    return least / minutes, _mean_where(tail, events) / minutes
+
+
+def doubts(
+    model: Model, weighed: Sequence[Weighed], scores: ContinuousScores, most_per_min: float | None
+) -> Iterator[str]:
+    """Yield what speaks against trusting the scores of the settings that were chosen on these recordings."""
+    persons = {each.trial.person for each in weighed}
+    if seen := sorted(persons & set(model.metadata.persons) - {""}):
+        yield (
+            f"the model was trained on person {', '.join(seen)}: it does better on them than on others; "
+            "tune on somebody else"
+        )
+    if "" in persons:
+        yield "a recording names no person: if the model was trained on it, it does better there than elsewhere"
+    yield from _too_little(scores, FALSE_ALARMS_PER_MIN if most_per_min is None else most_per_min)
+    if model.background_s == 0:
+        yield "no background in the model's training data: it has one sensitivity only, and none is a guess"
+    known = set(model.labels)
+    if unknown := sorted({label for label, own in scores.per_action.items() if own.truths} - known):
+        yield f"the model does not know {', '.join(unknown)}, which is done in the recordings: it counts as missed"
+
+
+def _too_little(scores: ContinuousScores, wanted_per_min: float) -> Iterator[str]:
+    if scores.event.truths < FEWEST_ACTIONS:
+        yield f"only {scores.event.truths} actions are done here, too few to tell settings apart: record more"
+    if not scores.background_min:
+        yield "no background in the recordings: false alarms in other doings cannot be counted; record some"
+        return
+    least, most = rate_bounds(scores.false_detections, scores.background_min)
+    if least <= wanted_per_min < most:
+        yield (
+            f"{scores.background_min:.1f} min of background are too short to tell whether there are more than "
+            f"{wanted_per_min:g} false alarms a minute ({least:.2f} to {most:.2f}, {SURE:.0%} sure): record more"
+        )
+
+
+def _mean_where(probability: float, events: int) -> float:
+    """Return the mean of the Poisson distribution which gives this probability to so many events or fewer."""
+    low, high = 0.0, 10.0 + 3 * events
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if _at_most(events, middle) > probability else (low, middle)
+    return (low + high) / 2
+
+
+def _at_most(events: int, mean: float) -> float:
+    """Return the probability of so many events or fewer in a Poisson distribution with a mean above 0."""
+    return sum(math.exp(n * math.log(mean) - mean - math.lgamma(n + 1)) for n in range(events + 1))

@@ -1,0 +1,158 @@
+"""What is found in a recording with each sensitivity, all in one pass through the code that also runs live."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum import keys
+from actum.messages import Message, Posture
+from actum.node import Counters, Tick
+from actum.recording import Recording
+from actum_model_trainer.continuous.detections import Detection, Found
+from actum_model_trainer.continuous.watching import NoSpotterError, views_of, watched
+from actum_model_trainer.progress import Progress, silent
+from actum_model_trainer.tuning.sensitivities import Sensitivity, sensitivities
+from som_classifier.frames import Frame
+from som_classifier.model import Model
+from som_classifier.pyramid_model import PyramidModel
+from som_classifier.segmenter import Segmenter
+from som_classifier.segments import OpenSegment
+from som_classifier.spotting.admission import Admission
+from som_classifier.spotting.search import SearchPlan
+from som_classifier.spotting.spotted import NOTHING, Spotted, SpottedSegment, Spotter, SpottingOptions
+
+Searched = Sequence[Sequence[Detection]]
+"""What was found in each stretch of a person's frames that was searched on its own, in the order of decisions."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A recording, and what is found in it with each sensitivity before a user's other wishes.
+
+    Attributes:
+        person: whose recording it is; empty where it says nothing.
+        marked: what was done in it, and who was seen.
+        searched: by sensitivity.
+    """
+
+    person: str
+    marked: Found
+    searched: dict[Sensitivity, Searched]
+
+    def found(self, options: SpottingOptions) -> Found:
+        """Return what the classifier tells with these options; their sensitivity has to be one of the trial's."""
+        told: list[Detection] = []
+        for stretch in self.searched[options.false_alarms_per_min]:
+            admission = Admission(options)
+            told += [each for each in stretch if admission.admit(each.label, each.start_ns, each.end_ns) is None]
+        return replace(self.marked, detections=told)
+
+
+def tried(model: Model, recordings: Sequence[Recording], progress: Progress = silent) -> list[Trial]:
+    """Watch recordings without their marks, with all sensitivities of a model at once.
+
+    Raises:
+        NoSpotterError: the model cannot find actions without marks.
+        RecordingError: a file is damaged.
+    """
+    asked = sensitivities(model)
+    trials = []
+    for done, recording in enumerate(recordings):
+        progress("trying sensitivities", done, len(recordings))
+        for sensor, file in views_of(recording):
+            searches = _Searches(model, asked, file)
+            marked = watched(searches, recording, sensor, file)
+            searched: dict[Sensitivity, Searched] = {
+                each: [stretch[n] for stretch in searches.stretches] for n, each in enumerate(asked)
+            }
+            trials.append(Trial(recording.person, marked, searched))
+    progress("trying sensitivities", len(recordings), len(recordings))
+    return trials
+
+
+class _Searches:
+    """A node in the classifier's place, which searches every person's frames with several sensitivities.
+
+    Attributes:
+        stretches: for each stretch of frames, what is found in it with each sensitivity.
+    """
+
+    name = "searches"
+    inputs: tuple[keys.Topic, ...] = (keys.POSTURE,)
+
+    def __init__(self, model: Model, asked: Sequence[Sensitivity], file: str) -> None:
+        self.counters = Counters()
+        self.stretches: list[list[list[Detection]]] = []
+        self._model, self._asked, self._file = _pooling_once(model), asked, file
+        self._segmenter = Segmenter(self.counters)
+        self._segmenter.use(lambda: model.encoder().encode, SearchPlan(self._next_stretch))
+        self._found: list[tuple[list[Detection], SpottedSegment]] = []
+
+    def handle(self, message: Message | Tick) -> list[Message]:
+        """Take a posture or a tick; put nothing."""
+        if isinstance(message, Posture):
+            frame, _ = self._segmenter.posture(message)
+            search = self._segmenter.search_of(message.agent)
+            if frame is not None and search is not None:
+                search.step(frame)
+                self._answer(message)
+        return []
+
+    def _next_stretch(self) -> Spotter:
+        spotters = [self._model.spotter(SpottingOptions(false_alarms_per_min=rate)) for rate in self._asked]
+        self.stretches.append([[] for _ in self._asked])
+        return _Several([each for each in spotters if each is not None], self.stretches[-1], self._found)
+
+    def _answer(self, posture: Posture) -> None:
+        """Recognise what the newest frame showed as the classifier does, whatever is to be told of it."""
+        for into, found in self._found:
+            closed = self._segmenter.cut(OpenSegment("", found.start_ns, posture.agent, None, None, found.end_ns))
+            usable = [frame for frame in closed.frames if frame.valid]
+            if closed.reason is None and len(usable) >= self._model.min_frames:
+                answer = self._model.recognise(usable, complete=True)
+                bounds = closed.start_ns, closed.end_ns, posture.stamp_ns
+                into.append(Detection(self._file, posture.agent, *bounds, answer.label, answer.confidence))
+        self._found.clear()
+
+
+class _Several:
+    """Several searches in one stream; notes what each finds, and where its answers are to be kept."""
+
+    def __init__(
+        self,
+        spotters: Sequence[Spotter],
+        answers: Sequence[list[Detection]],
+        found: list[tuple[list[Detection], SpottedSegment]],
+    ) -> None:
+        self._spotters, self._answers, self._found = spotters, answers, found
+
+    def step(self, frame: Frame) -> Spotted:
+        for spotter, answers in zip(self._spotters, self._answers, strict=True):
+            self._found += [(answers, segment) for segment in spotter.step(frame).segments]
+        return NOTHING
+
+
+@dataclass(frozen=True, eq=False)
+class _PoolingOnce(PyramidModel):
+    """A model that pools the windows of a frame once, however many searches look at them."""
+
+    vectors: dict[int, NDArray[np.float32]] = field(default_factory=dict)
+    newest: list[Frame] = field(default_factory=list)
+
+    def pooled(self, frames: Sequence[Frame]) -> NDArray[np.float32]:
+        """Return the pyramid vector of valid frames, (inputs,)."""
+        if not self.newest or self.newest[0] is not frames[-1]:
+            self.newest[:] = [frames[-1]]
+            self.vectors.clear()
+        start_ns = frames[0].stamp_ns
+        if start_ns not in self.vectors:
+            self.vectors[start_ns] = super().pooled(frames)
+        return self.vectors[start_ns]
+
+
+def _pooling_once(model: Model) -> Model:
+    if not isinstance(model, PyramidModel):
+        raise NoSpotterError(model)
+    return _PoolingOnce(**{each.name: getattr(model, each.name) for each in fields(PyramidModel)})
