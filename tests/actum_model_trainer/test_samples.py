@@ -109,3 +109,16 @@ def test_a_recording_that_is_named_twice_counts_once(record: Record, tmp_path: P
     skeletons, marks = performance(["lift"])
     path = record("one", *skeletons, *marks).path
     assert [recording.path for recording in select([path, tmp_path, path])] == [path]
+
+
+def test_a_recording_without_marks_is_background(record: Record) -> None:
+    skeletons, _ = performance(["lift"])
+    samples = samples_from([record("idle", *skeletons)])
+    assert samples.segments == []
+    assert [(len(stream.stamps_ns) > 0, stream.segments) for stream in samples.streams] == [(True, ())]
+
+
+def test_an_absence_of_more_than_a_second_parts_a_stream(record: Record) -> None:
+    seen = [skeleton(stamp_ns=n * FRAME_NS) for n in (*range(5), *range(50, 55))]
+    (stream,) = samples_from([record("away", *seen)]).streams
+    assert stream.runs_ns == [(0, 4 * FRAME_NS), (50 * FRAME_NS, 54 * FRAME_NS)]
