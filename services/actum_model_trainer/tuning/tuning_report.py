@@ -28,8 +28,8 @@ def _offers(result: Tuned) -> Table:
     table = Table(title="what each sensitivity gives, with the other settings that suit it", box=SIMPLE)
     for heading in ("wanted / min", "told", "right", "events F1", "false / min", "latency"):
         table.add_column(heading, justify="right")
-    table.add_column("left out, pause, cooldowns", min_width=22, overflow="fold")
-    table.add_column("lost", min_width=20, overflow="fold")
+    table.add_column("left out, pause, cooldowns", min_width=18, overflow="fold")
+    table.add_column("lost", min_width=14, overflow="fold")
     for outcome in result.outcomes:
         picked = outcome.options == result.best.options
         table.add_row(*_cells(outcome), style="bold" if picked else None)
