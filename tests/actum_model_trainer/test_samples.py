@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from actum.messages import Posture, Segment, Skeleton
+from actum.node import SECOND_NS
 from actum.recording import Recorder, Recording
 from actum_model_trainer.samples import samples_from, select
 from people import FRAME_NS, skeleton
@@ -119,6 +120,9 @@ def test_a_recording_without_marks_is_background(record: Record) -> None:
 
 
 def test_an_absence_of_more_than_a_second_parts_a_stream(record: Record) -> None:
-    seen = [skeleton(stamp_ns=n * FRAME_NS) for n in (*range(5), *range(50, 55))]
-    (stream,) = samples_from([record("away", *seen)]).streams
-    assert stream.runs_ns == [(0, 4 * FRAME_NS), (50 * FRAME_NS, 54 * FRAME_NS)]
+    skeletons, _ = performance(["lift", "push"])
+    away = [frame for n, frame in enumerate(skeletons) if not 5 <= n < 5 + SECOND_NS // FRAME_NS + 2]
+    (stream,) = samples_from([record("away", *away)]).streams
+    (first, last), (back, end) = stream.runs_ns
+    assert (first, end) == (skeletons[0].stamp_ns, skeletons[-1].stamp_ns)
+    assert (last, back - last > SECOND_NS) == (skeletons[4].stamp_ns, True)
