@@ -22,7 +22,7 @@ $(STAMP): pyproject.toml
 	$(BIN)/pip install --quiet --disable-pip-version-check --force-reinstall --no-deps opencv-python-headless
 	touch $@
 
-demo: $(STAMP)  ## the paper's experiment with a simulated actor, through live processes
+demo: $(STAMP)  ## simulated people act in continuous scenes, and live processes find what they do; eight minutes
 	$(BIN)/actum demo
 
 up: $(STAMP)  ## router and all services, until Ctrl-C

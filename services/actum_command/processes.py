@@ -20,10 +20,14 @@ ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 def system(
     settings: ServiceSettings, source: str, path: Path | None, model: Path | None, given: Given
 ) -> list[Program]:
-    """Return all programs of a system but its router: the four services, and the sensor that the source names."""
+    """Return all programs of a system but its router: the four services, and the sensor that the source names.
+
+    The simulated scene's actions are marked, unless only those are wanted that the classifier finds by itself.
+    """
     if source == "simulator":
-        sensor = [simulator(settings, arguments_of("scene_simulator", given)), scene(settings)]
-        return [*services(settings, model, simulated_objects(), given), *sensor]
+        marking = [] if given.get("segments") == ["auto"] else [scene(settings)]
+        sensor = simulator(settings, arguments_of("scene_simulator", given))
+        return [*services(settings, model, simulated_objects(), given), sensor, *marking]
     programs = services(settings, model, {}, given)
     if source != "none":
         play = ["--path", str(path)] if path else []

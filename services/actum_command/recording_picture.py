@@ -42,7 +42,11 @@ def write_picture(
         if each.start_ns is not None and each.end_ns is not None
     ]
     lanes = _recorded(recording, first_ns) if model is None else _of_model(recording, first_ns, model)
-    whose = "the recorded answers" if model is None else f"the answers of model {model.id}"
+    whose = (
+        "the recorded answers"
+        if model is None
+        else f"what model {model.id} answers to the marks, and finds without them"
+    )
     acting = [segment.agent for segment in segments if segment.agent is not None]
     save(
         stream_picture(

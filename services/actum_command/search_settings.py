@@ -48,7 +48,7 @@ def flags_for(wishes: Wishes) -> str:
 def settings_file(wishes: Wishes, origin: str) -> str:
     """Write the settings that are not as by default as a file for `ACTUM_CONFIG`; its first line says their origin."""
     lines = [f"{name} = {_as_toml(value)}" for name, value in _set(wishes)]
-    return "\n".join([f"# {origin}", *(lines or ["# the model's own settings are the best: nothing is to be set"]), ""])
+    return "\n".join([f"# {origin}", *(lines or ["# the model does best as it is: nothing is to be set"]), ""])
 
 
 def refuse_other_settings(file: Path) -> None:

@@ -352,15 +352,17 @@ def supervised(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 @pytest.mark.parametrize(
     ("source", "beside", "told"),
     [
-        ("simulator", ["scene_simulator", "scene"], False),
-        ("camera", ["sensor_gateway"], True),
-        ("none", [], True),
+        (["simulator"], ["scene_simulator", "scene"], False),
+        (["simulator", "--segments", "both"], ["scene_simulator", "scene"], False),
+        (["simulator", "--segments", "auto"], ["scene_simulator"], True),
+        (["camera"], ["sensor_gateway"], True),
+        (["none"], [], True),
     ],
 )
 def test_what_runs_beside_the_services_and_whether_somebody_marks(
-    source: str, beside: list[str], told: bool, supervised: list[str]
+    source: list[str], beside: list[str], told: bool, supervised: list[str]
 ) -> None:
-    started = CliRunner().invoke(app, ["up", "--source", source])
+    started = CliRunner().invoke(app, ["up", "--source", *source])
     assert supervised == [*processes.SERVICES, *beside]
     assert ("nobody marks actions here" in started.stdout) == told
 

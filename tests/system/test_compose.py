@@ -19,7 +19,7 @@ from live import System, wait_until
 
 ROUTER_CONFIG = DEPLOY / "zenoh" / "router.json5"
 FIVE = {"scene_simulator", *SERVICES}
-UNCHECKED = {"trainer", "scene"}
+UNCHECKED = {"trainer", "watch"}
 ACTIONS = {"push", "pull", "put", "lift", "point"}
 STOPPED_WITHIN_S = 10.0
 
@@ -29,7 +29,7 @@ def services() -> dict[str, dict[str, Any]]:
     return services_of(MAIN)
 
 
-def test_router_five_services_trainer_and_scene_stand_in_one_flat_list(services):
+def test_router_five_services_trainer_and_watch_stand_in_one_flat_list(services):
     assert set(services) == {"router", *FIVE, *UNCHECKED}
     assert not [name for name, service in services.items() if "depends_on" in service]
 
@@ -226,7 +226,7 @@ def test_up_recognises_and_down_leaves_nothing(project):
     compose("down")
     print(f"docker compose down: {time.time() - began_s:.1f} s")
     ended = deaths(began_s)
-    assert len(ended) == len({"router", "scene", *FIVE})
+    assert len(ended) == len({"router", "watch", *FIVE})
     assert {end["Actor"]["Attributes"]["exitCode"] for end in ended} == {"0"}
     assert max(end["timeNano"] for end in ended) / 1e9 - began_s < STOPPED_WITHIN_S
     assert containers() == []

@@ -8,7 +8,7 @@ import typer
 from actum.runtime import stop_on_signals
 from actum_command.commands.terminal import connect_whenever, fail, refuse_ending, refuse_unwritable, say
 from actum_command.scene_marks import mark_truth, write_examples
-from scene_simulator.everyday import Choice
+from scene_simulator.everyday import Choice, Pauses
 
 
 def simulate(
@@ -18,6 +18,9 @@ def simulate(
     seed: Annotated[int, typer.Option(min=0, help="which repetitions")] = 0,
     everyday: Annotated[Choice, typer.Option(help="what people do between actions; only: nothing else")] = "none",
     minutes: Annotated[float, typer.Option(min=0, help="least length with everyday doings, which fill it up")] = 1.0,
+    pauses: Annotated[
+        Pauses, typer.Option(help="between actions up to three everyday doings and rests, or at most one")
+    ] = "long",
 ) -> None:
     """Write labelled examples of the simulated scene, without images.
 
@@ -28,7 +31,7 @@ def simulate(
     refuse_unwritable(output)
     refuse_ending(output, ".mcap")
     try:
-        write_examples(output, repetitions, actor, seed, everyday, minutes)
+        write_examples(output, repetitions, actor, seed, everyday, minutes, pauses)
     except OSError as error:
         fail(f"{output} cannot be written ({error.strerror})")
     actions = "no actions" if everyday == "only" else f"{repetitions} x 5 actions"

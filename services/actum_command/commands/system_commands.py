@@ -20,7 +20,10 @@ from sensor_gateway.settings import SourceName
 SOURCES = [name for name in get_args(SourceName) if name != "marker-camera"]
 """The sources of the gateway that `actum up` can start: a marker camera runs only beside another source."""
 
-NO_MARKS = "nobody marks actions here: 'actum segment toggle' does, and 'actum play' beside --source none"
+NO_MARKS = (
+    "nobody marks actions here, so those are told that the model finds by itself; to mark: 'actum segment toggle', "
+    "or 'actum play' beside --source none"
+)
 
 
 def router(
@@ -60,7 +63,7 @@ def up(
         refuse_taken(here.connect)
         programs = processes.system(here, source, path, model, given)
         say(f"actum starts on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
-        if source != "simulator":
+        if processes.scene(here) not in programs:
             say(NO_MARKS)
         if (lack := lack_of_model(model)) is not None:
             say(lack, style="yellow")

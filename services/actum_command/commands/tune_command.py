@@ -49,7 +49,8 @@ def tune(
     for doubt in result.doubts:
         say(doubt, style="yellow")
     wishes = Wishes(options=result.best.options)
-    say(f"as flags: {flags_for(wishes) or 'none, the model does best as it is'}")
+    flags = flags_for(wishes)
+    say(f"as flags: {flags}" if flags else "the model does best as it is: nothing is to be set")
     if output is not None:
         _write(output, settings_file(wishes, f"picked by actum tune for model {loaded.id}"))
 

@@ -35,10 +35,7 @@ MIN_LOG_DURATION_SD = 0.15
 def with_spotting(
     model: PyramidModel, streams: Sequence[LabelledStream], preset: PyramidPreset, seed: int, progress: Progress
 ) -> PyramidModel:
-    """Return the model with the search, trained on whole streams.
-
-    It is returned as it is where no stream holds any of its actions, or all are too short between gaps to be searched.
-    """
+    """Return the model with the search, trained on whole streams; as it is where these hold no action or no window."""
     search, rng = preset.spotting, np.random.default_rng(seed)
     usable = [stream for stream in streams if len(stream.stamps_ns) >= FEWEST_FRAMES]
     untuned = _untuned(usable, model.labels, search)

@@ -1,6 +1,6 @@
 """The choice of the search's settings: the best events F1 that keeps to the wanted rate of false alarms."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from actum_model_trainer.continuous.detections import Found
@@ -70,35 +70,30 @@ def held_out(weighed: Sequence[Weighed], most_per_min: float | None) -> Found:
 
 
 def _offer(weighed: Sequence[Weighed], sensitivity: Sensitivity) -> Offer:
-    """Choose what suits a sensitivity best: first what is switched off, then the pause, then the cooldowns."""
-    wish = Wish(sensitivity)
-    bare = _scores(weighed, wish)
+    """Choose what suits a sensitivity best: which actions are switched off, each one's cooldown, and the pause."""
+    bare = _scores(weighed, Wish(sensitivity))
     only_false = [label for label, own in bare.items() if not own.right and own.detections >= FEWEST_SPARED]
-    wish = replace(wish, disabled=frozenset(only_false))
-    scores = _scores(weighed, wish)
-    for pause_s in PAUSES_S:
-        longer = replace(wish, shortest_pause_s=pause_s)
-        if _is_worth_it(scores, trial := _scores(weighed, longer)):
-            wish, scores = longer, trial
-    cooldown_s = {}
-    for label, of_label_s, score in _cooldowns(weighed, wish, scores):
-        cooldown_s[label], scores[label] = of_label_s, score
+    wish = Wish(sensitivity, frozenset(only_false))
+    pause_s, (cooldown_s, scores) = 0.0, _cooldowns(weighed, wish)
+    for longer_s in PAUSES_S:
+        trial = _cooldowns(weighed, replace(wish, shortest_pause_s=longer_s))
+        if _is_worth_it(scores, trial[1]):
+            pause_s, (cooldown_s, scores) = longer_s, trial
     score, minutes = total(scores.values()), sum(each.background_min for each in weighed)
-    options = SpottingOptions(sensitivity, wish.shortest_pause_s, cooldown_s, wish.disabled)
+    options = SpottingOptions(sensitivity, pause_s, cooldown_s, wish.disabled)
     return Offer(options, score, (score.detections - score.right) / minutes if minutes else None)
 
 
-def _cooldowns(weighed: Sequence[Weighed], wish: Wish, scores: Scores) -> Iterator[tuple[str, float, ActionScore]]:
-    """Yield each action that a cooldown is worth it for, the shortest that is worth the most (s), and its score."""
-    trials = [(cooldown_s, _scores(weighed, replace(wish, cooldown_s=cooldown_s))) for cooldown_s in COOLDOWNS_S]
+def _cooldowns(weighed: Sequence[Weighed], wish: Wish) -> tuple[dict[str, float], Scores]:
+    """Return the cooldown (s) of each action that one is worth it for, and the scores with them."""
+    scores, cooldown_s = _scores(weighed, wish), {}
+    trials = [(longer_s, _scores(weighed, replace(wish, cooldown_s=longer_s))) for longer_s in COOLDOWNS_S]
     for label in list(scores):
-        best_s, best = 0.0, scores
-        for cooldown_s, trial in trials:
+        for longer_s, trial in trials:
             longer = scores | {label: trial[label]}
-            if _is_worth_it(best, longer):
-                best_s, best = cooldown_s, longer
-        if best_s:
-            yield label, best_s, best[label]
+            if _is_worth_it(scores, longer):
+                cooldown_s[label], scores = longer_s, longer
+    return cooldown_s, scores
 
 
 def _scores(weighed: Sequence[Weighed], wish: Wish) -> Scores:
