@@ -35,6 +35,7 @@ RESULTS = {
     "Hands and objects": "benchmarks/bimacs",
     "Cuts": "benchmarks/cutting",
     "Webcam": "benchmarks/camera/results",
+    "Webcam, found live": "benchmarks/camera/continuous",
     "Webcam: what was tried": "benchmarks/camera/README",
     "The paper": "benchmarks/paper/results",
     "Marker tracker": "benchmarks/tracker/results",

@@ -9,7 +9,7 @@ from typing import Any
 from benchmarks.recognition.scores import percent, table
 
 from .bench import Bench, number
-from .four_people import ALONE_MINUTES, MINUTES, PEOPLE
+from .four_people import ALONE_MINUTES, PEOPLE
 
 MOST_MS = 20
 """The 99th percentile of a decision is required to be below."""
@@ -20,9 +20,13 @@ def cost(bench: Bench) -> Iterator[str]:
     path = bench.data.imported / "simulated.npz"
     bench.model_of(bench.data.simulated.training).save(path)
     program = [sys.executable, "-m", "benchmarks.continuous.four_people", str(path)]
-    own = json.loads(subprocess.run(program, check=True, capture_output=True, text=True).stdout)
-    yield f"""{PEOPLE} simulated people side by side act and do everyday things, {MINUTES:g} minutes at 30 frames a
-second, in a process of its own with preprocessor and classifier. Times are the processor's, so that what else it does
+    yield from told(json.loads(subprocess.run(program, check=True, stdout=subprocess.PIPE, text=True).stdout))
+
+
+def told(own: dict[str, Any]) -> Iterator[str]:
+    """Write a `four_people.Cost` as Markdown, given as JSON."""
+    yield f"""{PEOPLE} simulated people side by side act and do everyday things, {own["minutes"]:g} minutes at 30 frames
+a second, in a process of its own with preprocessor and classifier. Times are the processor's, so that what else it does
 does not count; below {MOST_MS} ms is required of the 99th percentile. {own["told"]} actions were told."""
     yield table(
         ("ms", "median", "99 %", "largest"),
@@ -32,13 +36,13 @@ does not count; below {MOST_MS} ms is required of the 99th percentile. {own["tol
         ],
     )
     yield f"Preprocessor and classifier take {percent(own['core'])} % of a core."
-    yield table(("memory, MB", "after a minute", f"after {MINUTES:g}"), _memory(own["early"], own["late"]))
-    yield f"""The resident memory is the process's, with the simulated people. In the first {ALONE_MINUTES:g} minutes,
-beside the other three and alone:"""
+    yield table(("memory, MB", "after a minute", "in the end"), _memory(own["early"], own["late"]))
+    yield f"""The resident memory is the process's, with the simulated people. In the first {ALONE_MINUTES:g} minutes
+everybody once more without the other three:"""
     answers = (
         [str(k), str(count), "the same" if same else "others"] for k, (count, same) in enumerate(own["alone"], 1)
     )
-    yield table(("person", "answers", "alone"), answers)
+    yield table(("person", "answers alone", "among the others"), answers)
 
 
 def _memory(early: dict[str, Any], late: dict[str, Any]) -> Iterator[list[str]]:

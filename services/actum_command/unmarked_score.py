@@ -77,6 +77,16 @@ class PersonWitness:
         return f"{number:3}/{self.total}"
 
 
+def introduction(people: int) -> str:
+    """Say what is going to be seen."""
+    others = f"{people} others act" if people > 1 else "one other acts"
+    return (
+        f"Simulated people teach, then {others} in real time, with everyday things in between. "
+        "Nobody marks when an action begins or ends.\n"
+        "Each line: what was done, whether that was found and its object named, and the event."
+    )
+
+
 def background(performance: Performance, told: Detection) -> str:
     """Say what a person did when an action was told that was not done."""
     return (performance.doing_at(told) or "at rest").replace("_", " ")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from actum import keys
 from actum.arrays import Array
 from actum.messages import REPLAY, Hand, Message, Posture, Segment, Skeleton
-from actum.node import Counters, Numbering, Tick, replay
+from actum.node import SECOND_NS, Counters, Numbering, Tick, replay
 from actum.recording import Recording
 from actum_model_trainer.progress import Progress, silent
 from pose_preprocessor.node import PosePreprocessor
@@ -88,6 +88,13 @@ class LabelledStream:
     file: str
     agent: int
     depth_inferred: bool = False
+
+    @property
+    def runs_ns(self) -> list[tuple[int, int]]:
+        """The first and the last stamp of each time in which the person was seen without a break of a second."""
+        after = np.flatnonzero(np.diff(self.stamps_ns) > SECOND_NS) + 1
+        runs = np.split(self.stamps_ns, after)
+        return [(int(run[0]), int(run[-1])) for run in runs]
 
 
 @dataclass(frozen=True)
@@ -173,7 +180,7 @@ def samples_from(recordings: Sequence[Recording], progress: Progress = silent) -
     streams: list[LabelledStream] = []
     for done, recording in enumerate(recordings):
         progress("reading recordings", done, len(recordings))
-        for sensor in sensors(recording):
+        for sensor in sorted({*recording.sensors(keys.SEGMENT), *recording.sensors(keys.SKELETON)}):
             collected = FrameCollector()
             for _ in replay(collected, classifier_input(recording, sensor)):
                 raise AssertionError("the collector puts nothing")

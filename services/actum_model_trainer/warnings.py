@@ -10,20 +10,25 @@ MIN_EXAMPLES = 5  # of an action: fewer say little of how its performances diffe
 MAX_RATIO = 3  # between the numbers of examples of two actions: beyond, the rarer one is hardly learnt
 CONFUSED_SHARE = 0.25  # of the answers within a pair of actions that name the wrong one: guessing makes half
 CONFUSED_TIMES = 2  # wrong answers within a pair: a single one may be chance
+ENOUGH_BACKGROUND_S = 60.0  # of people who do none of the actions: with less, false alarms cannot be counted
 BACKGROUND = ("idle", "background")  # labels of segments in which none of the actions is done
 
 
-def warnings_of(samples: Sequence[SegmentSample], answers: Sequence[tuple[str, str]]) -> list[str]:
+def warnings_of(
+    samples: Sequence[SegmentSample], answers: Sequence[tuple[str, str]], background_s: float = 0.0
+) -> list[str]:
     """Return a warning, one sentence or two, for each weakness of the training samples.
 
     Args:
         samples: of the training.
         answers: action done and action answered, for each example in a cross-validation.
+        background_s: for how long the recordings show people who do none of the actions.
     """
     counts = Counter(sample.label for sample in samples)
     actions = {label: n for label, n in sorted(counts.items()) if label not in BACKGROUND}
     people = {sample.person for sample in samples}
-    return [*_one_person(people), *_few(counts), *_unbalanced(actions), *_confused(answers), *_no_background(counts)]
+    background = [] if background_s >= ENOUGH_BACKGROUND_S else _no_background(counts)
+    return [*_one_person(people), *_few(counts), *_unbalanced(actions), *_confused(answers), *background]
 
 
 def _one_person(people: set[str]) -> Iterator[str]:

@@ -156,8 +156,16 @@ class Recording:
     @cached_property
     def topics(self) -> frozenset[keys.Topic]:
         """The topics of which the recording holds at least one message."""
-        addresses = {key: _address(key) for key in {stored.key for stored in self._file.stored()}}
-        return frozenset(address.topic for address in addresses.values() if address is not None)
+        return frozenset(address.topic for address in self._addresses)
+
+    def sensors(self, topic: keys.Topic) -> list[str]:
+        """Return the sensors of which it holds at least one message of a topic, sorted."""
+        return sorted({address.sensor for address in self._addresses if address.topic is topic})
+
+    @cached_property
+    def _addresses(self) -> list[keys.Address]:
+        found = {stored.key: _address(stored.key) for stored in self._file.stored()}
+        return [address for address in found.values() if address is not None]
 
     def messages(self, topics: Collection[keys.Topic] | None = None) -> Iterator[Message]:
         """Yield the messages of these topics, or of all, in order of `publish_time`.

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from actum.messages import Posture, Segment, Skeleton
+from actum.node import SECOND_NS
 from actum.recording import Recorder, Recording
 from actum_model_trainer.samples import samples_from, select
 from people import FRAME_NS, skeleton
@@ -109,3 +110,19 @@ def test_a_recording_that_is_named_twice_counts_once(record: Record, tmp_path: P
     skeletons, marks = performance(["lift"])
     path = record("one", *skeletons, *marks).path
     assert [recording.path for recording in select([path, tmp_path, path])] == [path]
+
+
+def test_a_recording_without_marks_is_background(record: Record) -> None:
+    skeletons, _ = performance(["lift"])
+    samples = samples_from([record("idle", *skeletons)])
+    assert samples.segments == []
+    assert [(len(stream.stamps_ns) > 0, stream.segments) for stream in samples.streams] == [(True, ())]
+
+
+def test_an_absence_of_more_than_a_second_parts_a_stream(record: Record) -> None:
+    skeletons, _ = performance(["lift", "push"])
+    away = [frame for n, frame in enumerate(skeletons) if not 5 <= n < 5 + SECOND_NS // FRAME_NS + 2]
+    (stream,) = samples_from([record("away", *away)]).streams
+    (first, last), (back, end) = stream.runs_ns
+    assert (first, end) == (skeletons[0].stamp_ns, skeletons[-1].stamp_ns)
+    assert (last, back - last > SECOND_NS) == (skeletons[4].stamp_ns, True)

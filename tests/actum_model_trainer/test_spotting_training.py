@@ -53,7 +53,7 @@ def stream_of(folder: Path, of: Scene, lost: frozenset[int] = frozenset()) -> La
     return stream
 
 
-LOST = frozenset([*range(50, 57), *range(100, 130), *range(200, 400, 3)])
+LOST = frozenset([*range(50, 57), *range(100, 118), *range(200, 400, 3)])
 
 
 @pytest.fixture(scope="module", params=[frozenset(), LOST], ids=["whole", "frames lost"])

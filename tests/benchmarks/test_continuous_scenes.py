@@ -1,11 +1,14 @@
 """What is measured of simulated people whom nobody marks: their actions, objects, idling, partial answers and cost."""
 
+import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 import pytest
 from benchmarks.continuous import four_people, idle
 from benchmarks.continuous.bench import scores_table
+from benchmarks.continuous.cost import told
 from benchmarks.continuous.early import (
     Heard,
     Listener,
@@ -173,6 +176,7 @@ def test_one_of_four_is_answered_as_if_alone() -> None:
     assert [same for _, same in cost.alone] == [True] * four_people.PEOPLE
     assert cost.told == sum(count for count, _ in cost.alone) > 0
     assert cost.late.resident_mb > cost.late.classifier_mb > cost.late.spotters_mb > 0
+    assert "| 4 | 6 | the same |" in "\n".join(told(json.loads(json.dumps(asdict(cost)))))
     assert cost.core > 0 and cost.posture_ms[0] <= cost.posture_ms[1] <= cost.posture_ms[2]
 
 

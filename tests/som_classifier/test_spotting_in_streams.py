@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from actum.messages import Action, Message, Posture, Segment
 from actum.node import SECOND_NS, Counters, Tick
+from actum.stamps import RESTART_AFTER
 from people import FRAME_NS
 from som_classifier.kinematics import GAP_NS
 from som_classifier.model import Model
@@ -181,6 +182,17 @@ def test_a_source_that_starts_anew_from_the_same_stamp_is_searched_as_the_first_
     assert answers(put) == answers(alone(1))
     names = [{m.segment_id for m in messages if isinstance(m, Action)} for messages in (put_before, put)]
     assert not names[0] & names[1]
+
+
+@pytest.mark.parametrize("at", [20, 60, 100])
+def test_after_a_clock_that_steps_back_the_search_begins_anew(at: int) -> None:
+    """With the frame that shows that it has."""
+    back = [_later(p, -90.0) for p in stream()]
+    node = SomClassifier(spotting_model())
+    put_by(node, stream()[:at])
+    put = put_by(node, back)
+    assert answers(put) == answers(put_by(SomClassifier(spotting_model()), back[RESTART_AFTER - 1 :]))
+    assert len(answers(put)) == len(acting().acts)
 
 
 class Box:

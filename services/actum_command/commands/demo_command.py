@@ -25,7 +25,7 @@ from actum_command.simulated_experiment import (
 from actum_command.startup import log_file, refuse_taken
 from actum_command.supervising import UnusableError
 from actum_command.unmarked_experiment import run_unmarked, train_on_streams
-from actum_command.unmarked_score import unmarked_summary, unmarked_table
+from actum_command.unmarked_score import introduction, unmarked_summary, unmarked_table
 from actum_model_trainer.evaluation import Evaluation
 from scene_simulator.programme import ACTIONS
 
@@ -75,8 +75,10 @@ def _marked(here: ServiceSettings, folder: Path, people: int, repetitions: int) 
 
 def _unmarked(here: ServiceSettings, folder: Path, people: int, repetitions: int) -> str | None:
     """Run the experiment without marks and print its results; return what is missing, None where nothing is."""
+    actors = tested_actors(people)
+    console.print(introduction(len(actors)), soft_wrap=True)
     learned = _train_to_spot(folder, folder / "model.npz")
-    performances = run_unmarked(_live(here), here, folder / "model.npz", tested_actors(people), repetitions)
+    performances = run_unmarked(_live(here), here, folder / "model.npz", actors, repetitions)
     console.print(unmarked_table(performances))
     console.print(unmarked_summary(performances, learned, people), soft_wrap=True)
     unfinished = [performance.person for performance in performances if not performance.over]

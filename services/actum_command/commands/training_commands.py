@@ -68,7 +68,7 @@ def train_command(
         f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
         f"{time.monotonic() - began_s:.1f} s, written to {output}"
     )
-    for warning in warnings_of(samples.usable, model.metadata.held_out_answers):
+    for warning in warnings_of(samples.usable, model.metadata.held_out_answers, model.background_s or 0.0):
         say(warning, style="yellow")
 
 

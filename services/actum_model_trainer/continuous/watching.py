@@ -100,7 +100,7 @@ def views_of(recording: Recording) -> list[tuple[str, str]]:
 
 def sensors_of(recording: Recording) -> list[str]:
     """Return the sensors whose skeletons a recording holds, sorted; it need not have any mark."""
-    return sorted({skeleton.sensor for skeleton in recording.messages((keys.SKELETON,))})
+    return recording.sensors(keys.SKELETON)
 
 
 def watched(node: Node, recording: Recording, sensor: str, file: str) -> Found:

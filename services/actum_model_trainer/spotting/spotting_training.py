@@ -107,6 +107,6 @@ def _probability(scanned: Sequence[ScannedStream], labels: Sequence[str]) -> lis
 
 def _background_s(streams: Sequence[LabelledStream]) -> float:
     """Return for how long people did none of the labelled actions (s)."""
-    seen = [Stretch(each.file, each.agent, int(each.stamps_ns[0]), int(each.stamps_ns[-1])) for each in streams]
+    seen = [Stretch(each.file, each.agent, *run_ns) for each in streams for run_ns in each.runs_ns]
     truths = [Truth(each.file, each.agent, *segment) for each in streams for segment in each.segments]
     return 60 * background_min(seen, truths)

@@ -66,7 +66,7 @@ def found(scanned: Sequence[ScannedStream], learned: SpottingModel, labels: Sequ
             for start_ns, end_ns, decided_ns, action in _decided(each, learned, threshold)
         ]
         truths += [Truth(file, agent, *segment) for segment in stream.segments]
-        seen.append(Stretch(file, agent, int(stream.stamps_ns[0]), int(stream.stamps_ns[-1])))
+        seen += [Stretch(file, agent, *run_ns) for run_ns in stream.runs_ns]
     return Found(detections, truths, seen)
 
 

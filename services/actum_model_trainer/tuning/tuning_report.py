@@ -26,10 +26,10 @@ def tuning_report(result: Tuned, most_per_min: float | None, seconds: float) -> 
 
 def _offers(result: Tuned) -> Table:
     table = Table(title="what each sensitivity gives, with the other settings that suit it", box=SIMPLE)
-    for heading in ("false / min wanted", "told", "right", "events F1", "false / min", "latency"):
+    for heading in ("wanted / min", "told", "right", "events F1", "false / min", "latency"):
         table.add_column(heading, justify="right")
-    table.add_column("other settings", overflow="fold")
-    table.add_column("lost", overflow="fold")
+    table.add_column("left out, pause, cooldowns", min_width=18, overflow="fold")
+    table.add_column("lost", min_width=14, overflow="fold")
     for outcome in result.outcomes:
         picked = outcome.options == result.best.options
         table.add_row(*_cells(outcome), style="bold" if picked else None)
@@ -55,7 +55,7 @@ def _others(options: SpottingOptions) -> str:
     """Say which settings but the sensitivity are not as they are by default."""
     said = [f"without {name}" for name in sorted(options.disabled)]
     said += [f"pause {options.shortest_pause_s:g} s"] if options.shortest_pause_s else []
-    said += [f"{name} every {seconds:g} s" for name, seconds in sorted(options.cooldown_s.items())]
+    said += [f"{name} {seconds:g} s" for name, seconds in sorted(options.cooldown_s.items())]
     return ", ".join(said)
 
 
