@@ -15,8 +15,8 @@ from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSe
 from som_classifier.spotting.spotting_model import SpottingModel
 from som_classifier.spotting.windows import RecentFrames
 
-ONGOING_FROM = 0.25
-"""Completeness from which an action counts as going on: that of a window that overlaps it by 40 %."""
+LEAST_PROBABILITY = 0.5
+"""Probability from which an action is said to be going on: that it is must be likelier than that it is not."""
 
 
 class Recogniser(Protocol):
@@ -97,10 +97,12 @@ class PyramidSpotter:
     def _likeliest(self, starts_ns: Sequence[int], now_ns: int, completeness: NDArray[np.float32]) -> Ongoing | None:
         """Return the action to which a window that ends now belongs most surely, None where none belongs to any."""
         free = [n for n, start_ns in enumerate(starts_ns) if self._decoder.is_free(start_ns, now_ns)]
-        if not free or completeness[free].max() < ONGOING_FROM:
+        if not free:
             return None
         window = max(free, key=lambda n: float(completeness[n].max()))
         action = int(completeness[window].argmax())
         answer = float(completeness[window, action])
         probability = self._learned.probability(answer)
+        if probability < LEAST_PROBABILITY:
+            return None
         return Ongoing(starts_ns[window], self._model.labels[action], probability, iou_of_completeness(answer))
