@@ -1,11 +1,14 @@
 """The peers that find actions without marks decide causally, and their windows show what they are said to show."""
 
+import pytest
+
+pytest.importorskip("aeon", reason='the peers need pip install -e ".[benchmarks]"')
+
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-import pytest
 from benchmarks.continuous.energy import Hysteresis, speeds_m_s
 from benchmarks.continuous.methods import chosen, inner_folds
 from benchmarks.continuous.never_trained import absent, answered, unlabelled

@@ -1,11 +1,14 @@
 """What is measured of simulated people whom nobody marks: their actions, objects, idling, partial answers and cost."""
 
+import pytest
+
+pytest.importorskip("aeon", reason='the peers need pip install -e ".[benchmarks]"')
+
 import json
 from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
-import pytest
 from benchmarks.continuous import four_people, idle
 from benchmarks.continuous.bench import scores_table
 from benchmarks.continuous.cost import told
