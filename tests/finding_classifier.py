@@ -8,7 +8,7 @@ from spotters import beating
 
 
 def build(settings: Settings) -> SomClassifier:
-    return SomClassifier(beating(tiny_model()), wishes=settings.wishes)
+    return SomClassifier(beating(tiny_model()), segmentation=settings.segmentation)
 
 
 if __name__ == "__main__":

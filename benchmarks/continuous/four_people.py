@@ -27,9 +27,9 @@ from scene_simulator.programme import balanced_programme
 from som_classifier.model import Model
 from som_classifier.model_loading import load_model
 from som_classifier.node import SomClassifier
+from som_classifier.segmentation import Segmentation
 from som_classifier.spotting.search import SearchPlan
 from som_classifier.spotting.spotted import Spotter
-from som_classifier.wishes import Wishes
 
 PEOPLE, FIRST, REPETITIONS = 4, 60, 15
 """How many, the first one's number, and how often each does each of the five actions: it takes them 25 minutes."""
@@ -76,8 +76,8 @@ class Cost:
 
 
 @dataclass(frozen=True)
-class KeptSpotters(Wishes):
-    """Wishes that keep the spotters they lead to, to weigh them."""
+class KeptSpotters(Segmentation):
+    """Segmentation that keep the spotters they lead to, to weigh them."""
 
     made: list[Spotter | None] = field(default_factory=list)
 
@@ -95,9 +95,9 @@ class Watchers:
     """Preprocessor and classifier, timed."""
 
     def __init__(self, model: Model) -> None:
-        self._model, self._wishes = model, KeptSpotters()
+        self._model, self._segmentation = model, KeptSpotters()
         self._preprocessor = PosePreprocessor(PoseSettings.defaults())
-        self._classifier = SomClassifier(model, wishes=self._wishes)
+        self._classifier = SomClassifier(model, segmentation=self._segmentation)
         self.posture_ms: list[float] = []
         self.frame_ms: list[float] = []
         self.told: list[Told] = []
@@ -120,7 +120,7 @@ class Watchers:
     def memory(self) -> Memory:
         seen: set[int] = set()
         reachable_bytes(self._model, seen)
-        spotters = reachable_bytes(self._wishes.made, seen)
+        spotters = reachable_bytes(self._segmentation.made, seen)
         pages = int(Path("/proc/self/statm").read_text().split()[1])
         classifier = spotters + reachable_bytes(self._classifier, seen)
         return Memory(pages * PAGE_BYTES / MB, classifier / MB, spotters / MB)

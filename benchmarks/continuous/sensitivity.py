@@ -9,8 +9,8 @@ from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.continuous.watching import sensors_of, watched
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
+from som_classifier.segmentation import Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.wishes import Wishes
 
 from .bench import Bench, number, share
 from .streams import Fold, Stream, folds
@@ -37,7 +37,7 @@ def found_at(model: Model, stream: Stream, false_alarms_per_min: float | None) -
 
 def classifier_at(model: Model, false_alarms_per_min: float | None) -> SomClassifier:
     """Return a classifier that is asked for a rate of false alarms; None for what the model was trained for."""
-    return SomClassifier(model, wishes=Wishes(options=SpottingOptions(false_alarms_per_min)))
+    return SomClassifier(model, segmentation=Segmentation(options=SpottingOptions(false_alarms_per_min)))
 
 
 def asked_for(false_alarms_per_min: float | None) -> str:

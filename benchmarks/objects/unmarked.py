@@ -21,7 +21,7 @@ from scene_simulator.simulator import Simulator, labelled_stream
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.presets import DEFAULT
-from som_classifier.wishes import Wishes
+from som_classifier.segmentation import Segmentation
 
 TEACHERS = range(9)
 """The people who teach; those who are tested are numbered from 1001."""
@@ -69,7 +69,7 @@ def events_of(stream: Sequence[Message], settings: Settings) -> list[Event]:
 
 def _with_found_actions(stream: Sequence[Message]) -> Iterator[Message]:
     """Yield a stream's messages, and each final action that the classifier finds in it when it is decided."""
-    classifier = SomClassifier(taught(), wishes=Wishes(segments="auto"))
+    classifier = SomClassifier(taught(), segmentation=Segmentation(segments="auto"))
     for message in stream:
         yield message
         if isinstance(message, Posture):

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from actum.command_line import from_command_line
 from actum_command.service_settings import Given, arguments_of, flag_of
+from som_classifier.segmentation import Segmentation
 from som_classifier.settings import Settings
-from som_classifier.wishes import Wishes
 
 CLASSIFIER = "som_classifier"
 """The service whose settings they are."""
@@ -27,27 +27,27 @@ class OtherSettingsError(ValueError):
     """A file that is to be written holds other settings; the text says what to do."""
 
 
-def wishes_of(given: Given) -> Wishes:
+def segmentation_of(given: Given) -> Segmentation:
     """Return what a classifier with these flags finds by itself; others come from the environment and `ACTUM_CONFIG`.
 
     Raises:
         ValueError: they cannot be used.
     """
     settings = from_command_line(Settings, CLASSIFIER, arguments_of(CLASSIFIER, given))
-    return replace(settings.wishes, segments="auto")
+    return replace(settings.segmentation, segments="auto")
 
 
-def flags_for(wishes: Wishes) -> str:
+def flags_for(segmentation: Segmentation) -> str:
     """Write the settings that are not as by default as flags for a shell; "" where all are."""
     return shlex.join(
         f"{flag_of(name)}={value if not isinstance(value, dict | list) else _as_flag(value)}"
-        for name, value in _set(wishes)
+        for name, value in _set(segmentation)
     )
 
 
-def settings_file(wishes: Wishes, origin: str) -> str:
+def settings_file(segmentation: Segmentation, origin: str) -> str:
     """Write the settings that are not as by default as a file for `ACTUM_CONFIG`; its first line says their origin."""
-    lines = [f"{name} = {_as_toml(value)}" for name, value in _set(wishes)]
+    lines = [f"{name} = {_as_toml(value)}" for name, value in _set(segmentation)]
     return "\n".join([f"# {origin}", *(lines or ["# the model does best as it is: nothing is to be set"]), ""])
 
 
@@ -68,14 +68,14 @@ def refuse_other_settings(file: Path) -> None:
         )
 
 
-def _set(wishes: Wishes) -> Iterator[tuple[str, float | dict[str, float] | list[str]]]:
+def _set(segmentation: Segmentation) -> Iterator[tuple[str, float | dict[str, float] | list[str]]]:
     """Yield name and value of each setting that is not as by default."""
-    options = wishes.options
+    options = segmentation.options
     values = (
         options.false_alarms_per_min,
         options.shortest_pause_s,
         dict(options.cooldown_s),
-        sorted(wishes.enabled),
+        sorted(segmentation.enabled),
         sorted(options.disabled),
     )
     yield from ((name, value) for name, value in zip(SEARCH_SETTINGS, values, strict=True) if value)

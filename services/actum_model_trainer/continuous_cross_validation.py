@@ -11,7 +11,7 @@ from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import TrainingError, train_to_spot
 from som_classifier.model import Model
 from som_classifier.presets import Preset
-from som_classifier.wishes import ANYTHING, Wishes
+from som_classifier.segmentation import DEFAULT, Segmentation
 
 ModelWithout = Callable[[str, Progress], Model]
 """Trains a model on everybody but one person."""
@@ -39,7 +39,7 @@ def found_without_each(
     recordings: Sequence[Recording],
     model_without: ModelWithout,
     progress: Progress = silent,
-    wishes: Wishes = ANYTHING,
+    segmentation: Segmentation = DEFAULT,
 ) -> Found:
     """Watch each person with a model trained on all others, and with these settings; pool what is found.
 
@@ -57,7 +57,7 @@ def found_without_each(
     for person in people:
         model = model_without(person, _prefixed(f"without {person or 'unnamed'}: ", progress))
         own = [recording for recording in recordings if recording.person == person]
-        found[person] = found_by(model, own, _prefixed(f"on {person or 'unnamed'}: ", progress), wishes)
+        found[person] = found_by(model, own, _prefixed(f"on {person or 'unnamed'}: ", progress), segmentation)
     return sum((_with_points(person, found) for person in people), Found())
 
 

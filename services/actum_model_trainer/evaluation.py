@@ -17,7 +17,7 @@ from actum_model_trainer.samples import classifier_input, sensors
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.recognition import Recognition
-from som_classifier.wishes import Wishes
+from som_classifier.segmentation import Segmentation
 
 Z_95 = 1.959963984540054  # standard deviations: the normal distribution holds 95 % within
 
@@ -198,7 +198,9 @@ def segment_labels(recording: Recording, sensor: str) -> dict[str, str]:
 
 def _predictions(model: Model, recording: Recording, sensor: str) -> Iterator[Prediction]:
     answers: dict[str, Action] = {}
-    for message in replay(SomClassifier(model, wishes=Wishes("marks")), classifier_input(recording, sensor)):
+    for message in replay(
+        SomClassifier(model, segmentation=Segmentation("marks")), classifier_input(recording, sensor)
+    ):
         if isinstance(message, Action) and message.final:
             answers.setdefault(message.segment_id, message)
     for segment_id, label in segment_labels(recording, sensor).items():

@@ -10,13 +10,13 @@ from som_classifier.answers import final_action, ongoing_action, own_mark, parti
 from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.recognition import Recognition
+from som_classifier.segmentation import DEFAULT, Segmentation
 from som_classifier.segmenter import Segmenter
 from som_classifier.segments import ClosedSegment, OpenSegment
 from som_classifier.settings import Settings
 from som_classifier.spotting.search import Search
 from som_classifier.spotting.spotted import Ongoing, SpottedSegment
 from som_classifier.watched_model import WatchedModel
-from som_classifier.wishes import ANYTHING, Wishes
 
 POLL_TICKS = 5
 """Ticks between two checks of the model file, half a second: a new model seems to be used at once."""
@@ -44,11 +44,11 @@ class SomClassifier:
         model: Model | None = None,
         source: ModelSource | None = None,
         publish_maps: bool = False,
-        wishes: Wishes = ANYTHING,
+        segmentation: Segmentation = DEFAULT,
     ) -> None:
         self.counters = Counters(state="running" if model else "no model")
         self._segmenter = Segmenter(self.counters)
-        self._wishes = wishes
+        self._segmentation = segmentation
         self._model: Model | None = None
         if model is not None:
             self._use(model)
@@ -61,7 +61,7 @@ class SomClassifier:
     def configured(cls, settings: Settings) -> "SomClassifier":
         """Build the node as the settings say; the model file need not exist yet."""
         source = WatchedModel(settings.model) if settings.model else None
-        node = cls(None, source, settings.publish_maps, settings.wishes)
+        node = cls(None, source, settings.publish_maps, settings.segmentation)
         if settings.model is None:
             node.counters.state = "no model: --model (ACTUM_MODEL) names none"
         node._reload()
@@ -85,7 +85,7 @@ class SomClassifier:
         """Answer a mark, but not one that a classifier put: it has put the answer as well."""
         if mark.origin == AUTO:
             return []
-        if self._wishes.segments == "auto":
+        if self._segmentation.segments == "auto":
             self.counters.counts["marks_ignored"] += 1
             return []
         return [self._final(closed) for closed in self._segmenter.mark(mark)]
@@ -102,9 +102,9 @@ class SomClassifier:
             self._use(model)
 
     def _use(self, model: Model) -> None:
-        self._model, self.counters.state = model, self._wishes.state(model)
+        self._model, self.counters.state = model, self._segmentation.state(model)
         self.counters.details["model"] = model.id
-        self._segmenter.use(lambda: model.encoder().encode, self._wishes.plan(model))
+        self._segmenter.use(lambda: model.encoder().encode, self._segmentation.plan(model))
 
     def _posture(self, posture: Posture) -> Iterator[Message]:
         frame, closed = self._segmenter.posture(posture)
@@ -142,10 +142,13 @@ class SomClassifier:
     def _fate(self, closed: ClosedSegment, recognition: Recognition | None, search: Search) -> str:
         """Decide what becomes of a segment that was found: `told`, or why it is not.
 
-        The user's options hold for the action that would be told.
+        The search knows no more of other doings than the background it was trained on; what it never saw the
+        recogniser may still call unknown. The user's options hold for the action that would be told.
         """
         if recognition is None:
             return "unanswerable"
+        if recognition.unknown:
+            return "unknown"
         if self._segmenter.is_marked(closed.agent, closed.start_ns, closed.end_ns):
             return "marked"
         return search.admission.admit(recognition.label, closed.start_ns, closed.end_ns) or "told"

@@ -7,8 +7,8 @@ from pydantic import BeforeValidator, Field, FiniteFloat
 from pydantic_settings import NoDecode
 
 from actum.settings import ServiceSettings
+from som_classifier.segmentation import AnsweredSegments, Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.wishes import Sought, Wishes
 
 Seconds = Annotated[FiniteFloat, Field(ge=0)]
 
@@ -39,7 +39,7 @@ class Settings(ServiceSettings):
 
     model: Path | None = Field(None, description="the model file; it may appear or change at any time")
     publish_maps: bool = Field(False, description="put the maps' activities and the trace with each final action")
-    segments: Sought = Field(
+    segments: AnsweredSegments = Field(
         "both",
         description="answer marked segments (marks), those that the classifier finds by itself (auto), or both;"
         " where both are, the marked ones win",
@@ -63,9 +63,9 @@ class Settings(ServiceSettings):
     disabled_actions: Names = Field(frozenset(), description="of those found these are not told: wave,clap")
 
     @property
-    def wishes(self) -> Wishes:
+    def segmentation(self) -> Segmentation:
         """The settings of the search for segments."""
         options = SpottingOptions(
             self.false_alarms_per_min, self.shortest_pause_s, self.cooldown_s, self.disabled_actions
         )
-        return Wishes(self.segments, options, self.enabled_actions)
+        return Segmentation(self.segments, options, self.enabled_actions)

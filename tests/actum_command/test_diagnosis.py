@@ -16,8 +16,8 @@ from actum_command.commands.doctor_command import show
 from actum_command.diagnosis import EXPECTED, Finding, examine
 from recognisers import tiny_model
 from scene_simulator.endless_simulator import DESCRIPTION
+from som_classifier.segmentation import CANNOT, NO_BACKGROUND, Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.wishes import CANNOT, NO_BACKGROUND, Wishes
 from spotters import finding
 
 
@@ -216,8 +216,8 @@ def test_what_a_model_cannot_is_told_and_is_no_problem(monkeypatch: pytest.Monke
 
 def test_settings_that_have_no_effect_are_a_problem() -> None:
     model, wrong = tiny_model(), SpottingOptions(disabled=frozenset({"wvae"}))
-    searching = Wishes(options=wrong).state(finding(model))
-    for state in (Wishes("auto").state(model), searching):
+    searching = Segmentation(options=wrong).state(finding(model))
+    for state in (Segmentation("auto").state(model), searching):
         assert examined(state=state).problems == (f"som_classifier: {state}",)
 
 

@@ -25,8 +25,8 @@ from performers import HAND_PATHS, performance
 from recognisers import tiny_model
 from som_classifier.model import Model
 from som_classifier.pyramid_model import PyramidModel
+from som_classifier.segmentation import Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.wishes import Wishes
 
 Record = Callable[..., Recording]
 
@@ -85,7 +85,9 @@ def test_all_sensitivities_at_once_find_what_the_classifier_finds_with_each(
     assert len(set(told.values())) > 1
     for sensitivity in trial.searched:
         options = replace(others, false_alarms_per_min=sensitivity)
-        assert Found() + trial.found(options) == found_by(model, recordings[2:], wishes=Wishes(options=options))
+        assert Found() + trial.found(options) == found_by(
+            model, recordings[2:], segmentation=Segmentation(options=options)
+        )
 
 
 def test_people_who_leave_and_clocks_that_begin_anew_make_no_difference(model: Model, record: Record) -> None:
@@ -111,7 +113,7 @@ def test_the_scores_told_are_those_of_the_classifier_with_the_settings_picked(
     model: Model, recordings: list[Recording]
 ) -> None:
     result = tuned(model, recordings[2:])
-    found = found_by(model, recordings[2:], wishes=Wishes(options=result.best.options))
+    found = found_by(model, recordings[2:], segmentation=Segmentation(options=result.best.options))
     assert result.best.scores == scores_of(found)
     assert result.best in result.outcomes
     assert result.untuned == scores_of(found_by(model, recordings[2:]))

@@ -7,11 +7,11 @@ import pytest
 from actum.command_line import from_command_line
 from actum.settings import complaint
 from som_classifier.node import SomClassifier
+from som_classifier.segmentation import DEFAULT, Segmentation
 from som_classifier.settings import Settings
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.wishes import ANYTHING, Wishes
 
-ASKED = Wishes(
+ASKED = Segmentation(
     "auto",
     SpottingOptions(0.5, 0.3, {"wave": 3.0, "clap": 1.0}, frozenset({"push", "pull"})),
     frozenset({"wave", "clap"}),
@@ -40,30 +40,30 @@ def told(monkeypatch: pytest.MonkeyPatch, *flags: str) -> Settings:
 
 
 def test_where_nothing_is_asked_everything_is_told_and_both_are_answered(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert told(monkeypatch).wishes == ANYTHING == Wishes("both", SpottingOptions(), frozenset())
+    assert told(monkeypatch).segmentation == DEFAULT == Segmentation("both", SpottingOptions(), frozenset())
 
 
 def test_flags(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert told(monkeypatch, *FLAGS).wishes == ASKED
+    assert told(monkeypatch, *FLAGS).segmentation == ASKED
 
 
 def test_a_flag_may_be_given_for_each_action(monkeypatch: pytest.MonkeyPatch) -> None:
     """As `actum up` hands them on."""
     each = ["--cooldown-s=wave=3", "--cooldown-s=clap=1", "--disabled-actions=push", "--disabled-actions=pull"]
-    assert told(monkeypatch, *FLAGS[:3], *each, FLAGS[5]).wishes == ASKED
+    assert told(monkeypatch, *FLAGS[:3], *each, FLAGS[5]).segmentation == ASKED
 
 
 def test_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
     for flag in FLAGS:
         name, _, value = flag.removeprefix("--").partition("=")
         monkeypatch.setenv(f"ACTUM_{name.upper().replace('-', '_')}", value)
-    assert told(monkeypatch).wishes == ASKED
+    assert told(monkeypatch).segmentation == ASKED
 
 
 def test_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "actum.toml").write_text(FILE)
     monkeypatch.setenv("ACTUM_CONFIG", str(tmp_path / "actum.toml"))
-    assert told(monkeypatch).wishes == ASKED
+    assert told(monkeypatch).segmentation == ASKED
 
 
 @pytest.mark.parametrize(
@@ -85,4 +85,4 @@ def test_what_cannot_be_meant_is_refused_by_name(flag: str, said: str, monkeypat
 
 def test_they_reach_the_service(monkeypatch: pytest.MonkeyPatch) -> None:
     node = SomClassifier.configured(told(monkeypatch, *FLAGS))
-    assert node._wishes == ASKED
+    assert node._segmentation == ASKED

@@ -2,6 +2,7 @@
 
 import random
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -18,8 +19,9 @@ from pose_preprocessor.settings import Settings as PoseSettings
 from recognisers import tiny_model
 from som_classifier.model import Model
 from som_classifier.node import POLL_TICKS, SomClassifier
+from som_classifier.pyramid_model import PyramidModel
+from som_classifier.segmentation import CANNOT, DEFAULT, NO_BACKGROUND, Segmentation
 from som_classifier.spotting.spotted import SpottedSegment, SpottingOptions
-from som_classifier.wishes import ANYTHING, CANNOT, NO_BACKGROUND, Wishes
 from spotters import Beats, beating, finding, spotting
 from wire import Wire, packed, without_seq
 
@@ -121,6 +123,15 @@ def test_a_segment_that_cannot_be_answered_is_counted_and_not_put() -> None:
     node = SomClassifier(finding(tiny_model(), LIFT))
     assert [m for m in put_by(node, lost) if not isinstance(m, Action) or m.final] == []
     assert (node.counters.counts, node.counters.rejects) == ({"found": 1, "unanswerable": 1}, {})
+
+
+def test_what_the_recogniser_calls_unknown_is_counted_and_not_put(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search may take for an action what no background sample has shown."""
+    recognise = PyramidModel.recognise
+    monkeypatch.setattr(PyramidModel, "recognise", lambda *asked: replace(recognise(*asked), unknown=True))
+    node = SomClassifier(finding(tiny_model(), LIFT))
+    assert not found(put_by(node, stream()))
+    assert node.counters.counts == {"found": 1, "unknown": 1} and not node.counters.rejects
 
 
 @settings(max_examples=25, deadline=None)
@@ -274,13 +285,13 @@ def test_with_marks_alone_nothing_is_searched() -> None:
     def refused(_: SpottingOptions) -> None:
         raise AssertionError("a search costs time")
 
-    node = SomClassifier(spotting(tiny_model(), refused), wishes=Wishes("marks"))
+    node = SomClassifier(spotting(tiny_model(), refused), segmentation=Segmentation("marks"))
     assert put_by(node, stream()) == []
     assert node.counters.state == "running"
 
 
 def test_with_auto_alone_marks_are_not_taken() -> None:
-    node = SomClassifier(finding(tiny_model(), LIFT), wishes=Wishes("auto"))
+    node = SomClassifier(finding(tiny_model(), LIFT), segmentation=Segmentation("auto"))
     put = put_by(node, [mark("start", 5), mark("end", 35), *stream()])
     assert found(put) == [bounds(LIFT)]
     assert node.counters.counts == {"marks_ignored": 2, "found": 1, "told": 1}
@@ -298,7 +309,7 @@ def test_what_the_user_does_not_want_told_is_counted() -> None:
     push = SpottedSegment(PUSH.start_ns, PUSH.end_ns, second)
 
     def fates(options: SpottingOptions, enabled: frozenset[str] = frozenset()) -> dict[str, int]:
-        node = SomClassifier(finding(tiny_model(), lift, push), wishes=Wishes("both", options, enabled))
+        node = SomClassifier(finding(tiny_model(), lift, push), segmentation=Segmentation("both", options, enabled))
         put = put_by(node, stream())
         told = {(m.segment_id, m.final) for m in put if isinstance(m, Action)}
         assert len({name for name, final in told if final}) == node.counters.counts["told"]
@@ -317,7 +328,7 @@ def test_a_cooldown_goes_on_when_another_model_is_used() -> None:
     same_again = SpottedSegment(PUSH.start_ns, PUSH.end_ns, action)
     options = SpottingOptions(cooldown_s={likely(tiny_model(), PUSH): 9.0, action: 9.0})
     box = Box()
-    node = SomClassifier(finding(tiny_model(), LIFT), box, wishes=Wishes("both", options))
+    node = SomClassifier(finding(tiny_model(), LIFT), box, segmentation=Segmentation("both", options))
     put = put_by(node, stream()[:38])
     box.model = finding(tiny_model(), same_again)
     put += put_by(node, [*[Tick(i) for i in range(POLL_TICKS)], *stream()[38:]])
@@ -326,15 +337,15 @@ def test_a_cooldown_goes_on_when_another_model_is_used() -> None:
 
 
 def test_the_state_says_what_a_model_cannot() -> None:
-    def state(model: Model, wishes: Wishes = ANYTHING) -> str:
-        return SomClassifier(model, wishes=wishes).counters.state
+    def state(model: Model, segmentation: Segmentation = DEFAULT) -> str:
+        return SomClassifier(model, segmentation=segmentation).counters.state
 
     assert state(finding(tiny_model())) == "running"
     assert state(tiny_model()) == state(tiny_model(TINY_PAPER)) == f"running; {CANNOT}"
-    assert state(tiny_model(), Wishes("marks")) == "running"
-    assert state(tiny_model(), Wishes("auto")).startswith("nothing to do")
+    assert state(tiny_model(), Segmentation("marks")) == "running"
+    assert state(tiny_model(), Segmentation("auto")).startswith("nothing to do")
     assert state(finding(tiny_model(), background_s=0.0)) == f"running; {NO_BACKGROUND}"
-    wrong = Wishes(options=SpottingOptions(cooldown_s={"wvae": 3.0}, disabled=frozenset({"lift"})))
+    wrong = Segmentation(options=SpottingOptions(cooldown_s={"wvae": 3.0}, disabled=frozenset({"lift"})))
     assert state(finding(tiny_model()), wrong) == "settings name actions that the model does not know: wvae"
 
 

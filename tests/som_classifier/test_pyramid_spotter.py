@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from actum.node import SECOND_NS
 from som_classifier.frames import Frame
-from som_classifier.recognition import Recognition
 from som_classifier.spotting.completeness import CompletenessHeads
 from som_classifier.spotting.pyramid_spotter import PyramidSpotter
 from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSegment, SpottingOptions
@@ -26,22 +25,16 @@ METADATA = SpottingMetadata(
 
 
 class Scripted:
-    """A recogniser of one action whose pyramid vector is the answer itself; it calls unknown what starts at a stamp."""
+    """A model of one action whose pyramid vector is the answer itself."""
 
-    min_frames: ClassVar[int] = 3
     labels: ClassVar[list[str]] = ["wave"]
 
-    def __init__(self, answers: Answers, unknown_from_ms: int | None = None) -> None:
-        self._answers, self._unknown_from_ms = answers, unknown_from_ms
+    def __init__(self, answers: Answers) -> None:
+        self._answers = answers
 
     def pooled(self, frames: Sequence[Frame]) -> NDArray[np.float32]:
         bounds = frames[0].stamp_ns // MS, frames[-1].stamp_ns // MS
         return np.array([self._answers.get(bounds, 0.0)], np.float32)
-
-    def recognise(self, frames: Sequence[Frame], complete: bool) -> Recognition:
-        assert complete
-        unknown = frames[0].stamp_ns // MS == self._unknown_from_ms
-        return Recognition("wave", 1.0, {"wave": 1.0}, "right_arm", 1.0, unknown)
 
 
 def spotted(
@@ -49,12 +42,11 @@ def spotted(
     stamps_ms: Iterable[int],
     invalid: Iterable[int] = (),
     durations_s: Sequence[float] = (0.5, 1.0),
-    unknown_from_ms: int | None = None,
 ) -> list[Spotted]:
     """What each frame shows; those with stamps among `invalid` hold no posture."""
     heads = CompletenessHeads(np.eye(1, dtype=np.float32), np.zeros(1, np.float32))
     learned = SpottingModel(heads, METADATA.model_copy(update={"window_durations_s": [*durations_s]}))
-    spotter = PyramidSpotter(Scripted(answers, unknown_from_ms), learned, SpottingOptions())
+    spotter = PyramidSpotter(Scripted(answers), learned, SpottingOptions())
     lost = set(invalid)
     return [
         spotter.step(Frame(ms * MS, None, (1,), 0, 2.0, None if ms in lost else np.zeros((15, 3)), np.zeros(5)))
@@ -76,12 +68,6 @@ TENTHS = list(range(0, 4001, 100))
 
 def test_an_action_is_told_with_its_bounds_when_the_lag_is_over() -> None:
     assert told(WAVE, TENTHS) == [(2200, 1000, 2000)]
-
-
-def test_what_the_model_calls_unknown_is_not_told_and_still_keeps_its_place() -> None:
-    followed = WAVE | {(1600, 2100): 0.7}
-    assert told(followed, TENTHS, unknown_from_ms=1000) == []
-    assert told(followed, TENTHS) == [(2200, 1000, 2000)]
 
 
 @pytest.mark.parametrize("late_ms", [0, 10, 33, 66, 99])

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from actum.node import SECOND_NS
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.pyramid_model import PyramidModel
+from som_classifier.segmentation import NO_BACKGROUND, Segmentation
 from som_classifier.spotting.completeness import (
     NONE_BELOW_IOU,
     WHOLE_FROM_IOU,
@@ -22,7 +23,6 @@ from som_classifier.spotting.completeness import (
 )
 from som_classifier.spotting.spotted import SpottingOptions
 from som_classifier.spotting.spotting_model import SpottingMetadata, SpottingModel
-from som_classifier.wishes import NO_BACKGROUND, Wishes
 from unmarked import spotting_model
 
 METADATA = SpottingMetadata(
@@ -183,7 +183,7 @@ def test_a_file_whose_search_is_damaged_is_refused(tmp_path: Path, changes: dict
 def test_a_model_says_how_much_background_it_has_seen_and_the_service_tells_where_it_is_none(tmp_path: Path) -> None:
     seen = load_model(saved(tmp_path))
     assert seen.background_s is not None and 50 < seen.background_s < 70
-    assert NO_BACKGROUND not in Wishes().state(seen)
+    assert NO_BACKGROUND not in Segmentation().state(seen)
     none = load_model(saved(tmp_path, background_s=0.0))
     assert none.background_s == 0.0
-    assert NO_BACKGROUND in Wishes().state(none)
+    assert NO_BACKGROUND in Segmentation().state(none)

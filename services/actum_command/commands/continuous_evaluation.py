@@ -17,7 +17,7 @@ from actum_model_trainer.continuous_cross_validation import found_without_each, 
 from actum_model_trainer.training import TrainingError
 from som_classifier.model import Model
 from som_classifier.presets import Preset
-from som_classifier.wishes import Wishes
+from som_classifier.segmentation import Segmentation
 
 
 def evaluate_continuously(
@@ -26,21 +26,21 @@ def evaluate_continuously(
     preset: Preset,
     seed: int,
     json_file: Path | None,
-    wishes: Wishes,
+    segmentation: Segmentation,
 ) -> None:
     """Watch recordings with a model, or without one each person with one of all others, and tell the scores."""
     began_s = time.monotonic()
-    if model is not None and (problem := wishes.misnamed(model)):
+    if model is not None and (problem := segmentation.misnamed(model)):
         fail(problem)
-    if flags := flags_for(wishes):
+    if flags := flags_for(segmentation):
         say(f"with {flags}")
     try:
         with bars() as progress:
             if model is None:
                 models = models_without(recordings, preset, seed, progress)
-                found = found_without_each(recordings, models, progress, wishes)
+                found = found_without_each(recordings, models, progress, segmentation)
             else:
-                found = found_by(model, recordings, progress, wishes)
+                found = found_by(model, recordings, progress, segmentation)
     except (RecordingError, TrainingError, NoSpotterError) as error:
         fail(str(error))
     tell_unread(recordings)

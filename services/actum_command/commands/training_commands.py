@@ -16,7 +16,7 @@ from actum_command.commands.recording_options import AllOption, PersonOption, ch
 from actum_command.commands.service_flags import with_search_flags
 from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say
 from actum_command.preset_settings import SETTINGS, PresetError, preset_named
-from actum_command.search_settings import wishes_of
+from actum_command.search_settings import segmentation_of
 from actum_command.service_settings import Given, flag_of
 from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import Evaluation, evaluate
@@ -27,7 +27,7 @@ from actum_model_trainer.warnings import warnings_of
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
-from som_classifier.wishes import Wishes
+from som_classifier.segmentation import Segmentation
 
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of them")]
 PresetOption = Annotated[str, typer.Option(help=f"one of {', '.join(PRESETS)}")]
@@ -104,14 +104,14 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     recordings = chosen(files if by_person else files[1:], person, with_excluded)
     what = model, recordings, _preset(preset, settings), seed, json_file
     if continuous:
-        evaluate_continuously(*what, _wishes(given))
+        evaluate_continuously(*what, _segmentation(given))
     else:
         _evaluate_segments(*what)
 
 
-def _wishes(given: Given) -> Wishes:
+def _segmentation(given: Given) -> Segmentation:
     try:
-        return wishes_of(given)
+        return segmentation_of(given)
     except ValueError as error:
         fail(complaint(error))
 

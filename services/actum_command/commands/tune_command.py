@@ -15,7 +15,7 @@ from actum_model_trainer.continuous.watching import NoSpotterError
 from actum_model_trainer.tuning.tuning import NothingLabelledError, tuned
 from actum_model_trainer.tuning.tuning_report import tuning_report
 from som_classifier.model_loading import ModelError, load_model
-from som_classifier.wishes import Wishes
+from som_classifier.segmentation import Segmentation
 
 
 def tune(
@@ -48,11 +48,11 @@ def tune(
     console.print(tuning_report(result, false_alarms_per_min, time.monotonic() - began_s))
     for doubt in result.doubts:
         say(doubt, style="yellow")
-    wishes = Wishes(options=result.best.options)
-    flags = flags_for(wishes)
+    segmentation = Segmentation(options=result.best.options)
+    flags = flags_for(segmentation)
     say(f"as flags: {flags}" if flags else "the model does best as it is: nothing is to be set")
     if output is not None:
-        _write(output, settings_file(wishes, f"picked by actum tune for model {loaded.id}"))
+        _write(output, settings_file(segmentation, f"picked by actum tune for model {loaded.id}"))
 
 
 def _refuse(output: Path) -> None:

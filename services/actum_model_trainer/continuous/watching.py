@@ -11,8 +11,8 @@ from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.samples import SegmentCollector, classifier_input
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
+from som_classifier.segmentation import DEFAULT, Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.wishes import ANYTHING, Wishes
 
 LONGEST_BREAK_NS = SECOND_NS
 """Time without a usable frame after which a person counts as away (ns): longer than any lost frames."""
@@ -72,7 +72,7 @@ class Watcher:
 
 
 def found_by(
-    model: Model, recordings: Sequence[Recording], progress: Progress = silent, wishes: Wishes = ANYTHING
+    model: Model, recordings: Sequence[Recording], progress: Progress = silent, segmentation: Segmentation = DEFAULT
 ) -> Found:
     """Replay whole recordings without their marks through preprocessor and a classifier with these settings.
 
@@ -86,7 +86,7 @@ def found_by(
     for done, recording in enumerate(recordings):
         progress("watching", done, len(recordings))
         for sensor, file in views_of(recording):
-            found += watched(SomClassifier(model, wishes=wishes), recording, sensor, file)
+            found += watched(SomClassifier(model, segmentation=segmentation), recording, sensor, file)
     progress("watching", len(recordings), len(recordings))
     return found
 

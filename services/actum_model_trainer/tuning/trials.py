@@ -29,7 +29,7 @@ Searched = Sequence[Sequence[Detection]]
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """A recording, and what is found in it with each sensitivity before a user's other wishes.
+    """A recording, and what is found in it with each sensitivity before a user's other options.
 
     Attributes:
         person: whose recording it is; empty where it says nothing.
@@ -113,7 +113,8 @@ class _Searches:
             if closed.reason is None and len(usable) >= self._model.min_frames:
                 answer = self._model.recognise(usable, complete=True)
                 bounds = closed.start_ns, closed.end_ns, posture.stamp_ns
-                into.append(Detection(self._file, posture.agent, *bounds, answer.label, answer.confidence))
+                if not answer.unknown:
+                    into.append(Detection(self._file, posture.agent, *bounds, answer.label, answer.confidence))
         self._found.clear()
 
 

@@ -15,8 +15,8 @@ from actum_model_trainer.tuning.doubts import doubts
 from actum_model_trainer.tuning.trials import tried
 from actum_model_trainer.tuning.weighing import Weighed
 from som_classifier.model import Model
+from som_classifier.segmentation import Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.wishes import Wishes
 
 OTHERWISE = "the classifier found something else than the trials did, which is a defect: please tell us"
 """What is said where both do not agree; the scores are the classifier's."""
@@ -86,7 +86,7 @@ def tuned(
     choice = chosen(weighed, most_per_min)
     outcomes = tuple(_outcome(each.options, told(weighed, each.options), untuned) for each in choice.offers)
     options = choice.best.options
-    verified = found_by(model, recordings, progress, Wishes(options=options))
+    verified = found_by(model, recordings, progress, Segmentation(options=options))
     best = _outcome(options, verified, untuned)
     agree = set(verified.detections) == set(told(weighed, options).detections)
     said = [*doubts(model, weighed, best.scores, most_per_min), *([] if agree else [OTHERWISE])]

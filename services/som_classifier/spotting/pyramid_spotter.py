@@ -1,14 +1,13 @@
 """The search for actions in one person's stream, by the default recogniser."""
 
 from collections.abc import Sequence
-from typing import ClassVar, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from actum.node import SECOND_NS
 from som_classifier.frames import Frame
-from som_classifier.recognition import Recognition
 from som_classifier.spotting.completeness import iou_of_completeness
 from som_classifier.spotting.decoding import Candidate
 from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSegment, SpottingOptions
@@ -19,10 +18,8 @@ LEAST_PROBABILITY = 0.5
 """Probability from which an action is said to be going on: that it is must be likelier than that it is not."""
 
 
-class Recogniser(Protocol):
+class Pooling(Protocol):
     """What the search asks of its model."""
-
-    min_frames: ClassVar[int]
 
     @property
     def labels(self) -> list[str]:
@@ -33,24 +30,17 @@ class Recogniser(Protocol):
         """Return the pyramid vector of valid frames, (inputs,)."""
         ...
 
-    def recognise(self, frames: Sequence[Frame], complete: bool) -> Recognition:
-        """Recognise the action of a segment."""
-        ...
-
 
 class PyramidSpotter:
     """Looks at all windows that end now, several times a second, and decides which of them were actions.
 
-    An action is told only where the model, asked about the frames found, does not call it unknown: the heads know no
-    more than the background that was shown to them.
-
     Args:
-        model: the recogniser.
+        model: whose pyramid vectors the heads are trained on.
         learned: its heads and durations.
         options: what is asked of the search.
     """
 
-    def __init__(self, model: Recogniser, learned: SpottingModel, options: SpottingOptions) -> None:
+    def __init__(self, model: Pooling, learned: SpottingModel, options: SpottingOptions) -> None:
         self._model, self._learned = model, learned
         metadata = learned.metadata
         self._threshold = metadata.threshold_for(options.false_alarms_per_min)
@@ -84,15 +74,11 @@ class PyramidSpotter:
         candidates = self._learned.candidates(starts_ns, ends_ns, completeness, self._threshold)
         decided = self._decoder.step(now_ns, candidates)
         self._ongoing = self._likeliest(starts_ns.tolist(), now_ns, completeness)
-        return Spotted(tuple(self._segment(each) for each in decided if self._is_familiar(each)), self._ongoing)
+        return Spotted(tuple(self._segment(each) for each in decided), self._ongoing)
 
     def _segment(self, candidate: Candidate) -> SpottedSegment:
         frames = self._recent.between(candidate.start_ns, candidate.end_ns)
         return SpottedSegment(frames[0].stamp_ns, candidate.end_ns, self._model.labels[candidate.action])
-
-    def _is_familiar(self, candidate: Candidate) -> bool:
-        frames = self._recent.between(candidate.start_ns, candidate.end_ns)
-        return len(frames) >= self._model.min_frames and not self._model.recognise(frames, complete=True).unknown
 
     def _likeliest(self, starts_ns: Sequence[int], now_ns: int, completeness: NDArray[np.float32]) -> Ongoing | None:
         """Return the action to which a window that ends now belongs most surely, None where none belongs to any."""

@@ -1,4 +1,4 @@
-"""What a user wants to be found in the streams, held against what a model can find."""
+"""Which segments are answered and found, as a user asks, held against what a model can find."""
 
 from dataclasses import dataclass, field, replace
 from typing import Literal
@@ -7,7 +7,7 @@ from som_classifier.model import Model
 from som_classifier.spotting.search import NO_SEARCH, SearchPlan
 from som_classifier.spotting.spotted import SpottingOptions
 
-Sought = Literal["marks", "auto", "both"]
+AnsweredSegments = Literal["marks", "auto", "both"]
 """Which segments are answered: the marked ones, those that the classifier finds by itself, or both."""
 CANNOT = "finds no segments by itself: the model was trained without continuous recordings"
 """What the state says of a model without a spotter."""
@@ -16,8 +16,8 @@ NO_BACKGROUND = "no background in the training data: none is a guess"
 
 
 @dataclass(frozen=True)
-class Wishes:
-    """What a user wants, whichever model there is.
+class Segmentation:
+    """How the streams are segmented, whichever model there is.
 
     Attributes:
         segments: which ones are answered.
@@ -25,7 +25,7 @@ class Wishes:
         enabled: the only actions that are told of those found; empty where all are.
     """
 
-    segments: Sought = "both"
+    segments: AnsweredSegments = "both"
     options: SpottingOptions = field(default_factory=SpottingOptions)
     enabled: frozenset[str] = frozenset()
 
@@ -56,5 +56,5 @@ class Wishes:
         return f"settings name actions that the model does not know: {', '.join(unknown)}" if unknown else None
 
 
-ANYTHING = Wishes()
-"""What is wanted where nothing is said."""
+DEFAULT = Segmentation()
+"""How streams are segmented where nothing is asked for."""
