@@ -21,16 +21,14 @@ from actum_command.labelled_segments import (
     check_span,
     cut_anew,
     first_stamp_ns,
-    free_names,
     labelled_segments,
-    marks_between,
-    marks_of,
     moved,
     only_sensor,
     segment_of,
     without,
 )
 from actum_command.marked_actions import relabelled
+from actum_model_trainer.cutting.marks import free_names, marks_between, marks_of
 from som_classifier.model_loading import ModelError, load_model
 
 LISTS = "list"
@@ -137,7 +135,7 @@ def add(
         sensor = only_sensor(recording)
     except LabellingError as error:
         fail(str(error))
-    name = next(free_names(segments, "added"))
+    name = next(free_names([segment.segment_id for segment in segments], "added"))
     _rewrite(file, unchanged, marks_between(sensor, name, start_ns, end_ns, label, agent, MANUAL))
     say(f"{label!r} from {start:.2f} s to {end:.2f} s is in {file}")
 
@@ -155,7 +153,7 @@ def cut(
         cuts, sensor = cut_anew(recording, segments, times), only_sensor(recording)
     except LabellingError as error:
         fail(str(error))
-    kept = [segment for segment in segments if segment.origin != CUT]
+    kept = [segment.segment_id for segment in segments if segment.origin != CUT]
     marks = marks_of(cuts, free_names(kept, CUT), label, sensor)
     _rewrite(file, without([segment.segment_id for segment in segments if segment.origin == CUT]), marks)
     for line in cut_lines(cuts, first_ns):

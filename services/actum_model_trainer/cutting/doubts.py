@@ -45,7 +45,7 @@ def doubts_of(
     if asked is None or found == asked:
         yield from seams
     for number, ((start, end), likeness) in enumerate(zip(chain.bursts, chain.likeness, strict=True), start=1):
-        if likeness < UNLIKE:
+        if found > 1 and likeness < UNLIKE:
             span = f"{offset_s + start / RATE_HZ:.1f} to {offset_s + end / RATE_HZ:.1f} s"
             yield f"the {_ordinal(number)} ({span}) is unlike the others"
 
