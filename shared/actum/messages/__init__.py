@@ -45,6 +45,7 @@ from actum.messages.recognised import (
 )
 from actum.messages.reported import Info, Status, Truth
 from actum.messages.seen import Agent, Image, Objects, Posture, Skeleton, TrackedObject
+from actum.messages.taught import JobState, TakeState, Training
 
 MESSAGES: tuple[type[Message], ...] = (
     Skeleton,
@@ -57,6 +58,7 @@ MESSAGES: tuple[type[Message], ...] = (
     Status,
     Info,
     Truth,
+    Training,
 )
 
 __all__ = [
@@ -82,6 +84,7 @@ __all__ = [
     "Image",
     "Info",
     "Intrinsics",
+    "JobState",
     "Joint",
     "Joints",
     "Message",
@@ -101,8 +104,10 @@ __all__ = [
     "Skeleton",
     "Stamp",
     "Status",
+    "TakeState",
     "Tensor",
     "TrackedObject",
+    "Training",
     "Transform",
     "Truth",
 ]
