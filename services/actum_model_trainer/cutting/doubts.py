@@ -44,7 +44,8 @@ def doubts_of(
     offset_s, found = (course.start_ns - first_ns) / SECOND_NS, len(chain.bursts)
     seams = [
         Doubt(
-            f"the {_ordinal(number)} and {_ordinal(number + 1)} may have run together at {offset_s + at / RATE_HZ:.1f} s",
+            f"the {_ordinal(number)} and {_ordinal(number + 1)} may have run together "
+            f"at {offset_s + at / RATE_HZ:.1f} s",
             burst,
         )
         for number, burst, at in _seams(activity, chain)
