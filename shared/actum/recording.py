@@ -8,6 +8,7 @@ import json
 import os
 from collections import Counter
 from collections.abc import Collection, Iterator
+from contextlib import suppress
 from functools import cache, cached_property
 from heapq import merge
 from itertools import groupby
@@ -75,6 +76,13 @@ class Recorder:
         self._finish()
         self._part.replace(self.path)
         store_names(self.path.parent)
+
+    def discard(self) -> None:
+        """Drop the file, whether it is finished or not."""
+        with suppress(OSError):  # a full disk, which no longer matters
+            self._file.close()
+        self._part.unlink(missing_ok=True)
+        self.path.unlink(missing_ok=True)
 
     def write(self, message: Message, log_time_ns: int | None = None) -> None:
         """Store one message, numbered on its key where it has no number.
