@@ -1,4 +1,4 @@
-"""A trainer to be asked, in a folder of its own, without processes: jobs are done at once, in the test's own process."""
+"""A trainer to be asked, in a folder of its own, without processes: its jobs say what the test wants."""
 
 import json
 from collections.abc import Callable, Iterable

@@ -1,5 +1,6 @@
 """Counts the repetitions of one action while they are done."""
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from actum.messages import Skeleton
 from actum.node import SECOND_NS
 from actum_model_trainer.cutting.courses import RATE_HZ, Course, PersonTracks
+from actum_model_trainer.cutting.doubts import Doubt
 from actum_model_trainer.cutting.repetitions import Cuts, cut, cut_so_far
 
 COUNT_EVERY_S = 0.5
@@ -23,6 +25,9 @@ NOW_S = 0.3
 """Time over which it is told whether a person moves now."""
 MOVING = 0.25
 """Activity above which a person moves: at half of that a movement begins or ends."""
+
+MUCH_LESS_ALIKE = 0.5
+"""Ratio of the least likenesses below which the missing repetitions have only been parted from others."""
 
 
 class RepetitionCounter:
@@ -76,8 +81,22 @@ class RepetitionCounter:
         return "resting" if self.count else "waiting"
 
     def cuts(self) -> Cuts | None:
-        """Cut as many repetitions as were asked for out of all that came; None where nobody moved."""
-        return None if self.first_ns is None else cut(self._courses(), self.asked, self.first_ns)
+        """Cut as many repetitions as were asked for out of all that came; None where nobody moved.
+
+        Where somebody ended it early they are fewer: as many as were counted, if these are much more alike.
+        """
+        if self.first_ns is None:
+            return None
+        courses = self._courses()
+        all_asked = cut(courses, self.asked, self.first_ns)
+        self.so_far = cut_so_far(courses, self.asked, self.first_ns)
+        if all_asked is None or self.so_far is None or not 1 < len(self.so_far.repetitions) < self.asked:
+            return all_asked
+        if _least_likeness(all_asked) >= MUCH_LESS_ALIKE * _least_likeness(self.so_far):
+            return all_asked
+        fewer = len(self.so_far.repetitions)
+        told = Doubt(f"{fewer} found, {self.asked} asked", None)
+        return replace(self.so_far, doubted=(told, *self.so_far.doubted))
 
     @property
     def _resting_s(self) -> float:
@@ -85,3 +104,7 @@ class RepetitionCounter:
 
     def _courses(self) -> list[Course]:
         return [course for course in self._tracks.courses() if self._agent in (None, course.agent)]
+
+
+def _least_likeness(cuts: Cuts) -> float:
+    return min(repetition.likeness for repetition in cuts.repetitions)

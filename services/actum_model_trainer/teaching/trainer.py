@@ -99,10 +99,10 @@ class ModelTrainer:
             self._looked_ns = now_ns
             self._look_at_model()
         state = self._state()
-        since_ns = abs(now_ns - self._told_ns)
-        changed = self._told is None or state != self._told.model_copy(update={"stamp_ns": state.stamp_ns})
-        if since_ns < (TELL_NS if changed else REPEAT_NS):
-            return []
+        if self._told is not None:
+            changed = state != self._told.model_copy(update={"stamp_ns": state.stamp_ns})
+            if abs(now_ns - self._told_ns) < (TELL_NS if changed else REPEAT_NS):
+                return []
         self._told, self._told_ns = state, now_ns
         return [state]
 
