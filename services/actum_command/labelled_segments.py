@@ -189,7 +189,7 @@ def only_sensor(recording: Recording) -> str:
         RecordingError: the file is damaged.
         LabellingError: there is none, or there are several.
     """
-    names = sorted({message.sensor for message in recording.messages(FRAMES)})
+    names = sorted({sensor for topic in FRAMES for sensor in recording.sensors(topic)})
     if len(names) != 1:
         raise LabellingError(f"{recording.path}: frames of {', '.join(names) or 'nobody'}; one sensor is needed")
     return names[0]

@@ -10,7 +10,7 @@ from actum.messages import AUTO, MANUAL, Action, Event, Message, Segment, Truth
 from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum.rewriting import Change
-from actum_model_trainer.samples import classifier_input, closed_segments, sensors, why_unusable
+from actum_model_trainer.recorded_segments import classifier_input, closed_segments, sensors, why_unusable
 from som_classifier.segments import ClosedSegment
 
 Edit = Callable[[Segment | Action | Event | Truth], Message | None]
