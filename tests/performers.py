@@ -7,7 +7,8 @@ from actum.messages import Segment, Skeleton
 from actum.som import Schedule
 from people import FRAME_NS, STANDING, skeleton
 from som_classifier.attention import MOVING, PostureInput
-from som_classifier.presets import BodyVariation, MapTraining, PaperPreset, Prior, PyramidPreset, SpottingPreset
+from som_classifier.presets import BodyVariation, MapTraining, PaperPreset, Prior, PyramidPreset
+from som_classifier.spotting.spotting_preset import SpottingPreset
 
 FRAMES = 20
 PAUSE_FRAMES = 5

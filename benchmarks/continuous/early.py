@@ -9,11 +9,12 @@ from typing import Literal
 import numpy as np
 from benchmarks.recognition.scores import percent, table
 
+from actum import keys
 from actum.messages import Action, Message, Posture
 from actum.node import Node, Tick
 from actum_model_trainer.continuous.detections import Found, Truth
 from actum_model_trainer.continuous.scoring import background_min
-from actum_model_trainer.continuous.watching import sensors_of, watched
+from actum_model_trainer.continuous.watching import watched
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 
@@ -77,7 +78,7 @@ during any true action, counted once; silent: the share of background postures w
 def heard(model: Model, stream: Stream) -> Heard:
     """Listen while a recording is replayed without its marks."""
     listener = Listener(SomClassifier(model))
-    (sensor,) = sensors_of(stream.recording)
+    (sensor,) = stream.recording.sensors(keys.SKELETON)
     found = watched(listener, stream.recording, sensor, str(stream.recording.path))
     return Heard(listener.said, found)
 

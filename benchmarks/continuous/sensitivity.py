@@ -4,9 +4,10 @@ from collections.abc import Iterator, Sequence
 
 from benchmarks.recognition.scores import table
 
+from actum import keys
 from actum_model_trainer.continuous.detections import Found
 from actum_model_trainer.continuous.scoring import scores_of
-from actum_model_trainer.continuous.watching import sensors_of, watched
+from actum_model_trainer.continuous.watching import watched
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.segmentation import Segmentation
@@ -31,7 +32,7 @@ training; given is the one on the test people."""
 def found_at(model: Model, stream: Stream, false_alarms_per_min: float | None) -> Found:
     """Replay a recording without its marks, through a classifier that is asked for a rate of false alarms."""
     node = classifier_at(model, false_alarms_per_min)
-    (sensor,) = sensors_of(stream.recording)
+    (sensor,) = stream.recording.sensors(keys.SKELETON)
     return watched(node, stream.recording, sensor, str(stream.recording.path))
 
 

@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 
 from actum.arrays import Array, Pixels
-from actum.geometry import BONES
 from actum.messages import Agent
 from actum.skeletons import INDEX
+from actum.standard_body import BONES
 from sensor_gateway.lens import Lens
 
 Colour = tuple[int, int, int]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from actum.arrays import Array
-from scene_simulator.actor import Stance
+from scene_simulator.inverse_kinematics import Stance
 from scene_simulator.timeline import Episode
 from scene_simulator.trajectories import bump, elapsed_share, interpolated, minimum_jerk
 

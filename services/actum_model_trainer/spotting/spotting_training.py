@@ -19,9 +19,10 @@ from actum_model_trainer.spotting.scanning import Folds, ScannedStream, scanned
 from actum_model_trainer.spotting.threshold_choice import chosen_threshold, false_alarms, logistic_fit
 from actum_model_trainer.spotting.training_windows import training_windows, true_completeness, with_false_alarms
 from actum_model_trainer.spotting.window_vectors import trained_heads
-from som_classifier.presets import PyramidPreset, SpottingPreset
+from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.spotting_model import SpottingMetadata, SpottingModel
+from som_classifier.spotting.spotting_preset import SpottingPreset
 from som_classifier.spotting.windows import FEWEST_FRAMES
 
 COARSE = 2
