@@ -49,6 +49,7 @@ TINY = PyramidPreset(
         shortest_quantile=0.1,
         shrinkage=0.4,
         most_windows=600,
+        common_shares=(0.0, 0.3),
         folds=2,
         thresholds=(0.3, 0.45, 0.6, 0.75),
         false_alarm_threshold=0.4,

@@ -210,6 +210,7 @@ PYRAMID = PyramidPreset(
         shortest_quantile=0.04,
         shrinkage=0.4,
         most_windows=5000,
+        common_shares=(0.0, 0.3),
         folds=3,
         thresholds=tuple(n / 20 for n in range(5, 19)),
         false_alarm_threshold=0.4,

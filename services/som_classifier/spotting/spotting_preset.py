@@ -16,6 +16,7 @@ class SpottingPreset:
         shortest_quantile: of the training segments' durations, the shortest window; the longest is at one minus this.
         shrinkage: of the heads, in units of the mean squared length of the pooled vectors.
         most_windows: training windows; more make the heads hardly better, and their training costs n³.
+        common_shares: of the head that all actions have in common; one is chosen by cross-validation.
         folds: of cross-validation, by people.
         thresholds: completeness at which recall and false alarms are counted, rising.
         false_alarm_threshold: completeness from which windows of background are false alarms to learn from.
@@ -29,6 +30,7 @@ class SpottingPreset:
     shortest_quantile: float
     shrinkage: float
     most_windows: int
+    common_shares: tuple[float, ...]
     folds: int
     thresholds: tuple[float, ...]
     false_alarm_threshold: float
