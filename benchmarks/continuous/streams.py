@@ -11,7 +11,7 @@ from benchmarks.recognition.datasets import with_joints
 from numpy.typing import NDArray
 
 from actum.messages import Message, Posture
-from actum.node import Counters, Tick
+from actum.node import Counters, Node, Tick
 from actum.recording import Recording
 from actum_dataset_importer.importing import (
     ImportReport,
@@ -20,8 +20,8 @@ from actum_dataset_importer.importing import (
     import_msrc12_trimmed,
     import_utkinect,
 )
-from actum_model_trainer.continuous.detections import Detection, Stretch, Truth
-from actum_model_trainer.continuous.watching import sensors_of, watched
+from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
+from actum_model_trainer.continuous.watching import views_of, watched
 from actum_model_trainer.samples import Samples, SegmentSample, samples_from, select
 from scene_simulator.everyday import ALL, FAMILIAR, Everyday
 from som_classifier.frames import Frame
@@ -154,14 +154,19 @@ def folds(training: Sequence[Stream], test: Sequence[Stream]) -> list[Fold]:
 
 def stream_of(recording: Recording) -> Stream:
     """Read a recording of one person before one sensor."""
-    (sensor,) = sensors_of(recording)
     collector = _Collector()
-    known = watched(collector, recording, sensor, str(recording.path))
+    known = replayed(collector, recording)
     (agent,) = collector.agents
     whole = _sample(collector.frames, recording)
     (example,) = with_joints([whole], [recording])
     taught = samples_from([recording])
     return Stream(recording, whole, example.camera_m, agent, list(known.truths), list(known.seen), taught)
+
+
+def replayed(node: Node, recording: Recording) -> Found:
+    """Replay a recording before one sensor without its marks, through the preprocessor and this classifier."""
+    ((sensor, file),) = views_of(recording)
+    return watched(node, recording, sensor, file)
 
 
 class _Collector:

@@ -158,7 +158,7 @@ def test_points_are_claimed_in_the_middle_where_none_are_known() -> None:
 
 def test_a_recording_without_marks_is_all_background(record: Record) -> None:
     idle = record("idle", *(skeleton(i * FRAME_NS, swaying(i)) for i in range(901)))
-    assert watching.sensors_of(idle) == ["kinect0"]
+    assert watching.views_of(idle) == [("kinect0", str(idle.path))]
     scores = scores_of(watched(Finder((*frames(1, 18, 24), "lift")), idle, "kinect0", "a"))
     assert scores.background_min == pytest.approx(0.5, rel=1e-3)
     assert scores.false_per_min == pytest.approx(2.0, rel=1e-3)
