@@ -13,9 +13,8 @@ from actum_model_trainer.cutting.courses import BREAK_S, Course, PersonTracks, c
 from actum_model_trainer.cutting.courses import RATE_HZ as SAMPLED_HZ
 from actum_model_trainer.cutting.doubts import doubts_of
 from actum_model_trainer.cutting.repetitions import Cuts, cut
-from people import lacking, skeleton
+from people import FRAME_NS, lacking, skeleton
 from repeating import (
-    FRAME_NS,
     GOGGLES,
     RATE_HZ,
     SCRATCH,
