@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.recognition.datasets import with_joints
 from numpy.typing import NDArray
 
-from actum import keys
+from actum.node import Node
 from actum.recording import Recording
 from actum_dataset_importer.importing import (
     ImportReport,
@@ -19,8 +19,8 @@ from actum_dataset_importer.importing import (
     import_msrc12_trimmed,
     import_utkinect,
 )
-from actum_model_trainer.continuous.detections import Detection, Stretch, Truth
-from actum_model_trainer.continuous.watching import watched
+from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
+from actum_model_trainer.continuous.watching import views_of, watched
 from actum_model_trainer.recorded_segments import FrameCollector
 from actum_model_trainer.samples import Samples, SegmentSample, sample_of, samples_from, select
 from scene_simulator.everyday import ALL, FAMILIAR, Everyday
@@ -152,11 +152,16 @@ def folds(training: Sequence[Stream], test: Sequence[Stream]) -> list[Fold]:
 
 def stream_of(recording: Recording) -> Stream:
     """Read a recording of one person before one sensor."""
-    (sensor,) = recording.sensors(keys.SKELETON)
     collector = FrameCollector()
-    known = watched(collector, recording, sensor, str(recording.path))
+    known = replayed(collector, recording)
     ((agent, frames),) = collector.frames.items()
     whole = sample_of(frames, "", recording, "whole")
     (example,) = with_joints([whole], [recording])
     taught = samples_from([recording])
     return Stream(recording, whole, example.camera_m, agent, list(known.truths), list(known.seen), taught)
+
+
+def replayed(node: Node, recording: Recording) -> Found:
+    """Replay a recording before one sensor without its marks, through the preprocessor and this classifier."""
+    ((sensor, file),) = views_of(recording)
+    return watched(node, recording, sensor, file)

@@ -10,8 +10,9 @@ from actum.messages import AUTO, MANUAL, Message, Segment
 from actum.recording import Recorder, Recording
 from actum_command.__main__ import app
 from empty_messages import action
+from people import FRAME_NS
 from performers import mark
-from repeating import FRAME_NS, Stream, five_waves, rest
+from repeating import Stream, five_waves, rest
 
 FIRST_NS = 10**9
 """Stamp of the first frame: times count from it, not from the clock's start."""
