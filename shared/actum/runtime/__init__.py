@@ -1,7 +1,7 @@
 """The one runtime: everything that knows Zenoh, clocks, signals and threads."""
 
 from actum.runtime.bridging import run_bridge
-from actum.runtime.client import Client, Listening, Received
+from actum.runtime.client import Client, Listening, NotAnsweredError, Received
 from actum.runtime.extras import needs_extra
 from actum.runtime.parent import end_with_parent
 from actum.runtime.router import serve_router
@@ -12,6 +12,7 @@ from actum.runtime.waiting import Pace, stop_on_signals
 __all__ = [
     "Client",
     "Listening",
+    "NotAnsweredError",
     "Pace",
     "Received",
     "RouterUnreachableError",

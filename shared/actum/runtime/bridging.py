@@ -29,7 +29,7 @@ class BridgeService(StepService):
     """Gives a bridge our messages and the other system's payloads, and puts its answers on either side."""
 
     def __init__(self, bridge: Bridge, settings: ServiceSettings) -> None:
-        super().__init__(bridge.name, bridge.inputs, bridge.counters, settings)
+        super().__init__(bridge, settings)
         self._bridge = bridge
         self._publishers: dict[str, ForeignPublisher] = {}
 

@@ -15,10 +15,13 @@ import zenoh
 from pydantic import ValidationError
 
 from actum import keys
+from actum.bridge import Bridge
 from actum.codec import DecodeError, decode, encode
 from actum.command_line import from_command_line
+from actum.commands import Commanded
 from actum.messages import Message
-from actum.node import TICK_NS, Counters, Node, Source, Tick
+from actum.node import TICK_NS, Node, Source, Tick
+from actum.runtime.commanding import Commander
 from actum.runtime.inbox import Inbox
 from actum.runtime.meter import Meter
 from actum.runtime.outbox import Outbox
@@ -51,10 +54,7 @@ def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
 
 
 def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[str] | None = None) -> tuple[S, N]:
-    """Read the settings, from this process's flags or given ones, and build the node, source or bridge.
-
-    If they cannot be used, print why and exit with code 2.
-    """
+    """Read the settings, from this process's flags or given ones, and build; if unusable, say why and exit with 2."""
     end_with_parent()
     service = settings_type.__module__.partition(".")[0]
     try:
@@ -92,13 +92,14 @@ def live(service: "Service", settings: ServiceSettings) -> None:
 class Service(ABC):
     """The part common to nodes and sources: start and end, the one instance per sensor, status and description."""
 
-    def __init__(self, name: str, counters: Counters, settings: ServiceSettings) -> None:
-        self.name = name
+    def __init__(self, what: Node | Source | Bridge, settings: ServiceSettings) -> None:
+        self.name, counters = what.name, what.counters
         self.failed = False
+        self._commands = what.commands if isinstance(what, Commanded) else ()
         self._settings = settings
         self._counters = counters
         self._state_log = StateLog(counters)
-        self._meter = Meter(name, counters, settings)
+        self._meter = Meter(self.name, counters, settings)
         self._lock = threading.Lock()
 
     def introduce(self) -> None:
@@ -117,7 +118,9 @@ class Service(ABC):
         if not place.take(stop, settling_s):
             return
         info = keys.key(keys.INFO, self._settings.sensor, self.name)
-        queryable = session.declare_queryable(info, self._answer_info)
+        queryables = [session.declare_queryable(info, self._answer_info)]
+        if self._commands:
+            queryables.append(self._commander(stop).declare(session))
         reporter = Reporter(self._meter, self._state_log, self._settings, self._lock)
         reporting = threading.Thread(target=reporter.report, args=(session, place, stop, self._healthy), daemon=True)
         reporting.start()
@@ -126,7 +129,8 @@ class Service(ABC):
         finally:
             stop.set()
             reporting.join(timeout=0.5)
-            queryable.undeclare()
+            for queryable in queryables:
+                queryable.undeclare()
             place.leave()
 
     @abstractmethod
@@ -135,6 +139,13 @@ class Service(ABC):
 
     def _healthy(self) -> bool:
         return True
+
+    def _commander(self, stop: threading.Event) -> Commander:
+        def failed() -> None:
+            self.failed = True
+            stop.set()
+
+        return Commander(self._commands, self._settings, self.name, self._counters, self._lock, failed)
 
     def _answer_info(self, query: zenoh.Query) -> None:
         with query:
@@ -146,9 +157,9 @@ class Service(ABC):
 class StepService(Service):
     """Gives a pure step the messages of its topics, and ticks; what becomes of its answers a subclass says."""
 
-    def __init__(self, name: str, inputs: Sequence[keys.Topic], counters: Counters, settings: ServiceSettings) -> None:
-        super().__init__(name, counters, settings)
-        self._inputs = inputs
+    def __init__(self, step: Node | Bridge, settings: ServiceSettings) -> None:
+        super().__init__(step, settings)
+        self._inputs = step.inputs
         self._inbox: Inbox | None = None
 
     def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
@@ -199,7 +210,7 @@ class NodeService(StepService):
     """Runs a node: gives it messages and ticks, and puts the messages that it returns."""
 
     def __init__(self, node: Node, settings: ServiceSettings) -> None:
-        super().__init__(node.name, node.inputs, node.counters, settings)
+        super().__init__(node, settings)
         self._node = node
 
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
@@ -217,7 +228,7 @@ class SourceService(Service):
     """Runs a source: puts each of its frames when the stamp is due."""
 
     def __init__(self, source: Source, settings: ServiceSettings) -> None:
-        super().__init__(source.name, source.counters, settings)
+        super().__init__(source, settings)
         self._source = source
 
     def _work(self, _session: zenoh.Session, outbox: Outbox, stop: threading.Event, _vacant_s: float) -> None:
