@@ -19,6 +19,7 @@ with needs_extra("actum-command"):
         markers_command,
         pose_model_commands,
         recording_commands,
+        ros2_command,
         scene_commands,
         segment_commands,
         system_commands,
@@ -74,6 +75,7 @@ app.command("inspect")(inspect_command.inspect)
 app.command("simulate")(scene_commands.simulate)
 app.command("scene")(scene_commands.scene)
 app.command("watch")(watch_command.watch)
+app.command("ros2")(ros2_command.ros2)
 app.command("doctor")(doctor_command.doctor)
 
 
