@@ -13,6 +13,7 @@ with needs_extra("actum-command"):
         demo_command,
         doctor_command,
         draw_command,
+        foxglove_commands,
         import_commands,
         inspect_command,
         label_commands,
@@ -25,6 +26,7 @@ with needs_extra("actum-command"):
         takes_commands,
         training_commands,
         tune_command,
+        view_command,
         watch_command,
     )
     from actum_command.commands.plain_help import PlainTyper
@@ -74,6 +76,9 @@ app.command("inspect")(inspect_command.inspect)
 app.command("simulate")(scene_commands.simulate)
 app.command("scene")(scene_commands.scene)
 app.command("watch")(watch_command.watch)
+app.command("view")(view_command.view)
+app.command("foxglove")(foxglove_commands.foxglove)
+app.command("export")(foxglove_commands.export)
 app.command("doctor")(doctor_command.doctor)
 
 
