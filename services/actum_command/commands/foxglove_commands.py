@@ -8,11 +8,13 @@ import typer
 
 from actum.recording import Recording
 from actum.runtime import Pace, stop_on_signals
+from actum.runtime.waiting import wait_for
 from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
 from actum_command.commands.viewed_streams import RecordingArgument, refuse_without, streams_of, tell_shown
 from actum_command.viewers.showing import Showing
 
 POLL_S = 0.1  # how soon a stop takes effect while nobody has subscribed
+SUBSCRIBING_S = 0.5  # from a client's first subscription to its last: a viewer's panels subscribe one after another
 
 
 def foxglove(
@@ -32,15 +34,25 @@ def foxglove(
 
     stop, subscribed = stop_on_signals(), Flag()
     try:
-        with streams_of(recording, Pace(speed)) as streams, served(host, port, subscribed) as (stream, address):
+        with (
+            streams_of(recording, Pace(speed)) as streams,
+            served(streams.sensors, host, port, subscribed) as (stream, address),
+        ):
             say(f"in Foxglove open a connection to {address}; Ctrl-C ends it")
-            while recording is not None and not subscribed.is_set() and not stop.wait(POLL_S):
-                pass
+            if recording is not None:
+                _wait_for_subscriber(subscribed, stop)
             showing = Showing(stream.show)
             streams.give(showing, stop)
             tell_shown(showing, "served")
     except ServerError as error:
         fail(str(error))
+
+
+def _wait_for_subscriber(subscribed: Flag, stop: Flag) -> None:
+    """Wait until somebody has subscribed, or until stopped."""
+    while not subscribed.is_set() and not stop.wait(POLL_S):
+        pass
+    wait_for(stop, SUBSCRIBING_S)
 
 
 def export(

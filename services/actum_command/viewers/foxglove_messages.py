@@ -1,6 +1,9 @@
-"""Turns messages into what Foxglove takes: a topic, which is the message's key, and a message of Foxglove's or JSON."""
+"""Turns messages into what Foxglove takes: a topic and a message, of Foxglove's own kinds or one of ours as JSON.
 
-from collections.abc import Iterator
+A topic is the message's key, but for the agent: all topics of a sensor are known before anybody is seen.
+"""
+
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,6 +29,22 @@ RAW_ENCODINGS = {"bgr8": ("bgr8", 3), "depth16_mm": ("16UC1", 2)}
 """Foxglove's name, and the bytes of a pixel, of the formats that are not compressed."""
 DISTORTIONS = {0: "plumb_bob", 4: "plumb_bob", 5: "plumb_bob", 8: "rational_polynomial"}
 """Foxglove's name for OpenCV's distortion of so many numbers; it has none for more."""
+PLUMB_BOB = 5
+"""How many numbers the smallest of Foxglove's models of a distortion has."""
+CONTENTS: Mapping[str, type] = {
+    "skeleton": SceneUpdate,
+    "objects": SceneUpdate,
+    "image/color": CompressedImage,
+    "image/color/calibration": CameraCalibration,
+    "image/depth": RawImage,
+    "image/depth/calibration": CameraCalibration,
+    "segment": Segment,
+    "action": Action,
+    "event": Event,
+    "truth": Truth,
+    "log": Log,
+}
+"""What is put on each topic below a sensor's; colour that is not compressed comes as a `RawImage`, too."""
 AS_JSON = (Segment, Action, Event, Truth)
 """The messages that Foxglove has no schema for: they go as they are, as JSON."""
 
@@ -49,7 +68,7 @@ class FoxgloveMessages:
         return [*self._content(message), *_line(message)]
 
     def _content(self, message: Message) -> Iterator[Put]:
-        topic, sensor = f"/{keys.key_of(message)}", message.sensor
+        sensor, topic = message.sensor, topic_of(message)
         match message:
             case Skeleton(valid=True):
                 gone = self._people.departed(sensor, [agent.agent for agent in message.agents])
@@ -68,6 +87,16 @@ class FoxgloveMessages:
                 yield from _image(topic, message)
             case _ if isinstance(message, AS_JSON):
                 yield Put(topic, message)
+
+
+def topic_of(message: Message) -> str:
+    """Return the topic of a message: `/actum/kinect0/event` of the key `actum/kinect0/event/1`."""
+    return below(message.sensor, keys.address_of(message).topic.leaf.removesuffix("/{}"))
+
+
+def below(sensor: str, leaf: str) -> str:
+    """Return a topic of a sensor's."""
+    return f"/{keys.BASE}/{sensor}/{leaf}"
 
 
 def _image(topic: str, image: Image) -> Iterator[Put]:
@@ -95,15 +124,16 @@ def _image(topic: str, image: Image) -> Iterator[Put]:
 
 def _calibration(image: Image, frame: str) -> CameraCalibration:
     """Describe an image's camera; a distortion that Foxglove has no model for is left out."""
-    known = len(image.distortion) in DISTORTIONS
+    model = DISTORTIONS.get(len(image.distortion), "")
+    missing = max(0, PLUMB_BOB - len(image.distortion))
     fx, _, cx, _, fy, cy, *_ = image.K
     return CameraCalibration(
         timestamp=time_of(image),
         frame_id=frame,
         width=image.width,
         height=image.height,
-        distortion_model=DISTORTIONS[len(image.distortion) if known else 0],
-        D=[*image.distortion, 0.0, 0.0, 0.0, 0.0, 0.0][: max(5, len(image.distortion))] if known else [0.0] * 5,
+        distortion_model=model,
+        D=[*image.distortion, *[0.0] * missing] if model else [],
         K=image.K,
         R=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
         P=[fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
@@ -114,6 +144,5 @@ def _line(message: Message) -> Iterator[Put]:
     line = log_line(message)
     if line is not None:
         level = LogLevel.Warning if isinstance(message, Image) or not message.valid else LogLevel.Info
-        name = keys.address_of(message).topic.leaf.partition("/")[0]
-        log = Log(timestamp=time_of(message), level=level, message=line, name=name)
-        yield Put(f"/{keys.BASE}/{message.sensor}/log", log)
+        log = Log(timestamp=time_of(message), level=level, message=line, name=topic_of(message))
+        yield Put(below(message.sensor, "log"), log)

@@ -1,36 +1,44 @@
 """Serves messages to Foxglove over a WebSocket, or writes them to a file that it opens."""
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import foxglove
 from foxglove import channels
+from foxglove.messages import FrameTransforms
 from foxglove.websocket import ServerListener
 from pydantic_core import to_json
 
 from actum.messages import Message
 from actum.recording import METADATA
-from actum_command.viewers.foxglove_messages import FoxgloveMessages
+from actum_command.viewers.foxglove_messages import CONTENTS, TRANSFORMS, FoxgloveMessages, below
 from actum_command.viewers.foxglove_schemas import foxglove_schema
 
 
 class FoxgloveStream:
-    """Logs messages to all that listen to a context of Foxglove's, at their stamps."""
+    """Logs messages to all that listen to a context of Foxglove's, at their stamps.
 
-    def __init__(self, context: foxglove.Context) -> None:
+    The topics of `sensors` are there from the start, so that a client has subscribed before the first message.
+    """
+
+    def __init__(self, context: foxglove.Context, sensors: Sequence[str] = ()) -> None:
         self._context = context
         self._messages = FoxgloveMessages()
         self._channels: dict[tuple[str, type], Any] = {}
+        if sensors:
+            self._channel(TRANSFORMS, FrameTransforms)
+        for sensor in sensors:
+            for leaf, kind in CONTENTS.items():
+                self._channel(below(sensor, leaf), kind)
 
     def show(self, message: Message) -> None:
         """Log one message."""
         for put in self._messages.of(message):
-            ours = isinstance(put.content, Message)
-            content = to_json(put.content, bytes_mode="base64", inf_nan_mode="null") if ours else put.content
-            self._channel(put.topic, type(put.content)).log(content, log_time=message.stamp_ns)
+            channel = self._channel(put.topic, type(put.content))
+            channel.log(_as_json(message) if put.content is message else put.content, log_time=message.stamp_ns)
 
     def _channel(self, topic: str, kind: type) -> Any:
         """Return the channel of a topic: one of Foxglove's own kinds, or of JSON with the schema of our message."""
@@ -41,6 +49,11 @@ class FoxgloveStream:
                 else getattr(channels, f"{kind.__name__}Channel")(topic, context=self._context)
             )
         return self._channels[topic, kind]
+
+
+def _as_json(message: Message) -> bytes:
+    """Write a message as `actum watch --json` does: bytes as URL-safe base64, which Foxglove reads, too."""
+    return to_json(message.model_dump(), bytes_mode="base64", inf_nan_mode="null")
 
 
 class _FirstSubscriber(ServerListener):  # type: ignore[misc]  # the package may be absent
@@ -58,13 +71,16 @@ class ServerError(RuntimeError):
 
 
 @contextmanager
-def served(host: str, port: int, subscribed: threading.Event) -> Iterator[tuple[FoxgloveStream, str]]:
+def served(
+    sensors: Sequence[str], host: str, port: int, subscribed: threading.Event
+) -> Iterator[tuple[FoxgloveStream, str]]:
     """Return a context in which messages are served, with the address; `subscribed` is set with the first subscriber.
 
     Raises:
         ServerError: the address cannot be bound.
     """
     context = foxglove.Context()
+    stream = FoxgloveStream(context, sensors)
     try:
         server = foxglove.start_server(
             name="actum", host=host, port=port, context=context, server_listener=_FirstSubscriber(subscribed)
@@ -72,7 +88,7 @@ def served(host: str, port: int, subscribed: threading.Event) -> Iterator[tuple[
     except (RuntimeError, OSError, ValueError) as error:
         raise ServerError(f"{host}:{port} cannot be served ({error}): name another --port or --host") from None
     try:
-        yield FoxgloveStream(context), f"ws://{host}:{server.port}"
+        yield stream, f"ws://{host}:{server.port}"
     finally:
         server.stop()
 
