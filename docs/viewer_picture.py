@@ -31,7 +31,7 @@ SIZE_PX = {"width": 1280, "height": 800}
 PORT, WEB_PORT = 19876, 19090
 DRAWN_MS = 25_000
 """How long Chromium may take to draw all of it without a graphics card (ms)."""
-COLOURS = 96
+COLOURS = 160
 """A palette of so many keeps the picture below 200 kB."""
 
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 
-pytest.importorskip("foxglove", reason="foxglove-sdk is not installed: pip install -e '.[foxglove]'")
-pytest.importorskip("mcap_protobuf", reason="mcap-protobuf-support is not installed")
+pytest.importorskip("foxglove", reason="foxglove-sdk is not installed: pip install -e '.[dev]'")
+pytest.importorskip("mcap_protobuf", reason="mcap-protobuf-support is not installed: pip install -e '.[dev]'")
 
 from mcap_protobuf.decoder import DecoderFactory
 

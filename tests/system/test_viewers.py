@@ -27,7 +27,7 @@ pytestmark = pytest.mark.system
 needs_rerun = pytest.mark.skipif(not find_spec("rerun"), reason="rerun-sdk is not installed: pip install -e '.[view]'")
 needs_foxglove = pytest.mark.skipif(
     not find_spec("foxglove") or not find_spec("websockets"),
-    reason="foxglove-sdk or websockets is not installed: pip install -e '.[foxglove]' websockets",
+    reason="foxglove-sdk or websockets is not installed: pip install -e '.[dev]'",
 )
 SUBPROTOCOL = "foxglove.sdk.v1"
 MESSAGE = struct.Struct("<BIQ")
@@ -137,7 +137,9 @@ def test_a_taken_port_is_told_of(running: System, scene: Path) -> None:
 @needs_foxglove
 def test_an_exported_recording_has_foxgloves_schemas_and_every_message(running: System, scene: Path) -> None:
     reader = pytest.importorskip("mcap.reader")
-    protobuf = pytest.importorskip("mcap_protobuf.decoder", reason="mcap-protobuf-support is not installed")
+    protobuf = pytest.importorskip(
+        "mcap_protobuf.decoder", reason="mcap-protobuf-support is not installed: pip install -e '.[dev]'"
+    )
     output = scene.with_name("foxglove.mcap")
     exported = running.actum("export", str(scene), str(output), "--foxglove")
     assert exported.returncode == 0, exported.stderr

@@ -20,7 +20,7 @@ MILLIMETRES = 1000.0
 """Units of a depth image in a metre."""
 IMAGE_PLANE_M = 0.5
 """How far (m) before its camera an image hangs: between the camera and the people."""
-EYE = rrb.EyeControls3D(position=[1.8, -0.9, 0.0], look_target=[0.0, 0.1, 2.2], eye_up=[0.0, -1.0, 0.0])
+EYE = rrb.EyeControls3D(position=[1.6, -0.8, 0.3], look_target=[0.0, 0.1, 2.2], eye_up=[0.0, -1.0, 0.0])
 """From where the space is seen at first (m, camera frame): beside the camera and above it, on people 2 m before it."""
 COLUMNS = rrb.TextLogColumns(text_log_columns=["LogLevel", "Body"])
 """What the log shows beside the time."""
