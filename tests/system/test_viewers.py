@@ -2,7 +2,9 @@
 
 import asyncio
 import json
+import os
 import re
+import signal
 import socket
 import struct
 import subprocess
@@ -117,7 +119,7 @@ def test_foxglove_is_served_the_live_scene_on_this_machine_only(running: System)
 def test_a_recording_is_played_from_its_start_once_somebody_subscribes(running: System, scene: Path) -> None:
     serving = running.start("actum_command", "foxglove", "--port", "0", "--speed", "20", str(scene))
     skeletons = "/actum/kinect0/skeleton"
-    found = asyncio.run(heard(address_of(serving), lambda found: len(found.get(skeletons, [])) >= 30))
+    found = asyncio.run(heard(address_of(serving), lambda found: len(found.get(skeletons, [])) >= 90))
     assert found[skeletons][0][0] < START_NS + 10**9
     serving.process.wait(timeout=PATIENCE_S)
     assert serving.process.returncode == 0
@@ -193,6 +195,20 @@ def test_rerun_is_served_on_this_machine_only_without_usage_data_and_leaves_noth
     assert viewing.process.returncode == 0
     assert listening_on(port) == listening_on(web_port) == set()
     assert [file for file in (tmp_path / "home").rglob("*analytics*") if file.is_file()] == []
+
+
+@needs_rerun
+def test_the_end_of_the_viewer_ends_the_command(running: System) -> None:
+    start_scene(running)
+    ports = ("--port", str(free_port()), "--web-port", str(free_port()))
+    viewing = running.start("actum_command", "view", "--web", *ports)
+    wait_until(lambda: "open http" in viewing.said(), "the page is served")
+    tasks = Path(f"/proc/{viewing.process.pid}/task")
+    [viewer] = {pid for children in tasks.glob("*/children") for pid in children.read_text().split()}
+    os.kill(int(viewer), signal.SIGTERM)
+    viewing.process.wait(timeout=PATIENCE_S)
+    assert viewing.process.returncode == 0
+    assert "messages sent to Rerun" in viewing.said()
 
 
 @needs_rerun

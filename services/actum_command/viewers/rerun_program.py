@@ -68,16 +68,7 @@ def viewer(sensors: Sequence[str], port: int, web_port: int | None, ended: threa
     Raises:
         ViewerError: a port is taken, or the program ends at once.
     """
-    serving = [] if web_port is None else ["--serve-web", "--web-viewer-port", str(web_port)]
-    for needed in (port, *([] if web_port is None else [web_port])):
-        _refuse_taken(needed)
-    process = subprocess.Popen(
-        [_program(), "--bind", LOCAL, "--port", str(port), "--expect-data-soon", *serving],
-        env={**os.environ, **QUIET},
-        stdin=subprocess.DEVNULL,
-    )
-    try:
-        _wait_until_listening(process, port)
+    with _running(port, web_port) as process:
         threading.Thread(target=_tell_end, args=(process, ended), daemon=True).start()
         recording = rr.RecordingStream("actum")
         recording.connect_grpc(proxy(port), default_blueprint=layout(sensors))
@@ -87,6 +78,24 @@ def viewer(sensors: Sequence[str], port: int, web_port: int | None, ended: threa
             if process.poll() is None:
                 recording.flush(timeout_sec=FLUSH_S)
             recording.disconnect()
+
+
+@contextmanager
+def _running(port: int, web_port: int | None) -> Iterator["subprocess.Popen[bytes]"]:
+    """Run the program, bound to this machine, from when it listens."""
+    page_options = [] if web_port is None else ["--serve-web", "--web-viewer-port", str(web_port)]
+    ports = [port] if web_port is None else [port, web_port]
+    for needed in ports:
+        if _is_listened_on(needed):
+            raise ViewerError(f"something listens on port {needed} already: end it, or name another port")
+    process = subprocess.Popen(
+        [_program(), "--bind", LOCAL, "--port", str(port), "--expect-data-soon", *page_options],
+        env={**os.environ, **QUIET},
+        stdin=subprocess.DEVNULL,
+    )
+    try:
+        _wait_until_listening(process, ports)
+        yield process
     finally:
         _stop(process)
 
@@ -108,24 +117,20 @@ def _program() -> Path:
     return next(folder / name for name in names if (folder / name).exists())
 
 
-def _refuse_taken(port: int) -> None:
+def _is_listened_on(port: int) -> bool:
     with socket.socket() as probe:
-        if probe.connect_ex((LOCAL, port)) == 0:
-            raise ViewerError(f"something listens on port {port} already: end it, or name another port")
+        return probe.connect_ex((LOCAL, port)) == 0
 
 
-def _wait_until_listening(process: subprocess.Popen[bytes], port: int) -> None:
+def _wait_until_listening(process: "subprocess.Popen[bytes]", ports: Sequence[int]) -> None:
     deadline_s = time.monotonic() + START_S
-    while time.monotonic() < deadline_s:
+    while not all(map(_is_listened_on, ports)):
         if process.poll() is not None:
-            raise ViewerError(
-                f"the Rerun viewer ended at once (code {process.returncode}): is there a screen? --web needs none"
-            )
-        with socket.socket() as probe:
-            if probe.connect_ex((LOCAL, port)) == 0:
-                return
+            why = "is there a screen? --web needs none"
+            raise ViewerError(f"the Rerun viewer ended at once (code {process.returncode}): {why}")
+        if time.monotonic() > deadline_s:
+            raise ViewerError(f"the Rerun viewer does not listen on {', '.join(map(str, ports))} after {START_S:g} s")
         time.sleep(POLL_S)
-    raise ViewerError(f"the Rerun viewer did not listen on port {port} within {START_S:g} s")
 
 
 def _tell_end(process: subprocess.Popen[bytes], ended: threading.Event) -> None:
