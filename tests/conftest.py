@@ -27,6 +27,8 @@ SKIPPED = (
     ("with the pose model", NEEDS_LIBRARIES),
     ("of the bridge to ROS 2", NEEDS_ROS2_EXTRA),
     ("with librealsense", "the source realsense needs pyrealsense2"),
+    ("with Rerun", "rerun-sdk is not installed: pip install -e '.[view]'"),
+    ("with Foxglove", "is not installed: pip install -e '.[dev]'"),
     ("with OpenNI 2", "the source openni2 needs OpenNI 2"),
 )
 
