@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from actum.arrays import Array
-from actum.geometry import BONES
 from actum.messages import ActedObject, Event, Objects, Skeleton, TrackedObject
 from actum.skeletons import INDEX, JOINTS
+from actum.standard_body import BONES
 from ros2_bridge.frames import (
     LINK_FROM_OPTICAL,
     header,

@@ -15,9 +15,9 @@ pytest.importorskip("mcap_protobuf", reason="mcap-protobuf-support is not instal
 
 from mcap_protobuf.decoder import DecoderFactory
 
-from actum.geometry import BONES
 from actum.messages import Action, Event, Image, Message, Objects, Segment, Tensor, TrackedObject, Truth
 from actum.skeletons import INDEX
+from actum.standard_body import BONES
 from actum_command.viewers.foxglove_schemas import foxglove_schema
 from actum_command.viewers.foxglove_sinks import written
 from empty_messages import mark

@@ -10,9 +10,9 @@ pytest.importorskip("rerun", reason="rerun-sdk is not installed: pip install -e 
 
 from rerun.chunk import RrdReader
 
-from actum.geometry import BONES
 from actum.messages import Agent, Image, Message, Objects, Skeleton, TrackedObject
 from actum.skeletons import INDEX
+from actum.standard_body import BONES
 from actum_command.viewers.rerun_entries import RerunEntries
 from actum_command.viewers.rerun_program import saved
 from empty_messages import mark

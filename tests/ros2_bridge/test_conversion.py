@@ -11,10 +11,10 @@ from conftest import NEEDS_ROS2_EXTRA
 pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
 from actum.bridge import Foreign
-from actum.geometry import BONES
 from actum.messages import Event, Message, Motion, ObjectPose, Objects, Skeleton, TrackedObject
 from actum.node import SECOND_NS, Tick
 from actum.skeletons import INDEX, JOINTS
+from actum.standard_body import BONES
 from events import event
 from people import STANDING, lacking, skeleton
 from ros2_bridge import message_types as types

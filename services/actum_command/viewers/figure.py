@@ -3,9 +3,9 @@
 import math
 from dataclasses import dataclass
 
-from actum.geometry import BONES
 from actum.messages import Agent, Point
 from actum.skeletons import JOINTS
+from actum.standard_body import BONES
 from actum_command.skeleton_overlay import MIDDLE, side_colour
 
 Rgb = tuple[int, int, int]
