@@ -4,7 +4,7 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-data test-live test-containers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture pages docs schemas wheel clean
+.PHONY: install demo up test test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture picture-viewer pages docs schemas wheel clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -41,6 +41,10 @@ test-live: $(STAMP)  ## all MSR test recordings through live processes
 
 test-containers: $(STAMP)  ## build and run the compose file; needs a container engine
 	$(BIN)/pytest -m containers -s
+
+test-viewers: $(STAMP)  ## what Rerun and Foxglove are sent; installs both, 600 MB
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[dev,view]"
+	$(BIN)/pytest tests/actum_command/test_rerun_entries.py tests/actum_command/test_foxglove_messages.py tests/system/test_viewers.py tests/pages/test_viewers_page.py
 
 check: docs  ## format, lint, types, layers, pages
 	$(BIN)/ruff format --check --quiet .
@@ -96,6 +100,10 @@ picture: $(STAMP)  ## the README's pictures
 	folder=$$(mktemp -d) && $(BIN)/actum simulate $$folder/learnt.mcap && $(BIN)/actum train $$folder/learnt.mcap -o $$folder/model.npz \
 	  && $(BIN)/actum simulate $$folder/seen.mcap --actor 24 --seed 3 --repetitions 2 \
 	  && $(BIN)/actum inspect $$folder/model.npz $$folder/seen.mcap -o $$folder && cp $$folder/time-lift.png docs/time.png && rm -r $$folder
+
+picture-viewer: $(STAMP)  ## the picture of Rerun; needs a program chromium
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[view]" "playwright>=1.50,<2"
+	$(BIN)/python -m docs.viewer_picture docs/viewer.png
 
 pages: $(STAMP)  ## write what the pages show of the code anew
 	$(BIN)/python -m docs.generate

@@ -2,6 +2,8 @@
 
 from collections import deque
 from collections.abc import Iterator
+from dataclasses import replace
+from itertools import count
 from typing import Any
 
 from pydantic import BaseModel, Field
@@ -9,10 +11,12 @@ from pydantic import BaseModel, Field
 from actum.commands import Command, Refusal, Request
 from scene_simulator.everyday import FAMILIAR, Everyday, EverydayPerson
 from scene_simulator.programme import ACTIONS, Task, object_ids
+from scene_simulator.random_streams import random_stream
 from scene_simulator.settings import Settings
 from scene_simulator.simulated_scene import Scene
 from scene_simulator.simulator import Simulator
 from scene_simulator.timeline import Episode, acting, resetting, still
+from scene_simulator.trial import Trial, draw_bulge, draw_timing
 
 MOST_WAITING = 20
 """Performances that may wait: enough for a script that asks ahead, and the memory stays bounded."""
@@ -20,6 +24,10 @@ IDLE_S = 0.1
 """How long the person stands before the next performance is looked for (s): it seems to begin at once."""
 USUAL_PAUSE_S = 2.0
 """Pause after an action where nobody says how long (s): the hand is back, and rests."""
+CHANGE_S = 1.5
+"""How long (s) it takes to arrange the objects for another action."""
+RETURN_SHARE = 0.85
+"""Share of a pause at most in which the hands move."""
 
 
 class Perform(Request):
@@ -43,16 +51,22 @@ class Performances(BaseModel):
 
 
 class DrivenScene(Scene):
-    """A scene without end, in which the person rests, swaying, until a performance waits."""
+    """A scene without end, in which the person rests, swaying, until a performance waits.
+
+    An action on an object is done in the same place each time, in another tempo and on another way.
+    """
 
     def __init__(self, settings: Settings, waiting: deque[Perform]) -> None:
         super().__init__([Task(ACTIONS[0], object_ids()[0])], settings.actor, settings.seed)
         self.programme: list[Task] = []
         self._waiting = waiting
+        self._drawn = {self.trials[0].task: self.trials[0]}
+        self._newest = still(self.parameters, self.trials[0].layout, self.parameters.pause.lead_in_s)
         self._layout = self.trials[0].layout
         self.trials = ()
 
     def _episodes(self, _tail_s: float) -> Iterator[Episode]:
+        yield self._newest
         while True:
             if self._waiting:
                 yield from self._performance(self._waiting.popleft())
@@ -60,33 +74,43 @@ class DrivenScene(Scene):
                 yield still(self.parameters, self._layout, IDLE_S)
 
     def _performance(self, asked: Perform) -> Iterator[Episode]:
-        person = None
+        """Yield the actions, and everyday doings between and after them where these are asked for."""
+        person, frames = None, 0
         if asked.everyday_s:
             person = EverydayPerson(Everyday(FAMILIAR, asked.everyday_s), self.parameters, self.actor, self.seeds)
-        frames = 0
-        for episode in self._acts(asked, person):
-            frames += len(episode)
-            yield episode
-        number = len(self.trials)
+        for task in programme_of(asked):
+            for episode in self._act(task, asked.pause_s, person):
+                frames += len(episode)
+                yield episode
+        pauses = count(len(self.trials))
         while person is not None and frames < asked.everyday_s * self.parameters.camera.frame_rate_hz:
-            number += 1
-            for episode in person.pause(number, self._layout):
+            for episode in person.pause(next(pauses), self._layout):
                 frames += len(episode)
                 yield episode
 
-    def _acts(self, asked: Perform, person: EverydayPerson | None) -> Iterator[Episode]:
-        """Yield the actions, each with the way to where its objects stand before and a pause after it."""
-        column = 0 if self.actor.hand == "left" else 1
-        for task in programme_of(asked):
-            trial = self._trial(number := len(self.trials), task)
-            self.trials, self._layout = (*self.trials, trial), trial.layout
-            self.programme.append(task)
-            if person is not None:
-                yield from person.pause(number, trial.layout)
-            done = acting(self.parameters, trial, number, column)
-            yield done
-            return_s = min(self.parameters.pause.return_share * trial.pause_s, asked.pause_s)
-            yield resetting(self.parameters, done, trial.layout, asked.pause_s, return_s)
+    def _act(self, task: Task, pause_s: float, person: EverydayPerson | None) -> Iterator[Episode]:
+        """Yield an action and the pause after it; before it the way to where its object stands, where that changes."""
+        number, trial = len(self.trials), self._varied(task)
+        self.trials = (*self.trials, trial)
+        self.programme.append(task)
+        if trial.layout is not self._layout:
+            yield resetting(self.parameters, self._newest, trial.layout, CHANGE_S, RETURN_SHARE * CHANGE_S)
+            self._layout = trial.layout
+        if person is not None:
+            yield from person.pause(number, trial.layout)
+        done = acting(self.parameters, trial, number, 0 if self.actor.hand == "left" else 1)
+        yield done
+        self._newest = resetting(
+            self.parameters, done, trial.layout, pause_s, min(trial.pause_s, RETURN_SHARE * pause_s)
+        )
+        yield self._newest
+
+    def _varied(self, task: Task) -> Trial:
+        """Return the trial of a task as it was drawn first, with another tempo and another bulge of the way."""
+        trial = self._drawn.setdefault(task, self._trial(len(self.trials), task))
+        rng = random_stream("driven", *self.seeds, len(self.trials))
+        timing = draw_timing(self.parameters.trial, self.actor, task.action, rng)
+        return replace(trial, timing=timing, bulge_m=draw_bulge(self.parameters.trial, self.actor, rng))
 
 
 class DrivenSimulator(Simulator):

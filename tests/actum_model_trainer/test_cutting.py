@@ -8,11 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actum.messages import Skeleton
+from actum_model_trainer.cutting.choice import Chain
 from actum_model_trainer.cutting.courses import BREAK_S, Course, PersonTracks, course_of
+from actum_model_trainer.cutting.courses import RATE_HZ as SAMPLED_HZ
+from actum_model_trainer.cutting.doubts import doubts_of
 from actum_model_trainer.cutting.repetitions import Cuts, cut
-from people import lacking, skeleton
+from people import FRAME_NS, lacking, skeleton
 from repeating import (
-    FRAME_NS,
     GOGGLES,
     RATE_HZ,
     SCRATCH,
@@ -132,13 +134,21 @@ def test_of_two_who_repeat_the_nearer_one_is_cut() -> None:
     assert cuts.course.agent == 2
 
 
-def test_where_one_is_missing_the_place_where_two_may_have_run_together_is_named() -> None:
+def test_two_that_follow_each_other_almost_at_once_are_two() -> None:
     wave = moved(eased(42), WAVE)
     stream = Stream().repeat([wave, np.concatenate([wave, rest(0.1), wave]), wave, wave])
-    cuts = cuts_of(stream, asked=None)
-    assert len(cuts.repetitions) in (4, 5)
-    if len(cuts.repetitions) == 4:
-        assert "the second and third may have run together at" in cuts.doubts[0]
+    assert len(cuts_of(stream, asked=None).repetitions) == 5
+
+
+def test_where_one_is_missing_the_place_where_two_may_have_run_together_is_named() -> None:
+    (course,) = seen(five_waves().skeletons())
+    chain = Chain(np.array([[10, 40], [60, 120], [140, 170], [190, 220]]), np.ones(4), worth=0.9)
+    activity = np.ones(230)
+    assert list(doubts_of(course, activity, chain, 5, 4, course.start_ns)) == ["4 found, 5 asked"]
+    activity[90] = 0.0
+    together_at = f"the second and third may have run together at {90 / SAMPLED_HZ:.1f} s"
+    assert list(doubts_of(course, activity, chain, 5, 4, course.start_ns)) == [f"4 found, 5 asked: {together_at}"]
+    assert list(doubts_of(course, activity, chain, None, 4, course.start_ns)) == [together_at]
 
 
 def test_what_cannot_be_found_is_told() -> None:

@@ -8,7 +8,7 @@ from actum.node import SECOND_NS, Node, Tick, replay
 from actum.recording import Recording
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from actum_model_trainer.progress import Progress, silent
-from actum_model_trainer.samples import SegmentCollector, classifier_input
+from actum_model_trainer.recorded_segments import SegmentCollector, classifier_input
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.segmentation import DEFAULT, Segmentation
@@ -93,14 +93,9 @@ def found_by(
 
 def views_of(recording: Recording) -> list[tuple[str, str]]:
     """Return each sensor whose skeletons a recording holds, and what stands for its part of it in what is found."""
-    sensors = sensors_of(recording)
+    sensors = recording.sensors(keys.SKELETON)
     path = str(recording.path)
     return [(sensor, path if len(sensors) == 1 else f"{path} ({sensor})") for sensor in sensors]
-
-
-def sensors_of(recording: Recording) -> list[str]:
-    """Return the sensors whose skeletons a recording holds, sorted; it need not have any mark."""
-    return recording.sensors(keys.SKELETON)
 
 
 def watched(node: Node, recording: Recording, sensor: str, file: str) -> Found:

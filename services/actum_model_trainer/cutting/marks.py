@@ -2,19 +2,8 @@
 
 from collections.abc import Collection, Iterator
 
-from actum.messages import CUT, Segment
+from actum.messages import CUT, Segment, segment_marks
 from actum_model_trainer.cutting.repetitions import Cuts
-
-
-def marks_between(
-    sensor: str, segment_id: str, start_ns: int, end_ns: int, label: str, agent: int | None, origin: str
-) -> list[Segment]:
-    """Return the start and the end mark of a new segment."""
-    names = {"sensor": sensor, "segment_id": segment_id, "agent": agent, "origin": origin}
-    return [
-        Segment.model_validate({"kind": "start", "stamp_ns": start_ns, "label": label, **names}),
-        Segment.model_validate({"kind": "end", "stamp_ns": end_ns, **names}),
-    ]
 
 
 def marks_of(cuts: Cuts, names: Iterator[str], label: str, sensor: str) -> list[Segment]:
@@ -22,7 +11,7 @@ def marks_of(cuts: Cuts, names: Iterator[str], label: str, sensor: str) -> list[
     return [
         mark
         for name, each in zip(names, cuts.repetitions, strict=False)
-        for mark in marks_between(sensor, name, each.start_ns, each.end_ns, label, cuts.course.agent, CUT)
+        for mark in segment_marks(each.start_ns, each.end_ns, sensor, name, label, cuts.course.agent, origin=CUT)
     ]
 
 

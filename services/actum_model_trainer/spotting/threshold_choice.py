@@ -1,8 +1,9 @@
 """The threshold of the search, chosen by what it finds in streams of people left out of the heads' training."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,13 +31,20 @@ class ThresholdChoice:
 
     Attributes:
         threshold: the best.
+        worth: what it is worth.
         false_alarms_per_min: by threshold; empty where there is too little background.
         recalls: by threshold.
     """
 
     threshold: float
+    worth: float
     false_alarms_per_min: list[float]
     recalls: list[float]
+
+    @property
+    def stored(self) -> dict[str, Any]:
+        """What of it the model's metadata hold."""
+        return {name: value for name, value in asdict(self).items() if name != "worth"}
 
 
 def chosen_threshold(
@@ -50,6 +58,7 @@ def chosen_threshold(
     rates = [score.alarms_per_min or 0.0 for score in scores] if counted else []
     return ThresholdChoice(
         float(thresholds[int(smoothed.argmax())]),
+        float(smoothed.max()),
         np.minimum.accumulate(rates).tolist() if rates else [],
         [score.event.recall for score in scores],
     )

@@ -8,7 +8,7 @@ from actum import keys
 from actum.arrays import Array
 from actum.node import SECOND_NS
 from actum.recording import Recording
-from actum_model_trainer.samples import classifier_input, closed_segments
+from actum_model_trainer.recorded_segments import classifier_input, closed_segments
 from som_classifier.frames import Frame
 from som_classifier.model import Model
 

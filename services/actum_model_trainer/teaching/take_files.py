@@ -11,12 +11,12 @@ from pydantic import TypeAdapter, ValidationError
 
 from actum import codec, keys
 from actum.mcap_file import StoredMessage
-from actum.messages import CUT, MANUAL, Agent, Segment, Skeleton
+from actum.messages import CUT, MANUAL, Agent, Segment, Skeleton, segment_marks
 from actum.node import SECOND_NS
 from actum.recording import Recorder, Recording
 from actum.rewriting import Change, rewrite, unchanged
 from actum.skeletons import INDEX
-from actum_model_trainer.cutting.marks import free_names, marks_between, marks_of
+from actum_model_trainer.cutting.marks import free_names, marks_of
 from actum_model_trainer.cutting.repetitions import Cuts
 from som_classifier.handedness import OPPOSITE
 
@@ -202,9 +202,7 @@ def doubts_field(doubts: Mapping[str, Sequence[str]]) -> str:
 
 def _replace_marks(take: Take, old: Example, new: Example) -> None:
     change: Change = lambda stored: None if _is_mark_of(stored, old) else stored  # noqa: E731 - a line
-    marks = marks_between(
-        new.sensor, new.segment_id, new.start_ns, new.end_ns, new.label, new.agent, new.origin or MANUAL
-    )
+    marks = segment_marks(new.start_ns, new.end_ns, new.sensor, new.segment_id, new.label, new.agent, origin=new.origin)
     kept = {each.segment_id: each.doubts for each in take.examples} | {new.segment_id: new.doubts}
     rewrite(take.path, change, marks, _doubts(take, kept))
 

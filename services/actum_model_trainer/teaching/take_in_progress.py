@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from actum.messages import MANUAL, Segment, Skeleton, TakeState
+from actum.messages import MANUAL, Segment, Skeleton, TakeState, segment_marks
 from actum.node import SECOND_NS
 from actum.recording import Recorder
 from actum_model_trainer.cutting.counting import LAST_REST_S, RepetitionCounter
-from actum_model_trainer.cutting.marks import marks_between
 from actum_model_trainer.teaching.take_files import OF_THE_TAKE, cut_marks
 
 LONGEST_S = 600.0
@@ -112,6 +111,12 @@ class TakeInProgress:
 
     def _marks_of(self, marked: Marked) -> list[Segment]:
         assert marked.end_ns is not None
-        return marks_between(
-            self._sensor, marked.segment_id, marked.start_ns, marked.end_ns, self.state.label, marked.agent, MANUAL
+        return segment_marks(
+            marked.start_ns,
+            marked.end_ns,
+            self._sensor,
+            marked.segment_id,
+            self.state.label,
+            marked.agent,
+            origin=MANUAL,
         )

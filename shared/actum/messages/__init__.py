@@ -42,6 +42,7 @@ from actum.messages.recognised import (
     Pointing,
     Segment,
     Tensor,
+    segment_marks,
 )
 from actum.messages.reported import Info, Status, Truth
 from actum.messages.seen import Agent, Image, Objects, Posture, Skeleton, TrackedObject
@@ -110,4 +111,5 @@ __all__ = [
     "Training",
     "Transform",
     "Truth",
+    "segment_marks",
 ]
