@@ -181,8 +181,19 @@ OF_BRIDGE: Mapping[str, Problem] = {
     ),
 }
 
+OF_TRAINER: Mapping[str, Problem] = {
+    "lost_take": Problem(
+        "The take that was being recorded could not be written; it is lost, and all before it is there.",
+        "Make room on the disk of `ACTUM_TRAINER_DATA`, and record it again.",
+    ),
+    "lost_model": Problem(
+        "Somebody has replaced the model in use, and no copy of it could be kept to return to.",
+        "Make room on the disk of `ACTUM_TRAINER_DATA`.",
+    ),
+}
+
 GATEWAY, PREPROCESSOR, CLASSIFIER = "sensor_gateway", "pose_preprocessor", "som_classifier"
-TRACKER, FUSION, BRIDGE = "marker_tracker", "action_fusion", "ros2_bridge"
+TRACKER, FUSION, BRIDGE, TRAINER = "marker_tracker", "action_fusion", "ros2_bridge", "model_trainer"
 COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((), OF_ALL),
     ((PREPROCESSOR, CLASSIFIER, TRACKER, FUSION), OF_NODES),
@@ -193,6 +204,7 @@ COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((CLASSIFIER,), OF_CLASSIFIER),
     ((TRACKER,), OF_TRACKER),
     ((FUSION,), OF_FUSION),
+    ((TRAINER,), OF_TRAINER),
     ((FUSION, BRIDGE), OF_FUSION_AND_BRIDGE),
     ((BRIDGE,), OF_BRIDGE),
 )

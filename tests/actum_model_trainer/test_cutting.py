@@ -144,11 +144,13 @@ def test_where_one_is_missing_the_place_where_two_may_have_run_together_is_named
     (course,) = seen(five_waves().skeletons())
     chain = Chain(np.array([[10, 40], [60, 120], [140, 170], [190, 220]]), np.ones(4), worth=0.9)
     activity = np.ones(230)
-    assert list(doubts_of(course, activity, chain, 5, 4, course.start_ns)) == ["4 found, 5 asked"]
+    assert list(doubts_of(course, activity, chain, 5, 4, course.start_ns)) == [("4 found, 5 asked", None)]
     activity[90] = 0.0
     together_at = f"the second and third may have run together at {90 / SAMPLED_HZ:.1f} s"
-    assert list(doubts_of(course, activity, chain, 5, 4, course.start_ns)) == [f"4 found, 5 asked: {together_at}"]
-    assert list(doubts_of(course, activity, chain, None, 4, course.start_ns)) == [together_at]
+    assert list(doubts_of(course, activity, chain, 5, 4, course.start_ns)) == [
+        (f"4 found, 5 asked: {together_at}", None)
+    ]
+    assert list(doubts_of(course, activity, chain, None, 4, course.start_ns)) == [(together_at, 2)]
 
 
 def test_what_cannot_be_found_is_told() -> None:

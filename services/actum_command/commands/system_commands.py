@@ -65,7 +65,8 @@ def up(
         say(f"actum starts on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
         if processes.scene(here) not in programs:
             say(NO_MARKS)
-        if (lack := lack_of_model(model)) is not None:
+        taught = processes.taught_model(given)
+        if (lack := lack_of_model(taught if model is None and taught.exists() else model)) is not None:
             say(lack, style="yellow")
         stop = stop_on_signals()
         with Supervisor() as supervisor:

@@ -4,6 +4,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
+from actum.messages import JobState, TakeState
 from actum_model_trainer.teaching.model_store import StoredModel
 from actum_model_trainer.teaching.take_files import Example, Take
 
@@ -192,6 +193,21 @@ class TakeReply(Reply):
     """How many examples are in it."""
     doubts: list[str]
     """What may be wrong with it, or why nothing was kept."""
+
+
+class State(Reply):
+    """What the trainer does and has, as it puts it on `training`, for programs that ask instead of listening."""
+
+    recording: TakeState | None
+    """The take that is being recorded, or the newest one; null before the first."""
+    job: JobState | None
+    """The job that is running, or the newest one; null before the first."""
+    model: str | None
+    """Which model the classifier is to use; null where there is none."""
+    can_undo: bool
+    """Whether there is a model that was in use before it."""
+    revision: int
+    """A number that rises with each change of the sets and models."""
 
 
 class Uploaded(Reply):

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from actum import keys
-from actum.commands import Command
+from actum.commands import Command, NoFields
 from actum.messages import Message, Segment, Skeleton, Training
 from actum.node import SECOND_NS, Counters, Tick
 from actum_model_trainer.settings import Settings
@@ -17,6 +17,7 @@ from actum_model_trainer.teaching.job_process import JobProcess
 from actum_model_trainer.teaching.job_store import JobStore
 from actum_model_trainer.teaching.model_commands import ModelCommands
 from actum_model_trainer.teaching.model_store import ModelStore
+from actum_model_trainer.teaching.replies import State
 from actum_model_trainer.teaching.set_commands import SetCommands
 from actum_model_trainer.teaching.set_store import SetStore, date_of
 from actum_model_trainer.teaching.take_commands import TakeCommands
@@ -76,7 +77,8 @@ class ModelTrainer:
     def commands(self) -> tuple[Command[Any, Any], ...]:
         """What can be asked."""
         groups = (self._set_commands, self._takes, self._examples, self._jobs, self._model_commands)
-        return tuple(command for group in groups for command in group.commands)
+        own = Command("state", NoFields, State, self._tell)
+        return (own, *(command for group in groups for command in group.commands))
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
         """Take a frame or a mark of the take that is recorded, or a tick; return what has changed, on ticks."""
@@ -111,6 +113,10 @@ class ModelTrainer:
             self._changes.revision += self._models.look()
         except OSError as error:
             self.counters.reject("lost_model", f"no copy of the model in use could be kept: {error}")
+
+    def _tell(self, _: NoFields) -> State:
+        """Tell what is recorded, which job runs, and which model is in use."""
+        return State.model_validate(self._state().model_dump(include=set(State.model_fields)))
 
     def _state(self) -> Training:
         return Training(
