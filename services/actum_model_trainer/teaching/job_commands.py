@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from actum.commands import Command, Refusal
@@ -46,6 +47,7 @@ class JobCommands:
         self._date = date
         self._job = next(iter(jobs.all()[::-1]), None)
         self._running: RunningJob | None = None
+        self._video: Path | None = None
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:
@@ -98,14 +100,16 @@ class JobCommands:
         return Uploaded(upload=request.name, size=size)
 
     def _import_video(self, request: ImportVideo) -> Job:
-        """Make a take of a video that was sent: find the person in it, and cut the examples out."""
+        """Make a take of a video that was sent: find the person in it, cut the examples out, and delete the video."""
         video = self._uploads.get(request.upload)
         fields = {
             "video": str(video),
             "created": self._date(),
             **request.model_dump(include={"label", "person", "count"}),
         }
-        return self._start("import", request.set, fields)
+        job = self._start("import", request.set, fields)
+        self._video = video
+        return job
 
     def _train(self, request: Train) -> Job:
         """Train a model on a set; 'activate' puts it into use."""
@@ -148,6 +152,9 @@ class JobCommands:
         """Note what became of a job, and delete what it wrote besides."""
         self._job = job
         self._jobs.clear(job.id)
+        if self._video is not None:
+            self._video.unlink(missing_ok=True)
+            self._video = None
         with suppress(OSError):  # a full disk: after a restart it counts as cancelled
             self._jobs.keep(job)
         return job

@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from actum.commands import Refusal
-from actum.messages import Skeleton
+from actum.messages import Segment, Skeleton
 from actum.node import Counters
 from actum.recording import Recorder
 from actum_model_trainer.cutting.courses import PersonTracks
-from actum_model_trainer.cutting.repetitions import Cuts, cut
+from actum_model_trainer.cutting.repetitions import cut
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.teaching.take_files import CREATED, OF_THE_TAKE, cut_marks, finish_take
 from sensor_gateway.cameras import estimator_of, optics_of
@@ -26,21 +26,29 @@ def take_of_video(
         Refusal: the file is no video, there is no pose model, or nobody moves in it.
         OSError: the take cannot be written.
     """
-    tracks, first_ns, sensor = PersonTracks(), 0, ""
     recorder = Recorder(output, person=person, source=f"video {video.name}", **{CREATED: created})
     try:
-        for skeleton in _skeletons(video, progress):
-            sensor = skeleton.sensor
-            recorder.write(skeleton)
-            tracks.take(skeleton)
+        marks, doubts = _recorded(video, recorder, label, count, progress)
     except ValueError as error:
+        recorder.discard()
         raise Refusal(str(error)) from None
-    cuts: Cuts | None = cut(tracks.courses(), count, first_ns)
+    finish_take(recorder, marks, doubts)
+    return len(marks) // 2, doubts.get(OF_THE_TAKE, [])
+
+
+def _recorded(
+    video: Path, recorder: Recorder, label: str, count: int | None, progress: Progress
+) -> tuple[list[Segment], dict[str, list[str]]]:
+    """Store the skeletons of a video; return the marks of what is cut out of them, and doubts by segment id."""
+    tracks, sensor = PersonTracks(), ""
+    for skeleton in _skeletons(video, progress):
+        sensor = skeleton.sensor
+        recorder.write(skeleton)
+        tracks.take(skeleton)
+    cuts = cut(tracks.courses(), count, 0)
     if cuts is None:
         raise Refusal("nobody is seen moving in the video: film the whole person, from the front, in good light")
-    marks, doubts = cut_marks(cuts, label, sensor)
-    finish_take(recorder, marks, doubts)
-    return len(cuts.repetitions), doubts.get(OF_THE_TAKE, [])
+    return cut_marks(cuts, label, sensor)
 
 
 def _skeletons(video: Path, progress: Progress) -> Iterator[Skeleton]:
