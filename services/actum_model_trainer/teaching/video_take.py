@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from actum.commands import Refusal
-from actum.messages import Segment, Skeleton
+from actum.messages import CUT, Segment, Skeleton, segment_marks
 from actum.node import Counters
 from actum.recording import Recorder
 from actum_model_trainer.cutting.courses import PersonTracks
@@ -15,6 +15,10 @@ from sensor_gateway.cameras import estimator_of, optics_of
 from sensor_gateway.devices.video import frame_count, pictures_of
 from sensor_gateway.perceiver import Perceiver
 from sensor_gateway.settings import Settings
+
+FEWEST_FRAMES = 5
+"""Frames with a person that a clip needs: with fewer a model would answer nothing."""
+WHOLE = "the clip was too short to cut, so all of it is the example"
 
 
 def take_of_video(
@@ -40,15 +44,18 @@ def _recorded(
     video: Path, recorder: Recorder, label: str, count: int | None, progress: Progress
 ) -> tuple[list[Segment], dict[str, list[str]]]:
     """Store the skeletons of a video; return the marks of what is cut out of them, and doubts by segment id."""
-    tracks, sensor = PersonTracks(), ""
+    tracks, seen = PersonTracks(), list[Skeleton]()
     for skeleton in _skeletons(video, progress):
-        sensor = skeleton.sensor
         recorder.write(skeleton)
         tracks.take(skeleton)
+        seen += [skeleton] if skeleton.agents else []
     cuts = cut(tracks.courses(), count, 0)
-    if cuts is None:
+    if cuts is not None:
+        return cut_marks(cuts, label, seen[0].sensor)
+    if len(seen) < FEWEST_FRAMES or count not in (None, 1):
         raise Refusal("nobody is seen moving in the video: film the whole person, from the front, in good light")
-    return cut_marks(cuts, label, sensor)
+    whole = seen[0].stamp_ns, seen[-1].stamp_ns, seen[0].sensor
+    return segment_marks(*whole, f"{CUT}-1", label, origin=CUT), {f"{CUT}-1": [WHOLE]}
 
 
 def _skeletons(video: Path, progress: Progress) -> Iterator[Skeleton]:
