@@ -43,6 +43,10 @@ OF_ALL: Mapping[str, Problem] = {
         "The message names another sensor, agent or service than the key it came on, or is an image of the other kind.",
         "Let `sensor`, `agent` and `service` be those of the key, or leave `sensor` out.",
     ),
+    "refused_command": Problem(
+        "A command was not carried out: there is none of that name, its fields are wrong, or it cannot be done now.",
+        "The asker was told why; so does the latest error.",
+    ),
 }
 
 OF_NODES: Mapping[str, Problem] = {

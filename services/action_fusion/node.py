@@ -2,15 +2,18 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from action_fusion.buffers import LATEST_ACTION_NS, Buffer, S
 from action_fusion.fusion import fuse, rejected
 from action_fusion.settings import Settings
 from action_fusion.stream_samples import ObjectsSample, PostureSample, objects_sample, posture_sample
 from actum import keys
+from actum.commands import Command
 from actum.limits import MAX_SKEW_NS
 from actum.messages import Action, Event, Message, Objects, Posture
 from actum.node import SECOND_NS, Counters, Tick
+from actum.parameters import LiveParameters
 from actum.stamps import Order
 
 WAIT_NS = MAX_SKEW_NS + SECOND_NS // 5
@@ -21,6 +24,11 @@ REMEMBERED = 10_000
 
 MOST_AGENTS = 16
 """Most people whose postures are kept, to bound the memory: more than a camera tells apart."""
+
+LIVE = (
+    "measure", "reach_m", "grasp_m", "moved_m", "pointing_limit_deg", "uncertainty_m", "pointing_uncertainty_deg",
+)  # fmt: skip
+"""The settings that may be changed while it runs."""
 
 
 @dataclass
@@ -47,11 +55,17 @@ class ActionFusion:
 
     def __init__(self, settings: Settings) -> None:
         self.counters = Counters()
-        self._settings = settings
+        self._use_settings(settings)
+        self._parameters = LiveParameters(settings, LIVE, self._use_settings)
         self._postures: dict[int, Buffer[PostureSample]] = {}
         self._objects: Buffer[ObjectsSample] = Buffer()
         self._pending: list[Pending] = []
         self._answered: dict[tuple[str, int, int | None, str | None], None] = {}
+
+    @property
+    def commands(self) -> tuple[Command[Any, Any], ...]:
+        """Reading and changing settings while it runs."""
+        return self._parameters.commands
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
         """Process one posture, objects message, action or tick; return the events that it completes."""
@@ -66,6 +80,9 @@ class ActionFusion:
             case Tick():
                 return self._tick(message)
         return []
+
+    def _use_settings(self, settings: Settings) -> None:
+        self._settings = settings
 
     def _take(self, buffer: Buffer[S], sample: S, what: str) -> list[Event]:
         """Add a sample to its stream; return the events of actions that waited for it or lie before a restart."""

@@ -26,8 +26,8 @@ def write_inspection(
     from actum_model_inspector.folder import note
     from actum_model_inspector.html_page import page
     from actum_model_inspector.inspection import pictures, write
-    from actum_model_inspector.model_maps import maps_of
     from actum_model_trainer.evaluation import evaluate
+    from som_classifier.model_maps import maps_of
 
     maps = maps_of(model)
     segments = answered_segments(maps, recordings, progress)

@@ -12,7 +12,6 @@ from actum.arrays import Floats, Indices
 from actum.som import Som
 from actum_model_inspector.answered import AnsweredSegment
 from actum_model_inspector.label_placement import LabelSpace, text_size
-from actum_model_inspector.model_maps import ModelMaps
 from actum_model_inspector.regions import Regions, innermost_unit, largest_component, regions
 from actum_model_inspector.style import (
     HALO,
@@ -26,6 +25,7 @@ from actum_model_inspector.style import (
     mixed_with_white,
 )
 from actum_model_inspector.text_layout import wrapped
+from som_classifier.model_maps import ModelMaps
 
 SIDE_IN = 10.0  # inches of the map's longer side: names of 25 actions find room
 PALEST = 0.15  # share of a unit's colour, the rest white, where two actions answer alike: still a hint of colour

@@ -10,9 +10,9 @@ import numpy as np
 
 from actum.arrays import Floats
 from actum.messages import Hand
-from actum_model_inspector.model_maps import complete_weights
 from som_classifier.first_layer import CHANNELS
 from som_classifier.frames import Frame
+from som_classifier.model_maps import complete_weights
 from som_classifier.pyramid_model import PyramidModel
 
 

@@ -14,7 +14,6 @@ from actum_model_inspector.arm_map import arm_map
 from actum_model_inspector.confusion import confusion_picture
 from actum_model_inspector.explanation import explanation_picture
 from actum_model_inspector.folder import clear, note
-from actum_model_inspector.model_maps import ModelMaps, PyramidMaps
 from actum_model_inspector.posture_map import posture_map
 from actum_model_inspector.reliability_diagram import labelled_answers, reliability_picture
 from actum_model_inspector.segment_selection import examples, file_names, mistake_name, mistakes
@@ -24,6 +23,7 @@ from actum_model_inspector.velocity_map import velocity_map
 from actum_model_trainer.calibration_error import MIN_ANSWERS
 from actum_model_trainer.evaluation import Evaluation
 from actum_model_trainer.progress import Progress, silent
+from som_classifier.model_maps import ModelMaps, PyramidMaps
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from matplotlib.figure import Figure
 
 from actum.arrays import Floats, Indices
 from actum.som import Som
-from actum_model_inspector.model_maps import ModelMaps
-from actum_model_inspector.stick_figures import WHOLE_BODY, Pen, draw_figures, standing
+from actum_model_inspector.stick_figures import ONE_LIMB, WHOLE_BODY, Pen, draw_figures, standing
 from actum_model_inspector.style import FAINT, LEFT, RIGHT, draw_squares, figure_with_layout, hide_axes, in_house_style
+from som_classifier.model_maps import ModelMaps
 
 MAX_FIGURES = 20  # along a side: more are too small to see
 SIDE_IN = 10.5  # of the longer side: half an inch for each of 20 figures
@@ -60,12 +60,12 @@ def draw_units(
         zorder: Matplotlib's: the larger is drawn above.
     """
     places = maps.postures.coordinates[units][:, ::-1]
-    whole = maps.figure is WHOLE_BODY
-    if not whole:
+    figure = WHOLE_BODY if maps.shows_bodies else ONE_LIMB
+    if not maps.shows_bodies:
         pen = Pen(0.6, FAINT, 0.5 * strength, zorder)
         draw_figures(axes, standing(len(units)), places, FILLED * size, pen=pen)
-    pen = Pen(1.2 if whole else 1.8, strength=strength, zorder=zorder)
-    draw_figures(axes, points[units], places, FILLED * size, maps.figure, pen)
+    pen = Pen(1.2 if maps.shows_bodies else 1.8, strength=strength, zorder=zorder)
+    draw_figures(axes, points[units], places, FILLED * size, figure, pen)
 
 
 def drawn_units(som: Som) -> tuple[Indices, int]:

@@ -13,11 +13,11 @@ from actum.arrays import Floats, Indices
 from actum.node import SECOND_NS
 from actum.som import Som
 from actum_model_inspector.answered import AnsweredSegment, encoded, headline
-from actum_model_inspector.model_maps import ModelMaps
 from actum_model_inspector.posture_map import draw_postures, draw_units, map_size, name_sides
 from actum_model_inspector.style import HALO, PAPER, figure_with_layout, in_house_style
 from som_classifier.handedness import mirrored
 from som_classifier.map_activity import NO_WINNER
+from som_classifier.model_maps import ModelMaps
 
 PALE = 0.28  # opacity of the map beneath the trajectory
 CARD = 0.94  # side of a visited unit's card, in units of the map

@@ -8,8 +8,10 @@ import numpy as np
 
 from actum import geometry, keys, standard_body
 from actum.arrays import Array, joints_to_array, joints_to_list
+from actum.commands import Command
 from actum.messages import Agent, Joint, Message, Posture, Skeleton
 from actum.node import Counters, Tick
+from actum.parameters import LiveParameters
 from actum.skeletons import INDEX, JOINTS
 from actum.stamps import LostFrames, Order, StampGuard
 from pose_preprocessor.bridging import Bridge
@@ -22,6 +24,9 @@ from pose_preprocessor.settings import Settings
 _TORSO = INDEX["torso"]
 ALWAYS = (_TORSO, INDEX["neck"])
 """The joints that every valid posture has, measured or bridged."""
+
+LIVE = ("reach_limit_m", "bone_limit_m")
+"""The settings that may be changed while it runs."""
 
 
 @dataclass
@@ -56,12 +61,18 @@ class PosePreprocessor:
 
     def __init__(self, settings: Settings) -> None:
         self.counters = Counters()
-        self._settings = settings
+        self._use_settings(settings)
+        self._parameters = LiveParameters(settings, LIVE, self._use_settings)
         self._order = StampGuard()
         self._lost = LostFrames()
         self._missing = RecentlyMissing(self.counters)
         self._persons: dict[int, _Person] = {}
         self._previous_ns: int | None = None
+
+    @property
+    def commands(self) -> tuple[Command[Any, Any], ...]:
+        """Reading and changing settings while it runs."""
+        return self._parameters.commands
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
         """Turn a skeleton into one posture per agent, or one that is not valid, for agent 0, when nobody is there."""
@@ -79,6 +90,9 @@ class PosePreprocessor:
         self._forget_absent(message)
         self._missing.report(message.stamp_ns)
         return postures
+
+    def _use_settings(self, settings: Settings) -> None:
+        self._settings = settings
 
     def _postures(self, message: Skeleton, missed: int) -> list[Posture]:
         agents = self._distinct_agents(message)

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from actum.messages import Message
 from actum.node import SECOND_NS, Counters, Source
+from scene_simulator.driven_simulator import DrivenSimulator
 from scene_simulator.everyday import chosen
 from scene_simulator.group import Group
 from scene_simulator.programme import balanced_programme
@@ -17,8 +18,13 @@ DESCRIPTION = "simulated scene, no camera"
 
 def simulator_of(settings: Settings, start_ns: int) -> Source:
     """Build the source; its stamps begin at `start_ns`."""
-    endless = settings.repetitions == 0
-    source = EndlessSimulator(settings, start_ns) if endless else _simulator(settings, start_ns)
+    source: Source
+    if settings.driven:
+        source = DrivenSimulator(settings, start_ns)
+    elif settings.repetitions == 0:
+        source = EndlessSimulator(settings, start_ns)
+    else:
+        source = _simulator(settings, start_ns)
     source.counters.details["source"] = DESCRIPTION
     return source
 

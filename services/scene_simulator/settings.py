@@ -25,4 +25,5 @@ class Settings(ServiceSettings):
     everyday: Choice = Field("none", description="what people do between actions; only: nothing else")
     minutes: float = Field(1.0, ge=0, description="least length of a scene with everyday doings, which fill it up")
     pauses: Pauses = Field("long", description="between actions up to three everyday doings and rests, or at most one")
+    driven: bool = Field(False, description="the person stands still until asked to perform, see the command 'perform'")
     actors: int = Field(1, ge=1, le=MOST_PEOPLE, description="how many act side by side; several have no images")

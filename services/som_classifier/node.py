@@ -4,10 +4,13 @@ from collections.abc import Iterable, Iterator
 from typing import Any, Protocol
 
 from actum import keys
+from actum.commands import Command, NoFields
 from actum.messages import AUTO, Action, Message, Posture, Segment
 from actum.node import Counters, Tick
+from actum.parameters import LiveParameters
 from som_classifier.answers import final_action, ongoing_action, own_mark, partial_action, tensor
 from som_classifier.frames import Frame
+from som_classifier.map_description import MapDescription, map_description
 from som_classifier.model import Model
 from som_classifier.recognition import Recognition
 from som_classifier.segmentation import DEFAULT, Segmentation
@@ -20,6 +23,13 @@ from som_classifier.watched_model import WatchedModel
 
 POLL_TICKS = 5
 """Ticks between two checks of the model file, half a second: a new model seems to be used at once."""
+
+
+LIVE = (
+    "segments", "false_alarms_per_min", "shortest_pause_s", "cooldown_s", "enabled_actions", "disabled_actions",
+    "publish_maps",
+)  # fmt: skip
+"""The settings that may be changed while it runs."""
 
 
 class ModelSource(Protocol):
@@ -54,6 +64,7 @@ class SomClassifier:
             self._use(model)
         self._source = source
         self._publish_maps = publish_maps
+        self._parameters: tuple[Command[Any, Any], ...] = ()
         self._ticks = 0
         self._sensor = "unknown"
 
@@ -62,10 +73,16 @@ class SomClassifier:
         """Build the node as the settings say; the model file need not exist yet."""
         source = WatchedModel(settings.model) if settings.model else None
         node = cls(None, source, settings.publish_maps, settings.segmentation)
+        node._parameters = LiveParameters(settings, LIVE, node._use_settings).commands
         if settings.model is None:
             node.counters.state = "no model: --model (ACTUM_MODEL) names none"
         node._reload()
         return node
+
+    @property
+    def commands(self) -> tuple[Command[Any, Any], ...]:
+        """Reading and changing settings while it runs, and what the model's maps stand for."""
+        return (*self._parameters, Command("maps", NoFields, MapDescription, self._describe_maps))
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
         """Take a posture, a mark or a tick; return the marks, partial and final actions that follow from it."""
@@ -100,6 +117,15 @@ class SomClassifier:
         model = self._source.poll(self.counters) if self._source else None
         if model is not None:
             self._use(model)
+
+    def _use_settings(self, settings: Settings) -> None:
+        self._publish_maps, self._segmentation = settings.publish_maps, settings.segmentation
+        if self._model is not None:
+            self._use(self._model)
+
+    def _describe_maps(self, _request: NoFields) -> MapDescription:
+        """Tell what the units of the model's maps stand for: a body for each posture, an action for each place."""
+        return map_description(self._model)
 
     def _use(self, model: Model) -> None:
         self._model, self.counters.state = model, self._segmentation.state(model)

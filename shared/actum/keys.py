@@ -123,6 +123,11 @@ def everything(sensor: str = "*") -> str:
     return f"{BASE}/{sensor}/**"
 
 
+def commands_key(sensor: str, service: str) -> str:
+    """Build the key that lists a service's commands; those of the commands themselves have their name below it."""
+    return f"{BASE}/{chunk(sensor)}/command/{chunk(service)}"
+
+
 def alive(sensor: str, service: str, instance: str) -> str:
     """Build the key of an instance's liveliness token."""
     return f"{BASE}/{chunk(sensor)}/alive/{chunk(service)}/{chunk(instance)}"

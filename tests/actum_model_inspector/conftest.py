@@ -8,9 +8,9 @@ import pytest
 from actum.messages import Segment, Skeleton
 from actum.recording import Recorder, Recording
 from actum_model_inspector.answered import AnsweredSegment, answered_segments
-from actum_model_inspector.model_maps import ModelMaps, maps_of
 from performers import HAND_PATHS, TINY_OF_EACH_KIND, performance
 from recognisers import tiny_model
+from som_classifier.model_maps import ModelMaps, maps_of
 from som_classifier.pyramid_model import PyramidModel
 
 Record = Callable[..., Recording]

@@ -10,8 +10,8 @@ from matplotlib.patches import Rectangle
 from actum.recording import Recording
 from actum_model_inspector.answer_timeline import timeline_picture
 from actum_model_inspector.answered import AnsweredSegment, answered_segments
-from actum_model_inspector.model_maps import ModelMaps, PyramidMaps
 from actum_model_inspector.style import action_colours
+from som_classifier.model_maps import ModelMaps, PyramidMaps
 from som_classifier.pyramid_model import PyramidModel
 
 

@@ -6,12 +6,12 @@ import pytest
 from actum.recording import Recording
 from actum_model_inspector.answer_timeline import answer_timeline, evenly_spaced
 from actum_model_inspector.answered import AnsweredSegment, answered_segments, encoded
-from actum_model_inspector.model_maps import ModelMaps, PaperMaps, PyramidMaps
 from actum_model_inspector.trace_picture import stays
 from actum_model_trainer.evaluation import evaluate
 from handmade import paper_model, pyramid_model
 from people import FRAME_NS
 from performers import mark, performance
+from som_classifier.model_maps import ModelMaps, PaperMaps, PyramidMaps
 from som_classifier.ordered_vector import without_repeats
 
 Record = Callable[..., Recording]

@@ -7,9 +7,9 @@ from actum.recording import Recording
 from actum_model_inspector.answered import AnsweredSegment, answered_segments, encoded
 from actum_model_inspector.contributions import contributions
 from actum_model_inspector.explanation import largest_contributors
-from actum_model_inspector.model_maps import PyramidMaps, maps_of
 from handmade import pyramid_model
 from som_classifier.first_layer import CHANNELS
+from som_classifier.model_maps import PyramidMaps, maps_of
 from som_classifier.pyramid_model import PyramidModel
 
 

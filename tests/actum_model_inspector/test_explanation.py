@@ -14,10 +14,10 @@ from actum.recording import Recording
 from actum_model_inspector.answered import AnsweredSegment, answered_segments, encoded
 from actum_model_inspector.contributions import contributions
 from actum_model_inspector.explanation import explanation_picture
-from actum_model_inspector.model_maps import PyramidMaps
 from actum_model_inspector.style import LEFT, RIGHT
 from actum_model_trainer.answering import encoded as encoded_sample
 from recognisers import tiny_samples
+from som_classifier.model_maps import PyramidMaps
 from som_classifier.pyramid_model import PyramidModel
 
 

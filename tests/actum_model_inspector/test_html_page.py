@@ -8,8 +8,8 @@ from actum.recording import Recording
 from actum_model_inspector.answered import AnsweredSegment
 from actum_model_inspector.html_page import page
 from actum_model_inspector.inspection import Picture, pictures
-from actum_model_inspector.model_maps import ModelMaps
 from actum_model_trainer.evaluation import evaluate
+from som_classifier.model_maps import ModelMaps
 
 
 def shown(maps: ModelMaps, segments: list[AnsweredSegment], recording: Recording) -> tuple[str, list[Picture]]:

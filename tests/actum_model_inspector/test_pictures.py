@@ -19,13 +19,13 @@ from actum_model_inspector.answer_timeline import timeline_picture
 from actum_model_inspector.answered import AnsweredSegment, answered_segments
 from actum_model_inspector.confusion import confusion_picture
 from actum_model_inspector.inspection import Picture, pictures, write
-from actum_model_inspector.model_maps import ModelMaps, PaperMaps, PyramidMaps
 from actum_model_inspector.posture_map import MAX_FIGURES, drawn_units
 from actum_model_inspector.style import action_colours
 from actum_model_trainer.evaluation import Evaluation, Prediction, evaluate
 from handmade import paper_model, pyramid_model
 from people import FRAME_NS, STANDING, lacking, skeleton
 from performers import mark, performance
+from som_classifier.model_maps import ModelMaps, PaperMaps, PyramidMaps
 from som_classifier.paper_model import PaperMetadata, PaperModel
 from som_classifier.supervised import SupervisedLayer
 

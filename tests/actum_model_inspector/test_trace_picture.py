@@ -6,12 +6,12 @@ from matplotlib.colors import to_rgba
 from actum.node import SECOND_NS
 from actum.som import Som
 from actum_model_inspector.answered import AnsweredSegment
-from actum_model_inspector.model_maps import maps_of
 from actum_model_inspector.style import LEFT, RIGHT
 from actum_model_inspector.trace_picture import TIME_COLOURS, free_side, trace_picture
 from actum_model_trainer.answering import encoded
 from actum_model_trainer.samples import SegmentSample
 from recognisers import in_a_mirror, tiny_model, tiny_samples
+from som_classifier.model_maps import maps_of
 
 ABOVE, BELOW = -1, 1
 BONES_OF_A_SIDE = ["elbow", "hand", "knee", "foot"]

@@ -1,6 +1,6 @@
 """The one runtime: everything that knows Zenoh, clocks, signals and threads."""
 
-from actum.runtime.client import Client, Listening, Received
+from actum.runtime.client import Client, Listening, NotAnsweredError, Received
 from actum.runtime.extras import needs_extra
 from actum.runtime.parent import end_with_parent
 from actum.runtime.router import serve_router
@@ -11,6 +11,7 @@ from actum.runtime.waiting import Pace, stop_on_signals
 __all__ = [
     "Client",
     "Listening",
+    "NotAnsweredError",
     "Pace",
     "Received",
     "RouterUnreachableError",

@@ -5,12 +5,13 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 import zenoh
 
 from actum import keys
 from actum.codec import DecodeError, decode
+from actum.commands import MSGPACK, Refusal, packed, unpacked
 from actum.messages import Info, Message
 from actum.runtime.inbox import Subscriber, subscribe
 from actum.runtime.outbox import Outbox
@@ -19,6 +20,10 @@ from actum.settings import ServiceSettings
 
 OPEN_S = 5.0
 """How long a program waits for the router (s) by default."""
+ANSWER_S = 10.0
+"""How long a command may take to be answered (s): a service may be busy with a large message."""
+STARTING_S = 1.0
+"""How long a service that is alive may not answer yet (s): its liveliness may be known before its commands are."""
 POLL_S = 0.05
 """Interval (s) at which a program looks for a subscriber."""
 DEEP_RING = 8192
@@ -33,6 +38,10 @@ class Received:
     message: Message | None
     error: DecodeError | None
     size: int
+
+
+class NotAnsweredError(RuntimeError):
+    """Nobody answered a command in time."""
 
 
 class Listening:
@@ -131,6 +140,25 @@ class Client:
         replies = self._session.get(keys.pattern(keys.INFO, self.sensor), timeout=1.0, consolidation=every)
         messages = [_received(reply.ok).message for reply in replies if reply.ok is not None]
         return [info for info in messages if isinstance(info, Info)]
+
+    def ask(self, service: str, command: str = "", timeout_s: float = ANSWER_S, **fields: Any) -> dict[str, Any]:
+        """Ask a service of this sensor for a command, or without one for the list of its commands; return its reply.
+
+        Raises:
+            Refusal: the service does not carry it out, and says why.
+            NotAnsweredError: no such service answered in time.
+        """
+        key = "/".join(filter(None, [keys.commands_key(self.sensor, service), command]))
+        patient_until_s = time.monotonic() + min(timeout_s, STARTING_S)
+        while True:
+            for reply in self._session.get(key, payload=packed(fields, MSGPACK), encoding=MSGPACK, timeout=timeout_s):
+                if reply.ok is not None:
+                    return unpacked(reply.ok.payload.to_bytes(), str(reply.ok.encoding))
+                if reply.err is not None and str(reply.err.encoding).startswith(MSGPACK):
+                    raise Refusal(unpacked(reply.err.payload.to_bytes(), MSGPACK)["error"])
+            if time.monotonic() > patient_until_s:
+                raise NotAnsweredError(f"{service} of sensor {self.sensor} does not answer: see 'actum doctor'")
+            threading.Event().wait(POLL_S)
 
     def connected(self) -> bool:
         """Tell whether there is a router now."""

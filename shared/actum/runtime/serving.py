@@ -16,8 +16,10 @@ from pydantic import ValidationError
 from actum import keys
 from actum.codec import DecodeError, decode, encode
 from actum.command_line import from_command_line
+from actum.commands import Commanded
 from actum.messages import Message
-from actum.node import TICK_NS, Counters, Node, Source, Tick
+from actum.node import TICK_NS, Node, Source, Tick
+from actum.runtime.commanding import Commander
 from actum.runtime.inbox import Inbox
 from actum.runtime.meter import Meter
 from actum.runtime.outbox import Outbox
@@ -87,13 +89,14 @@ def _live(service: "Service", settings: ServiceSettings) -> None:
 class Service(ABC):
     """The part common to nodes and sources: start and end, the one instance per sensor, status and description."""
 
-    def __init__(self, name: str, counters: Counters, settings: ServiceSettings) -> None:
-        self.name = name
+    def __init__(self, what: Node | Source, settings: ServiceSettings) -> None:
+        self.name, counters = what.name, what.counters
         self.failed = False
+        self._commands = what.commands if isinstance(what, Commanded) else ()
         self._settings = settings
         self._counters = counters
         self._state_log = StateLog(counters)
-        self._meter = Meter(name, counters, settings)
+        self._meter = Meter(self.name, counters, settings)
         self._lock = threading.Lock()
 
     def introduce(self) -> None:
@@ -112,7 +115,9 @@ class Service(ABC):
         if not place.take(stop, settling_s):
             return
         info = keys.key(keys.INFO, self._settings.sensor, self.name)
-        queryable = session.declare_queryable(info, self._answer_info)
+        queryables = [session.declare_queryable(info, self._answer_info)]
+        if self._commands:
+            queryables.append(self._commander(stop).declare(session))
         reporter = Reporter(self._meter, self._state_log, self._settings, self._lock)
         reporting = threading.Thread(target=reporter.report, args=(session, place, stop, self._healthy), daemon=True)
         reporting.start()
@@ -121,7 +126,8 @@ class Service(ABC):
         finally:
             stop.set()
             reporting.join(timeout=0.5)
-            queryable.undeclare()
+            for queryable in queryables:
+                queryable.undeclare()
             place.leave()
 
     @abstractmethod
@@ -130,6 +136,13 @@ class Service(ABC):
 
     def _healthy(self) -> bool:
         return True
+
+    def _commander(self, stop: threading.Event) -> Commander:
+        def failed() -> None:
+            self.failed = True
+            stop.set()
+
+        return Commander(self._commands, self._settings, self.name, self._counters, self._lock, failed)
 
     def _answer_info(self, query: zenoh.Query) -> None:
         with query:
@@ -142,7 +155,7 @@ class NodeService(Service):
     """Runs a node: gives it messages and ticks, and puts the messages that it returns."""
 
     def __init__(self, node: Node, settings: ServiceSettings) -> None:
-        super().__init__(node.name, node.counters, settings)
+        super().__init__(node, settings)
         self._node = node
         self._inbox: Inbox | None = None
 
@@ -194,7 +207,7 @@ class SourceService(Service):
     """Runs a source: puts each of its frames when the stamp is due."""
 
     def __init__(self, source: Source, settings: ServiceSettings) -> None:
-        super().__init__(source.name, source.counters, settings)
+        super().__init__(source, settings)
         self._source = source
 
     def _work(self, _session: zenoh.Session, outbox: Outbox, stop: threading.Event, _vacant_s: float) -> None:

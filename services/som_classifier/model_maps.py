@@ -7,9 +7,7 @@ import numpy as np
 
 from actum.arrays import Floats, Indices
 from actum.node import SECOND_NS
-from actum.skeletons import INDEX
 from actum.som import Som
-from actum_model_inspector.stick_figures import ONE_LIMB, STANDING, WHOLE_BODY, StickFigure
 from som_classifier.attention import ALL
 from som_classifier.frames import Frame
 from som_classifier.map_activity import soft_activity
@@ -17,8 +15,8 @@ from som_classifier.model import Model
 from som_classifier.paper_model import PaperModel
 from som_classifier.pyramid_model import PyramidModel
 
-TORSO_FROM_HIPS_M = STANDING[INDEX["torso"]] - STANDING[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0)
-"""The torso relative to the hips' middle of somebody who stands, (3,)."""
+TORSO_FROM_HIPS_M = np.array([0.0, 0.24, 0.0])
+"""The torso relative to the hips' middle of somebody who stands, (3,): metres to the left, up and forward."""
 
 
 class ModelMaps(ABC):
@@ -28,13 +26,13 @@ class ModelMaps(ABC):
         model: the model that the maps belong to.
         postures: the first map.
         actions: the second map.
-        figure: which of the joints that a unit of the first map stands for are joined by lines.
+        shows_bodies: whether a unit of the first map stands for all joints; else it does for those of one limb.
     """
 
     model: Model
     postures: Som
     actions: Som
-    figure: StickFigure
+    shows_bodies: bool
 
     @abstractmethod
     def unit_joints(self) -> Floats:
@@ -60,7 +58,7 @@ class ModelMaps(ABC):
 class PyramidMaps(ModelMaps):
     """The maps of the default recogniser."""
 
-    figure = WHOLE_BODY
+    shows_bodies = True
 
     def __init__(self, model: PyramidModel) -> None:
         self.model: PyramidModel = model
@@ -95,7 +93,7 @@ class PaperMaps(ModelMaps):
     def __init__(self, model: PaperModel) -> None:
         self.model: PaperModel = model
         self.postures, self.actions = model.layer1, model.layer2
-        self.figure = WHOLE_BODY if model.metadata.posture.attention == ALL else ONE_LIMB
+        self.shows_bodies = model.metadata.posture.attention == ALL
 
     def unit_joints(self) -> Floats:
         """Return the joints that each unit of the first map stands for, metres from the torso, (units, 3 or 15, 3)."""
@@ -123,7 +121,7 @@ def maps_of(model: Model) -> ModelMaps:
     """Return a model's maps.
 
     Raises:
-        TypeError: it is of a kind without pictures.
+        TypeError: it is of a kind without maps.
     """
     match model:
         case PyramidModel():
@@ -131,7 +129,7 @@ def maps_of(model: Model) -> ModelMaps:
         case PaperModel():
             return PaperMaps(model)
         case _:
-            raise TypeError(f"no pictures of a model of kind {model.metadata.kind!r}")
+            raise TypeError(f"no maps of a model of kind {model.metadata.kind!r}")
 
 
 def complete_weights(model: PyramidModel, frames: Sequence[Frame]) -> Sequence[float]:

@@ -1,0 +1,143 @@
+"""Commands: what a service does when asked by a Zenoh query, beside the messages that it handles."""
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
+
+import msgpack
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+Q = TypeVar("Q", bound="Request")
+A = TypeVar("A", bound=BaseModel)
+JSON = "application/json"
+"""Encoding of requests and replies unless the asker uses MessagePack."""
+MSGPACK = "application/msgpack"
+"""The other encoding: it holds bytes as they are."""
+MAX_REQUEST_BYTES = 8_000_000
+"""Largest request (bytes): a piece of an uploaded video, as base64, and room to spare."""
+
+
+class Refusal(ValueError):  # noqa: N818 - it is an answer, not a fault
+    """A command that is not carried out; the text says why and what to do."""
+
+
+class Request(BaseModel):
+    """The fields of a command; unknown ones are refused, since a misspelt option would be silently ignored."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class NoFields(Request):
+    """A command without fields."""
+
+
+@dataclass(frozen=True)
+class Command(Generic[Q, A]):
+    """A command that a service offers.
+
+    Attributes:
+        name: the last chunk of its key.
+        request: its fields.
+        reply: what is answered.
+        handler: does it; quickly, since the service handles no message meanwhile. Its docstring's first line describes
+            the command. It raises `Refusal` where the command cannot be carried out.
+    """
+
+    name: str
+    request: type[Q]
+    reply: type[A]
+    handler: Callable[[Q], A]
+
+    @property
+    def description(self) -> str:
+        """What it does, in a line."""
+        return (self.handler.__doc__ or "").strip().partition("\n")[0]
+
+    def obey(self, fields: dict[str, Any]) -> dict[str, Any]:
+        """Carry the command out and return the reply's fields, plain values and bytes.
+
+        Raises:
+            Refusal: the fields are wrong, or the handler refuses.
+        """
+        try:
+            request = self.request.model_validate(fields)
+        except ValidationError as error:
+            raise Refusal(f"{self.name}: {_problems(error)}") from None
+        return self.handler(request).model_dump()
+
+
+class CommandDescription(BaseModel):
+    """A command in the list of a service's commands."""
+
+    name: str
+    """The last chunk of its key."""
+    description: str
+    """What it does, in a line."""
+    request: dict[str, Any]
+    """JSON Schema of its fields."""
+    reply: dict[str, Any]
+    """JSON Schema of the answer."""
+
+
+class Commands(BaseModel):
+    """All commands of a service."""
+
+    commands: list[CommandDescription]
+    """In the order of their names."""
+
+
+@runtime_checkable
+class Commanded(Protocol):
+    """A node or source that offers commands."""
+
+    @property
+    def commands(self) -> Sequence[Command[Any, Any]]:
+        """The commands, with different names."""
+        ...
+
+
+def described(commands: Sequence[Command[Any, Any]]) -> Commands:
+    """Return the list of commands that a service answers with when it is asked for none of them."""
+    return Commands(
+        commands=[
+            CommandDescription(
+                name=each.name,
+                description=each.description,
+                request=each.request.model_json_schema(),
+                reply=each.reply.model_json_schema(),
+            )
+            for each in sorted(commands, key=lambda each: each.name)
+        ]
+    )
+
+
+def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
+    """Decode the fields of a request or a reply; without payload there are none.
+
+    Raises:
+        Refusal: it is too large, or no JSON object or MessagePack map.
+    """
+    if len(payload) > MAX_REQUEST_BYTES:
+        raise Refusal(f"a request of {len(payload)} bytes: at most {MAX_REQUEST_BYTES} are taken")
+    if not payload:
+        return {}
+    try:
+        fields = msgpack.unpackb(payload) if encoding.startswith(MSGPACK) else json.loads(payload)
+    except (ValueError, TypeError, RecursionError, msgpack.exceptions.UnpackException) as error:
+        raise Refusal(f"a request that cannot be read ({error}): send a JSON object, or {MSGPACK}") from None
+    if not isinstance(fields, dict) or not all(isinstance(name, str) for name in fields):
+        raise Refusal(f"a request that is no object: {type(fields).__name__}")
+    return fields
+
+
+def packed(fields: dict[str, Any], encoding: str) -> bytes:
+    """Encode fields as MessagePack where that is the encoding, and as JSON elsewhere."""
+    if encoding.startswith(MSGPACK):
+        return bytes(msgpack.packb(fields, use_bin_type=True))
+    return json.dumps(fields, ensure_ascii=False, allow_nan=False).encode()
+
+
+def _problems(error: ValidationError) -> str:
+    problems = error.errors(include_url=False, include_input=False)
+    return "; ".join(f"{'.'.join(map(str, each['loc'])) or 'fields'}: {each['msg']}" for each in problems)
