@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from actum import keys
 from actum.arrays import Array
 from actum.messages import Hand
-from actum.node import SECOND_NS, replay
+from actum.node import replay
 from actum.recording import Recording
+from actum_model_trainer.continuous.detections import Found, Stretch, Truth
+from actum_model_trainer.continuous.presence import LONGEST_BREAK_NS
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.recorded_segments import FrameCollector, classifier_input, why_unusable
 from som_classifier.frames import Frame
@@ -84,9 +86,17 @@ class LabelledStream:
     depth_inferred: bool = False
 
     @property
+    def marked(self) -> Found:
+        """What the person did, and when the person was seen."""
+        return Found(
+            truths=[Truth(self.file, self.agent, *segment) for segment in self.segments],
+            seen=[Stretch(self.file, self.agent, *run_ns) for run_ns in self.runs_ns],
+        )
+
+    @property
     def runs_ns(self) -> list[tuple[int, int]]:
-        """The first and the last stamp of each time in which the person was seen without a break of a second."""
-        after = np.flatnonzero(np.diff(self.stamps_ns) > SECOND_NS) + 1
+        """The first and the last stamp of each time in which the person was seen without a longer break."""
+        after = np.flatnonzero(np.diff(self.stamps_ns) > LONGEST_BREAK_NS) + 1
         runs = np.split(self.stamps_ns, after)
         return [(int(run[0]), int(run[-1])) for run in runs]
 

@@ -59,7 +59,7 @@ class PyramidModel(Model):
     heads: CompletenessHeads | None = None
 
     def __post_init__(self) -> None:
-        if problem := self.metadata.problem() or self._array_problem():
+        if problem := self.metadata.problem() or self._number_problem() or self._shape_problem():
             raise ValueError(problem)
 
     @property
@@ -196,16 +196,20 @@ class PyramidModel(Model):
         """Return the actions' scores on the discriminants, weighted by stage, shape (actions,)."""
         return self.stages.scores(self.pyramid.vector(self.prefix_sums(activities)), stages)
 
-    def _array_problem(self) -> str | None:
-        """Return the first inconsistency of an array with the metadata or other arrays, None where there is none."""
-        first, units = self.first, len(self.action_map.som.weights)
-        actions, stages = len(self.metadata.labels), len(self.metadata.fractions)
-        if len({som.dtype for som in first.maps}) > 1:
+    def _number_problem(self) -> str | None:
+        """Return the first array whose numbers are not of the kind they have to be, None where there is none."""
+        if len({som.dtype for som in self.first.maps}) > 1:
             return "its maps are not of the same precision"
         outside_maps = [self.stages.axes, self.stages.offsets, self.action_map.mean]
         outside_maps += [] if self.heads is None else [self.heads.axes, self.heads.offsets]
         if not all(array.dtype == np.float32 and np.isfinite(array).all() for array in outside_maps):
             return "its axes, their offsets or its mean are not finite single-precision numbers"
+        return None
+
+    def _shape_problem(self) -> str | None:
+        """Return the first inconsistency of a shape with the metadata or other arrays, None where there is none."""
+        first, units = self.first, len(self.action_map.som.weights)
+        actions, stages = len(self.metadata.labels), len(self.metadata.fractions)
         shapes = {
             "maps of the first layer": ({len(som.weights) for som in first.maps}, {len(first.postures.weights)}),
             "map of postures": (first.postures.weights.shape[1:], (3 * len(JOINTS),)),

@@ -28,6 +28,9 @@ from actum_command.segment_changes import dropped, moved, relabelled
 from actum_model_trainer.cutting.marks import free_names, marks_of
 from som_classifier.model_loading import ModelError, load_model
 
+RIGHT_ALIGNED = (True, True, True, True, False, False, False, False)
+"""Which columns of the list hold numbers."""
+
 app = PlainTyper(
     cls=ListingGroup,
     no_args_is_help=True,
@@ -169,10 +172,6 @@ def picture(
     except (RecordingError, ModelError, OSError) as error:
         fail(str(error))
     say(f"{len(segments)} segments drawn: {output}")
-
-
-RIGHT_ALIGNED = (True, True, True, True, False, False, False, False)
-"""Which columns of the list hold numbers."""
 
 
 def _row(segment: LabelledSegment, first_ns: int) -> tuple[str, ...]:

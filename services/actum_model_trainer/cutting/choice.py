@@ -52,7 +52,7 @@ class Chains:
     """
 
     def __init__(self, course: Course, rest: Array, most: int = MOST_REPETITIONS) -> None:
-        self._movement = movement_about(course, rest, RATE_HZ)
+        self._movement = movement_about(course, rest)
         self.activity = self._movement.activity
         bursts = bursts_of(self._movement)
         self._bursts = bursts[_ways_m(course, bursts) >= LEAST_WAY_M]

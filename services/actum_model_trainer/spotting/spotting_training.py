@@ -11,18 +11,14 @@ import numpy as np
 
 from actum.arrays import Array
 from actum.node import SECOND_NS
-from actum_model_trainer.continuous.detections import Stretch, Truth
+from actum_model_trainer.continuous.detections import Found
 from actum_model_trainer.continuous.scoring import background_min
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.common_head import mixed, mixed_heads
+from actum_model_trainer.spotting.logistic_regression import logistic_fit
 from actum_model_trainer.spotting.scanning import Folds, ScannedStream, scanned
-from actum_model_trainer.spotting.threshold_choice import (
-    ThresholdChoice,
-    chosen_threshold,
-    false_alarms,
-    logistic_fit,
-)
+from actum_model_trainer.spotting.threshold_choice import ThresholdChoice, chosen_threshold, false_alarms
 from actum_model_trainer.spotting.training_windows import training_windows, true_completeness, with_false_alarms
 from actum_model_trainer.spotting.window_vectors import trained_heads
 from som_classifier.presets import PyramidPreset
@@ -131,6 +127,5 @@ def _probability(scanned: Sequence[ScannedStream], labels: Sequence[str]) -> lis
 
 def _background_s(streams: Sequence[LabelledStream]) -> float:
     """Return for how long people did none of the labelled actions (s)."""
-    seen = [Stretch(each.file, each.agent, *run_ns) for each in streams for run_ns in each.runs_ns]
-    truths = [Truth(each.file, each.agent, *segment) for each in streams for segment in each.segments]
-    return 60 * background_min(seen, truths)
+    marked = sum((stream.marked for stream in streams), Found())
+    return 60 * background_min(marked.seen, marked.truths)
