@@ -183,8 +183,8 @@ OF_BRIDGE: Mapping[str, Problem] = {
 
 OF_TRAINER: Mapping[str, Problem] = {
     "lost_take": Problem(
-        "The take that was being recorded could not be written; it is lost, and all before it is there.",
-        "Make room on the disk of `ACTUM_TRAINER_DATA`, and record it again.",
+        "The take that was being recorded is lost: it could not be written, or the sensor has begun anew meanwhile.",
+        "Record it again; where the disk of `ACTUM_TRAINER_DATA` is full, make room.",
     ),
     "lost_model": Problem(
         "Somebody has replaced the model in use, and no copy of it could be kept to return to.",

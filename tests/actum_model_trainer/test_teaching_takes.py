@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from actum import keys
-from actum.commands import Refusal
+from actum.commands import Refusal, described
 from actum.messages import Segment
 from actum.recording import Recording
 from repeating import FRAME_NS, Stream, rest
@@ -156,3 +156,40 @@ def test_the_state_is_told_with_each_change_but_not_too_often(teacher: Teacher) 
     teacher.told.clear()
     teacher.teach("wave", WAVES)
     assert len(teacher.told) < 5.5 * teacher.told[-1].recording.seconds
+
+
+def test_a_take_is_lost_where_the_sensor_begins_anew_and_says_so(teacher: Teacher) -> None:
+    teacher.ask("record", set="kitchen", label="wave")
+    frames = Stream().repeat(WAVES[:2]).skeletons(first_ns=10**12)
+    teacher.see(frames)
+    teacher.see([frames[0].model_copy(update={"session_id": "another", "stamp_ns": 5})])
+    told = teacher.tick()
+    assert told.recording is not None and told.recording.phase == "done"
+    assert "begun anew" in told.recording.doubts[0]
+    assert teacher.trainer.counters.rejects["lost_take"] == 1
+    assert teacher.examples() == [] and not list(teacher.folder.rglob("*.mcap*"))
+
+
+def test_frames_that_come_late_or_twice_are_left_out(teacher: Teacher) -> None:
+    teacher.ask("record", set="kitchen", kind="background")
+    frames = Stream().repeat(WAVES[:2]).skeletons(first_ns=10**9)
+    teacher.see([*frames[:50], frames[20], frames[49], *frames[50:]])
+    teacher.ask("stop")
+    stored = Recording(teacher.folder / "sets/kitchen/take-0001.mcap").messages((keys.SKELETON,))
+    assert [each.stamp_ns for each in stored] == [each.stamp_ns for each in frames]
+
+
+def test_somebody_who_only_stands_is_not_counted(teacher: Teacher) -> None:
+    teacher.ask("record", set="kitchen", label="wave")
+    teacher.see(Stream().then(rest(20)).skeletons(noise_m=0.008, first_ns=10**9))
+    told = teacher.tick().recording
+    teacher.ask("discard")
+    assert told is not None and (told.counted, told.phase) == (0, "waiting")
+
+
+def test_every_command_says_what_it_does_and_what_each_of_its_fields_is(teacher: Teacher) -> None:
+    for command in described(teacher.trainer.commands).commands:
+        assert command.description.endswith("."), command.name
+        for schema in (command.request, command.reply):
+            for name, field in schema.get("properties", {}).items():
+                assert field.get("description"), (command.name, name)

@@ -57,7 +57,9 @@ class TakeCommands:
             if self._take.over:
                 self._finish()
         except (OSError, Refusal) as error:
+            state = self._take.state
             self._give_up()
+            self.state = state.model_copy(update={"phase": "done", "counted": 0, "doubts": [str(error)]})
             return str(error)
         return None
 

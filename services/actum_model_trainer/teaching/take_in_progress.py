@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from actum.commands import Refusal
 from actum.messages import MANUAL, Segment, Skeleton, TakeState, segment_marks
 from actum.node import SECOND_NS
 from actum.recording import Recorder
@@ -12,6 +13,7 @@ from actum_model_trainer.teaching.take_files import OF_THE_TAKE, cut_marks
 LONGEST_S = 600.0
 """Longest take (s): forty repetitions with pauses, and what a page can show."""
 NOBODY = "nobody was seen moving, so nothing was kept"
+BEGUN_ANEW = "the sensor has begun anew meanwhile, so nothing was kept: record it again"
 EMPTY = "nobody was seen, so nothing was kept"
 
 
@@ -44,16 +46,23 @@ class TakeInProgress:
         self.state = state
         self._counter = RepetitionCounter(max(state.asked, 1), agent)
         self._marked: dict[str, Marked] = {}
-        self._sensor = ""
+        self._sensor = self._session_id = ""
         self._first_ns: int | None = None
         self._newest_ns = 0
 
     def skeleton(self, skeleton: Skeleton) -> None:
-        """Store a frame and count along; one that is no newer than the one before it is left out."""
-        if skeleton.stamp_ns <= self._newest_ns and self._first_ns is not None:
-            return
+        """Store a frame and count along; one that is no newer than the one before it is left out.
+
+        Raises:
+            Refusal: the sensor's clock has begun anew.
+            OSError: it cannot be stored.
+        """
         if self._first_ns is None:
-            self._first_ns = skeleton.stamp_ns
+            self._first_ns, self._session_id = skeleton.stamp_ns, skeleton.session_id
+        elif skeleton.session_id != self._session_id:
+            raise Refusal(BEGUN_ANEW)
+        elif skeleton.stamp_ns <= self._newest_ns:
+            return
         self._sensor, self._newest_ns = skeleton.sensor, skeleton.stamp_ns
         self.recorder.write(skeleton)
         self._counter.take(skeleton)
