@@ -8,6 +8,7 @@ import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from typing import TypeVar
 
 import zenoh
@@ -41,17 +42,17 @@ TAKEN = 3
 
 def run(settings_type: type[S], build: Callable[[S], Node]) -> None:
     """Run a node as this process's service until SIGTERM or SIGINT."""
-    settings, node = _configured(settings_type, build)
-    _live(NodeService(node, settings), settings)
+    settings, node = configured(settings_type, build)
+    live(NodeService(node, settings), settings)
 
 
 def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
     """Run a source as this process's service until SIGTERM or SIGINT."""
-    settings, source = _configured(settings_type, build)
-    _live(SourceService(source, settings), settings)
+    settings, source = configured(settings_type, build)
+    live(SourceService(source, settings), settings)
 
 
-def _configured(settings_type: type[S], build: Callable[[S], N]) -> tuple[S, N]:
+def configured(settings_type: type[S], build: Callable[[S], N]) -> tuple[S, N]:
     """Read the settings and build the node or source; if they cannot be used, print why and exit with code 2."""
     end_with_parent()
     service = settings_type.__module__.partition(".")[0]
@@ -66,10 +67,21 @@ def _configured(settings_type: type[S], build: Callable[[S], N]) -> tuple[S, N]:
     sys.exit(UNUSABLE)
 
 
-def _live(service: "Service", settings: ServiceSettings) -> None:
+def live(
+    service: "Service",
+    settings: ServiceSettings,
+    beside: Callable[[], AbstractContextManager[None]] = nullcontext,
+) -> None:
+    """Run a service until it is stopped, and end the process; `beside` runs all the while, also without a router."""
     logging.basicConfig(level=os.environ.get("ACTUM_LOG", "INFO"), format=f"{service.name}: %(message)s")
     stop = stop_on_signals()
     service.introduce()
+    with beside():
+        _serve(service, settings, stop)
+    sys.exit(1 if service.failed else 0)
+
+
+def _serve(service: "Service", settings: ServiceSettings, stop: threading.Event) -> None:
     began_s = time.monotonic()
     session = open_session(settings, stop)
     if session is None:
@@ -83,7 +95,6 @@ def _live(service: "Service", settings: ServiceSettings) -> None:
         sys.exit(TAKEN)
     finally:
         session.close()
-    sys.exit(1 if service.failed else 0)
 
 
 class Service(ABC):
