@@ -21,7 +21,7 @@ export function sideOfBone([from, to]) {
 }
 
 // Draws a body whose joints are points [x, y] in pixels, null where one is missing.
-export function drawFigure(context, points, { width = 2, colour = null, head = 0.9 } = {}) {
+export function drawFigure(context, points, { width = 2, colour = null, hollow = false } = {}) {
   context.lineCap = "round";
   context.lineWidth = width;
   for (const bone of BONES) {
@@ -35,11 +35,13 @@ export function drawFigure(context, points, { width = 2, colour = null, head = 0
   }
   const [top, neck] = points;
   if (!top) return;
-  const radius = neck ? Math.max(Math.hypot(top[0] - neck[0], top[1] - neck[1]) * 0.5 * head, width) : 3 * width;
+  const radius = neck ? Math.max(Math.hypot(top[0] - neck[0], top[1] - neck[1]) * 0.45, width) : 3 * width;
   context.fillStyle = colour ?? theme("middle");
   context.beginPath();
   context.arc(...top, radius, 0, 2 * Math.PI);
-  context.fill();
+  if (!hollow) return context.fill();
+  context.strokeStyle = context.fillStyle;
+  context.stroke();
 }
 
 // Projects upright joints (m; x left, y up) from in front onto a square of a size in pixels around a middle.

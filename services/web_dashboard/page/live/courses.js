@@ -4,7 +4,7 @@ import uPlot from "uplot";
 import { colourOf, dark, theme } from "../colours.js";
 import { card, element } from "../elements.js";
 import { link } from "../link.js";
-import { nowNs, shownAgent } from "./people.js";
+import { isShown, nowNs } from "./people.js";
 
 const SPAN_S = 20;
 const REFRESH_MS = 200;
@@ -21,7 +21,7 @@ class Courses {
   constructor(box) {
     Object.assign(this, { box, points: [], labels: [], plot: null });
     link.on("action", ({ agent, final, stamp_ns: stamp, action, confidence, completeness }) => {
-      if (final || agent !== shownAgent() || !action) return;
+      if (final || !isShown(agent) || !action) return;
       this.points.push({ at: stamp / 1e9, label: action, confidence, completeness });
       if (!this.labels.includes(action)) this.labels = [...this.labels, action].sort();
     });
@@ -66,7 +66,7 @@ class Courses {
           { ...axis, size: 26, values: (_, ticks) => ticks.map((s) => (s ? `−${-s} s` : "now")) },
           { ...axis, size: 46, splits: [0, 0.5, 1], values: (_, ticks) => ticks.map((share) => `${100 * share} %`) },
         ],
-        series: [{}, { stroke: theme("muted"), dash: [4, 4], width: 1.5 }, ...this.labels.map((label) => ({ stroke: colourOf(label), width: 3, spanGaps: false }))],
+        series: [{}, { points: { show: false }, stroke: theme("muted"), dash: [4, 4], width: 1.5 }, ...this.labels.map((label) => ({ stroke: colourOf(label), width: 3, points: { show: false } }))],
       },
       this.columns(nowNs() / 1e9),
       this.box,

@@ -7,49 +7,64 @@ import { isThere } from "../waiting.js";
 const HEADS = ["Service", "State", "Messages/s", "Latency p50 / p99", "Lost", "Refused", "Up"];
 const ORDER = ["sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion", "model_trainer", "web_dashboard"];
 const PREFIX = /^actum\/[^/]+\//;
+const LONGEST = 200;     // characters of an error that are shown
+
+const rows = new Map();
+const infos = new Map();
 
 export function health() {
   const body = element("tbody");
   const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
   const table = element("table", {}, element("caption", { class: "unseen" }, "Services"), head, body);
-  new Health(body);
+  link.on("info", (info) => infos.set(info.service, info));
+  link.on("status", (status) => {
+    if (!rows.has(status.service)) add(body, status.service);
+    rows.get(status.service).status = status;
+  });
+  setInterval(() => rows.forEach((row) => row.show()), 1000);
   const scrolled = element("div", { class: "scrolled", tabindex: "0", role: "region", "aria-label": "Table of services" }, table);
   return card("health", "Services", { wide: true }, scrolled);
 }
 
-class Health {
-  constructor(body) {
-    this.body = body;
-    this.statuses = new Map();
-    this.infos = new Map();
-    link.on("status", (status) => this.statuses.set(status.service, status));
-    link.on("info", (info) => this.infos.set(info.service, info));
-    setInterval(() => this.show(), 1000);
+function add(body, name) {
+  rows.set(name, new Row(name));
+  const rank = (service) => (ORDER.includes(service) ? ORDER.indexOf(service) : ORDER.length);
+  const sorted = [...rows.keys()].sort((one, other) => rank(one) - rank(other));
+  body.replaceChildren(...sorted.map((service) => rows.get(service).element));
+}
+
+class Row {
+  constructor(name) {
+    this.name = name;
+    this.about = element("small");
+    this.details = element("dl");
+    this.dot = element("span", { "aria-hidden": "true" });
+    this.state = element("span");
+    this.numbers = HEADS.slice(2).map((head) => element("td", { class: "number", "data-head": head }));
+    const open = element("details", {}, element("summary", {}, name), this.about, this.details);
+    const state = element("td", { "data-head": "State" }, this.dot, this.state);
+    this.element = element("tr", {}, element("th", { scope: "row" }, open), state, ...this.numbers);
   }
 
   show() {
-    const rank = (name) => (ORDER.indexOf(name) + ORDER.length + 1) % (ORDER.length + 1);
-    const names = [...this.statuses.keys()].sort((one, other) => rank(one) - rank(other));
-    this.body.replaceChildren(...names.map((name) => this.row(name, this.statuses.get(name))));
+    const { status } = this;
+    const there = isThere(this.name);
+    const { host, source, model, version } = infos.get(this.name) ?? {};
+    this.about.textContent = [source, model && `model ${model.slice(0, 8)}`, host, version && `actum ${version}`].filter(Boolean).join(" · ");
+    this.dot.className = `dot ${!there ? "trouble" : status.state.startsWith("running") ? "well" : "idle"}`;
+    this.state.textContent = there ? status.state : "silent: it does not run";
+    const { rates, drops, rejects, uptime_s: uptime } = status;
+    const numbers = [there ? total(rates).toFixed(0) : "–", latency(status.latency_ms), total(drops), total(rejects), duration(uptime)];
+    this.numbers.forEach((cell, i) => (cell.textContent = numbers[i]));
+    this.tell({
+      "Messages/s": each(rates), Lost: each(drops), Refused: each(rejects), Counted: each(status.counts),
+      "Latest problem": status.last_error?.slice(0, LONGEST),
+    });
   }
 
-  row(name, status) {
-    const there = isThere(name);
-    const well = there && status.state.startsWith("running");
-    const { host, source, model } = this.infos.get(name) ?? {};
-    const about = [source, model && `model ${model.slice(0, 8)}`, host].filter(Boolean).join(" · ");
-    const state = there ? status.state : "silent: it does not run";
-    const cells = [
-      element("td", {}, element("span", { class: `dot ${well ? "well" : there ? "idle" : "trouble"}`, "aria-hidden": "true" }), state),
-      element("td", { class: "number", title: each(status.rates) }, there ? total(status.rates).toFixed(0) : "–"),
-      element("td", { class: "number" }, latency(status.latency_ms)),
-      element("td", { class: "number", title: each(status.drops) }, String(total(status.drops))),
-      element("td", { class: "number", title: each(status.rejects) }, String(total(status.rejects))),
-      element("td", { class: "number" }, duration(status.uptime_s)),
-    ];
-    cells.forEach((cell, i) => cell.setAttribute("data-head", HEADS[i + 1]));
-    const error = status.last_error && element("small", { class: "error" }, `latest: ${status.last_error.slice(0, 160)}`);
-    return element("tr", {}, element("th", { scope: "row" }, name, element("small", {}, about), error), ...cells);
+  tell(details) {
+    const known = Object.entries(details).filter(([, text]) => text);
+    this.details.replaceChildren(...known.flatMap(([term, text]) => [element("dt", {}, term), element("dd", {}, text)]));
   }
 }
 

@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import { theme } from "../colours.js";
 
-const HEIGHT_M = 0.09;
+const HEIGHT_M = 0.075;
 const FONT_PX = 44;
 const PAD_PX = 18;
 

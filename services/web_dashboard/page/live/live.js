@@ -15,6 +15,6 @@ export const live = {
   name: "live",
   title: "Live",
   mount(section) {
-    section.append(now(), scene(), picture(), neurons(), markSwitch(), timeline(), explanation(), courses(), ...maps(), health());
+    section.append(scene(), now(), picture(), neurons(), courses(), markSwitch(), timeline(), explanation(), ...maps(), health());
   },
 };

@@ -4,10 +4,11 @@ import { drawFigure, fromInFront } from "../body.js";
 import { colourOf, learn, theme } from "../colours.js";
 import { card, drawn, element } from "../elements.js";
 import { link } from "../link.js";
-import { newestPosture, shownAgent } from "./people.js";
+import { isShown, newestPosture, shownAgent } from "./people.js";
 
 const ASK_MS = 4000;       // interval of asking for the maps until there are some
-const WAY = 75;            // units of the running trace, at most the last 2.5 s at 30 Hz
+const WAY = 45;            // units of the running trace: the last seconds
+const NEWEST = 0.4;        // share of the newest posture in the smoothed one, as the classifier smooths, too
 const KEPT_MS = 5000;      // for how long the trace of an answer stays
 
 export function maps() {
@@ -16,35 +17,47 @@ export function maps() {
     actions: element("canvas", { role: "img", "aria-label": "Map of actions, coloured by action" }),
   };
   const captions = { postures: element("p", { class: "caption" }), actions: element("p", { class: "caption legend" }) };
-  const views = new Maps(canvases, captions);
-  views.ask();
+  const traces = element("button", { type: "button", class: "small", hidden: true }, "Show the traces of answers");
+  new Maps(canvases, captions, traces);
   return [
-    card("postures", "Map of postures", {}, element("div", { class: "map" }, canvases.postures), captions.postures),
+    card("postures", "Map of postures", { controls: [traces] }, element("div", { class: "map" }, canvases.postures), captions.postures),
     card("actions", "Map of actions", {}, element("div", { class: "map" }, canvases.actions), captions.actions),
   ];
 }
 
 class Maps {
-  constructor(canvases, captions) {
-    Object.assign(this, { captions, model: null, postures: null, actions: null, way: [], told: null, answer: null });
+  constructor(canvases, captions, traces) {
+    Object.assign(this, { captions, traces, model: null, postures: null, actions: null, way: [], told: null, smooth: null, answer: null });
     this.drawPostures = drawn(canvases.postures, (context, width, height) => this.draw(context, width, height, this.postures, "postures"));
     this.drawActions = drawn(canvases.actions, (context, width, height) => this.draw(context, width, height, this.actions, "actions"));
     link.on("frame", () => this.follow());
-    link.on("action", (action) => action.final && action.agent === shownAgent() && this.take(action));
+    link.on("action", (action) => action.final && isShown(action.agent) && this.take(action));
     link.on("info", ({ model }) => model && model !== this.model && this.ask());
+    link.on("state", ({ router }) => router && !this.postures && this.ask());
+    traces.addEventListener("click", () => this.askForTraces());
     setInterval(() => !this.postures && this.ask(), ASK_MS);
   }
 
   async ask() {
-    if (this.asking) return;
+    if (this.asking || !link.state.router) return;
     this.asking = true;
     try {
       const { model, posture_map: postures, action_map: actions } = await link.ask("som_classifier", "maps");
+      if (!postures) throw new Error("the classifier has no model");
       this.use(model, postures, actions);
     } catch (error) {
       this.captions.postures.textContent = this.captions.actions.textContent = `No maps: ${error.message}`;
     }
     this.asking = false;
+  }
+
+  async askForTraces() {
+    try {
+      await link.ask("som_classifier", "set_parameters", { values: { publish_maps: true } });
+      this.traces.hidden = true;
+    } catch (error) {
+      this.captions.postures.textContent = `No traces: ${error.message}`;
+    }
   }
 
   use(model, postures, actions) {
@@ -61,16 +74,18 @@ class Maps {
   // Adds the unit that is nearest to the shown person's newest posture.
   follow() {
     const posture = newestPosture(shownAgent());
-    if (!this.postures || !posture?.upright || posture.stamp_ns === this.told) return;
+    if (!this.postures?.bodies || !posture?.upright || posture.stamp_ns === this.told) return;
     this.told = posture.stamp_ns;
-    const unit = nearest(this.postures.bodies, posture.upright);
+    this.smooth = smoothed(this.smooth, posture.upright);
+    const unit = nearest(this.postures.bodies, this.smooth);
     if (unit !== null && unit !== this.way.at(-1)) this.way.push(unit);
     if (this.way.length > WAY) this.way.shift();
     this.drawPostures();
   }
 
   // Takes the trace and the activity of an answer, where the classifier puts them.
-  take({ action, trace, maps: active }) {
+  take({ valid, action, trace, maps: active }) {
+    this.traces.hidden = Boolean(trace) || !valid;
     this.answer = { action, trace: trace && numbers(trace), active: active?.actions && numbers(active.actions), at: performance.now() };
     this.drawPostures();
     this.drawActions();
@@ -99,7 +114,7 @@ class Maps {
     context.scale(ratio, ratio);
     for (let unit = 0; unit < map.rows * map.columns; unit++) {
       const [x, y] = place(Math.floor(unit / map.columns), unit % map.columns);
-      if (name === "postures") drawBody(context, map.bodies[unit], x, y, size);
+      if (name === "postures") drawBody(context, map.bodies?.[unit], x, y, size);
       else drawCell(context, map.labels[unit], x, y, size);
     }
     this.backgrounds[name] = { key, canvas };
@@ -108,8 +123,9 @@ class Maps {
 }
 
 function drawBody(context, body, x, y, size) {
-  context.globalAlpha = 0.75;
-  if (body) drawFigure(context, fromInFront(body, x, y, size), { width: Math.max(size / 22, 0.8) });
+  context.globalAlpha = 0.8;
+  if (body) drawFigure(context, fromInFront(body, x, y, size * 1.15), { width: Math.max(size / 16, 1) });
+  else drawFigure(context, [[x, y]], { width: size / 20 });
   context.globalAlpha = 1;
 }
 
@@ -170,6 +186,13 @@ function drawUnit(context, [x, y], body, size) {
   context.fill();
   context.stroke();
   if (body) drawFigure(context, fromInFront(body, x, y, radius * 1.75), { width: 2 });
+}
+
+function smoothed(before, joints) {
+  return joints.map((joint, i) => {
+    const old = before?.[i];
+    return joint && old ? joint.map((value, axis) => old[axis] + NEWEST * (value - old[axis])) : joint;
+  });
 }
 
 // Returns the index of the body that is nearest to upright joints, by the joints that both have; null without any.

@@ -55,10 +55,10 @@ class Now {
   showEvent(event) {
     const ago = Math.max(0, (nowNs() - event.end_ns) / 1e9);
     const when = ago < RECENT_S ? "Just now" : ago < 90 ? `${Math.round(ago)} s ago` : `${Math.round(ago / 60)} min ago`;
-    const who = event.agent ? ` · person ${event.agent}` : "";
+    const who = event.agent ? `, person ${event.agent}` : "";
     if (!event.valid) return this.tell(`${when}${who}`, "not answered", event.reason, null, null);
     const what = event.unknown ? "unknown" : event.action;
-    this.tell(`${when}${who}`, what, objectOf(event), event.action, null);
+    this.tell(`${when}${who}, ${percent(event.confidence)} sure`, what, objectOf(event), event.action, null);
   }
 
   tell(kicker, action, object, coloured, completeness) {
@@ -69,12 +69,11 @@ class Now {
     parts.action.style.setProperty("--action", coloured ? colourOf(coloured) : "transparent");
     parts.done.classList.toggle("idle", completeness === null);
     parts.done.setAttribute("aria-valuenow", String(Math.round(100 * (completeness ?? 0))));
-    parts.done.firstChild.style.width = percent(Math.min(completeness ?? 0, 1));
+    parts.done.firstChild.style.width = `${100 * Math.min(completeness ?? 0, 1)}%`;
   }
 }
 
-// What was acted on and what became of it, in words: `box 2 · 0.18 m up · 96 % sure`.
-export function objectOf({ object, result, why, confidence }) {
-  const what = object ? `${object.name} ${object.id}` : (why ?? "no object");
-  return [what, result, `${percent(confidence)} sure`].filter(Boolean).join(" · ");
+// What was acted on and what became of it, in words: `box 2 · 0.18 m up`.
+function objectOf({ object, result, why }) {
+  return [object ? `${object.name} ${object.id}` : (why ?? "no object"), result].filter(Boolean).join(" · ");
 }

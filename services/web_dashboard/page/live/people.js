@@ -20,6 +20,11 @@ export function shownAgent() {
   return people.present.includes(people.chosen) ? people.chosen : (people.present[0] ?? people.chosen);
 }
 
+// Whether what an agent does is shown: also before anybody is known to be there.
+export function isShown(agent) {
+  return agent === (shownAgent() ?? agent);
+}
+
 export function newestSkeleton() {
   return skeleton;
 }

@@ -61,7 +61,7 @@ class Picture {
     if (!this.overlay.checked) return;
     const project = projection(this.image, scale);
     const { agents } = this.skeletons.find(({ stamp_ns: stamp }) => stamp === this.image.stamp_ns) ?? newestSkeleton();
-    for (const { joints } of agents) drawFigure(context, joints.map((joint) => joint && project(joint)), { width: 3.5 });
+    for (const { joints } of agents) drawFigure(context, joints.map((joint) => joint && project(joint)), { width: 3.5, hollow: true });
     for (const object of this.objects) drawObject(context, object, project(object.position_m));
   }
 }

@@ -12,6 +12,10 @@ import { newestPosture, newestSkeleton, people, shownAgent } from "./people.js";
 const FRAMES = { camera: "Camera", person: "Person" };
 const TURN = Math.PI / 16;    // of one key press
 const ZOOM = 1.15;
+const GRID_M = 4;
+const SQUARE_M = 0.25;
+const STRAYS_M = 0.4;         // how far a person may walk from the middle before the view follows
+const FOLLOWS = 0.04;         // share of the way that the view follows in one frame
 const FLOOR_FOLLOWS = 0.05;   // share of a step of the lowest foot that the floor takes up in one frame
 const UP = new THREE.Vector3(0, 1, 0);
 
@@ -71,7 +75,7 @@ class Stage {
     sun.position.set(1, 3, 2);
     this.grid = new THREE.Group();
     this.world = new THREE.Group();  // level: y up, in metres
-    this.sensor = new THREE.CameraHelper(new THREE.PerspectiveCamera(40, 4 / 3, 0.02, 0.22));
+    this.sensor = new THREE.CameraHelper(new THREE.PerspectiveCamera(50, 4 / 3, 0.02, 0.14));
     this.scene.add(sun, this.grid, this.world, this.sensor);
     this.bodies = new Bodies(this.world);
     this.things = new Things(this.world);
@@ -80,11 +84,13 @@ class Stage {
 
   paint() {
     this.grid.clear();
-    const lines = new THREE.GridHelper(8, 16, theme("grid-strong"), theme("grid"));
+    const lines = new THREE.GridHelper(GRID_M, GRID_M / SQUARE_M, theme("grid-strong"), theme("grid-strong"));
     const shade = new THREE.Mesh(new THREE.CircleGeometry(0.45, 40), new THREE.MeshBasicMaterial({ color: theme("grid"), transparent: true, opacity: 0.6 }));
     shade.rotation.x = -Math.PI / 2;
     shade.position.y = 0.002;
     this.shade = shade;
+    lines.material.transparent = true;
+    lines.material.opacity = 0.55;
     this.grid.add(lines, shade);
     const colour = new THREE.Color(theme("muted"));
     this.sensor.setColors(colour, colour, colour, colour, colour);
@@ -138,16 +144,26 @@ class Stage {
     this.grid.position.y = this.floor;
     const middle = points[2] ?? there[0];
     this.shade.position.set(middle.x, 0.002, middle.z);
-    if (!this.placed) {
-      this.placed = true;
-      this.lookAt(middle);
-    }
+    if (!this.placed) this.lookAt(middle);
+    else this.follow(middle);
+  }
+
+  // Keeps a person who walks in view, without turning or zooming.
+  follow(middle) {
+    const way = middle.clone().sub(this.controls.target).setY(0);
+    if (way.length() < STRAYS_M) return;
+    way.multiplyScalar(FOLLOWS);
+    this.controls.target.add(way);
+    this.camera.position.add(way);
+    this.controls.update();
   }
 
   lookAt(middle) {
-    this.controls.target.set(middle.x, this.floor + 0.85, middle.z);
+    this.placed = true;
+    this.grid.children[0].position.set(Math.round(middle.x), 0, Math.round(middle.z));
+    this.controls.target.set(middle.x, this.floor + 0.82, middle.z);
     const away = this.box.clientWidth < this.box.clientHeight ? 1.35 : 1;
-    const turned = this.frames.value === "person" ? [-0.9, 0.5, 2.5] : [0.85, 0.5, 2.5];
+    const turned = this.frames.value === "person" ? [-1.0, 0.6, 2.9] : [1.0, 0.6, 2.9];
     this.camera.position.set(...turned.map((value) => value * away)).add(this.controls.target);
     this.controls.update();
   }

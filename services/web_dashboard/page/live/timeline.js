@@ -117,7 +117,7 @@ class Lane {
 
 function labelOf({ event, action, end }) {
   if (event?.valid === false) return "?";
-  if (event) return event.unknown ? "unknown" : event.object ? `${event.action} ${event.object.name}` : event.action;
+  if (event) return event.unknown ? "unknown" : event.action;
   if (action) return action.action ?? "?";
   return end === null ? "marking" : "…";
 }
