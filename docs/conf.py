@@ -22,7 +22,7 @@ root_doc = "README"
 PAGES = [
     f"docs/{page}"
     for page in (
-        *("start", "cameras", "objects", "teaching", "messages", "spotting", "som", "operating", "measured"),
+        *("start", "cameras", "objects", "teaching", "messages", "spotting", "som", "operating", "page", "measured"),
         *("paper", "architecture"),
     )
 ]

@@ -20,6 +20,7 @@ PACKAGES = (
     "services/som_classifier",
     "services/marker_tracker",
     "services/action_fusion",
+    "services/web_dashboard",
 )
 REASONS = ("reason", "why", "complaint")
 """The parameters, fields and variables that hold a reason; functions whose names begin so return one."""

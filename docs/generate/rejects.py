@@ -164,8 +164,16 @@ OF_FUSION: Mapping[str, Problem] = {
     ),
 }
 
+OF_PAGE: Mapping[str, Problem] = {
+    "refused_browser": Problem(
+        "A browser was refused: another site's page, an unknown name, a wrong token, a mark or command that is wrong or"
+        " cannot be passed on.",
+        "The latest error says which; see [what the page lets in](page.md#who-gets-in).",
+    ),
+}
+
 GATEWAY, PREPROCESSOR, CLASSIFIER = "sensor_gateway", "pose_preprocessor", "som_classifier"
-TRACKER, FUSION = "marker_tracker", "action_fusion"
+TRACKER, FUSION, PAGE = "marker_tracker", "action_fusion", "web_dashboard"
 COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((), OF_ALL),
     ((PREPROCESSOR, CLASSIFIER, TRACKER, FUSION), OF_NODES),
@@ -176,6 +184,7 @@ COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((CLASSIFIER,), OF_CLASSIFIER),
     ((TRACKER,), OF_TRACKER),
     ((FUSION,), OF_FUSION),
+    ((PAGE,), OF_PAGE),
 )
 """Which services count which kinds; all of them count what the runtime does."""
 

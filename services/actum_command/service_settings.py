@@ -8,11 +8,20 @@ import pose_preprocessor.settings
 import scene_simulator.settings
 import sensor_gateway.settings
 import som_classifier.settings
+import web_dashboard.settings
 from actum.settings import ServiceSettings
 
 DECLARED: Mapping[str, type[ServiceSettings]] = {
     service.__name__: service.settings.Settings
-    for service in (sensor_gateway, scene_simulator, pose_preprocessor, som_classifier, marker_tracker, action_fusion)
+    for service in (
+        sensor_gateway,
+        scene_simulator,
+        pose_preprocessor,
+        som_classifier,
+        marker_tracker,
+        action_fusion,
+        web_dashboard,
+    )
 }
 """The settings of each service, by the service's name."""
 

@@ -64,12 +64,12 @@ class Admission:
             return answer
         return self._refusal(UNAUTHORIZED, TOKEN_NEEDED)
 
-    def _refusal(self, status: int, why: str) -> Response:
-        self._refused(why.partition("\n")[0][:200])
-        return PlainTextResponse(why, status)
+    def _refusal(self, status: int, told: str) -> Response:
+        self._refused(told.partition("\n")[0][:200])
+        return PlainTextResponse(told, status)
 
     def _is_ours(self, host: str) -> bool:
-        """Tell whether a Host header names this page: by an address, or by a name that is known to be this machine's."""
+        """Tell whether a Host header names this page: by an address, or by a name that is known to be its."""
         try:
             name = urlsplit(f"//{host}").hostname or ""
         except ValueError:

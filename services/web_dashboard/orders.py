@@ -96,10 +96,10 @@ class Orders:
         except (ValueError, RuntimeError, TimeoutError) as error:  # refused, not answered, or the session has closed
             return self.refuse(order.id, str(error))
 
-    def refuse(self, number: int | None, why: str) -> str:
+    def refuse(self, number: int | None, refusal: str) -> str:
         """Count a refusal, and return it as an answer."""
-        self.refused.append(why)
-        return text(id=number, error=why)
+        self.refused.append(refusal)
+        return text(id=number, error=refusal)
 
     def _mark(self, number: int, mark: Mark) -> str:
         client = self._connected()

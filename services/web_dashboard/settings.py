@@ -32,6 +32,11 @@ class Settings(ServiceSettings):
         pattern=r"^[A-Za-z0-9_.~-]+$",
         description="the word that opens the page: needed where other machines reach it",
     )
+    page_guarded: bool = Field(
+        False,
+        description="no page-token is needed: who reaches page-host is let in by something else, such as a container's"
+        " port that is published on 127.0.0.1 alone",
+    )
     page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(
         frozenset(), description="names by which browsers may call this machine, beside its own and its addresses"
     )
@@ -43,10 +48,10 @@ class Settings(ServiceSettings):
 
     @model_validator(mode="after")
     def _check_token(self) -> Self:
-        if not self.is_local and self.page_token is None:
+        if not (self.is_local or self.page_guarded or self.page_token):
             raise ValueError(
                 f"page-host {self.page_host} lets other machines in: set page-token (ACTUM_PAGE_TOKEN) to "
-                f"{SHORTEST_TOKEN} characters or more, as `openssl rand -hex 16` prints"
+                f"{SHORTEST_TOKEN} characters or more, as 'openssl rand -hex 16' prints"
             )
         return self
 

@@ -89,7 +89,7 @@ def test_what_nobody_would_heed_is_refused(arguments: tuple[str, ...], reason: s
 
 def test_without_any_the_simulated_scene_is_started(started: BY_NAME) -> None:
     up()
-    assert set(started) == {"scene_simulator", *processes.SERVICES, "scene"}
+    assert set(started) == {"scene_simulator", *processes.SERVICES, "scene", processes.PAGE}
     assert started["scene_simulator"] == []
 
 

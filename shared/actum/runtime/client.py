@@ -76,9 +76,7 @@ class Client:
         RouterUnreachableError: no router answered within `wait_s`.
     """
 
-    def __init__(
-        self, settings: ServiceSettings, wait_s: float = OPEN_S, session: zenoh.Session | None = None
-    ) -> None:
+    def __init__(self, settings: ServiceSettings, wait_s: float = OPEN_S, session: zenoh.Session | None = None) -> None:
         self.sensor = settings.sensor
         self.run = format(time.time_ns() // 1_000_000, "x")
         self._session = session or _open(settings, wait_s)
