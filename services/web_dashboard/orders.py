@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import logging
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from typing import Annotated, Any, Literal, Self
@@ -10,8 +11,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from actum import keys
 from actum.messages import MANUAL, Segment
-from actum.runtime import Client
+from actum.runtime import Client, NotAnsweredError
 from web_dashboard.encoding import text
+
+log = logging.getLogger("actum")
 
 LONGEST_ORDER_BYTES = 1_000_000
 """Bytes of one message from a browser; a video comes in parts of half of that."""
@@ -93,8 +96,11 @@ class Orders:
                 return await loop.run_in_executor(self._marking, self._mark, order.id, order.mark)
             assert order.ask is not None
             return await loop.run_in_executor(self._asking, self._ask, order.id, order.ask)
-        except (ValueError, RuntimeError, TimeoutError) as error:  # refused, not answered, or the session has closed
+        except (ValueError, NotAnsweredError) as error:
             return self.refuse(order.id, str(error))
+        except Exception:
+            log.exception("a bug, met while carrying out an order")
+            return self.refuse(order.id, "the page's service failed: its log says why")
 
     def refuse(self, number: int | None, refusal: str) -> str:
         """Count a refusal, and return it as an answer."""

@@ -32,18 +32,27 @@ def bound_socket(host: str, port: int | None) -> socket.socket:
     trouble: OSError | None = None
     for candidate in PORTS if port is None else (port,):
         try:
-            family, kind, protocol, _, address = socket.getaddrinfo(
-                host, candidate, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
-            )[0]
-            bound = socket.socket(family, kind, protocol)
-            bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            bound.bind(address)
-            bound.listen()
+            return _bound(host, candidate)
         except OSError as error:
             trouble = error
-        else:
-            return bound
-    raise SettingsError(f"no page can be served at {host} port {port}: {trouble}; name another by --page-port")
+    raise SettingsError(
+        f"no page can be served at {host}, port {port or PORTS.start}: {trouble}; name another --page-port"
+    )
+
+
+def _bound(host: str, port: int) -> socket.socket:
+    family, kind, protocol, _, address = socket.getaddrinfo(
+        host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+    )[0]
+    bound = socket.socket(family, kind, protocol)
+    try:
+        bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        bound.bind(address)
+        bound.listen()
+    except OSError:
+        bound.close()
+        raise
+    return bound
 
 
 class PageServer:

@@ -18,6 +18,7 @@ PROGRAMS = {
     "som_classifier": "som_classifier",
     "marker_tracker": "marker_tracker",
     "action_fusion": "action_fusion",
+    "web_dashboard": "web_dashboard",
 }
 """What is run for each service: the simulated scene stands in the gateway's place."""
 pytestmark = pytest.mark.system

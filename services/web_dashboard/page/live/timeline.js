@@ -26,7 +26,9 @@ class Timeline {
     Object.assign(this, { span, lanes, axis, none, rows: new Map() });
     onSegment((segment) => segment.event && newest(segment));
     span.addEventListener("change", () => this.show());
-    setInterval(() => !document.hidden && this.show(), REFRESH_MS);
+    lanes.addEventListener("pointerenter", ({ pointerType }) => (this.pointed = pointerType === "mouse"));
+    lanes.addEventListener("pointerleave", () => (this.pointed = false));
+    setInterval(() => !document.hidden && !this.pointed && this.show(), REFRESH_MS);  // what is pointed at stands still
   }
 
   show() {
