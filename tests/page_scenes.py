@@ -22,6 +22,7 @@ class Scene:
 
     def __init__(self, page: Served) -> None:
         self.page = page
+        self.still = False
         self.stamp_ns = 1_700_000_000_000_000_000
         self._preprocessor = PosePreprocessor(PoseSettings.defaults())
         self._frames = reaches(60)
@@ -44,12 +45,13 @@ class Scene:
             number += 1
 
     def _instant(self, number: int) -> Iterator[Message]:
-        frame = self._frames[number % len(self._frames)].model_copy(update={"stamp_ns": self.stamp_ns, "seq": number})
+        pose = 0 if self.still else number % len(self._frames)
+        frame = self._frames[pose].model_copy(update={"stamp_ns": self.stamp_ns, "seq": number})
         yield frame
         yield from (output for output in self._preprocessor.handle(frame) if isinstance(output, Message))
         if number % 2 == 0:
             yield photograph(self.stamp_ns)
-            yield objects(self.stamp_ns, 0.1 * (number % 60) / 60)
+            yield objects(self.stamp_ns, 0.1 * pose / len(self._frames))
         if number % 30 == 0:
             for name in ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion"):
                 yield status(name, self.stamp_ns)
