@@ -24,7 +24,7 @@ from actum_command.simulated_experiment import train_model
 from actum_command.supervising import Supervisor
 from actum_model_trainer.progress import silent
 
-WIDE: dict[str, Any] = {"viewport": {"width": 1440, "height": 1020}}
+WIDE: dict[str, Any] = {"viewport": {"width": 1440, "height": 1240}}
 PHONE: dict[str, Any] = {"viewport": {"width": 390, "height": 844}, "is_mobile": True, "device_scale_factor": 2}
 PICTURES: dict[str, dict[str, Any]] = {
     "page.png": WIDE | {"color_scheme": "light"},
@@ -32,8 +32,13 @@ PICTURES: dict[str, dict[str, Any]] = {
     "page-phone.png": PHONE | {"color_scheme": "light"},
 }
 PATIENCE_MS = 60_000
-MOMENT_MS = 700
-"""After an event, until the next action begins."""
+MOMENT_MS = 300
+"""Until everything that belongs to an answer is drawn."""
+ANSWERED = (
+    "document.querySelector('#now .kicker').textContent.startsWith('Just now') && "
+    "document.querySelector('#state').textContent === 'live'"
+)
+"""Whether the page shows a new answer, in JavaScript."""
 
 
 def main(folder: Path) -> None:
@@ -68,14 +73,13 @@ def take(browser: Browser, address: str, file: Path, options: dict[str, Any]) ->
     page = browser.new_context(**options).new_page()
     page.goto(address)
     page.wait_for_function("() => document.querySelectorAll('#timeline .segment').length > 3", timeout=PATIENCE_MS)
-    page.wait_for_function(
-        "() => document.querySelector('#now .kicker').textContent.startsWith('It seems')", timeout=PATIENCE_MS
-    )
-    page.wait_for_function(
-        "() => document.querySelector('#now .kicker').textContent.startsWith('Just now')", timeout=PATIENCE_MS
-    )
-    page.wait_for_timeout(MOMENT_MS)
-    page.screenshot(path=file)
+    while True:
+        page.wait_for_function(f"() => !({ANSWERED})", timeout=PATIENCE_MS)
+        page.wait_for_function(f"() => {ANSWERED}", timeout=PATIENCE_MS)
+        page.wait_for_timeout(MOMENT_MS)
+        page.screenshot(path=file)
+        if page.evaluate(f"() => {ANSWERED}"):
+            break
     page.context.close()
 
 

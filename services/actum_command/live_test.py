@@ -110,7 +110,7 @@ class LiveTest:
         while time.monotonic() < deadline_s:
             self._end_if_stopped()
             for page in (info.page for info in client.infos() if info.page is not None):
-                self._tell(f"watch it in a browser: [bold]{page}[/bold]")
+                self._tell(f"watch it in a browser: [bold]{escape(page)}[/bold]")
                 return
             time.sleep(SUBSCRIBER_POLL_S)
 

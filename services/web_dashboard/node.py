@@ -73,6 +73,8 @@ class WebDashboard:
         return self._server.working
 
     def _count(self) -> None:
+        if not self._server.working:
+            raise RuntimeError("the page's server has ended")
         while self._orders.refused:
             self.counters.reject("refused_browser", self._orders.refused.popleft())
         if self._hub.left_out:

@@ -17,6 +17,8 @@ log = logging.getLogger("actum")
 
 PORTS = range(8080, 8180)
 """The ports that are tried where none is set."""
+EVERYWHERE = ("0.0.0.0", "::")
+"""The hosts that stand for all of a machine's addresses; a browser needs its name."""
 PING_S = 20.0
 """Interval (s) of the WebSocket's pings, and how long each may take: then a browser that is gone is forgotten."""
 ENDING_S = 1
@@ -64,7 +66,8 @@ class PageServer:
 
     def __init__(self, application: ASGIApp, listening: socket.socket, host: str) -> None:
         self._socket = listening
-        shown = f"[{host}]" if ":" in host else host
+        named = socket.gethostname() if host in EVERYWHERE else host
+        shown = f"[{named}]" if ":" in named else named
         self.address = f"http://{shown}:{listening.getsockname()[1]}/"
         self._server = uvicorn.Server(
             uvicorn.Config(

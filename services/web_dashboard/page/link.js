@@ -14,6 +14,7 @@ class Link {
     this.callbacks = new Map();
     this.answers = new Map();
     this.newest = new Map();
+    this.cameAt = new Map();
     this.number = 0;
     this.tries = 0;
     this.drawing = false;
@@ -54,6 +55,11 @@ class Link {
       this.answers.set(id, { resolve, reject });
       this.socket.send(text);
     });
+  }
+
+  // For how long nothing of a type has come (ms), drawn or not; Infinity before the first.
+  silentMs(type) {
+    return performance.now() - (this.cameAt.get(type) ?? -Infinity);
   }
 
   open() {
@@ -118,6 +124,7 @@ class Link {
       const { router, connect, silent_s: silentS } = message;
       this.change({ router, connect, silentS, silent: false });
     }
+    this.cameAt.set(message.type, performance.now());
     if (QUEUED.has(message.type) || message.final) return this.tell(message.type, message);
     this.newest.set(`${message.type}/${message.agent ?? message.service ?? ""}`, message);
     if (!this.drawing) {

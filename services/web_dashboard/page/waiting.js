@@ -8,14 +8,10 @@ const NEEDED = ["pose_preprocessor", "som_classifier", "marker_tracker", "action
 
 const status = new Map();
 const began = performance.now();
-let skeletonAt = -Infinity;
 let people = 0;
 
 link.on("status", (message) => status.set(message.service, message));
-link.on("skeleton", ({ agents }) => {
-  skeletonAt = performance.now();
-  people = agents.length;
-});
+link.on("skeleton", ({ agents }) => (people = agents.length));
 
 // Whether a service reports now.
 export function isThere(service) {
@@ -42,7 +38,7 @@ function unreached() {
 }
 
 function withoutSensor() {
-  if (performance.now() - skeletonAt < STILL_MS) return null;
+  if (link.silentMs("skeleton") < STILL_MS) return null;
   const { state } = (isThere("sensor_gateway") && statusOf("sensor_gateway")) || {};
   if (!state) return trouble("Waiting for a sensor: no gateway and no simulated scene runs");
   if (state.startsWith("camera lost") || state === "source ended") return trouble(`The sensor gives nothing: ${state}`);

@@ -3,14 +3,16 @@
 import { colourOf, learn } from "../colours.js";
 import { card, element } from "../elements.js";
 import { link } from "../link.js";
+import { segmentOf } from "./answers.js";
 import { isShown } from "./people.js";
 
 export function neurons() {
   const caption = element("p", { class: "caption" }, "No answer yet.");
   const list = element("ul", { class: "bars", "aria-label": "Activity of each action's neuron" });
   const bars = new Bars(list);
-  link.on("action", ({ agent, activations, action, final }) => {
-    if (!isShown(agent) || !Object.keys(activations).length) return;
+  link.on("action", ({ agent, segment_id: id, activations, action, final }) => {
+    const isLate = !final && segmentOf(id)?.action;
+    if (!isShown(agent) || isLate || !Object.keys(activations).length) return;
     caption.textContent = final ? `Of the last answer, ${action ?? "none"}.` : "Of what goes on now.";
     bars.show(activations, action);
   });

@@ -20,7 +20,7 @@ export function picture() {
 
 class Picture {
   constructor(canvas, none, overlay) {
-    Object.assign(this, { canvas, none, overlay, skeletons: [], objects: [], cameAt: -Infinity, busy: false });
+    Object.assign(this, { canvas, none, overlay, skeletons: [], objects: [], busy: false });
     this.redraw = drawn(canvas, (context, width) => this.draw(context, width));
     link.on("skeleton", (skeleton) => {
       this.skeletons.unshift(skeleton);
@@ -39,7 +39,7 @@ class Picture {
     try {
       const bitmap = await bitmapOf(image);
       this.bitmap?.close();
-      Object.assign(this, { bitmap, image, cameAt: performance.now() });
+      Object.assign(this, { bitmap, image });
       this.canvas.style.aspectRatio = `${image.width} / ${image.height}`;
       this.redraw();
     } catch {
@@ -49,7 +49,7 @@ class Picture {
   }
 
   tellAbsence() {
-    const gone = performance.now() - this.cameAt > GONE_MS;
+    const gone = link.silentMs("image/color") > GONE_MS;
     this.none.hidden = !gone;
     this.canvas.hidden = gone;
   }
