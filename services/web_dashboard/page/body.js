@@ -46,6 +46,6 @@ export function drawFigure(context, points, { width = 2, colour = null, hollow =
 
 // Projects upright joints (m; x left, y up) from in front onto a square of a size in pixels around a middle.
 export function fromInFront(joints, x, y, size) {
-  const scale = size / 2.1;  // a standard body with a raised arm is 2.1 m high
-  return joints.map((joint) => joint && [x + joint[0] * scale, y - (joint[1] + 0.12) * scale]);
+  const scale = size / 2;  // a standard body is 1.7 m high, and its middle 0.2 m below the torso
+  return joints.map((joint) => joint && [x + joint[0] * scale, y - (joint[1] + 0.2) * scale]);
 }

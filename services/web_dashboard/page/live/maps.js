@@ -9,6 +9,7 @@ import { isShown, newestPosture, shownAgent } from "./people.js";
 const ASK_MS = 4000;       // interval of asking for the maps until there are some
 const WAY = 45;            // units of the running trace: the last seconds
 const NEWEST = 0.4;        // share of the newest posture in the smoothed one, as the classifier smooths, too
+const BODY_PX = 44;        // smaller bodies cannot be told apart: where units are closer, only every second is drawn
 const KEPT_MS = 5000;      // for how long the trace of an answer stays
 
 export function maps() {
@@ -63,7 +64,7 @@ class Maps {
   use(model, postures, actions) {
     Object.assign(this, { model, postures, actions, way: [], answer: null, backgrounds: {} });
     learn(new Set(actions.labels.filter(Boolean)));
-    this.captions.postures.textContent = "Each unit as the posture it stands for; the line is the way of the last seconds.";
+    this.captions.postures.textContent = "Bodies are the postures that the units there stand for; the line is the way of the last seconds.";
     const labels = [...new Set(actions.labels.filter(Boolean))].sort();
     this.captions.actions.replaceChildren(...labels.map((label) =>
       element("span", { class: "key" }, element("i", { class: "swatch", style: { "--action": colourOf(label) } }), label)));
@@ -112,10 +113,14 @@ class Maps {
     const canvas = new OffscreenCanvas(width * ratio, height * ratio);
     const context = canvas.getContext("2d");
     context.scale(ratio, ratio);
-    for (let unit = 0; unit < map.rows * map.columns; unit++) {
-      const [x, y] = place(Math.floor(unit / map.columns), unit % map.columns);
-      if (name === "postures") drawBody(context, map.bodies?.[unit], x, y, size);
-      else drawCell(context, map.labels[unit], x, y, size);
+    const step = name === "postures" ? Math.max(Math.round(BODY_PX / size), 1) : 1;
+    for (let row = 0; row + step <= map.rows; row += step) {
+      for (let column = 0; column + step <= map.columns; column += step) {
+        const [x, y] = place(row + (step - 1) / 2, column + (step - 1) / 2);
+        const unit = (row + (step >> 1)) * map.columns + column + (step >> 1);
+        if (name === "postures") drawBody(context, map.bodies?.[unit], x, y, size * step);
+        else drawCell(context, map.labels[unit], x, y, size);
+      }
     }
     this.backgrounds[name] = { key, canvas };
     return canvas;
@@ -124,7 +129,7 @@ class Maps {
 
 function drawBody(context, body, x, y, size) {
   context.globalAlpha = 0.8;
-  if (body) drawFigure(context, fromInFront(body, x, y, size * 1.15), { width: Math.max(size / 16, 1) });
+  if (body) drawFigure(context, fromInFront(body, x, y, size * 1.15), { width: Math.max(size / 18, 1.2) });
   else drawFigure(context, [[x, y]], { width: size / 20 });
   context.globalAlpha = 1;
 }
@@ -175,9 +180,11 @@ function drawWay(context, points, colour, width) {
   context.globalAlpha = 1;
 }
 
-// Draws the unit that wins now, larger than the others.
-function drawUnit(context, [x, y], body, size) {
-  const radius = Math.max(size * 1.1, 22);
+// Draws the unit that wins now, larger than the others, and whole also at the edge.
+function drawUnit(context, place, body, size) {
+  const radius = Math.max(size * 1.1, 34);
+  const { clientWidth: width, clientHeight: height } = context.canvas;
+  const [x, y] = [[place[0], width], [place[1], height]].map(([at, most]) => Math.min(Math.max(at, radius + 2), most - radius - 2));
   context.fillStyle = theme("card");
   context.strokeStyle = theme("accent");
   context.lineWidth = 2.5;
