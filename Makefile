@@ -4,7 +4,7 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-browser test-data test-live test-containers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture screenshots page-libraries pages docs schemas wheel clean
+.PHONY: install demo up test test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture picture-viewer screenshots page-libraries pages docs schemas wheel clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -44,6 +44,10 @@ test-containers: $(STAMP)  ## build and run the compose file; needs a container 
 
 test-browser: $(STAMP)  ## all tests of the web page in Chromium, which has to be installed
 	$(BIN)/pytest -m browser
+
+test-viewers: $(STAMP)  ## what Rerun and Foxglove are sent; installs both, 600 MB
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[dev,view]"
+	$(BIN)/pytest tests/actum_command/test_rerun_entries.py tests/actum_command/test_foxglove_messages.py tests/system/test_viewers.py tests/pages/test_viewers_page.py
 
 check: docs  ## format, lint, types, layers, pages
 	$(BIN)/ruff format --check --quiet .
@@ -105,6 +109,10 @@ screenshots: $(STAMP)  ## the page's pictures, in docs: light, dark and as wide 
 
 page-libraries:  ## the page's JavaScript libraries anew from npm, which has to be installed
 	services/web_dashboard/page/vendored/fetch.sh
+
+picture-viewer: $(STAMP)  ## the picture of Rerun; needs a program chromium
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[view]" "playwright>=1.50,<2"
+	$(BIN)/python -m docs.viewer_picture docs/viewer.png
 
 pages: $(STAMP)  ## write what the pages show of the code anew
 	$(BIN)/python -m docs.generate

@@ -13,9 +13,9 @@ import cv2
 import numpy as np
 from benchmarks.chain import Chain
 
-from actum.geometry import BONES
 from actum.messages import Event, Image, Message, Objects, Skeleton, Truth
 from actum.recording import Recording
+from actum.standard_body import BONES
 from actum_command.scene_marks import mark_of, write_examples
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train

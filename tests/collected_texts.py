@@ -21,6 +21,7 @@ PACKAGES = (
     "services/marker_tracker",
     "services/action_fusion",
     "services/web_dashboard",
+    "services/ros2_bridge",
 )
 REASONS = ("reason", "why", "complaint")
 """The parameters, fields and variables that hold a reason; functions whose names begin so return one."""

@@ -20,15 +20,19 @@ NEEDS_DATA = "recordings not found: set ACTUM_DATA to the folder that holds msr_
 
 NEEDS_MODEL = "pose model not found: set ACTUM_POSE_MODEL to the file that `actum models fetch` gets"
 NEEDS_LIBRARIES = "MediaPipe is linked against libEGL and libGLESv2: apt install libegl1 libgles2"
+NEEDS_ROS2_EXTRA = "the bridge to ROS 2 is written with rosbags: pip install -e '.[ros2]'"
 NEEDS_CAMERA_EXTRA = "MediaPipe is not installed: pip install -e '.[camera]'"
 SKIPPED = (
     ("on real recordings", NEEDS_DATA),
     ("with the pose model", NEEDS_MODEL),
     ("with the pose model", NEEDS_CAMERA_EXTRA),
     ("with the pose model", NEEDS_LIBRARIES),
+    ("of the bridge to ROS 2", NEEDS_ROS2_EXTRA),
     ("with librealsense", "the source realsense needs pyrealsense2"),
     ("of the page in a browser", chromium.NEEDS_PLAYWRIGHT),
     ("of the page in a browser", chromium.NEEDS_CHROMIUM),
+    ("with Rerun", "rerun-sdk is not installed: pip install -e '.[view]'"),
+    ("with Foxglove", "is not installed: pip install -e '.[dev]'"),
     ("with OpenNI 2", "the source openni2 needs OpenNI 2"),
 )
 

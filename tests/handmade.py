@@ -6,7 +6,8 @@ from actum.som import Som
 from som_classifier.first_layer import FirstMaps
 from som_classifier.model import Model
 from som_classifier.paper_model import PaperMetadata, PaperModel
-from som_classifier.pyramid_model import PyramidMetadata, PyramidModel
+from som_classifier.pyramid_metadata import PyramidMetadata
+from som_classifier.pyramid_model import PyramidModel
 from som_classifier.second_layer import ActionMap
 from som_classifier.stage_discriminants import StageDiscriminants
 from som_classifier.supervised import SupervisedLayer

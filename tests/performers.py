@@ -7,7 +7,8 @@ from actum.messages import Segment, Skeleton
 from actum.som import Schedule
 from people import FRAME_NS, STANDING, skeleton
 from som_classifier.attention import MOVING, PostureInput
-from som_classifier.presets import BodyVariation, MapTraining, PaperPreset, Prior, PyramidPreset, SpottingPreset
+from som_classifier.presets import BodyVariation, MapTraining, PaperPreset, Prior, PyramidPreset
+from som_classifier.spotting.spotting_preset import SpottingPreset
 
 FRAMES = 20
 PAUSE_FRAMES = 5
@@ -48,6 +49,7 @@ TINY = PyramidPreset(
         shortest_quantile=0.1,
         shrinkage=0.4,
         most_windows=600,
+        common_shares=(0.0, 0.3),
         folds=2,
         thresholds=(0.3, 0.45, 0.6, 0.75),
         false_alarm_threshold=0.4,

@@ -6,14 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.messages import Skeleton
-from people import STANDING, skeleton
+from people import FRAME_NS, STANDING, skeleton
 
 Array = NDArray[np.float64]
 Part = Array
 """Joints (frames, 15, 3) in the camera frame."""
 
 RATE_HZ = 30
-FRAME_NS = 33_333_333
 WAVE = {8: (-0.25, -0.75, -0.10), 7: (-0.10, -0.25, -0.05)}
 """Joints that a wave moves, the right hand and elbow, and how far (m)."""
 GOGGLES = {8: (0.20, -0.60, -0.15), 5: (-0.20, -0.60, -0.15), 7: (0.0, -0.2, -0.1), 4: (0.0, -0.2, -0.1)}

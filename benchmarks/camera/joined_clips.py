@@ -9,10 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Segment
+from actum.messages import Segment, segment_marks
 from actum.node import SECOND_NS
 from actum_dataset_importer.clips import clip_files
-from actum_dataset_importer.takes import segment_marks
 from sensor_gateway.devices.video import pictures_of
 
 from ..recognition.videos import FLORENCE_NAMING

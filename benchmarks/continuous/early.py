@@ -13,12 +13,11 @@ from actum.messages import Action, Message, Posture
 from actum.node import Node, Tick
 from actum_model_trainer.continuous.detections import Found, Truth
 from actum_model_trainer.continuous.scoring import background_min
-from actum_model_trainer.continuous.watching import sensors_of, watched
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 
 from .bench import Bench, number
-from .streams import Fold, Stream, folds
+from .streams import Fold, Stream, folds, replayed
 
 SHARES = (0.5, 0.8)
 """How much of an action is over when it is asked which one it seems to be."""
@@ -77,8 +76,7 @@ during any true action, counted once; silent: the share of background postures w
 def heard(model: Model, stream: Stream) -> Heard:
     """Listen while a recording is replayed without its marks."""
     listener = Listener(SomClassifier(model))
-    (sensor,) = sensors_of(stream.recording)
-    found = watched(listener, stream.recording, sensor, str(stream.recording.path))
+    found = replayed(listener, stream.recording)
     return Heard(listener.said, found)
 
 

@@ -77,7 +77,7 @@ class Cost:
 
 @dataclass(frozen=True)
 class KeptSpotters(Segmentation):
-    """Segmentation that keep the spotters they lead to, to weigh them."""
+    """Segmentation that keeps the spotters it leads to, to weigh them."""
 
     made: list[Spotter | None] = field(default_factory=list)
 

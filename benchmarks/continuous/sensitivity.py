@@ -6,14 +6,13 @@ from benchmarks.recognition.scores import table
 
 from actum_model_trainer.continuous.detections import Found
 from actum_model_trainer.continuous.scoring import scores_of
-from actum_model_trainer.continuous.watching import sensors_of, watched
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.segmentation import Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
 
 from .bench import Bench, number, share
-from .streams import Fold, Stream, folds
+from .streams import Fold, folds, replayed
 
 ASKED_PER_MIN = (None, 0.5, 1.0, 2.0, 4.0)
 
@@ -28,13 +27,6 @@ training; given is the one on the test people."""
     yield table(header, (_row(bench, people, asked) for asked in ASKED_PER_MIN))
 
 
-def found_at(model: Model, stream: Stream, false_alarms_per_min: float | None) -> Found:
-    """Replay a recording without its marks, through a classifier that is asked for a rate of false alarms."""
-    node = classifier_at(model, false_alarms_per_min)
-    (sensor,) = sensors_of(stream.recording)
-    return watched(node, stream.recording, sensor, str(stream.recording.path))
-
-
 def classifier_at(model: Model, false_alarms_per_min: float | None) -> SomClassifier:
     """Return a classifier that is asked for a rate of false alarms; None for what the model was trained for."""
     return SomClassifier(model, segmentation=Segmentation(options=SpottingOptions(false_alarms_per_min)))
@@ -46,7 +38,11 @@ def asked_for(false_alarms_per_min: float | None) -> str:
 
 
 def _row(bench: Bench, people: Sequence[Fold], asked: float | None) -> list[str]:
-    found = [found_at(bench.model_of(fold.training), stream, asked) for fold in people for stream in fold.test]
+    found = [
+        replayed(classifier_at(bench.model_of(fold.training), asked), stream.recording)
+        for fold in people
+        for stream in fold.test
+    ]
     scores = scores_of(sum(found, Found()))
     return [
         asked_for(asked),

@@ -1,7 +1,7 @@
 """The public sets as continuous streams, each with its frames as our classifier gets them and as its peers do."""
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -10,8 +10,7 @@ import numpy as np
 from benchmarks.recognition.datasets import with_joints
 from numpy.typing import NDArray
 
-from actum.messages import Message, Posture
-from actum.node import Counters, Tick
+from actum.node import Node
 from actum.recording import Recording
 from actum_dataset_importer.importing import (
     ImportReport,
@@ -20,12 +19,11 @@ from actum_dataset_importer.importing import (
     import_msrc12_trimmed,
     import_utkinect,
 )
-from actum_model_trainer.continuous.detections import Detection, Stretch, Truth
-from actum_model_trainer.continuous.watching import sensors_of, watched
-from actum_model_trainer.samples import Samples, SegmentSample, samples_from, select
+from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
+from actum_model_trainer.continuous.watching import views_of, watched
+from actum_model_trainer.recorded_segments import FrameCollector
+from actum_model_trainer.samples import Samples, SegmentSample, sample_of, samples_from, select
 from scene_simulator.everyday import ALL, FAMILIAR, Everyday
-from som_classifier.frames import Frame
-from som_classifier.streams import Streams
 
 from .simulated import TAUGHT, TAUGHT_REPETITIONS, TESTED, TESTED_REPETITIONS, recording_of
 
@@ -154,48 +152,16 @@ def folds(training: Sequence[Stream], test: Sequence[Stream]) -> list[Fold]:
 
 def stream_of(recording: Recording) -> Stream:
     """Read a recording of one person before one sensor."""
-    (sensor,) = sensors_of(recording)
-    collector = _Collector()
-    known = watched(collector, recording, sensor, str(recording.path))
-    (agent,) = collector.agents
-    whole = _sample(collector.frames, recording)
+    collector = FrameCollector()
+    known = replayed(collector, recording)
+    ((agent, frames),) = collector.frames.items()
+    whole = sample_of(frames, "", recording, "whole")
     (example,) = with_joints([whole], [recording])
     taught = samples_from([recording])
     return Stream(recording, whole, example.camera_m, agent, list(known.truths), list(known.seen), taught)
 
 
-class _Collector:
-    """A node that keeps the valid frames as the classifier does, and whose they are, and finds nothing."""
-
-    name = "collector"
-    inputs = ()
-
-    def __init__(self) -> None:
-        self.counters = Counters()
-        self.frames: list[Frame] = []
-        self.agents: set[int] = set()
-        self._streams = Streams()
-
-    def handle(self, message: Message | Tick) -> Iterable[Message]:
-        if isinstance(message, Posture):
-            _, frame = self._streams.add(message)
-            if frame is not None and frame.valid:
-                self.frames.append(frame)
-                self.agents.add(message.agent)
-        return []
-
-
-def _sample(frames: Sequence[Frame], recording: Recording) -> SegmentSample:
-    kinematics = [frame.kinematics for frame in frames if frame.kinematics is not None]
-    return SegmentSample(
-        "",
-        np.array([frame.stamp_ns for frame in frames]),
-        np.array([frame.joints for frame in frames]),
-        np.array([frame.motion for frame in frames]),
-        np.array([each.posture for each in kinematics]),
-        np.array([each.velocity for each in kinematics]),
-        recording.person,
-        str(recording.path),
-        "whole",
-        any(frame.depth_inferred for frame in frames),
-    )
+def replayed(node: Node, recording: Recording) -> Found:
+    """Replay a recording before one sensor without its marks, through the preprocessor and this classifier."""
+    ((sensor, file),) = views_of(recording)
+    return watched(node, recording, sensor, file)

@@ -18,6 +18,8 @@ QUANTILES = (0.04, 0.96)
 """The windows' durations are even quantiles of those of the training's truths, between these two."""
 STEP_S = 0.1
 """A window of each duration ends at least so often: three frames at 30 Hz."""
+EARLY_NS = SECOND_NS // 200
+"""A frame so little before a step is due (ns) ends a window: stamps jitter by milliseconds."""
 FEWEST_FRAMES = 4
 COVERED = 0.8
 """The share of its duration that a window's frames reach over at least."""
@@ -63,7 +65,7 @@ def _ends(stamps_ns: NDArray[np.int64]) -> Indices:
     """Return the frames (steps,) that are at least a step apart."""
     ends, next_ns = [], int(stamps_ns[0])
     for i, stamp_ns in enumerate(stamps_ns.tolist()):
-        if stamp_ns >= next_ns - SECOND_NS // 200:
+        if stamp_ns >= next_ns - EARLY_NS:
             ends.append(i)
             next_ns = stamp_ns + round(STEP_S * SECOND_NS)
     return np.array(ends, dtype=np.intp)

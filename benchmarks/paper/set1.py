@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Agent, Skeleton
+from actum.messages import Agent, Skeleton, segment_marks
 from actum.skeletons import to_actum
 from actum_dataset_importer.importing import ImportReport, Progress, import_takes
 from actum_dataset_importer.msr_action3d import CLASSES, FRAMES_PER_SECOND, SOURCE_JOINTS
@@ -22,7 +22,6 @@ from actum_dataset_importer.takes import (
     files_of,
     frame_without_person,
     read_rows,
-    segment_marks,
     stamp_of,
 )
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum import keys
-from actum.geometry import BONES
 from actum.messages import Joint, Message, Segment, Skeleton
 from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum.skeletons import INDEX, JOINTS
+from actum.standard_body import BONES
 
 from .splits import SEED
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from actum import geometry, keys
+from actum import keys, standard_body
 from actum.messages import Agent, Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
@@ -183,7 +183,7 @@ def _array(agent: Agent) -> Array:
 
 def _camera_m(sample: SegmentSample, joints_m: dict[int, Array]) -> Array:
     seen = np.stack([joints_m[int(stamp_ns)] for stamp_ns in sample.stamps_ns])
-    scaled = np.stack([geometry.scaled(frame) for frame in interpolated(seen.reshape(-1, 45)).reshape(seen.shape)])
+    scaled = np.stack([standard_body.scaled(frame) for frame in interpolated(seen.reshape(-1, 45)).reshape(seen.shape)])
     relative: Array = scaled - scaled[:, _HIPS].mean(axis=1, keepdims=True)
     return relative
 

@@ -152,7 +152,6 @@ OF_TRACKER: Mapping[str, Problem] = {
 }
 
 OF_FUSION: Mapping[str, Problem] = {
-    "bad_joint": Problem("A posture's joint is not finite or beyond 100 m; it counts as missing.", "As `bad_posture`."),
     "bad_object": Problem("An object is further away than 100 m; it is left out.", "Are positions in metres?"),
     "bad_action": Problem(
         "A final action has no label, or no end; it is answered with an event that is not valid.",
@@ -172,8 +171,27 @@ OF_PAGE: Mapping[str, Problem] = {
     ),
 }
 
+OF_FUSION_AND_BRIDGE: Mapping[str, Problem] = {
+    "bad_joint": Problem(
+        "A joint is not finite or beyond 100 m; it counts as missing.",
+        "Correct the program that puts it; the bridge reads skeletons, the fusion postures.",
+    ),
+}
+
+OF_BRIDGE: Mapping[str, Problem] = {
+    "bad_mark": Problem(
+        "What came on the ROS 2 topic `mark` is no mark; the latest error says why.",
+        "Publish a `std_msgs/msg/String` with the JSON that [ROS 2](ros2.md#marks) shows.",
+    ),
+    "stamp_beyond_ros": Problem(
+        "A stamp lies after January 2038, for which ROS 2 has no number; the message is not published there.",
+        "Stamp in nanoseconds since 1970, or since the sensor started.",
+    ),
+}
+
 GATEWAY, PREPROCESSOR, CLASSIFIER = "sensor_gateway", "pose_preprocessor", "som_classifier"
-TRACKER, FUSION, PAGE = "marker_tracker", "action_fusion", "web_dashboard"
+TRACKER, FUSION, BRIDGE = "marker_tracker", "action_fusion", "ros2_bridge"
+PAGE = "web_dashboard"
 COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((), OF_ALL),
     ((PREPROCESSOR, CLASSIFIER, TRACKER, FUSION), OF_NODES),
@@ -185,6 +203,8 @@ COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((TRACKER,), OF_TRACKER),
     ((FUSION,), OF_FUSION),
     ((PAGE,), OF_PAGE),
+    ((FUSION, BRIDGE), OF_FUSION_AND_BRIDGE),
+    ((BRIDGE,), OF_BRIDGE),
 )
 """Which services count which kinds; all of them count what the runtime does."""
 

@@ -13,18 +13,21 @@ with needs_extra("actum-command"):
         demo_command,
         doctor_command,
         draw_command,
+        foxglove_commands,
         import_commands,
         inspect_command,
         label_commands,
         markers_command,
         pose_model_commands,
         recording_commands,
+        ros2_command,
         scene_commands,
         segment_commands,
         system_commands,
         takes_commands,
         training_commands,
         tune_command,
+        view_command,
         watch_command,
     )
     from actum_command.commands.plain_help import PlainTyper
@@ -74,6 +77,10 @@ app.command("inspect")(inspect_command.inspect)
 app.command("simulate")(scene_commands.simulate)
 app.command("scene")(scene_commands.scene)
 app.command("watch")(watch_command.watch)
+app.command("ros2")(ros2_command.ros2)
+app.command("view")(view_command.view)
+app.command("foxglove")(foxglove_commands.foxglove)
+app.command("export")(foxglove_commands.export)
 app.command("doctor")(doctor_command.doctor)
 
 

@@ -1,15 +1,12 @@
-"""The segments of one recording, numbered in order of time, and how `actum label` changes them."""
+"""The segments of one recording, numbered in order of time, and what `actum label` may add beside them."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from actum import codec, keys
-from actum.mcap_file import StoredMessage
-from actum.messages import CUT, Action, Event, Segment
+from actum import keys
+from actum.messages import CUT, Action, Event, Segment, segment_marks
 from actum.node import SECOND_NS
 from actum.recording import Recording
-from actum.rewriting import Change
-from actum_command.marked_actions import dropped
 from actum_model_trainer.cutting.courses import recorded_courses
 from actum_model_trainer.cutting.repetitions import Cuts, cut
 
@@ -121,55 +118,12 @@ def check_span(
             )
 
 
-def moved(segment: LabelledSegment, start_ns: int, end_ns: int) -> Change:
-    """Return the change that gives a segment's marks other stamps; recorded answers stay."""
-
-    def change(stored: StoredMessage) -> StoredMessage:
-        try:
-            if keys.parse(stored.key).topic is not keys.SEGMENT:
-                return stored
-            mark = codec.decode(stored.key, stored.payload, stored.encoding)
-        except (keys.InvalidKeyError, codec.DecodeError):
-            return stored
-        if not isinstance(mark, Segment) or mark.segment_id != segment.segment_id:
-            return stored
-        stamp_ns = start_ns if mark.kind == "start" else end_ns
-        payload = codec.encode(mark.model_copy(update={"stamp_ns": stamp_ns})).payload
-        return replace(stored, payload=payload, publish_ns=stamp_ns)
-
-    return change
-
-
-def without(segment_ids: Sequence[str]) -> Change:
-    """Return the change that leaves out these segments: their marks, their answers and their ground truth."""
-    changes = [dropped(segment_id) for segment_id in segment_ids]
-
-    def change(stored: StoredMessage) -> StoredMessage | None:
-        kept: StoredMessage | None = stored
-        for drop in changes:
-            kept = None if kept is None else drop(kept)
-        return kept
-
-    return change
-
-
-def marks_between(
-    sensor: str, segment_id: str, start_ns: int, end_ns: int, label: str, agent: int | None, origin: str
-) -> list[Segment]:
-    """Return the start and the end mark of a new segment."""
-    names = {"sensor": sensor, "segment_id": segment_id, "agent": agent, "origin": origin}
-    return [
-        Segment.model_validate({"kind": "start", "stamp_ns": start_ns, "label": label, **names}),
-        Segment.model_validate({"kind": "end", "stamp_ns": end_ns, **names}),
-    ]
-
-
 def marks_of(cuts: Cuts, names: Iterator[str], label: str, sensor: str) -> list[Segment]:
     """Return the marks of all repetitions, each a segment with the next of the names."""
     return [
         mark
         for name, each in zip(names, cuts.repetitions, strict=False)
-        for mark in marks_between(sensor, name, each.start_ns, each.end_ns, label, cuts.course.agent, CUT)
+        for mark in segment_marks(each.start_ns, each.end_ns, sensor, name, label, cuts.course.agent, origin=CUT)
     ]
 
 
@@ -189,7 +143,7 @@ def only_sensor(recording: Recording) -> str:
         RecordingError: the file is damaged.
         LabellingError: there is none, or there are several.
     """
-    names = sorted({message.sensor for message in recording.messages(FRAMES)})
+    names = sorted({sensor for topic in FRAMES for sensor in recording.sensors(topic)})
     if len(names) != 1:
         raise LabellingError(f"{recording.path}: frames of {', '.join(names) or 'nobody'}; one sensor is needed")
     return names[0]

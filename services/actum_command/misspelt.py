@@ -5,14 +5,14 @@ from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 
-from actum_command.service_settings import DECLARED
+from actum_command.service_settings import SETTINGS
 
 PREFIX = "ACTUM_"
 FILE = PREFIX + "CONFIG"
 OTHERS = ("camera_device", "config", "data", "log", "models", "parent", "videos")
 """The `ACTUM_…` variables that are no settings of services: the runtime, the compose files or the tests read them."""
 
-KNOWN = sorted({name for settings in DECLARED.values() for name in settings.model_fields})
+KNOWN = sorted({name for settings in SETTINGS.values() for name in settings.model_fields})
 """The settings of all services."""
 
 

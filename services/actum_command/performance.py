@@ -8,7 +8,7 @@ from actum.messages import Action, Event, Message, Skeleton, Status
 from actum.messages import Truth as TruthMessage
 from actum_model_trainer.continuous.detections import Detection, Found, Interval, Stretch, Truth
 from actum_model_trainer.continuous.matching import intersection_over_union, matched, overlap_ns
-from actum_model_trainer.continuous.watching import LONGEST_BREAK_NS
+from actum_model_trainer.continuous.presence import Presence
 from scene_simulator.simulator import AGENT, GATEWAY
 
 ENDED = "source ended"
@@ -44,10 +44,13 @@ class Performance:
     _starts: dict[str, TruthMessage] = field(default_factory=dict)
     _ends_ns: dict[str, int] = field(default_factory=dict)
     _first_ns: int | None = None
-    _seen: list[Stretch] = field(default_factory=list)
+    _presence: Presence = field(init=False)
     _found: set[str] = field(default_factory=set)
     _told: set[str] = field(default_factory=set)
     _source_ended: bool = False
+
+    def __post_init__(self) -> None:
+        self._presence = Presence(self.person)
 
     def take(self, message: Message) -> Detection | None:
         """Take a message; return what is told by it, if it is a valid event."""
@@ -83,7 +86,7 @@ class Performance:
     @property
     def found(self) -> Found:
         """What was told, done and seen, as recordings without marks are scored."""
-        return Found(tuple(self.events), tuple(self.done), tuple(self._seen))
+        return Found(tuple(self.events), tuple(self.done), self._presence.stretches)
 
     def answered(self) -> dict[Detection, Truth]:
         """Return which action each event answers, by its right name or else by another; some answer none."""
@@ -113,10 +116,8 @@ class Performance:
         self.newest_ns = skeleton.stamp_ns
         if self._first_ns is None:
             self._first_ns = skeleton.stamp_ns
-        if skeleton.agents and self._seen and skeleton.stamp_ns - self._seen[-1].end_ns <= LONGEST_BREAK_NS:
-            self._seen[-1] = replace(self._seen[-1], end_ns=skeleton.stamp_ns)
-        elif skeleton.agents:
-            self._seen.append(Stretch(self.person, AGENT, skeleton.stamp_ns, skeleton.stamp_ns))
+        if skeleton.agents:
+            self._presence.see(AGENT, skeleton.stamp_ns)
 
     def _tell(self, event: Event) -> Detection | None:
         self._told.add(event.segment_id)

@@ -15,7 +15,7 @@ from actum_model_inspector.stream_picture import Lane, Span, SpeedLine, stream_p
 from actum_model_inspector.style import save
 from actum_model_trainer.continuous.watching import found_by
 from actum_model_trainer.cutting.courses import RATE_HZ, Course, recorded_courses
-from actum_model_trainer.samples import classifier_input, closed_segments, sensors
+from actum_model_trainer.recorded_segments import classifier_input, closed_segments, sensors
 from som_classifier.model import Model
 from som_classifier.spotting.spotted import SpottingOptions
 
@@ -34,8 +34,7 @@ def write_picture(
         RecordingError: the file is damaged.
         OSError: the picture cannot be written.
     """
-    frames_of = {message.sensor for message in recording.messages((keys.SKELETON,))}
-    courses = [course for sensor in sorted(frames_of) for course in recorded_courses(recording, sensor)]
+    courses = [each for sensor in recording.sensors(keys.SKELETON) for each in recorded_courses(recording, sensor)]
     marked = [
         Span((each.start_ns - first_ns) / SECOND_NS, (each.end_ns - first_ns) / SECOND_NS, each.label, str(each.number))
         for each in segments

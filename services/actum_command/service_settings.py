@@ -1,10 +1,11 @@
-"""The settings of the services that `actum up` starts, and how they are handed on to them."""
+"""The settings of the services that commands start, and how they are handed on to them."""
 
 from collections.abc import Mapping
 
 import action_fusion.settings
 import marker_tracker.settings
 import pose_preprocessor.settings
+import ros2_bridge.settings
 import scene_simulator.settings
 import sensor_gateway.settings
 import som_classifier.settings
@@ -23,7 +24,13 @@ DECLARED: Mapping[str, type[ServiceSettings]] = {
         web_dashboard,
     )
 }
-"""The settings of each service, by the service's name."""
+"""The settings of each service that `actum up` starts, by the service's name."""
+
+BRIDGE = ros2_bridge.__name__
+"""The service that `actum ros2` starts."""
+
+SETTINGS: Mapping[str, type[ServiceSettings]] = {**DECLARED, BRIDGE: ros2_bridge.settings.Settings}
+"""The settings of every service, by the service's name."""
 
 Given = Mapping[str, bool | list[str]]
 """The settings that are given on the command line, by name."""
@@ -33,7 +40,7 @@ def arguments_of(service: str, given: Given) -> list[str]:
     """Return the flags of a service for those of the given settings that it has."""
     arguments: list[str] = []
     for name, value in given.items():
-        if name not in DECLARED[service].model_fields:
+        if name not in SETTINGS[service].model_fields:
             continue
         if isinstance(value, bool):
             arguments.append(flag_of(name) if value else negated_flag_of(name))

@@ -21,7 +21,8 @@ from scene_simulator.programme import ACTIONS
 from som_classifier.model_loading import load_model
 from som_classifier.presets import DEFAULT
 
-ACTOR = 0  # the actor of the training; the actors of the test have the numbers that follow
+ACTOR = 0  # the actor of the training
+FIRST_TESTED = ACTOR + 1  # the first actor of the test; the others have the numbers that follow
 PEOPLE = 9  # actors of the test: the paper tests each action 9 times, here once with each actor
 TRAINING_SEED = 1
 TEST_SEED = 2  # another than in training, so that no repetition is the same as in training
@@ -37,9 +38,9 @@ def train_model(training: Path, model_file: Path, progress: Progress) -> Evaluat
     return evaluate(load_model(model_file), recordings, progress)
 
 
-def tested_actors(people: int) -> list[int]:
-    """Return the actors of the test: `people` others than the training's, or the training's own where that is 0."""
-    return list(range(ACTOR + 1, ACTOR + 1 + people)) or [ACTOR]
+def tested_actors(first: int, people: int) -> list[int]:
+    """Return the actors of the test: `people` from the first one on, or the training's own where that is 0."""
+    return list(range(first, first + people)) or [ACTOR]
 
 
 def nearest_neighbour_baseline(training: Path, folder: Path, actors: Sequence[int], repetitions: int) -> Evaluation:

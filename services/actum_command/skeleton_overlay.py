@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 
 from actum.arrays import Array, Pixels
-from actum.geometry import BONES
 from actum.messages import Agent
 from actum.skeletons import INDEX
+from actum.standard_body import BONES
 from sensor_gateway.lens import Lens
 
 Colour = tuple[int, int, int]
@@ -49,14 +49,14 @@ def _draw_agent(canvas: Pixels, agent: Agent, lens: Lens) -> None:
     points = {i: _pixel(np.array(joint), lens) for i, joint in enumerate(agent.joints) if joint is not None}
     for parent, child, _ in BONES:
         if parent in points and child in points:
-            cv2.line(canvas, points[parent], points[child], _colour(child), 2, cv2.LINE_AA, SUBPIXEL_BITS)
+            cv2.line(canvas, points[parent], points[child], side_colour(child), 2, cv2.LINE_AA, SUBPIXEL_BITS)
     for i, point in points.items():
-        cv2.circle(canvas, point, 4 << SUBPIXEL_BITS, _colour(i), -1, cv2.LINE_AA, SUBPIXEL_BITS)
+        cv2.circle(canvas, point, 4 << SUBPIXEL_BITS, side_colour(i), -1, cv2.LINE_AA, SUBPIXEL_BITS)
     for name in NAMED:
         if INDEX[name] in points:
             x, y = points[INDEX[name]]
             text = f"agent {agent.agent}" if name == "head" else name.replace("_", " ")
-            _write(canvas, text, ((x >> SUBPIXEL_BITS) + 6, (y >> SUBPIXEL_BITS) - 6), _colour(INDEX[name]))
+            _write(canvas, text, ((x >> SUBPIXEL_BITS) + 6, (y >> SUBPIXEL_BITS) - 6), side_colour(INDEX[name]))
 
 
 def _pixel(joint_m: Array, lens: Lens) -> tuple[int, int]:
@@ -66,7 +66,8 @@ def _pixel(joint_m: Array, lens: Lens) -> tuple[int, int]:
     return round(x * (1 << SUBPIXEL_BITS)), round(y * (1 << SUBPIXEL_BITS))
 
 
-def _colour(joint: int) -> Colour:
+def side_colour(joint: int) -> Colour:
+    """Return the colour of a joint, by its index: left blue, right red, the trunk white."""
     if INDEX["left_shoulder"] <= joint <= INDEX["left_hand"] or INDEX["left_hip"] <= joint <= INDEX["left_foot"]:
         return LEFT
     return MIDDLE if joint <= INDEX["torso"] else RIGHT

@@ -23,7 +23,9 @@ from scene_simulator.simulated_scene import Scene
 from som_classifier.presets import DEFAULT
 
 TRAINERS = (ACTOR, *range(1001, 1009))
-"""Actors of the training, none of whom is among any number of others that the test may have."""
+"""Actors of the training: numbers that no test of up to 900 people has."""
+FIRST_UNSEEN = 101
+"""The first actor of the test: people that no choice was made on, as how many teach and how often was on 1 to 9."""
 TRAINING_REPETITIONS = 2
 """Of each action by each of them: many people teach more than many repetitions, and half a minute is enough."""
 PAUSES: Pauses = "short"

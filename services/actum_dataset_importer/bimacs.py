@@ -19,7 +19,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from actum.messages import Hand, Joint, Message, Objects, Posture, Segment, TrackedObject, Truth
+from actum.messages import Hand, Joint, Message, Objects, Posture, Segment, TrackedObject, Truth, segment_marks
 from actum.skeletons import INDEX, JOINTS
 from actum_dataset_importer.takes import DatasetError
 
@@ -224,12 +224,8 @@ def _hand_labels(hand: Hand, content: list[Any]) -> list[Label]:
 
 
 def _marks(label: Label, segment_id: str, stamps_ns: Sequence[int], sensor: str) -> list[Segment]:
-    common: dict[str, Any] = {"sensor": sensor, "segment_id": segment_id, "agent": AGENT, "hand": label.hand}
     start_ns, end_ns = stamps_ns[label.first], stamps_ns[label.last]
-    return [
-        Segment(stamp_ns=start_ns, kind="start", label=label.action, **common),
-        Segment(stamp_ns=end_ns, kind="end", **common),
-    ]
+    return segment_marks(start_ns, end_ns, sensor, segment_id, label.action, AGENT, label.hand)
 
 
 def _truths(label: Label, segment_id: str, stamps_ns: Sequence[int], sensor: str) -> list[Truth]:

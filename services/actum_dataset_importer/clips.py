@@ -7,8 +7,9 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
+from actum.messages import segment_marks
 from actum.node import Counters
-from actum_dataset_importer.takes import DatasetError, Take, segment_marks
+from actum_dataset_importer.takes import DatasetError, Take
 from sensor_gateway.devices.video import SUFFIXES, VideoError, pictures_of
 from sensor_gateway.optics import Optics
 from sensor_gateway.people.pose_estimator import Estimator

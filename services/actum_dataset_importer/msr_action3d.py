@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Agent, Skeleton
+from actum.messages import Agent, Skeleton, segment_marks
 from actum.skeletons import to_actum
 from actum_dataset_importer.takes import (
     DatasetError,
@@ -19,7 +19,6 @@ from actum_dataset_importer.takes import (
     files_of,
     frame_without_person,
     read_rows,
-    segment_marks,
     stamp_of,
 )
 

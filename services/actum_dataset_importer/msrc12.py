@@ -17,7 +17,7 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Agent, Segment, Skeleton
+from actum.messages import Agent, Segment, Skeleton, segment_marks
 from actum.skeletons import JOINTS, to_actum
 from actum_dataset_importer.takes import (
     DatasetError,
@@ -25,7 +25,6 @@ from actum_dataset_importer.takes import (
     camera_joints,
     files_of,
     frame_without_person,
-    segment_marks,
 )
 
 Integers = NDArray[np.int64]

@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Segment
+from actum.messages import Segment, segment_marks
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX, KINECT_V1_20
 from actum_dataset_importer.msrc12 import Stream, skeleton, stored_stream
 from actum_dataset_importer.msrc12_cuts import cuts_of, resting_pose
-from actum_dataset_importer.takes import DatasetError, Take, segment_marks, stamp_of
+from actum_dataset_importer.takes import DatasetError, Take, stamp_of
 
 Floats = NDArray[np.float64]
 

@@ -77,14 +77,6 @@ def frame_without_person(stamp_ns: int, sensor: str, session_id: str) -> Skeleto
     return Skeleton(stamp_ns=stamp_ns, sensor=sensor, valid=False, reason=reason, agents=[], session_id=session_id)
 
 
-def segment_marks(start_ns: int, end_ns: int, sensor: str, segment_id: str, label: str) -> list[Segment]:
-    """Return the start and the end mark of a labelled segment."""
-    return [
-        Segment(stamp_ns=start_ns, sensor=sensor, kind="start", segment_id=segment_id, label=label),
-        Segment(stamp_ns=end_ns, sensor=sensor, kind="end", segment_id=segment_id),
-    ]
-
-
 def camera_joints(positions_m: list[list[float]]) -> list[list[float] | None]:
     """Turn positions (n, 3; m; x left, y up, z forward) into the camera frame (x right, y down, z forward)."""
     return [[-x, -y, z] for x, y, z in positions_m]

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Agent, Segment, Skeleton
+from actum.messages import Agent, Segment, Skeleton, segment_marks
 from actum.skeletons import JOINTS, to_actum
-from actum_dataset_importer.takes import DatasetError, Take, camera_joints, files_of, read_rows, segment_marks, stamp_of
+from actum_dataset_importer.takes import DatasetError, Take, camera_joints, files_of, read_rows, stamp_of
 
 IMAGES_PER_SECOND = 30
 """The camera's rate (Hz); image numbers count at this rate."""

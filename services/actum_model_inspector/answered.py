@@ -9,7 +9,7 @@ from actum.arrays import Array
 from actum.recording import Recording
 from actum_model_inspector.text_layout import shortened
 from actum_model_trainer.progress import Progress, silent
-from actum_model_trainer.samples import classifier_input, closed_segments, sensors
+from actum_model_trainer.recorded_segments import classifier_input, closed_segments, sensors
 from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.model_maps import ModelMaps

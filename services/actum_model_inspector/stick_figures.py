@@ -8,8 +8,8 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import to_rgba
 
 from actum.arrays import Floats
-from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS, PARTS
+from actum.standard_body import BONES
 from actum_model_inspector.style import INK, LEFT, PAPER, RIGHT
 
 AZIMUTH_RAD = np.deg2rad(20.0)  # of the view: an arm stretched forward does not hide behind its own hand

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from actum.arrays import Array
-from actum.geometry import BONES
 from actum.skeletons import JOINTS
+from actum.standard_body import BONES
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.handedness import mirrored
 from som_classifier.presets import PyramidPreset

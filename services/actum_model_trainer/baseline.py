@@ -18,7 +18,7 @@ from actum.messages import Agent, Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
 from actum_model_trainer.evaluation import Evaluation, Prediction
-from actum_model_trainer.samples import classifier_input, closed_segments, sensors
+from actum_model_trainer.recorded_segments import classifier_input, closed_segments, sensors
 from som_classifier.segments import ClosedSegment
 
 POINTS = 32  # per path: about one a frame for an action of a second

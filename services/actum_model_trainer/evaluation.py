@@ -13,7 +13,7 @@ from actum.node import replay
 from actum.recording import Recording
 from actum_model_trainer.calibration_error import MIN_ANSWERS, calibration_error, confidence_bins
 from actum_model_trainer.progress import Progress, silent
-from actum_model_trainer.samples import classifier_input, sensors
+from actum_model_trainer.recorded_segments import classifier_input, sensors
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.recognition import Recognition

@@ -10,6 +10,7 @@ from actum.arrays import Floats, Indices
 from actum_model_trainer.augmentation import Variant
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.first_layer import FirstMaps
+from som_classifier.frame_activity import UM_PER_M
 from som_classifier.pyramid import Prefix, PrefixSums, Pyramid, quantised
 
 PooledVectors = tuple[NDArray[np.float32], Indices]
@@ -17,7 +18,6 @@ PooledVectors = tuple[NDArray[np.float32], Indices]
 
 MAX_VECTORS = 2_000  # per stage: more make the discriminants hardly better, and their training costs n³
 MIN_FRAMES = 3  # of a share of an action: with fewer the live classifier gives no answer either
-_UM_PER_M = 1e6
 
 
 class Pooling:
@@ -61,7 +61,7 @@ class _VariantSums:
     def __init__(self, pooling: Pooling, sample: SegmentSample, variants: Sequence[Variant]) -> None:
         self._first, self._variants = pooling.first, variants
         self._left_handed = [pooling.mirrors and hand == "left" for hand in sample.acting_hands]
-        steps_um = np.rint(sample.motion.sum(axis=1) * _UM_PER_M).astype(np.int64)
+        steps_um = np.rint(sample.motion.sum(axis=1) * UM_PER_M).astype(np.int64)
         self._travelled_um = [0, *np.cumsum(steps_um).tolist()]
         self._prefixes: dict[tuple[int, bool], list[Prefix]] = {}
 

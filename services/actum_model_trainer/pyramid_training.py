@@ -23,7 +23,8 @@ from actum_model_trainer.upper_layers import UpperLayers, train_upper
 from som_classifier.first_layer import FirstMaps, arm_inputs, frame_inputs
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid import Pyramid
-from som_classifier.pyramid_model import PyramidMetadata, PyramidModel
+from som_classifier.pyramid_metadata import PyramidMetadata
+from som_classifier.pyramid_model import PyramidModel
 from som_classifier.stage_discriminants import StageDiscriminants
 
 MAX_ROWS = 20_000  # per map of the first layer: some 60 for each of its 324 units

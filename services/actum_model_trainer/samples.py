@@ -1,6 +1,6 @@
-"""Training samples: the labelled segments of recordings, cut out by the nodes that also run live."""
+"""Training samples: the labelled segments of recordings, and the streams in which they lie."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -10,20 +10,16 @@ from numpy.typing import NDArray
 
 from actum import keys
 from actum.arrays import Array
-from actum.messages import REPLAY, Hand, Message, Posture, Segment, Skeleton
-from actum.node import SECOND_NS, Counters, Numbering, Tick, replay
+from actum.messages import Hand
+from actum.node import replay
 from actum.recording import Recording
+from actum_model_trainer.continuous.detections import Found, Stretch, Truth
+from actum_model_trainer.continuous.presence import LONGEST_BREAK_NS
 from actum_model_trainer.progress import Progress, silent
-from pose_preprocessor.node import PosePreprocessor
-from pose_preprocessor.settings import Settings as PoseSettings
+from actum_model_trainer.recorded_segments import FrameCollector, classifier_input, why_unusable
 from som_classifier.frames import Frame
 from som_classifier.handedness import LimbSpreads, limb_moments
-from som_classifier.model import Model
-from som_classifier.segmenter import Segmenter
 from som_classifier.segments import ClosedSegment
-
-STREAMS = (keys.SKELETON, keys.SEGMENT)
-"""The topics that are read from a recording; postures are computed from them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,9 +86,17 @@ class LabelledStream:
     depth_inferred: bool = False
 
     @property
+    def marked(self) -> Found:
+        """What the person did, and when the person was seen."""
+        return Found(
+            truths=[Truth(self.file, self.agent, *segment) for segment in self.segments],
+            seen=[Stretch(self.file, self.agent, *run_ns) for run_ns in self.runs_ns],
+        )
+
+    @property
     def runs_ns(self) -> list[tuple[int, int]]:
-        """The first and the last stamp of each time in which the person was seen without a break of a second."""
-        after = np.flatnonzero(np.diff(self.stamps_ns) > SECOND_NS) + 1
+        """The first and the last stamp of each time in which the person was seen without a longer break."""
+        after = np.flatnonzero(np.diff(self.stamps_ns) > LONGEST_BREAK_NS) + 1
         runs = np.split(self.stamps_ns, after)
         return [(int(run[0]), int(run[-1])) for run in runs]
 
@@ -150,26 +154,6 @@ def select(
     ]
 
 
-def sensors(recording: Recording) -> list[str]:
-    """Return the sensors whose segments a recording holds, sorted."""
-    return sorted({mark.sensor for mark in recording.messages((keys.SEGMENT,))})
-
-
-def classifier_input(recording: Recording, sensor: str) -> Iterator[tuple[int, Message]]:
-    """Yield each message that the live classifier of this sensor would have received, with its stamp (ns)."""
-    preprocessor, numbering = PosePreprocessor(PoseSettings.defaults()), Numbering()
-    for message in recording.messages(STREAMS):
-        if message.sensor == sensor:
-            arriving = preprocessor.handle(message) if isinstance(message, Skeleton) else [_played(message)]
-            for posture_or_mark in arriving:
-                yield message.stamp_ns, numbering.numbered(posture_or_mark)
-
-
-def _played(mark: Message) -> Message:
-    """Return a mark as `actum play` puts it: whoever put it first, the classifier is to answer it."""
-    return mark.model_copy(update={"origin": REPLAY}) if isinstance(mark, Segment) else mark
-
-
 def samples_from(recordings: Sequence[Recording], progress: Progress = silent) -> Samples:
     """Read every person's stream in the recordings, and cut every labelled segment out.
 
@@ -194,69 +178,10 @@ def samples_from(recordings: Sequence[Recording], progress: Progress = silent) -
     return Samples(segments, streams)
 
 
-def closed_segments(messages: Iterable[tuple[int, Message]]) -> list[ClosedSegment]:
-    """Return the segments of a stream of stamped (ns) messages as the classifier cuts them, in the order they end."""
-    collector = SegmentCollector()
-    for _ in replay(collector, messages):
-        raise AssertionError("the collector puts nothing")
-    return collector.closed
-
-
-def why_unusable(closed: ClosedSegment) -> str | None:
-    """Return the reason why no sample can be made of a segment; None where one can."""
-    usable = sum(frame.valid for frame in closed.frames)
-    if closed.reason is None and usable < Model.min_frames:
-        return f"{usable} usable frames, at least {Model.min_frames} are needed"
-    return closed.reason
-
-
-class SegmentCollector:
-    """A node that collects the segments that the classifier's segmenter closes."""
-
-    name = "collector"
-    inputs: tuple[keys.Topic, ...] = (keys.POSTURE, keys.SEGMENT)
-
-    def __init__(self) -> None:
-        self.counters = Counters()
-        self.closed: list[ClosedSegment] = []
-        self._segmenter = Segmenter(self.counters)
-
-    def handle(self, message: Message | Tick) -> list[Message]:
-        """Take a posture, a mark or a tick; put nothing."""
-        match message:
-            case Posture():
-                frame, closed = self._segmenter.posture(message)
-                self.closed += closed
-                if frame is not None:
-                    self.take(message.agent, frame)
-            case Segment():
-                self.closed += self._segmenter.mark(message)
-            case Tick():
-                self.closed += self._segmenter.tick(message)
-        return []
-
-    def take(self, agent: int, frame: Frame) -> None:
-        """Take an agent's next frame."""
-
-
-class FrameCollector(SegmentCollector):
-    """The same, which also keeps each person's valid frames in order, by agent."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.frames: dict[int, list[Frame]] = {}
-
-    def take(self, agent: int, frame: Frame) -> None:
-        """Keep an agent's next frame if it is valid."""
-        if frame.valid:
-            self.frames.setdefault(agent, []).append(frame)
-
-
-def _sample(recording: Recording, sensor: str, closed: ClosedSegment, label: str) -> SegmentSample | Unusable:
-    reason = why_unusable(closed)
-    if reason is not None:
-        return Unusable(str(recording.path), closed.segment_id, reason, sensor)
-    frames = [frame for frame in closed.frames if frame.valid]
+def sample_of(
+    frames: Sequence[Frame], label: str, recording: Recording, segment_id: str, sensor: str = ""
+) -> SegmentSample:
+    """Return a sample of valid frames of one person in a recording."""
     kinematics = [frame.kinematics for frame in frames if frame.kinematics is not None]
     return SegmentSample(
         label,
@@ -267,10 +192,17 @@ def _sample(recording: Recording, sensor: str, closed: ClosedSegment, label: str
         np.array([each.velocity for each in kinematics]),
         recording.person,
         str(recording.path),
-        closed.segment_id,
+        segment_id,
         any(frame.depth_inferred for frame in frames),
         sensor,
     )
+
+
+def _sample(recording: Recording, sensor: str, closed: ClosedSegment, label: str) -> SegmentSample | Unusable:
+    reason = why_unusable(closed)
+    if reason is not None:
+        return Unusable(str(recording.path), closed.segment_id, reason, sensor)
+    return sample_of([frame for frame in closed.frames if frame.valid], label, recording, closed.segment_id, sensor)
 
 
 def _stream(

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from actum.arrays import Array
-from actum.geometry import BONES
 from actum.skeletons import JOINTS
+from actum.standard_body import BONES
 
 _PARENTS = np.array([parent for parent, _, _ in BONES])
 _CHILDREN = np.array([child for _, child, _ in BONES])

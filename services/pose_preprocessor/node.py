@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from actum import geometry, keys
+from actum import geometry, keys, standard_body
 from actum.arrays import Array, joints_to_array, joints_to_list
 from actum.commands import Command
 from actum.messages import Agent, Joint, Message, Posture, Skeleton
@@ -130,7 +130,7 @@ class PosePreprocessor:
         person = self._persons.setdefault(agent.agent, _Person())
         measured = joints_to_array(agent.joints)
         bridged = self._usable(frame.stamp_ns, agent, person, measured, missing)
-        metric_and_scaled = np.stack([bridged, geometry.scaled(bridged)])
+        metric_and_scaled = np.stack([bridged, standard_body.scaled(bridged)])
         ego_from_camera = geometry.ego_from_camera(metric_and_scaled)
         metric_ego, scaled_ego = geometry.apply(ego_from_camera, metric_and_scaled)
         person.joints = agent.joints

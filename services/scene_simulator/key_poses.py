@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from actum.arrays import Array
-from scene_simulator.actor import Stance
+from scene_simulator.inverse_kinematics import Stance
 from scene_simulator.timeline import Episode
 from scene_simulator.trajectories import bump, elapsed_share, interpolated, minimum_jerk
 
@@ -69,16 +69,13 @@ def moving(poses: Sequence[KeyPose], resting: Episode, rate_hz: int) -> Episode:
     turn, twist, lean, reaching = values[:, 8:].T
     legs, arms_m = _gait(shift, rate_hz)
     hands[:, :, 2] += arms_m
-    stood = Stance(resting.pelvis_m, resting.heading_rad, resting.lean_rad)
-    left, _, forward = stood.axes()
-    pelvis = resting.pelvis_m + shift[:, :1] * left + shift[:, 1:] * forward
-    stance = Stance(pelvis, resting.heading_rad - turn, lean)
+    stance = _displaced(resting, shift, turn, lean)
     rows = np.zeros(len(values), dtype=int)
     return replace(
         resting,
-        pelvis_m=pelvis,
+        pelvis_m=stance.pelvis_m,
         heading_rad=stance.heading_rad,
-        hands_m=pelvis[:, None] + np.einsum("thk,ktd->thd", hands, np.stack(stance.axes())),
+        hands_m=stance.pelvis_m[:, None] + np.einsum("thk,ktd->thd", hands, np.stack(stance.axes())),
         positions_m=resting.positions_m[rows],
         yaw_rad=resting.yaw_rad[rows],
         riser_tops_m=resting.riser_tops_m[rows],
@@ -90,6 +87,13 @@ def moving(poses: Sequence[KeyPose], resting: Episode, rate_hz: int) -> Episode:
         legs_rad=legs,
         doings=doings,
     )
+
+
+def _displaced(resting: Episode, shift_m: Array, turn_rad: Array, lean_rad: Array) -> Stance:
+    """Return the stance after a shift (T, 2; leftward, forward) and a turn to the left (T,) from that at rest."""
+    left, _, forward = Stance(resting.pelvis_m, resting.heading_rad, resting.lean_rad).axes()
+    pelvis = resting.pelvis_m + shift_m[:, :1] * left + shift_m[:, 1:] * forward
+    return Stance(pelvis, resting.heading_rad - turn_rad, lean_rad)
 
 
 def _between(poses: Sequence[KeyPose], rate_hz: int) -> tuple[Array, tuple[str | None, ...]]:

@@ -4,7 +4,8 @@ import numpy as np
 
 from actum.arrays import Array
 from actum.skeletons import INDEX
-from scene_simulator.actor import Actor, Stance, eye, fingertip, pose
+from scene_simulator.actor import Actor
+from scene_simulator.inverse_kinematics import Stance, eye, fingertip, pose
 
 STRETCH = 0.97
 """Share of the length of arm and finger: people point with an arm that is not quite straight."""

@@ -8,9 +8,10 @@ from typing import Literal
 import numpy as np
 
 from actum.arrays import Array
-from scene_simulator.actor import Stance, draw_actor, fingertip, pose
+from scene_simulator.actor import draw_actor
 from scene_simulator.conditions import PLAIN, Conditions
 from scene_simulator.everyday import Everyday, EverydayPerson
+from scene_simulator.inverse_kinematics import Stance, fingertip, pose
 from scene_simulator.noise import Sway
 from scene_simulator.pantomime import draw_pantomime
 from scene_simulator.parameters import Parameters, load_parameters

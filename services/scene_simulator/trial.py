@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from actum.arrays import Array
-from scene_simulator.actor import HIP_HEIGHT, Actor, Stance
+from scene_simulator.actor import HIP_HEIGHT, Actor
+from scene_simulator.inverse_kinematics import Stance
 from scene_simulator.parameters import ObjectItem, Parameters, TrialParameters
 from scene_simulator.pointing import pointing_palm
 from scene_simulator.programme import Task

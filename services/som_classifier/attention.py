@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Mask
-from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS, PARTS
+from actum.standard_body import BONES
 
 Axes = Literal["posture", "upright"]
 Origin = Literal["torso", "hips"]

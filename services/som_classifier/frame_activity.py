@@ -24,7 +24,8 @@ _PARTS = slice(0, len(PART_NAMES))
 _LIMBS = slice(_PARTS.stop, _PARTS.stop + LIMBS * MOMENTS)
 _MISSING = _LIMBS.stop
 _LOG_ERRORS = slice(_MISSING + 1, _MISSING + 3)
-_UM_PER_M = 1e6
+UM_PER_M = 1e6
+"""Micrometres in a metre: displacements are added up in whole ones."""
 _MILLIONTHS = 1e6
 """Steps per unit in which logarithms are added up."""
 
@@ -64,7 +65,7 @@ class FrameEncoder:
         activities = self._first.frame_activities(posture, frame.kinematics.velocity)
         winner, mirror_winner = activities[:, : len(self._first.postures.weights)].argmax(axis=1).tolist()
         log_errors = self._first.log_errors(np.stack([posture, mirrored(posture)]), [winner, mirror_winner])
-        moved_um = np.rint(frame.motion * _UM_PER_M).astype(np.int64)
+        moved_um = np.rint(frame.motion * UM_PER_M).astype(np.int64)
         before, totals_before = self._prefix, self._totals
         self._sums = self._sums + quantised(activities)
         self._prefix = Prefix(tuple(self._sums), before.travelled_um + sum(moved_um.tolist()))

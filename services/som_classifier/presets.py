@@ -6,6 +6,7 @@ from types import MappingProxyType
 
 from actum.som import Schedule
 from som_classifier.attention import MOVING, PostureInput
+from som_classifier.spotting.spotting_preset import SpottingPreset
 
 
 @dataclass(frozen=True)
@@ -87,37 +88,6 @@ class PaperPreset:
     relative_contrast: float
     beta: float
     epochs: int
-
-
-@dataclass(frozen=True)
-class SpottingPreset:
-    """What the search for actions without marks depends on.
-
-    Attributes:
-        interval_s: time between two decisions.
-        lag_s: how long after its end an action is decided.
-        overlap: the share of its duration by which an action may reach into the one before it.
-        duration_weight: by how much completeness counts less per unit of log-likelihood of the duration.
-        windows: how many durations of windows there are.
-        shortest_quantile: of the training segments' durations, the shortest window; the longest is at one minus this.
-        shrinkage: of the heads, in units of the mean squared length of the pooled vectors.
-        most_windows: training windows; more make the heads hardly better, and their training costs n³.
-        folds: of cross-validation, by people.
-        thresholds: completeness at which recall and false alarms are counted, rising.
-        false_alarm_threshold: completeness from which windows of background are false alarms to learn from.
-    """
-
-    interval_s: float
-    lag_s: float
-    overlap: float
-    duration_weight: float
-    windows: int
-    shortest_quantile: float
-    shrinkage: float
-    most_windows: int
-    folds: int
-    thresholds: tuple[float, ...]
-    false_alarm_threshold: float
 
 
 @dataclass(frozen=True)
@@ -240,6 +210,7 @@ PYRAMID = PyramidPreset(
         shortest_quantile=0.04,
         shrinkage=0.4,
         most_windows=5000,
+        common_shares=(0.0, 0.3),
         folds=3,
         thresholds=tuple(n / 20 for n in range(5, 19)),
         false_alarm_threshold=0.4,

@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from operator import mul
-from typing import Annotated, Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
 from actum.arrays import Array, Floats, Indices
 from actum.node import SECOND_NS
@@ -26,60 +25,18 @@ from som_classifier.frame_activity import (
 )
 from som_classifier.frames import Frame
 from som_classifier.map_activity import soft_activity
-from som_classifier.model import Arrays, Model, ModelMetadata
+from som_classifier.model import Arrays, Model
 from som_classifier.ordered_vector import without_repeats
 from som_classifier.pyramid import PrefixSums, Pyramid
+from som_classifier.pyramid_metadata import PyramidMetadata
 from som_classifier.recognition import Recognition
 from som_classifier.second_layer import ActionMap
 from som_classifier.spotting.completeness import CompletenessHeads
 from som_classifier.spotting.pyramid_spotter import PyramidSpotter
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.spotting.spotting_model import SpottingMetadata, SpottingModel
+from som_classifier.spotting.spotting_model import SpottingModel
 from som_classifier.stage_discriminants import StageDiscriminants, familiarity_of
 from som_classifier.supervised import SupervisedLayer
-
-Finite = Annotated[float, Field(allow_inf_nan=False)]
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-
-
-class PyramidMetadata(ModelMetadata):
-    """What a file of the default recogniser holds beside the weights; field names are keys of the stored JSON.
-
-    Attributes:
-        posture_contrast: of the posture map's soft activity, in squared metres.
-        velocity_contrast: of the velocity map's soft activity, in its squared distance.
-        arm_contrast: of the arm map's soft activity, in its squared distance.
-        arm_shares: the sum of the arm map's activity for the acting arm, and for the other one.
-        mirrors: whether an action of the left arm is read as its mirror image.
-        levels: the number of the pyramid's cells on each level.
-        overlap: how far each cell reaches over its borders, as a fraction of its length.
-        fractions: the share of an action that has been seen at each stage of the discriminants.
-        log_duration_mean: mean of the logarithm of the training segments' durations (s).
-        log_duration_sd: standard deviation of that logarithm.
-        concept_contrast: of the action map's soft activity, in squared scores.
-        gains: the inverse temperatures of the softmax that turns cosines into probabilities, by stage.
-        familiar: the open-set threshold: with a lower familiarity an action may be none of those trained.
-        usual_log_errors: for each action, the mean log(d²) of its postures from the map of postures that a person not
-            trained on may well reach, d in metres over all joints of a standard body.
-        spotting: of the search for actions without marks; None where the model was not trained for that.
-    """
-
-    kind: Literal["pyramid"] = "pyramid"
-    posture_contrast: Positive
-    velocity_contrast: Positive
-    arm_contrast: Positive
-    arm_shares: Annotated[list[Positive], Field(min_length=2, max_length=2)]
-    mirrors: bool
-    levels: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=1)]
-    overlap: Annotated[float, Field(ge=0, le=1)]
-    fractions: Annotated[list[Annotated[float, Field(gt=0, le=1)]], Field(min_length=1)]
-    log_duration_mean: Finite
-    log_duration_sd: Positive
-    concept_contrast: Positive
-    gains: list[Positive]
-    familiar: Finite
-    usual_log_errors: list[Finite]
-    spotting: SpottingMetadata | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +59,7 @@ class PyramidModel(Model):
     heads: CompletenessHeads | None = None
 
     def __post_init__(self) -> None:
-        if problem := self._metadata_problem() or self._array_problem():
+        if problem := self.metadata.problem() or self._number_problem() or self._shape_problem():
             raise ValueError(problem)
 
     @property
@@ -239,26 +196,20 @@ class PyramidModel(Model):
         """Return the actions' scores on the discriminants, weighted by stage, shape (actions,)."""
         return self.stages.scores(self.pyramid.vector(self.prefix_sums(activities)), stages)
 
-    def _metadata_problem(self) -> str | None:
-        """Return the first inconsistency within the metadata, None where there is none."""
-        stored = self.metadata
-        actions, stages = len(stored.labels), len(stored.fractions)
-        if stored.joint_order != list(JOINTS):
-            return "its joint order is not this version's"
+    def _number_problem(self) -> str | None:
+        """Return the first array whose numbers are not of the kind they have to be, None where there is none."""
         if len({som.dtype for som in self.first.maps}) > 1:
             return "its maps are not of the same precision"
-        if len(set(stored.labels)) < actions or len(stored.gains) != stages or len(stored.usual_log_errors) != actions:
-            return "its labels or its stages do not fit together"
-        return None if stored.spotting is None else stored.spotting.problem(actions)
-
-    def _array_problem(self) -> str | None:
-        """Return the first inconsistency of an array with the metadata or other arrays, None where there is none."""
-        first, units = self.first, len(self.action_map.som.weights)
-        actions, stages = len(self.metadata.labels), len(self.metadata.fractions)
         outside_maps = [self.stages.axes, self.stages.offsets, self.action_map.mean]
         outside_maps += [] if self.heads is None else [self.heads.axes, self.heads.offsets]
         if not all(array.dtype == np.float32 and np.isfinite(array).all() for array in outside_maps):
             return "its axes, their offsets or its mean are not finite single-precision numbers"
+        return None
+
+    def _shape_problem(self) -> str | None:
+        """Return the first inconsistency of a shape with the metadata or other arrays, None where there is none."""
+        first, units = self.first, len(self.action_map.som.weights)
+        actions, stages = len(self.metadata.labels), len(self.metadata.fractions)
         shapes = {
             "maps of the first layer": ({len(som.weights) for som in first.maps}, {len(first.postures.weights)}),
             "map of postures": (first.postures.weights.shape[1:], (3 * len(JOINTS),)),

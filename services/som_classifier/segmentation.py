@@ -7,8 +7,8 @@ from som_classifier.model import Model
 from som_classifier.spotting.search import NO_SEARCH, SearchPlan
 from som_classifier.spotting.spotted import SpottingOptions
 
-AnsweredSegments = Literal["marks", "auto", "both"]
-"""Which segments are answered: the marked ones, those that the classifier finds by itself, or both."""
+WantedSegments = Literal["marks", "auto", "both"]
+"""Which segments are to be answered: the marked ones, those that the classifier finds by itself, or both."""
 CANNOT = "finds no segments by itself: the model was trained without continuous recordings"
 """What the state says of a model without a spotter."""
 NO_BACKGROUND = "no background in the training data: none is a guess"
@@ -25,7 +25,7 @@ class Segmentation:
         enabled: the only actions that are told of those found; empty where all are.
     """
 
-    segments: AnsweredSegments = "both"
+    segments: WantedSegments = "both"
     options: SpottingOptions = field(default_factory=SpottingOptions)
     enabled: frozenset[str] = frozenset()
 
@@ -46,8 +46,9 @@ class Segmentation:
             return f"nothing to do: marks are not wanted (segments auto), and it {CANNOT}"
         if problem := self.misnamed(model):
             return problem
-        notes = [NO_BACKGROUND] if finds and model.background_s == 0 else [] if finds else [CANNOT]
-        return "; ".join(["running", *notes])
+        if not finds:
+            return f"running; {CANNOT}"
+        return f"running; {NO_BACKGROUND}" if model.background_s == 0 else "running"
 
     def misnamed(self, model: Model) -> str | None:
         """Say which of the actions that are named the model does not know; None where it knows them all."""

@@ -1,4 +1,4 @@
-"""Cuts postures into segments by marks: known_agent, from when to when, with which frames, or why not.
+"""Cuts postures into segments by marks: whose, from when to when, with which frames, or why not.
 
 A segment closes once its posture stream has reached the end, or after two seconds of waiting for it.
 """
@@ -103,7 +103,7 @@ class Segmenter:
         """Close a segment that nobody marked, of a known agent whose frames have come up to its end."""
         assert found.known_agent is not None
         stream = self._streams.of(found.known_agent)
-        return found.rejected("no person") if stream is None else _cut(found, found.known_agent, stream)
+        return found.rejected("no person") if stream is None else _cut(found, stream)
 
     def frames_between(self, agent: int, start_ns: int, end_ns: int) -> list[Frame]:
         """List an agent's frames with start <= stamp <= end."""
@@ -132,7 +132,7 @@ class Segmenter:
                 segment.waiting_since_ns = None
 
     def _settle(self) -> list[ClosedSegment]:
-        """Determine agents where that is possible; close the segments known_agent end is reached and those too long."""
+        """Determine agents where that is possible; close the segments whose end is reached and those too long."""
         closed = []
         for segment in list(self._open.values()):
             if segment.known_agent is None:
@@ -208,7 +208,7 @@ class Segmenter:
             self._late.append((agent, range(start_ns, segment.end_ns + 1)))
         segment.nearest = agent
         self._forget(segment)
-        return _cut(segment, agent, stream)
+        return _cut(segment, stream)
 
     def _reject(self, segment: OpenSegment, reason: str) -> ClosedSegment:
         self._forget(segment)
@@ -241,13 +241,9 @@ class Segmenter:
         ]
 
 
-def _cut(segment: OpenSegment, agent: int, stream: Stream) -> ClosedSegment:
+def _cut(segment: OpenSegment, stream: Stream) -> ClosedSegment:
     """Return a segment that has an end, closed, with the frames of its agent's stream that have come."""
     assert segment.end_ns is not None
-    start_ns = segment.start_ns if segment.start_ns is not None else 0
-    frames = stream.between(start_ns, segment.end_ns)
+    frames = stream.between(segment.start_ns or 0, segment.end_ns)
     missed = sum(frame.missed for frame in frames) + stream.missed_after(segment.end_ns)
-    return ClosedSegment(
-        segment.segment_id, start_ns, segment.end_ns, agent, segment.hand, segment.label, frames, missed,
-        why_no_recognition(frames),
-    )  # fmt: skip
+    return segment.closed(frames, missed, why_no_recognition(frames))

@@ -62,11 +62,15 @@ class OpenSegment:
 
     def rejected(self, reason: str) -> "ClosedSegment":
         """Return the segment closed, without frames and with the reason for which it is rejected."""
+        return self.closed([], 0, reason)
+
+    def closed(self, frames: list[Frame], missed: int, reason: str | None) -> "ClosedSegment":
+        """Return the segment closed: with these frames, those lost on the way, and why it cannot be recognised."""
         start_ns = self.start_ns if self.start_ns is not None else 0
         end_ns = self.end_ns if self.end_ns is not None else start_ns
         return ClosedSegment(
-            self.segment_id, start_ns, end_ns, self.known_agent or 0, self.hand, self.label, reason=reason
-        )  # fmt: skip
+            self.segment_id, start_ns, end_ns, self.known_agent or 0, self.hand, self.label, frames, missed, reason
+        )
 
 
 @dataclass(frozen=True)

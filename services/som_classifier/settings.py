@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, Field, FiniteFloat
 from pydantic_settings import NoDecode
 
 from actum.settings import ServiceSettings
-from som_classifier.segmentation import AnsweredSegments, Segmentation
+from som_classifier.segmentation import Segmentation, WantedSegments
 from som_classifier.spotting.spotted import SpottingOptions
 
 Seconds = Annotated[FiniteFloat, Field(ge=0)]
@@ -39,7 +39,7 @@ class Settings(ServiceSettings):
 
     model: Path | None = Field(None, description="the model file; it may appear or change at any time")
     publish_maps: bool = Field(False, description="put the maps' activities and the trace with each final action")
-    segments: AnsweredSegments = Field(
+    segments: WantedSegments = Field(
         "both",
         description="answer marked segments (marks), those that the classifier finds by itself (auto), or both;"
         " where both are, the marked ones win",

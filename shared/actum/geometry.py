@@ -12,33 +12,6 @@ import numpy as np
 from actum.arrays import Array
 from actum.skeletons import INDEX
 
-BONES: tuple[tuple[int, int, float], ...] = tuple(
-    (INDEX[parent], INDEX[child], length_m)
-    for parent, child, length_m in (
-        ("torso", "neck", 0.24),
-        ("neck", "head", 0.20),
-        ("neck", "left_shoulder", 0.18),
-        ("left_shoulder", "left_elbow", 0.28),
-        ("left_elbow", "left_hand", 0.32),
-        ("neck", "right_shoulder", 0.18),
-        ("right_shoulder", "right_elbow", 0.28),
-        ("right_elbow", "right_hand", 0.32),
-        ("torso", "left_hip", 0.26),
-        ("left_hip", "left_knee", 0.42),
-        ("left_knee", "left_foot", 0.44),
-        ("torso", "right_hip", 0.26),
-        ("right_hip", "right_knee", 0.42),
-        ("right_knee", "right_foot", 0.44),
-    )
-)
-"""The skeleton as a tree with the torso as its root, parents first: parent, child, standard length in metres."""
-
-_PARENTS = np.array([parent for parent, _, _ in BONES])
-"""Index of the joint where each bone begins: (14,)."""
-_CHILDREN = np.array([child for _, child, _ in BONES])
-"""Index of the joint where each bone ends: (14,)."""
-_LENGTHS_M = np.array([length for _, _, length in BONES])
-"""Standard lengths (m): (14,)."""
 SMALLEST_M = 1e-3
 """A shorter vector (m) has no defined direction."""
 ROUNDING = float(np.finfo(np.float64).eps)
@@ -48,20 +21,6 @@ _NEXT = [1, 2, 0]
 """For each axis the next one in cyclic order, as the cross product takes them."""
 _PREVIOUS = [2, 0, 1]
 """For each axis the previous one in cyclic order."""
-
-
-def _paths_from_torso() -> Array:
-    """Return 1 for each bone on the path from the torso to a joint, else 0: (15, 14), joints by bones."""
-    paths = np.zeros((len(INDEX), len(BONES)))
-    for bone, (parent, child, _) in enumerate(BONES):
-        paths[child] = paths[parent]
-        paths[child, bone] = 1.0
-    return paths
-
-
-_PATHS = _paths_from_torso()
-"""Which bones lie on the path from the torso to each joint: (15, 14), 1 or 0."""
-
 RIGID_TOLERANCE = 1e-3
 """How far R Rᵀ of a rotation may be from the identity, per element: transforms are written with few decimals."""
 
@@ -167,27 +126,6 @@ def ego_from_camera(joints: Array) -> Array:
     return ego
 
 
-def scaled(joints: Array) -> Array:
-    """Return the joints, (15, 3), with each bone at its standard length in its own direction, the torso unmoved.
-
-    A joint of the result is NaN where any joint on its path from the torso is unknown.
-
-    Args:
-        joints: (15, 3), NaN where unknown; the torso is known.
-
-    Raises:
-        DegenerateError: a bone has no length, so that its direction is undefined.
-    """
-    bones = joints[_CHILDREN] - joints[_PARENTS]
-    lengths = np.sqrt(np.einsum("ij,ij->i", bones, bones))
-    if np.fmin.reduce(lengths) < SMALLEST_M:
-        raise DegenerateError("two joined joints coincide")
-    standard = bones * (_LENGTHS_M / lengths)[:, None]
-    from_torso = _positions_where_known(standard) if math.isnan(lengths.sum()) else _PATHS @ standard
-    result: Array = joints[INDEX["torso"]] + from_torso
-    return result
-
-
 def upright(joints: Array, left_x: float, left_z: float) -> Array:
     """Express joints (15, 3) relative to the torso, along the actor's left, up (camera -y) and forward = left x up.
 
@@ -221,14 +159,6 @@ def _unit_of_any_length(vector: Sequence[float]) -> Array:
     _, exponent = math.frexp(max(map(abs, vector)))
     near_1 = [math.ldexp(component, -exponent) for component in vector]
     return np.array(near_1) / math.hypot(*near_1)
-
-
-def _positions_where_known(bones: Array) -> Array:
-    """Return the joints relative to the torso, (15, 3), NaN where a bone (14, 3) on the path to them is unknown."""
-    unknown = np.isnan(bones[:, 0])
-    positions: Array = _PATHS @ np.where(unknown[:, None], 0.0, bones)
-    positions[_PATHS @ unknown > 0] = np.nan
-    return positions
 
 
 def _hips_from_shoulders(joints: Array) -> tuple[Array, Array]:

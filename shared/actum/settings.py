@@ -46,10 +46,15 @@ def complaint(error: ValueError) -> str:
     if not isinstance(error, ValidationError):
         return str(error)
     problems = [
-        f"{'.'.join(map(str, e['loc']))}: {e['msg'].removeprefix('Value error, ')}"
+        ": ".join([*_setting(e["loc"]), e["msg"].removeprefix("Value error, ")])
         for e in error.errors(include_url=False)
     ]
     return f"settings: {'; '.join(problems)}"
+
+
+def _setting(place: tuple[int | str, ...]) -> list[str]:
+    """Return the name of the setting that is wrong, none where several do not go together."""
+    return [".".join(map(str, place))] if place else []
 
 
 def _endpoint(text: str) -> str:

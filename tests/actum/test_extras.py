@@ -8,6 +8,19 @@ import pytest
 from actum.runtime import needs_extra
 from actum.runtime.serving import UNUSABLE
 
+WITHOUT = """
+import runpy, sys
+
+class Uninstalled:
+    def find_spec(name, *_):
+        if name == sys.argv[2]:
+            raise ModuleNotFoundError(name=name)
+
+sys.meta_path.insert(0, Uninstalled)
+runpy.run_module(sys.argv[1], run_name="__main__")
+"""
+"""Runs a service where a package is not installed."""
+
 
 @pytest.mark.parametrize(
     ("service", "package", "extra"),
@@ -15,12 +28,13 @@ from actum.runtime.serving import UNUSABLE
         ("sensor_gateway", "cv2", "sensor-gateway"),
         ("scene_simulator", "cv2", "scene-simulator"),
         ("marker_tracker", "cv2", "marker-tracker"),
+        ("ros2_bridge", "rosbags", "ros2"),
         ("actum_command", "typer", "actum-command"),
     ],
 )
 def test_a_service_without_its_extra_says_which_it_needs(service: str, package: str, extra: str) -> None:
-    without = f"import runpy, sys; sys.modules['{package}'] = None; runpy.run_module('{service}', run_name='__main__')"
-    ended = subprocess.run([sys.executable, "-c", without], capture_output=True, text=True, check=False)
+    run = [sys.executable, "-c", WITHOUT, service, package]
+    ended = subprocess.run(run, capture_output=True, text=True, check=False)
     assert ended.returncode == UNUSABLE
     assert ended.stderr == f"{package} is not installed: pip install 'actum[{extra}]'\n"
 

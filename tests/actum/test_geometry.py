@@ -5,7 +5,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from actum import geometry
+from actum import geometry, standard_body
 from actum.skeletons import INDEX
 from people import STANDING, lacking, reaching
 
@@ -30,7 +30,7 @@ def rotated(joints: np.ndarray, axis: tuple[float, float, float], angle: float) 
 
 
 def scaled_ego(joints: np.ndarray) -> np.ndarray:
-    standard = geometry.scaled(joints)
+    standard = standard_body.scaled(joints)
     return geometry.apply(geometry.ego_from_camera(standard), standard)
 
 
@@ -97,8 +97,8 @@ def test_different_postures_stay_different() -> None:
 
 
 def test_scaling_keeps_each_bones_direction_and_gives_it_its_length() -> None:
-    standard = geometry.scaled(STANDING)
-    for parent, child, length_m in geometry.BONES:
+    standard = standard_body.scaled(STANDING)
+    for parent, child, length_m in standard_body.BONES:
         before, after = STANDING[child] - STANDING[parent], standard[child] - standard[parent]
         np.testing.assert_allclose(after, before / np.linalg.norm(before) * length_m, atol=1e-12)
 
@@ -136,9 +136,9 @@ def test_what_is_no_turn_and_shift_is_not_rigid(spoil) -> None:
 
 
 def test_a_joint_is_scaled_where_its_way_from_the_torso_is_known() -> None:
-    standard = geometry.scaled(lacking(STANDING, "left_shoulder", "right_elbow", "right_foot"))
+    standard = standard_body.scaled(lacking(STANDING, "left_shoulder", "right_elbow", "right_foot"))
     unknown = ["left_shoulder", "left_elbow", "left_hand", "right_elbow", "right_hand", "right_foot"]
-    np.testing.assert_array_equal(standard, lacking(geometry.scaled(STANDING), *unknown))
+    np.testing.assert_array_equal(standard, lacking(standard_body.scaled(STANDING), *unknown))
 
 
 @given(
@@ -195,7 +195,7 @@ def test_joints_without_a_frame_are_refused() -> None:
     with pytest.raises(geometry.DegenerateError, match="shoulders in their place"):
         geometry.ego_from_camera(without_hips)
     with pytest.raises(geometry.DegenerateError, match="coincide"):
-        geometry.scaled(np.ones((15, 3)))
+        standard_body.scaled(np.ones((15, 3)))
 
 
 def test_flat_transforms_are_row_major() -> None:

@@ -6,12 +6,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from actum.messages import Message, Segment
+from actum.messages import AUTO, MANUAL, Message, Segment
 from actum.recording import Recorder, Recording
 from actum_command.__main__ import app
 from empty_messages import action
+from people import FRAME_NS
 from performers import mark
-from repeating import FRAME_NS, Stream, five_waves, rest
+from repeating import Stream, five_waves, rest
 
 FIRST_NS = 10**9
 """Stamp of the first frame: times count from it, not from the clock's start."""
@@ -79,6 +80,20 @@ def test_bounds_are_moved_to_a_time_or_by_a_difference(path: Path) -> None:
     label("move", path, 1, "--end", "-0.2")
     assert rows(path)[0].startswith("1 1.00 s 2.57 s")
     assert unmarked(path) == frames
+
+
+def test_a_segment_that_a_classifier_found_is_the_users_once_it_is_moved(tmp_path: Path, waves: Stream) -> None:
+    path = tmp_path / "found.mcap"
+    with Recorder(path, person="anna", source="test") as recorder:
+        for frame in waves.skeletons():
+            recorder.write(frame)
+        for kind, stamp_ns in (("start", 10**9), ("end", 2 * 10**9)):
+            recorder.write(mark(kind, stamp_ns, "auto-1").model_copy(update={"origin": AUTO}))
+    label("move", path, 1, "--start", "+0.1")
+    assert [(each.origin, each.stamp_ns) for each in marks_of(path, "auto-1")] == [
+        (MANUAL, 1_100_000_000),
+        (MANUAL, 2_000_000_000),
+    ]
 
 
 def test_a_segment_is_renamed_and_deleted_with_its_answers(path: Path) -> None:

@@ -18,7 +18,7 @@ from actum_command import repetition_recorder, streaming
 from actum_command.__main__ import app
 from actum_command.commands import recording_commands
 from empty_messages import image, mark, skeleton, status
-from repeating import FRAME_NS as REPEATED_FRAME_NS
+from people import FRAME_NS
 from repeating import five_waves, rest
 
 
@@ -124,7 +124,7 @@ def test_what_is_done_five_times_is_counted_cut_and_shown(live: Live, tmp_path: 
     assert [(each.segment_id, each.kind, each.origin) for each in marks] == [
         (f"cut-{number}", kind, CUT) for number in range(1, 6) for kind in ("start", "end")
     ]
-    near_ns = [first * REPEATED_FRAME_NS for first, _ in stream.truths]
+    near_ns = [first * FRAME_NS for first, _ in stream.truths]
     assert [each.stamp_ns for each in marks[::2]] == pytest.approx(near_ns, abs=4e8)
 
 

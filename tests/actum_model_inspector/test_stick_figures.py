@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS, PARTS
+from actum.standard_body import BONES
 from actum_model_inspector.stick_figures import ONE_LIMB, STANDING, Pen, draw_figures, laid_out, projected
 from actum_model_inspector.style import LEFT, RIGHT
 from people import lacking

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS
+from actum.standard_body import BONES
 from actum_model_trainer.augmentation import Variant, bone_scaling, pitch_rotation, variants, yaw_rotation
 from actum_model_trainer.samples import SegmentSample
 from performers import TINY

@@ -158,6 +158,13 @@ def test_an_answer_that_reaches_into_two_truths_is_one_of_them() -> None:
     assert scored([found("lift", 10, 12), found("lift", 11, 15)], both).event.right == 2
 
 
+def test_of_truths_that_are_overlapped_alike_the_earliest_is_claimed() -> None:
+    """0 to 4 s overlaps 0 to 2 s and 0 to 8 s by a half (IoU); another answer fits the latter exactly."""
+    short, long = done("lift", 0, 2), done("lift", 0, 8)
+    answers = [found("lift", 0, 4), found("lift", 0, 8)]
+    assert scored(answers, [short, long]).event.right == scored(answers, [long, short]).event.right == 2
+
+
 def test_agents_and_files_are_separate() -> None:
     assert scored([found("lift", 10, 12, agent=2)], [LIFT]).event.f1 == 0.0
     assert scored([replace(found("lift", 10, 12), file="b.mcap")], [LIFT]).event.f1 == 0.0
@@ -210,6 +217,16 @@ def test_recall_at_a_false_alarm_a_minute_leaves_the_unsure_out() -> None:
     truths_ = [LIFT, PUSH, done("drink", 30, 31)]
     assert scored(answers, truths_, minutes=1.95).recall_at_rate == pytest.approx(2 / 3)
     assert scored(answers, truths_, minutes=2.2).recall_at_rate == 1.0
+
+
+@given(detections, truths)
+def test_recall_at_a_false_alarm_a_minute_is_the_best_of_all_thresholds(
+    given_: list[Detection], truths_: list[Truth]
+) -> None:
+    kept = [[d for d in given_ if d.confidence >= least] for least in (0.2, 0.5, 0.9)]
+    at_thresholds = [scored(each, truths_, minutes=4) for each in kept]
+    allowed = [each.event.recall for each in at_thresholds if (each.false_per_min or 0.0) <= 1.0]
+    assert scored(given_, truths_, minutes=4).recall_at_rate == max(allowed, default=0.0)
 
 
 def test_an_action_point_is_claimed_within_a_third_of_a_second() -> None:

@@ -11,10 +11,9 @@ from actum.messages import AUTO, Action, Message, Posture, Segment
 from actum.node import Counters, Tick
 from actum.recording import Recording
 from actum_model_trainer import continuous_cross_validation
-from actum_model_trainer.continuous import watching
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from actum_model_trainer.continuous.scoring import scores_of
-from actum_model_trainer.continuous.watching import NoSpotterError, found_by, watched
+from actum_model_trainer.continuous.watching import NoSpotterError, found_by, views_of, watched
 from actum_model_trainer.continuous_cross_validation import found_without_each, models_without, with_points
 from actum_model_trainer.training import TrainingError
 from people import FRAME_NS, STANDING, skeleton
@@ -158,7 +157,7 @@ def test_points_are_claimed_in_the_middle_where_none_are_known() -> None:
 
 def test_a_recording_without_marks_is_all_background(record: Record) -> None:
     idle = record("idle", *(skeleton(i * FRAME_NS, swaying(i)) for i in range(901)))
-    assert watching.sensors_of(idle) == ["kinect0"]
+    assert views_of(idle) == [("kinect0", str(idle.path))]
     scores = scores_of(watched(Finder((*frames(1, 18, 24), "lift")), idle, "kinect0", "a"))
     assert scores.background_min == pytest.approx(0.5, rel=1e-3)
     assert scores.false_per_min == pytest.approx(2.0, rel=1e-3)

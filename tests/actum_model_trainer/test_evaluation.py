@@ -13,8 +13,9 @@ from actum.messages import Action
 from actum.node import replay
 from actum.recording import Recording
 from actum_model_trainer.evaluation import Evaluation, Prediction, evaluate, wilson_interval
+from actum_model_trainer.recorded_segments import classifier_input
 from actum_model_trainer.report import confusion, report, summary
-from actum_model_trainer.samples import classifier_input, samples_from
+from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train
 from people import FRAME_NS, skeleton
 from performers import HAND_PATHS, TINY, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance

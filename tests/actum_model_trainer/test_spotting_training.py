@@ -14,7 +14,7 @@ from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import LabelledStream, Samples, samples_from
 from actum_model_trainer.spotting.encoded_stream import EncodedStream
 from actum_model_trainer.spotting.heads_training import fit_heads
-from actum_model_trainer.spotting.threshold_choice import logistic_fit
+from actum_model_trainer.spotting.logistic_regression import logistic_fit
 from actum_model_trainer.spotting.training_windows import (
     live_windows,
     overlap_ratio,

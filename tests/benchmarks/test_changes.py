@@ -16,10 +16,10 @@ from benchmarks.recognition.changes import (
 )
 
 from actum import keys
-from actum.geometry import BONES
 from actum.messages import Agent, Message, Segment, Skeleton
 from actum.recording import Recorder, Recording
 from actum.skeletons import INDEX, JOINTS
+from actum.standard_body import BONES
 
 FRAMES, SECOND_NS = 9, 1_000_000_000
 STANDING_M = {

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from actum import geometry
+from actum import standard_body
 from actum.messages import Joint, Posture
 from actum.skeletons import INDEX, JOINTS, PARTS
 from people import FRAME_NS, STANDING, lacking, reaching, skeleton
@@ -22,7 +22,7 @@ HIPS, SHOULDERS = {"left_hip", "right_hip"}, {"left_shoulder", "right_shoulder"}
 KNEES, FEET = {"left_knee", "right_knee"}, {"left_foot", "right_foot"}
 RIGHT_ARM = ("right_shoulder", "right_elbow", "right_hand")
 LEGS = {"no feet": FEET, "no legs": HIPS | KNEES | FEET, "no hips": HIPS, "one hip": {"left_hip"}}
-PARENT = {JOINTS[child]: JOINTS[parent] for parent, child, _ in geometry.BONES}
+PARENT = {JOINTS[child]: JOINTS[parent] for parent, child, _ in standard_body.BONES}
 SUBSETS = st.sets(st.sampled_from(JOINTS))
 
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from actum import geometry
+from actum import geometry, standard_body
 from actum.messages import Posture
 from actum.skeletons import INDEX
 from people import FRAME_NS, STANDING, lacking, reaching, skeleton, turned
@@ -73,7 +73,7 @@ def level(joints: Array) -> Array:
 @given(HEADINGS)
 def test_at_a_steady_heading_it_is_the_scaled_posture_seen_from_the_front(heading: float) -> None:
     (seen,) = upright([turned(level(STANDING), heading)])
-    standard = geometry.scaled(level(STANDING)) - STANDING[INDEX["torso"]]
+    standard = standard_body.scaled(level(STANDING)) - STANDING[INDEX["torso"]]
     np.testing.assert_allclose(seen, standard * [1, -1, -1], atol=1e-12)
 
 

@@ -44,7 +44,7 @@ def test_the_event_is_that_of_a_marked_segment(late_s: tuple[float, float]) -> N
     found = put(finding(tiny_model(), ACTED), (), *late_s)
     bounds = (("start", ACTED.start_ns), ("end", ACTED.end_ns))
     marks = [Segment(stamp_ns=ns, sensor="kinect0", kind=kind, segment_id="hand", agent=1) for kind, ns in bounds]  # type: ignore[arg-type]
-    marked = put(tiny_model(), marks, *late_s)
+    marked = put(finding(tiny_model()), marks, *late_s)
     [event] = found[Event]
     assert event.valid and event.object is not None and event.object.name == "cup"
     assert [m.origin for m in found[Segment]] == [AUTO, AUTO] and not marked[Segment]

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from actum.arrays import Array
 from actum.skeletons import INDEX, JOINTS
-from scene_simulator.actor import FOREARM, UPPER_ARM, Actor, Stance, draw_actor, eye, fingertip, pose
+from scene_simulator.actor import FOREARM, UPPER_ARM, Actor, draw_actor
+from scene_simulator.inverse_kinematics import Stance, eye, fingertip, pose
 from scene_simulator.parameters import load_parameters
 from scene_simulator.pointing import pointing_palm
 

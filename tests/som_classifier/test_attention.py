@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS
+from actum.standard_body import BONES
 from people import STANDING, lacking
 from som_classifier.attention import ALL, ATTENTIONS, MOVING, PART_NAMES, PostureInput, attended_part
 

@@ -213,7 +213,7 @@ def test_the_demo_finds_actions_that_nobody_marks_and_leaves_nothing(
     assert len(re.findall(r"^ *\d/5 .*(action . *object .|not found)", demo.said(), re.M)) == 5, demo.said()
     assert re.search(r"total .*41 \(91.1%\)", demo.said())
     assert re.search(r"found by itself: [1-5] of 5 actions", demo.said())
-    assert re.search(r"false alarms: \d+ in 0.6 minutes of everything else", demo.said())
+    assert re.search(r"false alarms: \d+ in 0.5 minutes of everything else", demo.said())
     assert list((tmp_path / "temporary").iterdir()) == []
     wait_until(lambda: pids_of(running) == set(), "no process is left")
 

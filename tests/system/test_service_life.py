@@ -1,6 +1,7 @@
 """Each service alone: it waits for the router, serves, and leaves cleanly."""
 
 from collections.abc import Iterator
+from importlib.util import find_spec
 
 import msgpack
 import pytest
@@ -19,6 +20,7 @@ PROGRAMS = {
     "marker_tracker": "marker_tracker",
     "action_fusion": "action_fusion",
     "web_dashboard": "web_dashboard",
+    **({"ros2_bridge": "ros2_bridge"} if find_spec("rosbags") else {}),
 }
 """What is run for each service: the simulated scene stands in the gateway's place."""
 pytestmark = pytest.mark.system

@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[2]
 VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
 OFFLINE = "connection broken by"
 """What pip says of an index that it cannot reach."""
-NOT_IN_ALL = {"mediapipe", "numba", "openni", "pyrealsense2"}
+NOT_IN_ALL = {"foxglove", "mediapipe", "numba", "openni", "pyrealsense2", "rerun"}
 """What some modules import and the extra `all` leaves out."""
 IMPORT_EVERYTHING = """
 import importlib, importlib.metadata, pkgutil

@@ -8,7 +8,7 @@ from pathlib import Path
 from actum.recording import Recording, RecordingError
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import tell_unread
-from actum_command.commands.terminal import console, fail, say
+from actum_command.commands.terminal import console, fail, say, write_text
 from actum_command.search_settings import flags_for
 from actum_model_trainer.continuous.continuous_report import continuous_report
 from actum_model_trainer.continuous.scoring import scores_of
@@ -49,7 +49,4 @@ def evaluate_continuously(
     scores = scores_of(found)
     console.print(continuous_report(scores, time.monotonic() - began_s))
     if json_file is not None:
-        try:
-            json_file.write_text(json.dumps(found.as_json() | {"scores": scores.as_json()}, indent=1), encoding="utf-8")
-        except OSError as error:
-            fail(f"{json_file} cannot be written ({error.strerror})")
+        write_text(json_file, json.dumps(found.as_json() | {"scores": scores.as_json()}, indent=1))

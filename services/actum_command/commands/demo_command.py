@@ -16,6 +16,7 @@ from actum_command.commands.terminal import console, fail, settings
 from actum_command.demo_score import summary, table
 from actum_command.live_test import ExperimentError, LiveTest, TerminatedError
 from actum_command.simulated_experiment import (
+    FIRST_TESTED,
     PEOPLE,
     nearest_neighbour_baseline,
     run_marked,
@@ -24,7 +25,7 @@ from actum_command.simulated_experiment import (
 )
 from actum_command.startup import log_file, refuse_taken
 from actum_command.supervising import UnusableError
-from actum_command.unmarked_experiment import run_unmarked, train_on_streams
+from actum_command.unmarked_experiment import FIRST_UNSEEN, run_unmarked, train_on_streams
 from actum_command.unmarked_score import introduction, unmarked_summary, unmarked_table
 from actum_model_trainer.evaluation import Evaluation
 from scene_simulator.programme import ACTIONS
@@ -64,7 +65,7 @@ def demo(
 
 def _marked(here: ServiceSettings, folder: Path, people: int, repetitions: int) -> str | None:
     """Run the paper's experiment and print its results; return what is missing, None where nothing is."""
-    training, model, actors = folder / "training.mcap", folder / "model.npz", tested_actors(people)
+    training, model, actors = folder / "training.mcap", folder / "model.npz", tested_actors(FIRST_TESTED, people)
     learned = _train(training, model)
     baseline = nearest_neighbour_baseline(training, folder, actors, repetitions)
     score = run_marked(_live(here), here, model, actors, repetitions)
@@ -75,7 +76,7 @@ def _marked(here: ServiceSettings, folder: Path, people: int, repetitions: int) 
 
 def _unmarked(here: ServiceSettings, folder: Path, people: int, repetitions: int) -> str | None:
     """Run the experiment without marks and print its results; return what is missing, None where nothing is."""
-    actors = tested_actors(people)
+    actors = tested_actors(FIRST_UNSEEN, people)
     console.print(introduction(len(actors)), soft_wrap=True)
     learned = _train_to_spot(folder, folder / "model.npz")
     performances = run_unmarked(_live(here), here, folder / "model.npz", actors, repetitions)

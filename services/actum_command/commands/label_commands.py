@@ -1,18 +1,17 @@
 """`actum label`: lists the segments of a recording, draws and mends them."""
 
-from collections.abc import Iterable
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from actum.messages import CUT, MANUAL, Message
+from actum.messages import CUT, MANUAL, segment_marks
 from actum.node import SECOND_NS
 from actum.recording import Recording, RecordingError
-from actum.rewriting import Change, rewrite, unchanged
-from actum_command.commands.plain_help import PlainGroup, PlainTyper
-from actum_command.commands.recording_options import tell_unread
+from actum.rewriting import unchanged
+from actum_command.commands.plain_help import LISTS, ListingGroup, PlainTyper
+from actum_command.commands.recording_options import RecordingFile, change_recording, refuse_length, tell_unread
 from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
 from actum_command.cut_lines import cut_lines
 from actum_command.labelled_segments import (
@@ -23,44 +22,29 @@ from actum_command.labelled_segments import (
     first_stamp_ns,
     free_names,
     labelled_segments,
-    marks_between,
     marks_of,
-    moved,
     only_sensor,
     segment_of,
-    without,
 )
-from actum_command.marked_actions import relabelled
+from actum_command.segment_changes import dropped, moved, relabelled
 from som_classifier.model_loading import ModelError, load_model
 
-LISTS = "list"
-"""The default command of `actum label`."""
-LONGEST_LABEL = 200  # characters allowed in the field of a mark
-
-
-class _ListsByDefault(PlainGroup):
-    """`actum label REC` is `actum label list REC`."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        if args and args[0] not in (*self.commands, "--help"):
-            args = [LISTS, *args]
-        return super().parse_args(ctx, args)
-
+RIGHT_ALIGNED = (True, True, True, True, False, False, False, False)
+"""Which columns of the list hold numbers."""
 
 app = PlainTyper(
-    cls=_ListsByDefault,
+    cls=ListingGroup,
     no_args_is_help=True,
     help="List the segments of a recording, actum label REC, draw and mend them. Times are seconds from its start.",
 )
 
-Rec = Annotated[Path, typer.Argument(metavar="REC", help="the recording", exists=True, dir_okay=False)]
 Number = Annotated[int, typer.Argument(metavar="N", help="the segment, as the list numbers it")]
 Label = Annotated[str, typer.Argument(metavar="LABEL", help="what is done")]
 Agent = Annotated[int | None, typer.Option(min=1, help="who acts; default: who is nearest to the camera")]
 
 
 @app.command(LISTS)
-def list_command(file: Rec) -> None:
+def list_command(file: RecordingFile) -> None:
     """List the segments: number, start, end, label, who marked it, who acts, and the recorded answer."""
     recording, segments, first_ns = _opened(file)
     say(f"{file}, person {recording.person or '(unknown)'}")
@@ -78,7 +62,7 @@ def list_command(file: Rec) -> None:
 
 @app.command("move")
 def move(
-    file: Rec,
+    file: RecordingFile,
     number: Number,
     start: Annotated[
         str | None, typer.Option(help="new start, e.g. 12.3; +0.2 is later than now, -0.1 earlier; default: stays")
@@ -95,34 +79,34 @@ def move(
     start_ns, end_ns = _moved_to(start, segment.start_ns, first_ns), _moved_to(end, segment.end_ns, first_ns)
     others = [other for other in segments if other.number != number]
     _checked(others, start_ns, end_ns, segment.agent, first_ns)
-    _rewrite(file, moved(segment, start_ns, end_ns))
+    change_recording(file, moved(segment.segment_id, start_ns - segment.start_ns, end_ns - segment.end_ns))
     say(f"segment {number} lasts from {_seconds(start_ns, first_ns)} to {_seconds(end_ns, first_ns)} in {file}")
 
 
 @app.command("delete")
-def delete(file: Rec, number: Number) -> None:
+def delete(file: RecordingFile, number: Number) -> None:
     """Take a segment out: its marks and what was answered; the frames stay."""
     _, segments, _ = _opened(file)
     segment = _of_number(segments, number)
-    _rewrite(file, without([segment.segment_id]))
+    change_recording(file, dropped([segment.segment_id]))
     say(f"segment {number} ({segment.label or 'no label'}) is no longer in {file}; later ones have one number less")
 
 
 @app.command("rename")
-def rename(file: Rec, number: Number, label: Label) -> None:
+def rename(file: RecordingFile, number: Number, label: Label) -> None:
     """Give a segment another label."""
     _, segments, _ = _opened(file)
     segment = _of_number(segments, number)
-    _refuse_length(label)
+    refuse_length(label)
     if segment.start_ns is None:
         fail(f"segment {number} has no start mark, which a label belongs to: delete it")
-    _rewrite(file, relabelled(segment.segment_id, label))
+    change_recording(file, relabelled(segment.segment_id, label))
     say(f"segment {number} is labelled {label!r} in {file}")
 
 
 @app.command("add")
 def add(
-    file: Rec,
+    file: RecordingFile,
     start: Annotated[float, typer.Argument(metavar="START", help="where it starts (s)")],
     end: Annotated[float, typer.Argument(metavar="END", help="where it ends (s)")],
     label: Label,
@@ -130,7 +114,7 @@ def add(
 ) -> None:
     """Add a segment."""
     recording, segments, first_ns = _opened(file)
-    _refuse_length(label)
+    refuse_length(label)
     start_ns, end_ns = (first_ns + round(seconds * SECOND_NS) for seconds in (start, end))
     _checked(segments, start_ns, end_ns, agent, first_ns)
     try:
@@ -138,26 +122,26 @@ def add(
     except LabellingError as error:
         fail(str(error))
     name = next(free_names(segments, "added"))
-    _rewrite(file, unchanged, marks_between(sensor, name, start_ns, end_ns, label, agent, MANUAL))
+    change_recording(file, unchanged, segment_marks(start_ns, end_ns, sensor, name, label, agent, origin=MANUAL))
     say(f"{label!r} from {start:.2f} s to {end:.2f} s is in {file}")
 
 
 @app.command("cut")
 def cut(
-    file: Rec,
+    file: RecordingFile,
     times: Annotated[int, typer.Argument(metavar="TIMES", min=1, help="how often it is done")],
     label: Label,
 ) -> None:
     """Cut the repetitions of one action anew, in place of those that were cut before; marks by hand stay."""
     recording, segments, first_ns = _opened(file)
-    _refuse_length(label)
+    refuse_length(label)
     try:
         cuts, sensor = cut_anew(recording, segments, times), only_sensor(recording)
     except LabellingError as error:
         fail(str(error))
     kept = [segment for segment in segments if segment.origin != CUT]
     marks = marks_of(cuts, free_names(kept, CUT), label, sensor)
-    _rewrite(file, without([segment.segment_id for segment in segments if segment.origin == CUT]), marks)
+    change_recording(file, dropped({segment.segment_id for segment in segments if segment.origin == CUT}), marks)
     for line in cut_lines(cuts, first_ns):
         say(line)
     for doubt in cuts.doubts:
@@ -167,7 +151,7 @@ def cut(
 
 @app.command("picture")
 def picture(
-    file: Rec,
+    file: RecordingFile,
     output: Annotated[Path, typer.Option("-o", "--output", help="the picture to write, .png or .svg")],
     model: Annotated[
         Path | None,
@@ -189,10 +173,6 @@ def picture(
     except (RecordingError, ModelError, OSError) as error:
         fail(str(error))
     say(f"{len(segments)} segments drawn: {output}")
-
-
-RIGHT_ALIGNED = (True, True, True, True, False, False, False, False)
-"""Which columns of the list hold numbers."""
 
 
 def _row(segment: LabelledSegment, first_ns: int) -> tuple[str, ...]:
@@ -250,17 +230,3 @@ def _checked(segments: list[LabelledSegment], start_ns: int, end_ns: int, agent:
         check_span(segments, start_ns, end_ns, agent, first_ns)
     except LabellingError as error:
         fail(str(error))
-
-
-def _refuse_length(label: str) -> None:
-    if not 0 < len(label) <= LONGEST_LABEL:
-        fail(f"a label has 1 to {LONGEST_LABEL} characters")
-
-
-def _rewrite(file: Path, change: Change, added: Iterable[Message] = ()) -> None:
-    try:
-        rewrite(file, change, added)
-    except RecordingError as error:
-        fail(str(error))
-    except OSError as error:
-        fail(f"{file} cannot be written anew ({error.strerror}); it is as it was")

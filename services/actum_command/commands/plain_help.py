@@ -32,6 +32,20 @@ class PlainGroup(_Plain, TyperGroup):
     """A group of commands with plain help."""
 
 
+LISTS = "list"
+"""The command of a `ListingGroup` that need not be named."""
+
+
+class ListingGroup(PlainGroup):
+    """A group that lists what it is given where no command is named: `actum label REC` is `actum label list REC`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse the arguments, with the name of that command before them where none is named."""
+        if args and args[0] not in (*self.commands, "--help"):
+            args = [LISTS, *args]
+        return super().parse_args(ctx, args)
+
+
 class PlainTyper(typer.Typer):
     """A Typer application all of whose commands have plain help."""
 

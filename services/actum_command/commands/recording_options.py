@@ -1,4 +1,4 @@
-"""Options that choose recordings, and warnings about those that were read."""
+"""Options that choose recordings, warnings about those that were read, and how one is changed."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -6,12 +6,17 @@ from typing import Annotated
 
 import typer
 
+from actum.messages import Message
 from actum.recording import Recording, RecordingError
+from actum.rewriting import Change, rewrite
 from actum_command.commands.terminal import fail, say
 from actum_model_trainer.samples import select
 
 PersonOption = Annotated[str | None, typer.Option(help="only these persons, e.g. 1,3,5")]
+RecordingFile = Annotated[Path, typer.Argument(metavar="REC", help="the recording", exists=True, dir_okay=False)]
 AllOption = Annotated[bool, typer.Option("--all", help="also recordings marked as excluded")]
+
+LONGEST_LABEL = 200  # characters allowed in the field of a mark
 
 
 def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[Recording]:
@@ -34,3 +39,19 @@ def tell_unread(recordings: Iterable[Recording]) -> None:
         if recording.skipped:
             kinds = ", ".join(f"{kind} {count}" for kind, count in sorted(recording.skipped.items()))
             say(f"{recording.path}: skipped {kinds}", style="yellow")
+
+
+def refuse_length(label: str) -> None:
+    """Fail where a label is empty, or too long for a mark."""
+    if not 0 < len(label) <= LONGEST_LABEL:
+        fail(f"a label has 1 to {LONGEST_LABEL} characters")
+
+
+def change_recording(file: Path, change: Change, added: Iterable[Message] = ()) -> None:
+    """Rewrite a recording with a change and further messages, or fail and leave it as it was."""
+    try:
+        rewrite(file, change, added)
+    except RecordingError as error:
+        fail(str(error))
+    except OSError as error:
+        fail(f"{file} cannot be written anew ({error.strerror}); it is as it was")

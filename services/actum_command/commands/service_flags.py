@@ -11,20 +11,20 @@ from pydantic.fields import FieldInfo
 from actum.command_line import explained, placeholder
 from actum.settings import ServiceSettings
 from actum_command.search_settings import CLASSIFIER, SEARCH_SETTINGS
-from actum_command.service_settings import DECLARED, flag_of, negated_flag_of
+from actum_command.service_settings import BRIDGE, DECLARED, SETTINGS, flag_of, negated_flag_of
 
 
 def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
-    """Add to a command an option for each setting of the services that it lacks; it gets their values as `given`."""
-    return _with_flags(
-        command,
-        (
-            (service, name)
-            for service, settings in DECLARED.items()
-            for name in settings.model_fields
-            if name not in ServiceSettings.model_fields
-        ),
-    )
+    """Add to a command an option for each setting of the services that `actum up` starts and that it lacks.
+
+    It gets their values as `given`.
+    """
+    return _with_flags(command, (flag for service in DECLARED for flag in _own(service)))
+
+
+def with_bridge_flags(command: Callable[..., None]) -> Callable[..., None]:
+    """Add to a command an option for each setting of the bridge to ROS 2; it gets their values as `given`."""
+    return _with_flags(command, _own(BRIDGE))
 
 
 def with_search_flags(command: Callable[..., None]) -> Callable[..., None]:
@@ -32,12 +32,17 @@ def with_search_flags(command: Callable[..., None]) -> Callable[..., None]:
     return _with_flags(command, ((CLASSIFIER, name) for name in SEARCH_SETTINGS))
 
 
+def _own(service: str) -> list[tuple[str, str]]:
+    """List a service's settings beside those that all have, each with the service."""
+    return [(service, name) for name in SETTINGS[service].model_fields if name not in ServiceSettings.model_fields]
+
+
 def _with_flags(command: Callable[..., None], settings: Iterable[tuple[str, str]]) -> Callable[..., None]:
     """Add to a command an option for each setting, named by service and name, that it lacks."""
     command_parameters = dict(inspect.signature(command, eval_str=True).parameters)
     del command_parameters["given"]  # the command gets this one from the flags below
     flags = {
-        name: _flag(name, DECLARED[service].model_fields[name], service)
+        name: _flag(name, SETTINGS[service].model_fields[name], service)
         for service, name in settings
         if name not in command_parameters
     }

@@ -64,6 +64,15 @@ def refuse_ending(file: Path, *endings: str) -> None:
         fail(f"{file} does not end in {' or '.join(endings)}: name it {file.with_name(name) if file.name else name}")
 
 
+def write_text(file: Path, text: str) -> None:
+    """Write a text file and the folders it lies in, or fail."""
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+    except OSError as error:
+        fail(f"{file} cannot be written ({error.strerror})")
+
+
 def refuse_unwritable(file: Path) -> None:
     """Fail before long work where a file could not be written after it; missing folders will be made."""
     try:

@@ -14,7 +14,7 @@ from actum_command.commands.continuous_evaluation import evaluate_continuously
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
 from actum_command.commands.service_flags import with_search_flags
-from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say
+from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say, write_text
 from actum_command.preset_settings import SETTINGS, PresetError, preset_named
 from actum_command.search_settings import segmentation_of
 from actum_command.service_settings import Given, flag_of
@@ -132,7 +132,7 @@ def _evaluate_segments(
     tell_unread(recordings)
     _show(result, time.monotonic() - began_s)
     if json_file is not None:
-        _write_json(result, json_file)
+        write_text(json_file, json.dumps(result.as_json(), indent=1))
 
 
 def _preset(name: str, settings: list[str] | None) -> Preset:
@@ -153,10 +153,3 @@ def _refuse_place(file: Path) -> None:
     if not file.parent.is_dir():
         fail(f"{file} cannot be written: there is no folder {file.parent}")
     refuse_unwritable(file)
-
-
-def _write_json(result: Evaluation, file: Path) -> None:
-    try:
-        file.write_text(json.dumps(result.as_json(), indent=1), encoding="utf-8")
-    except OSError as error:
-        fail(f"{file} cannot be written ({error.strerror})")

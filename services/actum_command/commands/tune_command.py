@@ -9,7 +9,7 @@ import typer
 from actum.recording import RecordingError
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
-from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say
+from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say, write_text
 from actum_command.search_settings import OtherSettingsError, flags_for, refuse_other_settings, settings_file
 from actum_model_trainer.continuous.watching import NoSpotterError
 from actum_model_trainer.tuning.tuning import NothingLabelledError, tuned
@@ -52,7 +52,8 @@ def tune(
     flags = flags_for(segmentation)
     say(f"as flags: {flags}" if flags else "the model does best as it is: nothing is to be set")
     if output is not None:
-        _write(output, settings_file(segmentation, f"picked by actum tune for model {loaded.id}"))
+        write_text(output, settings_file(segmentation, f"picked by actum tune for model {loaded.id}"))
+        say(f"written to {output}: set ACTUM_CONFIG={output}")
 
 
 def _refuse(output: Path) -> None:
@@ -63,12 +64,3 @@ def _refuse(output: Path) -> None:
         refuse_other_settings(output)
     except (OtherSettingsError, OSError) as error:
         fail(str(error))
-
-
-def _write(output: Path, text: str) -> None:
-    try:
-        output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_text(text, encoding="utf-8")
-    except OSError as error:
-        fail(f"{output} cannot be written ({error.strerror})")
-    say(f"written to {output}: set ACTUM_CONFIG={output}")

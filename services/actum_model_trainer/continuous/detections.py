@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from statistics import median_high
 from typing import Any, Protocol
 
 
@@ -131,4 +132,4 @@ def point_fractions(truths: Iterable[Truth]) -> dict[str, float]:
         if truth.point_ns is not None and truth.end_ns > truth.start_ns:
             fraction = (truth.point_ns - truth.start_ns) / (truth.end_ns - truth.start_ns)
             fractions.setdefault(truth.label, []).append(fraction)
-    return {label: sorted(of_label)[len(of_label) // 2] for label, of_label in fractions.items()}
+    return {label: median_high(of_label) for label, of_label in fractions.items()}

@@ -7,7 +7,7 @@ truths, told twice, would be right twice.
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from actum_model_trainer.continuous.detections import Detection, Interval, Truth
@@ -32,20 +32,24 @@ class Match:
 def matched(detections: Iterable[Detection], truths: Iterable[Truth], fit: Fit) -> list[Match]:
     """Match detections with truths of the same file, agent and label, each at most once; the order counts for nothing.
 
-    Of equal truths the earlier is claimed; of equal claims the one that was decided first holds.
+    Of claims that fit alike the one that was decided first holds.
     """
+    by_truth: defaultdict[Truth, list[Match]] = defaultdict(list)
+    for claim in claims(detections, truths, fit):
+        by_truth[claim.truth].append(claim)
+    return [max(of_one, key=_rank) for of_one in by_truth.values()]
+
+
+def claims(detections: Iterable[Detection], truths: Iterable[Truth], fit: Fit) -> Iterator[Match]:
+    """Yield for each detection the truth that it claims, if it fits one; of those that it fits alike, the earliest."""
     same: defaultdict[tuple[str, int, str], list[Truth]] = defaultdict(list)
-    for truth in truths:
+    for truth in sorted(truths, key=lambda truth: (truth.start_ns, truth.end_ns, truth.point_ns or 0)):
         same[truth.file, truth.agent, truth.label].append(truth)
-    claims: defaultdict[tuple[str, int, str, int], list[Match]] = defaultdict(list)
     for detection in detections:
-        of_which = detection.file, detection.agent, detection.label
-        fits = [(number, fit(detection, truth)) for number, truth in enumerate(same[of_which])]
-        possible = [(value, -same[of_which][number].start_ns, number) for number, value in fits if value is not None]
+        fits = [(fit(detection, truth), truth) for truth in same[detection.file, detection.agent, detection.label]]
+        possible = [Match(detection, truth, value) for value, truth in fits if value is not None]
         if possible:
-            value, _, number = max(possible)
-            claims[*of_which, number].append(Match(detection, same[of_which][number], value))
-    return [max(of_one, key=_rank) for of_one in claims.values()]
+            yield max(possible, key=lambda match: match.fit)
 
 
 def overlap_ns(first: Interval, second: Interval) -> int:

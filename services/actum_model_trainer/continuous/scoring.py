@@ -3,6 +3,7 @@
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from statistics import median
 from typing import Any
 
@@ -12,6 +13,7 @@ from actum.node import SECOND_NS
 from actum_model_trainer.continuous.detections import Detection, Found, Interval, Stretch, Truth
 from actum_model_trainer.continuous.matching import (
     Match,
+    claims,
     intersection_over_union,
     matched,
     overlap_ns,
@@ -185,12 +187,18 @@ def _outside_ns(stretch: Stretch, truths: Iterable[Truth]) -> int:
 
 def _recall_at(most_false: float, found: Found) -> float:
     """Return the largest recall of all thresholds on confidence that leave at most so many false detections."""
-    best = 0
-    for threshold in {detection.confidence for detection in found.detections}:
-        kept = [detection for detection in found.detections if detection.confidence >= threshold]
-        right = len(matched(kept, found.truths, intersection_over_union))
-        if len(kept) - right <= most_false:
-            best = max(best, right)
+    claimed = {
+        claim.detection: claim.truth for claim in claims(found.detections, found.truths, intersection_over_union)
+    }
+    answered: set[Truth] = set()
+    best = kept = 0
+    surest_first = sorted(found.detections, key=lambda detection: -detection.confidence)
+    for _, equally_sure in groupby(surest_first, key=lambda detection: detection.confidence):
+        more = list(equally_sure)
+        kept += len(more)
+        answered.update(claimed[detection] for detection in more if detection in claimed)
+        if kept - len(answered) <= most_false:
+            best = len(answered)
     return best / len(found.truths) if found.truths else 0.0
 
 

@@ -4,18 +4,16 @@ from collections.abc import Sequence
 
 from actum import keys
 from actum.messages import AUTO, Action, Message, Posture, Segment
-from actum.node import SECOND_NS, Node, Tick, replay
+from actum.node import Node, Tick, replay
 from actum.recording import Recording
-from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
+from actum_model_trainer.continuous.detections import Detection, Found, Truth
+from actum_model_trainer.continuous.presence import Presence
 from actum_model_trainer.progress import Progress, silent
-from actum_model_trainer.samples import SegmentCollector, classifier_input
+from actum_model_trainer.recorded_segments import SegmentCollector, classifier_input
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.segmentation import DEFAULT, Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
-
-LONGEST_BREAK_NS = SECOND_NS
-"""Time without a usable frame after which a person counts as away (ns): longer than any lost frames."""
 
 
 class NoSpotterError(ValueError):
@@ -34,10 +32,10 @@ class Watcher:
     name = "watcher"
     inputs: tuple[keys.Topic, ...] = (keys.POSTURE, keys.SEGMENT)
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, file: str) -> None:
         self.counters = node.counters
         self.answers: list[tuple[Action, int]] = []
-        self.stretches_ns: dict[int, list[tuple[int, int]]] = {}
+        self.presence = Presence(file)
         self.marked = SegmentCollector()
         self._node = node
         self._found_itself: set[str] = set()
@@ -47,22 +45,13 @@ class Watcher:
         """Take a posture, a mark or a tick; put nothing."""
         self.marked.handle(message)
         if isinstance(message, Posture):
-            self._see(message)
+            self._newest_ns = message.stamp_ns
+            if message.valid:
+                self.presence.see(message.agent, message.stamp_ns)
         if not isinstance(message, Segment):
             for answer in self._node.handle(message):
                 self._note(answer)
         return []
-
-    def _see(self, posture: Posture) -> None:
-        self._newest_ns = posture.stamp_ns
-        if not posture.valid:
-            return
-        stretches_ns = self.stretches_ns.setdefault(posture.agent, [])
-        start_ns, end_ns = stretches_ns[-1] if stretches_ns else (posture.stamp_ns, posture.stamp_ns)
-        if stretches_ns and 0 <= posture.stamp_ns - end_ns <= LONGEST_BREAK_NS:
-            stretches_ns[-1] = start_ns, posture.stamp_ns
-        else:
-            stretches_ns.append((posture.stamp_ns, posture.stamp_ns))
 
     def _note(self, message: Message) -> None:
         if isinstance(message, Segment) and message.origin == AUTO:
@@ -93,14 +82,9 @@ def found_by(
 
 def views_of(recording: Recording) -> list[tuple[str, str]]:
     """Return each sensor whose skeletons a recording holds, and what stands for its part of it in what is found."""
-    sensors = sensors_of(recording)
+    sensors = recording.sensors(keys.SKELETON)
     path = str(recording.path)
     return [(sensor, path if len(sensors) == 1 else f"{path} ({sensor})") for sensor in sensors]
-
-
-def sensors_of(recording: Recording) -> list[str]:
-    """Return the sensors whose skeletons a recording holds, sorted; it need not have any mark."""
-    return recording.sensors(keys.SKELETON)
 
 
 def watched(node: Node, recording: Recording, sensor: str, file: str) -> Found:
@@ -110,13 +94,10 @@ def watched(node: Node, recording: Recording, sensor: str, file: str) -> Found:
     in them is whom the mark names, else who was nearest to the camera, as the classifier finds out. `file` stands for
     the recording in all that is returned.
     """
-    watcher = Watcher(node)
+    watcher = Watcher(node, file)
     for _ in replay(watcher, classifier_input(recording, sensor)):
         raise AssertionError("the watcher puts nothing")
-    stretches = [
-        Stretch(file, agent, *each) for agent, of_agent in sorted(watcher.stretches_ns.items()) for each in of_agent
-    ]
-    return Found(_detections(watcher, file), _truths(watcher, recording, file), stretches)
+    return Found(_detections(watcher, file), _truths(watcher, recording, file), watcher.presence.stretches)
 
 
 def _detections(watcher: Watcher, file: str) -> list[Detection]:

@@ -50,7 +50,7 @@ class Chains:
     """
 
     def __init__(self, course: Course, rest: Array, most: int = MOST_REPETITIONS) -> None:
-        self._movement = movement_about(course, rest, RATE_HZ)
+        self._movement = movement_about(course, rest)
         self.activity = self._movement.activity
         self._bursts = bursts_of(self._movement)
         self._likeness = likeness_of(course, self._bursts) if len(self._bursts) else np.zeros((0, 0))

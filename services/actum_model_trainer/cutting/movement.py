@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from actum.arrays import Array
-from actum_model_trainer.cutting.courses import Course
+from actum_model_trainer.cutting.courses import RATE_HZ, Course
 
 RESTS = 3
 """Postures that are tried as the one of rest: a hold in the middle of each repetition may last longer than the rest."""
@@ -42,14 +42,14 @@ class Movement:
     moved_s: Array
 
 
-def movement_about(course: Course, rest: Array, rate_hz: float) -> Movement:
+def movement_about(course: Course, rest: Array) -> Movement:
     """Return the movement in a course about a posture of rest (15, 3)."""
     away_m = np.sqrt(((course.postures - rest) ** 2).sum(axis=2).mean(axis=1))
     away = _in_units(np.maximum(away_m - np.quantile(away_m, STILL_SHARE), 0))
     pace = _in_units(course.speeds_mps)
     activity = _smoothed(np.hypot(pace, away))
     moving = activity**2 / (activity**2 + HALF_MOVING**2)
-    return Movement(activity, _smoothed(pace), np.concatenate([[0.0], np.cumsum(moving)]) / rate_hz)
+    return Movement(activity, _smoothed(pace), np.concatenate([[0.0], np.cumsum(moving)]) / RATE_HZ)
 
 
 def rest_postures(course: Course) -> list[Array]:

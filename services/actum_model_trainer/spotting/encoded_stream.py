@@ -5,11 +5,10 @@ from numpy.typing import NDArray
 
 from actum_model_trainer.augmentation import Variant
 from actum_model_trainer.samples import LabelledStream
+from som_classifier.frame_activity import UM_PER_M
 from som_classifier.handedness import LimbSpreads, limb_moments
 from som_classifier.pyramid import Prefix, PrefixSums, quantised
 from som_classifier.pyramid_model import PyramidModel
-
-_UM_PER_M = 1e6
 
 
 class EncodedStream:
@@ -26,7 +25,7 @@ class EncodedStream:
         seen = variant or Variant(stream.postures, stream.velocities)
         sides = [seen, seen.mirrored] if self._mirrors else [seen]
         summed = [_sums(quantised(model.first.activities(side.postures, side.velocities))) for side in sides]
-        steps_um = np.rint(stream.motion * _UM_PER_M).astype(np.int64).sum(axis=1)
+        steps_um = np.rint(stream.motion * UM_PER_M).astype(np.int64).sum(axis=1)
         travelled_um = [0, *np.cumsum(steps_um).tolist()]
         self._prefixes = [
             Prefix(tuple(sums), um) for *sums, um in zip(*summed, travelled_um, strict=True)

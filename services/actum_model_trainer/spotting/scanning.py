@@ -27,7 +27,7 @@ class ScannedStream:
     Attributes:
         stream: with its labelled segments.
         windows: (n, 2), first and last frame.
-        completeness: (n, actions).
+        completeness: (n, actions), or with the common head's in the last column (n, actions + 1).
     """
 
     stream: LabelledStream

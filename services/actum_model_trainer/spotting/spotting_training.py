@@ -5,23 +5,26 @@ left out. Of all background that is the part that tells most.
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import numpy as np
 
 from actum.arrays import Array
 from actum.node import SECOND_NS
-from actum_model_trainer.continuous.detections import Stretch, Truth
+from actum_model_trainer.continuous.detections import Found
 from actum_model_trainer.continuous.scoring import background_min
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import LabelledStream
+from actum_model_trainer.spotting.common_head import mixed, mixed_heads
+from actum_model_trainer.spotting.logistic_regression import logistic_fit
 from actum_model_trainer.spotting.scanning import Folds, ScannedStream, scanned
-from actum_model_trainer.spotting.threshold_choice import chosen_threshold, false_alarms, logistic_fit
+from actum_model_trainer.spotting.threshold_choice import ThresholdChoice, chosen_threshold, false_alarms
 from actum_model_trainer.spotting.training_windows import training_windows, true_completeness, with_false_alarms
 from actum_model_trainer.spotting.window_vectors import trained_heads
-from som_classifier.presets import PyramidPreset, SpottingPreset
+from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.spotting_model import SpottingMetadata, SpottingModel
+from som_classifier.spotting.spotting_preset import SpottingPreset
 from som_classifier.spotting.windows import FEWEST_FRAMES
 
 COARSE = 2
@@ -45,16 +48,33 @@ def with_spotting(
     folds = Folds(usable, search.folds)
     first = trained_heads(model, usable, windows, folds, preset, rng, progress)
     coarse = untuned.model_copy(update={"interval_s": COARSE * search.interval_s})
-    answered = scanned(model, usable, first, folds, coarse, progress)
+    answered = _mixed(scanned(model, usable, first, folds, coarse, progress), search.common_shares[0])
     alarms = false_alarms(answered, SpottingModel(first.all, untuned), model.labels, search.false_alarm_threshold)
     windows = [with_false_alarms(*each, rng) for each in zip(usable, windows, alarms, strict=True)]
     heads = trained_heads(model, usable, windows, folds, preset, rng, progress)
     answered = scanned(model, usable, heads, folds, untuned, progress)
     if not any(len(each.windows) for each in answered):
         return model
-    choice = chosen_threshold(answered, SpottingModel(heads.all, untuned), model.labels, search.thresholds)
-    learned = untuned.model_copy(update=asdict(choice) | {"probability": _probability(answered, model.labels)})
-    return replace(model, heads=heads.all, metadata=model.metadata.model_copy(update={"spotting": learned}))
+    share, choice = _chosen(answered, SpottingModel(heads.all, untuned), model.labels, search)
+    probability = _probability(_mixed(answered, share), model.labels)
+    learned = untuned.model_copy(update=choice.stored | {"probability": probability})
+    metadata = model.metadata.model_copy(update={"spotting": learned})
+    return replace(model, heads=mixed_heads(heads.all, share), metadata=metadata)
+
+
+def _chosen(
+    answered: Sequence[ScannedStream], untuned: SpottingModel, labels: Sequence[str], search: SpottingPreset
+) -> tuple[float, ThresholdChoice]:
+    """Choose the common head's share, and with it the threshold, by what is found in streams of people left out."""
+    choices = [
+        (share, chosen_threshold(_mixed(answered, share), untuned, labels, search.thresholds))
+        for share in search.common_shares
+    ]
+    return max(choices, key=lambda choice: choice[1].worth)
+
+
+def _mixed(answered: Sequence[ScannedStream], share: float) -> list[ScannedStream]:
+    return [replace(each, completeness=mixed(each.completeness, share)) for each in answered]
 
 
 def _untuned(streams: Sequence[LabelledStream], labels: Sequence[str], search: SpottingPreset) -> SpottingMetadata:
@@ -107,6 +127,5 @@ def _probability(scanned: Sequence[ScannedStream], labels: Sequence[str]) -> lis
 
 def _background_s(streams: Sequence[LabelledStream]) -> float:
     """Return for how long people did none of the labelled actions (s)."""
-    seen = [Stretch(each.file, each.agent, *run_ns) for each in streams for run_ns in each.runs_ns]
-    truths = [Truth(each.file, each.agent, *segment) for each in streams for segment in each.segments]
-    return 60 * background_min(seen, truths)
+    marked = sum((stream.marked for stream in streams), Found())
+    return 60 * background_min(marked.seen, marked.truths)

@@ -1,14 +1,13 @@
 """The threshold of the search, chosen by what it finds in streams of people left out of the heads' training."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import groupby
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from actum.arrays import Array
-from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
+from actum_model_trainer.continuous.detections import Detection, Found
 from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
 from actum_model_trainer.spotting.scanning import ScannedStream
 from som_classifier.kinematics import GAP_NS
@@ -30,13 +29,20 @@ class ThresholdChoice:
 
     Attributes:
         threshold: the best.
+        worth: what it is worth.
         false_alarms_per_min: by threshold; empty where there is too little background.
         recalls: by threshold.
     """
 
     threshold: float
+    worth: float
     false_alarms_per_min: list[float]
     recalls: list[float]
+
+    @property
+    def stored(self) -> dict[str, Any]:
+        """What of it the model's metadata hold."""
+        return {name: value for name, value in asdict(self).items() if name != "worth"}
 
 
 def chosen_threshold(
@@ -50,6 +56,7 @@ def chosen_threshold(
     rates = [score.alarms_per_min or 0.0 for score in scores] if counted else []
     return ThresholdChoice(
         float(thresholds[int(smoothed.argmax())]),
+        float(smoothed.max()),
         np.minimum.accumulate(rates).tolist() if rates else [],
         [score.event.recall for score in scores],
     )
@@ -57,17 +64,12 @@ def chosen_threshold(
 
 def found(scanned: Sequence[ScannedStream], learned: SpottingModel, labels: Sequence[str], threshold: float) -> Found:
     """Return what a search with this threshold finds in the streams."""
-    detections, truths, seen = [], [], []
-    for each in scanned:
-        stream = each.stream
-        file, agent = stream.file, stream.agent
-        detections += [
-            Detection(file, agent, start_ns, end_ns, decided_ns, labels[action], 1.0)
-            for start_ns, end_ns, decided_ns, action in _decided(each, learned, threshold)
-        ]
-        truths += [Truth(file, agent, *segment) for segment in stream.segments]
-        seen += [Stretch(file, agent, *run_ns) for run_ns in stream.runs_ns]
-    return Found(detections, truths, seen)
+    detections = [
+        Detection(each.stream.file, each.stream.agent, start_ns, end_ns, decided_ns, labels[action], 1.0)
+        for each in scanned
+        for start_ns, end_ns, decided_ns, action in _decided(each, learned, threshold)
+    ]
+    return replace(sum((each.stream.marked for each in scanned), Found()), detections=detections)
 
 
 def false_alarms(
@@ -111,22 +113,3 @@ def _worth(score: ContinuousScores) -> float:
     if score.background_min >= SHORTEST_BACKGROUND_MIN and score.alarms_per_min is not None:
         false = max(score.alarms_per_min - BEARABLE_PER_MIN, 0.0)
     return score.event.f1 + score.f1_at_iou[IOU] - COST_PER_MIN * false
-
-
-def logistic_fit(answers: Array, is_right: NDArray[np.bool_]) -> tuple[float, float]:
-    """Return slope and intercept of the logistic regression of outcomes (n,) on the heads' answers (n,).
-
-    By Newton's method, with one more sample of either outcome at the mean answer so that it stays finite.
-    """
-    x = np.append(answers, [answers.mean()] * 2)
-    y = np.append(is_right.astype(float), [0.0, 1.0])
-    inputs = np.stack([x, np.ones_like(x)], axis=1)
-    weights = np.zeros(2)
-    for _ in range(50):
-        p = 1 / (1 + np.exp(-np.clip(inputs @ weights, -30, 30)))
-        curvature = inputs.T @ (inputs * (p * (1 - p))[:, None]) + 1e-3 * np.eye(2)
-        step = np.linalg.solve(curvature, inputs.T @ (y - p) - 1e-3 * weights)
-        weights = weights + step
-        if np.abs(step).max() < 1e-6:
-            break
-    return float(weights[0]), float(weights[1])

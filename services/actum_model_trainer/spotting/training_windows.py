@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
+from actum.node import SECOND_NS
 from actum_model_trainer.continuous.detections import Detection
 from actum_model_trainer.samples import LabelledStream
 from som_classifier.kinematics import GAP_NS
@@ -38,8 +39,6 @@ FALSE_ALARM = 6
 """Windows about each false alarm, bounds moved a little: as many as hold half or more of an action."""
 COVERED_SHARE = 0.6
 """Share of a window over which there must be frames."""
-NS = 1e9
-"""In a second."""
 Stamps = NDArray[np.int64]
 
 
@@ -68,7 +67,7 @@ def training_windows(
         rng: draws.
     """
     frames = []
-    for start_ns, end_ns in _spans(stream, durations_s * NS, rng):
+    for start_ns, end_ns in _spans(stream, durations_s * SECOND_NS, rng):
         first, last = _frames_within(stream.stamps_ns, start_ns, end_ns)
         covered_ns = stream.stamps_ns[last] - stream.stamps_ns[first] if first <= last else 0
         if last - first + 1 >= FEWEST_FRAMES and covered_ns >= COVERED_SHARE * (end_ns - start_ns):
@@ -140,7 +139,7 @@ def _spans(stream: LabelledStream, durations_ns: Array, rng: np.random.Generator
     for start_ns, end_ns, _ in segments:
         yield start_ns, end_ns
         yield from _about(start_ns, end_ns, durations_ns, rng)
-    anywhere = BACKGROUND * max(len(segments), int((last_ns - first_ns) / NS / BACKGROUND_S))
+    anywhere = BACKGROUND * max(len(segments), int((last_ns - first_ns) / SECOND_NS / BACKGROUND_S))
     for duration_ns in rng.choice(durations_ns, anywhere):
         start_ns = rng.uniform(first_ns, max(last_ns - duration_ns, first_ns + 1))
         yield start_ns, start_ns + duration_ns

@@ -9,6 +9,7 @@ from actum.arrays import Indices
 from actum_model_trainer.augmentation import Variant, augmentation_for, varied
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import LabelledStream
+from actum_model_trainer.spotting.common_head import with_common
 from actum_model_trainer.spotting.encoded_stream import EncodedStream
 from actum_model_trainer.spotting.heads_training import FoldedHeads, fit_heads
 from actum_model_trainer.spotting.scanning import Folds
@@ -26,7 +27,10 @@ def trained_heads(
     rng: np.random.Generator,
     progress: Progress,
 ) -> FoldedHeads:
-    """Train the heads on about `most_windows` of the streams' windows; few windows are shown in several variants."""
+    """Train the actions' heads and the common one on about `most_windows` of the streams' windows.
+
+    Few windows are shown in several variants.
+    """
     copies = preset.spotting.most_windows / max(sum(len(each.frames) for each in windows), 1)
     augmentation = augmentation_for([stream.person for stream in streams], preset)
     vectors, completeness, of_fold = [], [], []
@@ -42,7 +46,8 @@ def trained_heads(
         of_fold.append(folds.of(stream, each.frames[kept]))
     progress("windows of streams", len(streams), len(streams))
     folded, shrinkage = np.concatenate(of_fold), preset.spotting.shrinkage
-    return fit_heads(np.concatenate(vectors), np.concatenate(completeness), folded, folds.count, shrinkage)
+    targets = with_common(np.concatenate(completeness))
+    return fit_heads(np.concatenate(vectors), targets, folded, folds.count, shrinkage)
 
 
 def _vectors(

@@ -13,8 +13,8 @@ from types import MappingProxyType
 import numpy as np
 
 from actum.arrays import Array
-from actum.geometry import BONES
 from actum.skeletons import INDEX, JOINTS
+from actum.standard_body import BONES
 from sensor_gateway.captured_picture import DepthImage
 from sensor_gateway.lens import Lens
 from sensor_gateway.people.landmarks import Landmarks, confidence_of, joints_of

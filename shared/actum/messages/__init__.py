@@ -42,6 +42,7 @@ from actum.messages.recognised import (
     Pointing,
     Segment,
     Tensor,
+    segment_marks,
 )
 from actum.messages.reported import Info, Status, Truth
 from actum.messages.seen import Agent, Image, Objects, Posture, Skeleton, TrackedObject
@@ -105,4 +106,5 @@ __all__ = [
     "TrackedObject",
     "Transform",
     "Truth",
+    "segment_marks",
 ]

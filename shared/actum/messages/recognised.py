@@ -1,6 +1,6 @@
 """Messages about a segment: its marks, the action recognised, the event."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, FiniteFloat
 
@@ -62,6 +62,26 @@ class Segment(Message):
     """Who put it: manual, a person at a switch; simulator, the scene; replay, a recording; auto, the
     classifier itself, which answers it, and no other does; cut, `actum record --times` or `actum label cut`; null, a
     program of yours."""
+
+
+def segment_marks(
+    start_ns: int,
+    end_ns: int,
+    sensor: str,
+    segment_id: str,
+    label: str,
+    agent: int | None = None,
+    hand: Hand | None = None,
+    origin: str | None = None,
+) -> list[Segment]:
+    """Return the start and the end mark of a segment; the start carries its label."""
+    common: dict[str, Any] = {
+        "sensor": sensor, "segment_id": segment_id, "agent": agent, "hand": hand, "origin": origin,
+    }  # fmt: skip
+    return [
+        Segment(stamp_ns=start_ns, kind="start", label=label, **common),
+        Segment(stamp_ns=end_ns, kind="end", **common),
+    ]
 
 
 class Action(Message):

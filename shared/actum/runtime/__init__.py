@@ -1,5 +1,6 @@
 """The one runtime: everything that knows Zenoh, clocks, signals and threads."""
 
+from actum.runtime.bridging import run_bridge
 from actum.runtime.client import Client, Listening, NotAnsweredError, Received
 from actum.runtime.extras import needs_extra
 from actum.runtime.fronting import Front, run_front
@@ -20,6 +21,7 @@ __all__ = [
     "end_with_parent",
     "needs_extra",
     "run",
+    "run_bridge",
     "run_front",
     "run_source",
     "serve_router",

@@ -7,14 +7,15 @@ import sys
 import threading
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import TypeVar
 
 import zenoh
 from pydantic import ValidationError
 
 from actum import keys
+from actum.bridge import Bridge
 from actum.codec import DecodeError, decode, encode
 from actum.command_line import from_command_line
 from actum.commands import Commanded
@@ -52,12 +53,12 @@ def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
     live(SourceService(source, settings), settings)
 
 
-def configured(settings_type: type[S], build: Callable[[S], N]) -> tuple[S, N]:
-    """Read the settings and build the node or source; if they cannot be used, print why and exit with code 2."""
+def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[str] | None = None) -> tuple[S, N]:
+    """Read the settings, from this process's flags or given ones, and build; if unusable, say why and exit with 2."""
     end_with_parent()
     service = settings_type.__module__.partition(".")[0]
     try:
-        settings = from_command_line(settings_type, f"python -m {service}")
+        settings = from_command_line(settings_type, f"python -m {service}", flags)
         client_config(settings)  # a wrong one is refused now, before the build, which may take long
         return settings, build(settings)
     except ValidationError as error:
@@ -72,7 +73,10 @@ def live(
     settings: ServiceSettings,
     beside: Callable[[], AbstractContextManager[None]] = nullcontext,
 ) -> None:
-    """Run a service until it is stopped, and end the process; `beside` runs all the while, also without a router."""
+    """Connect, serve until SIGTERM or SIGINT, and exit: with code 0, 1 after a bug, 3 where another runs already.
+
+    `beside` is entered before there is a router, and left at the end.
+    """
     logging.basicConfig(level=os.environ.get("ACTUM_LOG", "INFO"), format=f"{service.name}: %(message)s")
     stop = stop_on_signals()
     service.introduce()
@@ -100,7 +104,7 @@ def _serve(service: "Service", settings: ServiceSettings, stop: threading.Event)
 class Service(ABC):
     """The part common to nodes and sources: start and end, the one instance per sensor, status and description."""
 
-    def __init__(self, what: Node | Source, settings: ServiceSettings) -> None:
+    def __init__(self, what: Node | Source | Bridge, settings: ServiceSettings) -> None:
         self.name, counters = what.name, what.counters
         self.failed = False
         self._commands = what.commands if isinstance(what, Commanded) else ()
@@ -162,16 +166,16 @@ class Service(ABC):
             query.reply(frame.key, frame.payload, encoding=frame.encoding)
 
 
-class NodeService(Service):
-    """Runs a node: gives it messages and ticks, and puts the messages that it returns."""
+class StepService(Service):
+    """Gives a pure step the messages of its topics, and ticks; what becomes of its answers a subclass says."""
 
-    def __init__(self, node: Node, settings: ServiceSettings) -> None:
-        super().__init__(node, settings)
-        self._node = node
+    def __init__(self, step: Node | Bridge, settings: ServiceSettings) -> None:
+        super().__init__(step, settings)
+        self._inputs = step.inputs
         self._inbox: Inbox | None = None
 
     def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
-        self._inbox = Inbox(session, self._node.inputs, self._settings.sensor, vacant_s)
+        self._inbox = Inbox(session, self._inputs, self._settings.sensor, vacant_s)
         self._inbox.start(lambda sample: self._receive(sample, outbox, stop))
         try:
             while not stop.wait(TICK_NS / 1e9):
@@ -192,16 +196,34 @@ class NodeService(Service):
             with self._lock:
                 self._meter.rejected(error.kind, str(error))
             return
-        try:
+        with self._ending_at_a_bug(key, stop):
             with self._lock:
                 self._meter.received(key, message, _origin(sample))
             self._step(message, outbox)
             with self._lock:
                 self._meter.took((time.perf_counter_ns() - began_ns) / 1e6)
+
+    @contextmanager
+    def _ending_at_a_bug(self, key: str, stop: threading.Event) -> Iterator[None]:
+        """Return a context in which to handle a sample: an exception is a bug, which is logged and ends the process."""
+        try:
+            yield
         except Exception:
             log.exception("a bug, met while handling a message on %s", key)
             self.failed = True
             stop.set()
+
+    @abstractmethod
+    def _step(self, message: Message | Tick, outbox: Outbox) -> None:
+        """Let the step handle one message or tick, and put its answers."""
+
+
+class NodeService(StepService):
+    """Runs a node: gives it messages and ticks, and puts the messages that it returns."""
+
+    def __init__(self, node: Node, settings: ServiceSettings) -> None:
+        super().__init__(node, settings)
+        self._node = node
 
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
         with self._lock:

@@ -1,0 +1,76 @@
+"""`actum foxglove` and `actum export`: live streams, or a recording, for Foxglove."""
+
+from pathlib import Path
+from threading import Event as Flag
+from typing import Annotated
+
+import typer
+
+from actum.recording import Recording
+from actum.runtime import Pace, stop_on_signals
+from actum.runtime.waiting import wait_for
+from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
+from actum_command.commands.viewed_streams import RecordingArgument, refuse_without, streams_of, tell_shown
+from actum_command.viewers.showing import Showing
+
+POLL_S = 0.1  # how soon a stop takes effect while nobody has subscribed
+SUBSCRIBING_S = 0.5  # from a client's first subscription to its last: a viewer's panels subscribe one after another
+
+
+def foxglove(
+    recording: RecordingArgument = None,
+    host: Annotated[
+        str, typer.Option(help="the address to serve; others than 127.0.0.1 show people to your network")
+    ] = ("127.0.0.1"),
+    port: Annotated[int, typer.Option(min=0, max=65535, help="0 for any that is free")] = 8765,
+    speed: Annotated[float, typer.Option(min=0.01, help="of a recording: 1 is the pace of its capture")] = 1.0,
+) -> None:
+    """Serve live streams, or play a recording, to Foxglove: frames, people, objects, images, events; until Ctrl-C.
+
+    A recording begins once somebody has subscribed. To go to and fro in one, see actum export.
+    """
+    refuse_without("foxglove", "foxglove-sdk", "foxglove")
+    from actum_command.viewers.foxglove_sinks import ServerError, served
+
+    stop, subscribed = stop_on_signals(), Flag()
+    try:
+        with (
+            streams_of(recording, Pace(speed)) as streams,
+            served(streams.sensors, host, port, subscribed) as (stream, address),
+        ):
+            say(f"in Foxglove open a connection to {address}; Ctrl-C ends it")
+            if recording is not None:
+                _wait_for_subscriber(subscribed, stop)
+            showing = Showing(stream.show)
+            streams.give(showing, stop)
+            tell_shown(showing, "served")
+    except ServerError as error:
+        fail(str(error))
+
+
+def _wait_for_subscriber(subscribed: Flag, stop: Flag) -> None:
+    """Wait until somebody has subscribed, or until stopped."""
+    while not subscribed.is_set() and not stop.wait(POLL_S):
+        pass
+    wait_for(stop, SUBSCRIBING_S)
+
+
+def export(
+    file: Annotated[Path, typer.Argument(metavar="REC", help="a recording of ours")],
+    output: Annotated[Path, typer.Argument(metavar="OUT", help="the .mcap file to write")],
+    for_foxglove: Annotated[bool, typer.Option("--foxglove", help="with Foxglove's schemas")] = False,
+) -> None:
+    """Write a recording in a form that other programs open; --foxglove is the one that there is."""
+    if not for_foxglove:
+        fail("say for which program: --foxglove")
+    refuse_without("foxglove", "foxglove-sdk", "foxglove")
+    refuse_unwritable(output)
+    refuse_ending(output, ".mcap")
+    if output.exists():
+        fail(f"{output} is there already: name another file, or remove it")
+    from actum_command.viewers.foxglove_sinks import written
+
+    with streams_of(file) as streams, written(output, Recording(file).metadata) as stream:
+        showing = Showing(stream.show)
+        streams.give(showing, stop_on_signals())
+    tell_shown(showing, f"written to {output}")

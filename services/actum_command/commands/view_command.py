@@ -1,0 +1,67 @@
+"""`actum view`: live streams, or a recording, in the Rerun viewer."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Event as Flag
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from actum.runtime import stop_on_signals
+from actum.runtime.waiting import wait_for
+from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
+from actum_command.commands.viewed_streams import RecordingArgument, refuse_without, streams_of, tell_shown
+from actum_command.viewers.showing import Showing
+
+if TYPE_CHECKING:
+    from actum_command.viewers.rerun_program import RerunStream
+
+
+def view(
+    recording: RecordingArgument = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="write a file that Rerun opens, .rrd, and open no viewer")
+    ] = None,
+    web: Annotated[bool, typer.Option("--web", help="serve the viewer as a page, to this machine only")] = False,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="where the viewer takes data")] = 9876,
+    web_port: Annotated[int, typer.Option(min=1, max=65535, help="where --web serves its page")] = 9090,
+) -> None:
+    """Show live streams, or a recording, in Rerun: people, objects, images, courses, events; until Ctrl-C.
+
+    A recording is there as a whole, to go to and fro in.
+    """
+    refuse_without("rerun", "rerun-sdk", "view")
+    if output is not None:
+        refuse_unwritable(output)
+        refuse_ending(output, ".rrd")
+    from actum_command.viewers.rerun_program import ViewerError
+
+    stop = stop_on_signals()
+    try:
+        with streams_of(recording) as streams, _opened(streams.sensors, output, web, port, web_port, stop) as rerun:
+            showing = Showing(rerun.show)
+            streams.give(showing, stop)
+            tell_shown(showing, f"written to {output}" if output else "sent to Rerun")
+            if recording is not None and output is None:
+                say("Ctrl-C ends it")
+                wait_for(stop)
+    except ViewerError as error:
+        fail(str(error))
+
+
+@contextmanager
+def _opened(
+    sensors: list[str], output: Path | None, web: bool, port: int, web_port: int, stop: Flag
+) -> "Iterator[RerunStream]":
+    """Open what the options name: a file, a page, or a window, whose end sets `stop`."""
+    from actum_command.viewers.rerun_program import page, saved, viewer
+
+    if output is not None:
+        with saved(output, sensors) as stream:
+            yield stream
+        return
+    with viewer(sensors, port, web_port if web else None, stop) as stream:
+        if web:
+            say(f"open {page(port, web_port)}; Ctrl-C ends it")
+        yield stream

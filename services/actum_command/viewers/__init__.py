@@ -1,0 +1,1 @@
+"""What other people's viewers show of our messages: Rerun, and Foxglove."""

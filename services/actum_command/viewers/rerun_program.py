@@ -1,0 +1,147 @@
+"""Runs the Rerun viewer, bound to this machine, and sends it messages; or writes them to a file of Rerun's."""
+
+import os
+import socket
+import subprocess
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from urllib.parse import quote
+
+import numpy as np
+import rerun as rr
+import rerun_cli
+
+from actum.messages import Message
+from actum_command.viewers.rerun_entries import TIMELINE, RerunEntries, layout
+
+LOCAL = "127.0.0.1"
+"""The only address served: by default Rerun's own functions and program serve all the machine's."""
+START_S = 30.0
+"""How long (s) the program may take to listen: it is read from disk, 150 MB."""
+POLL_S = 0.05
+"""Interval (s) at which it is looked for."""
+STOP_S = 5.0
+"""How long (s) it may take to end."""
+FLUSH_S = 10.0
+"""How long (s) what was sent last may take to arrive."""
+QUIET = {"CI": "1", "RUST_LOG": "warn"}
+"""Rerun's program collects no usage data where it takes itself for one on a build server; no notes, only warnings."""
+
+
+class ViewerError(RuntimeError):
+    """The viewer cannot be started; the text says why and what to do."""
+
+
+class RerunStream:
+    """Sends messages to a viewer, or to a file."""
+
+    def __init__(self, recording: rr.RecordingStream) -> None:
+        self._recording = recording
+        self._entries = RerunEntries()
+
+    def show(self, message: Message) -> None:
+        """Send one message, at its stamp."""
+        self._recording.set_time(TIMELINE, timestamp=np.datetime64(message.stamp_ns, "ns"))
+        for entry in self._entries.of(message):
+            self._recording.log(entry.path, *entry.shown, static=entry.static)
+
+
+@contextmanager
+def saved(path: Path, sensors: Sequence[str]) -> Iterator[RerunStream]:
+    """Return a context in which messages are written to a file that Rerun opens."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    recording = rr.RecordingStream("actum")
+    recording.save(path, default_blueprint=layout(sensors))
+    try:
+        yield RerunStream(recording)
+    finally:
+        recording.disconnect()
+
+
+@contextmanager
+def viewer(sensors: Sequence[str], port: int, web_port: int | None, ended: threading.Event) -> Iterator[RerunStream]:
+    """Return a context in which Rerun's program runs: its window, or with `web_port` a page. `ended` is set with it.
+
+    Raises:
+        ViewerError: a port is taken, or the program ends at once.
+    """
+    with _running(port, web_port) as process:
+        threading.Thread(target=_tell_end, args=(process, ended), daemon=True).start()
+        recording = rr.RecordingStream("actum")
+        recording.connect_grpc(proxy(port), default_blueprint=layout(sensors))
+        try:
+            yield RerunStream(recording)
+        finally:
+            if process.poll() is None:
+                recording.flush(timeout_sec=FLUSH_S)
+            recording.disconnect()
+
+
+@contextmanager
+def _running(port: int, web_port: int | None) -> Iterator["subprocess.Popen[bytes]"]:
+    """Run the program, bound to this machine, from when it listens."""
+    page_options = [] if web_port is None else ["--serve-web", "--web-viewer-port", str(web_port)]
+    ports = [port] if web_port is None else [port, web_port]
+    for needed in ports:
+        if _is_listened_on(needed):
+            raise ViewerError(f"something listens on port {needed} already: end it, or name another port")
+    process = subprocess.Popen(
+        [_program(), "--bind", LOCAL, "--port", str(port), "--expect-data-soon", *page_options],
+        env={**os.environ, **QUIET},
+        stdin=subprocess.DEVNULL,
+    )
+    try:
+        _wait_until_listening(process, ports)
+        yield process
+    finally:
+        _stop(process)
+
+
+def proxy(port: int) -> str:
+    """Return the address at which the program takes data."""
+    return f"rerun+http://{LOCAL}:{port}/proxy"
+
+
+def page(port: int, web_port: int) -> str:
+    """Return the address of the page that shows the data."""
+    return f"http://{LOCAL}:{web_port}/?url={quote(proxy(port), safe='')}"
+
+
+def _program() -> Path:
+    """Return the program itself: the script `rerun` starts it as a child, which would outlive a stopped script."""
+    folder = Path(rerun_cli.__file__).parent
+    names = ("Rerun.app/Contents/MacOS/Rerun", "rerun", "rerun.exe")
+    return next(folder / name for name in names if (folder / name).exists())
+
+
+def _is_listened_on(port: int) -> bool:
+    with socket.socket() as probe:
+        return probe.connect_ex((LOCAL, port)) == 0
+
+
+def _wait_until_listening(process: "subprocess.Popen[bytes]", ports: Sequence[int]) -> None:
+    deadline_s = time.monotonic() + START_S
+    while not all(map(_is_listened_on, ports)):
+        if process.poll() is not None:
+            why = "is there a screen? --web needs none"
+            raise ViewerError(f"the Rerun viewer ended at once (code {process.returncode}): {why}")
+        if time.monotonic() > deadline_s:
+            raise ViewerError(f"the Rerun viewer does not listen on {', '.join(map(str, ports))} after {START_S:g} s")
+        time.sleep(POLL_S)
+
+
+def _tell_end(process: subprocess.Popen[bytes], ended: threading.Event) -> None:
+    process.wait()
+    ended.set()
+
+
+def _stop(process: subprocess.Popen[bytes]) -> None:
+    process.terminate()
+    try:
+        process.wait(STOP_S)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()

@@ -1,0 +1,97 @@
+"""The bridge's pure step: messages of ours become ROS 2's, and marks from ROS 2 become segments."""
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+
+from actum import keys
+from actum.arrays import Array, joints_to_array
+from actum.bridge import Foreign, ForeignNode
+from actum.limits import MAX_COORDINATE_M
+from actum.messages import Agent, Event, Message, Objects, Skeleton
+from actum.node import Counters, Tick
+from actum.skeletons import JOINTS
+from ros2_bridge import conversion, frames, topics
+from ros2_bridge.marks import BadMarkError, segment_of
+from ros2_bridge.message_types import to_cdr
+from ros2_bridge.settings import Settings
+from ros2_bridge.topics import RosTopic
+
+
+class Ros2Bridge:
+    """Republishes skeletons, objects and events on ROS 2 topics, and takes marks from one."""
+
+    name = "ros2_bridge"
+    inputs = (keys.SKELETON, keys.OBJECTS, keys.EVENT)
+
+    def __init__(self, settings: Settings) -> None:
+        self.counters = Counters()
+        self._settings = settings
+        self._camera_told = settings.ros_frame_id is not None
+
+    def foreign_node(self, session_id: str) -> ForeignNode:
+        """Return the ROS 2 node that the bridge is in the Zenoh session of this id."""
+        return topics.node(self._settings, session_id)
+
+    def handle(self, message: Message | Tick) -> Iterable[Foreign]:
+        """Turn a message into one for each of its topics that is chosen; the first tick says how the camera lies."""
+        if isinstance(message, Tick):
+            return self._camera()
+        if isinstance(message, Skeleton | Objects) and not message.valid:
+            self.counters.counts["not valid, left out"] += 1
+        elif _latest_ns(message) >= frames.LATEST_NS:
+            self.counters.reject("stamp_beyond_ros", f"{_latest_ns(message)} ns on {keys.key_of(message)}")
+        else:
+            return self._converted(message)
+        return []
+
+    def take(self, foreign: Foreign) -> Iterable[Message]:
+        """Turn a mark into a segment."""
+        try:
+            mark = segment_of(foreign.payload, self._settings.sensor)
+        except BadMarkError as error:
+            self.counters.reject("bad_mark", str(error))
+            return []
+        self.counters.counts["marks"] += 1
+        return [mark]
+
+    def _converted(self, message: Message) -> list[Foreign]:
+        match message:
+            case Skeleton():
+                people = [(agent.agent, self._usable(agent, message.stamp_ns)) for agent in message.agents]
+                shown = self._on(topics.SKELETONS, conversion.markers, message, people)
+                return shown + self._on(topics.TF, conversion.transforms, message, people)
+            case Objects():
+                return self._on(topics.OBJECTS, conversion.detections, message)
+            case Event():
+                typed = self._on(topics.EVENT, conversion.action_event, message)
+                return typed + self._on(topics.EVENT_JSON, conversion.event_json, message)
+        return []
+
+    def _on(self, topic: RosTopic, convert: Callable[..., Any], *given: Any) -> list[Foreign]:
+        """Return what is converted for a topic; nothing where that is not chosen."""
+        if topic.chosen_by not in self._settings.ros_topics:
+            return []
+        return [Foreign(topic.name, to_cdr(convert(*given, self._settings.frame_id)))]
+
+    def _camera(self) -> list[Foreign]:
+        """Return once where the camera's own frames lie; where they are the robot's, that says it."""
+        if self._camera_told:
+            return []
+        self._camera_told = True
+        return self._on(topics.TF_STATIC, conversion.optical_in_link, self._settings.sensor)
+
+    def _usable(self, agent: Agent, stamp_ns: int) -> Array:
+        """Return an agent's joints (15, 3), NaN where one is missing, not finite or absurdly far away."""
+        joints = joints_to_array(agent.joints)
+        bad = [i for i, joint in enumerate(agent.joints) if joint and not (np.abs(joints[i]) <= MAX_COORDINATE_M).all()]
+        for i in bad:
+            self.counters.reject("bad_joint", f"{JOINTS[i]} of agent {agent.agent} at {stamp_ns}: {agent.joints[i]}")
+        joints[bad] = np.nan
+        return joints
+
+
+def _latest_ns(message: Message) -> int:
+    """Return the latest of the stamps that a message's conversion writes (ns)."""
+    return max(message.stamp_ns, message.start_ns, message.end_ns) if isinstance(message, Event) else message.stamp_ns

@@ -1,0 +1,67 @@
+"""Settings of the bridge to ROS 2."""
+
+import re
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import BeforeValidator, Field, field_validator, model_validator
+from pydantic_settings import NoDecode
+
+from actum.settings import ServiceSettings
+
+TopicName = Literal["skeletons", "tf", "objects", "event", "event_json", "mark"]
+"""What can be published and, of `mark`, subscribed to."""
+ROS_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+"""The characters of ROS 2's names, without the slash before them."""
+HIGHEST_DOMAIN = 232
+"""ROS 2's highest domain id."""
+
+
+def _names(value: Any) -> Any:
+    """Split `event,mark` at the commas; return what is no text unchanged."""
+    return [name.strip() for name in value.split(",") if name.strip()] if isinstance(value, str) else value
+
+
+class Settings(ServiceSettings):
+    """What the bridge can be told beside what every service can."""
+
+    ros_domain_id: int = Field(0, ge=0, le=HIGHEST_DOMAIN, description="the ROS domain: your nodes' ROS_DOMAIN_ID")
+    ros_namespace: str | None = Field(
+        None,
+        description="stands before the names of the topics, all but /tf and /tf_static; default: actum/ and the sensor",
+    )
+    ros_distro: Literal["humble", "jazzy", "kilted"] = Field(
+        "jazzy", description="the nodes' ROS 2: humble's keys have no hashes of types"
+    )
+    ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
+        frozenset(get_args(TopicName)), description="which topics there are: event,mark"
+    )
+    ros_frame_id: str | None = Field(
+        None,
+        min_length=1,
+        description="the camera's optical frame in your robot's tree of frames; default: one named after the sensor,"
+        " such as kinect0_optical_frame, and /tf_static says how that lies in kinect0_link",
+    )
+
+    @field_validator("ros_namespace")
+    @classmethod
+    def _without_slashes(cls, namespace: str | None) -> str | None:
+        return None if namespace is None else namespace.strip("/")
+
+    @model_validator(mode="after")
+    def _has_a_ros_name(self) -> "Settings":
+        if self.namespace and not ROS_NAME.fullmatch(self.namespace):
+            raise ValueError(
+                f"{self.namespace!r} cannot be a ROS namespace: give --ros-namespace letters, digits and '_', in parts"
+                " that begin with no digit, as lab/kinect0"
+            )
+        return self
+
+    @property
+    def namespace(self) -> str:
+        """The topics' namespace without slashes around it; "" for none."""
+        return f"actum/{self.sensor}" if self.ros_namespace is None else self.ros_namespace
+
+    @property
+    def frame_id(self) -> str:
+        """The camera's optical frame."""
+        return self.ros_frame_id or f"{self.sensor}_optical_frame"

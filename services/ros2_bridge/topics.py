@@ -1,0 +1,86 @@
+"""The bridge's table of ROS 2 topics, and how rmw_zenoh writes them: keys, liveliness tokens, attachments."""
+
+import hashlib
+import struct
+from dataclasses import dataclass
+from functools import partial
+
+from actum.bridge import ForeignNode, ForeignTopic
+from ros2_bridge import message_types as types
+from ros2_bridge.settings import Settings, TopicName
+
+NODE = "bridge"
+"""The name of the bridge's node, in the namespace of its topics."""
+NO_HASH = "TypeHashNotSupported"
+"""What stands in keys in the place of a type's hash where ROS 2 knows none, as Humble."""
+
+
+@dataclass(frozen=True)
+class RosTopic:
+    """One row of the table: a topic's name below the namespace, or from the root, its type, and its quality of service.
+
+    All are reliable and keep the last `depth`. `chosen_by` is the setting's word for it; latched is transient local.
+    """
+
+    name: str
+    type: str
+    chosen_by: TopicName
+    depth: int = 10
+    latched: bool = False
+
+
+SKELETONS = RosTopic("skeletons", types.MARKER_ARRAY, "skeletons")
+TF = RosTopic("/tf", types.TF_MESSAGE, "tf", depth=100)
+TF_STATIC = RosTopic("/tf_static", types.TF_MESSAGE, "tf", depth=1, latched=True)
+OBJECTS = RosTopic("objects", types.DETECTION_3D_ARRAY, "objects")
+EVENT = RosTopic("event", types.ACTION_EVENT, "event", depth=1, latched=True)
+EVENT_JSON = RosTopic("event_json", types.STRING, "event_json", depth=1, latched=True)
+MARK = RosTopic("mark", types.STRING, "mark")
+
+PUBLISHED = (SKELETONS, TF, TF_STATIC, OBJECTS, EVENT, EVENT_JSON)
+SUBSCRIBED = (MARK,)
+
+
+def node(settings: Settings, session_id: str) -> ForeignNode:
+    """Return what the bridge declares in a Zenoh session: a node with the chosen topics."""
+    chosen = settings.ros_topics
+    own = f"@ros2_lv/{settings.ros_domain_id}/{session_id}/0"
+    names = f"%/{_mangled(settings.namespace)}/{NODE}"
+    publishes = [
+        _declared(topic, settings, f"{own}/{number}/MP/{names}")
+        for number, topic in enumerate(PUBLISHED, 1)
+        if topic.chosen_by in chosen
+    ]
+    subscribes = [
+        _declared(topic, settings, f"{own}/{number}/MS/{names}")
+        for number, topic in enumerate(SUBSCRIBED, 1 + len(PUBLISHED))
+        if topic.chosen_by in chosen
+    ]
+    return ForeignNode(f"{own}/0/NN/{names}", tuple(publishes), tuple(subscribes))
+
+
+def _declared(topic: RosTopic, settings: Settings, entity: str) -> ForeignTopic:
+    """Return the topic as it is declared; `entity` is the token's part before it."""
+    path = f"{settings.namespace}/{topic.name}".strip("/") if topic.name[0] != "/" else topic.name[1:]
+    package, kind, name = topic.type.split("/")
+    type_hash = NO_HASH if settings.ros_distro == "humble" else types.type_hash(topic.type)
+    typed = f"{package}::{kind}::dds_::{name}_/{type_hash}"
+    token = f"{entity}/{_mangled(path)}/{typed}/:{'1' if topic.latched else ''}:,{topic.depth}:,:,:,,"
+    gid = hashlib.blake2b(token.encode(), digest_size=16).digest()
+    return ForeignTopic(
+        name=topic.name,
+        key=f"{settings.ros_domain_id}/{path}/{typed}",
+        token=token,
+        latched=topic.latched,
+        attachment=partial(attachment, gid),
+    )
+
+
+def attachment(gid: bytes, number: int, put_ns: int) -> bytes:
+    """Return what rmw_zenoh expects beside a message: its number, the time of the put, and who put it (16 bytes)."""
+    return struct.pack("<qqB", number, put_ns, len(gid)) + gid
+
+
+def _mangled(path: str) -> str:
+    """Write a name without the slash before it as one chunk of a key: `%` stands for `/`."""
+    return f"%{path}".replace("/", "%")

@@ -1,0 +1,59 @@
+"""The metadata of the default recogniser's model files."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from actum.skeletons import JOINTS
+from som_classifier.model import ModelMetadata
+from som_classifier.spotting.spotting_model import Finite, Positive, SpottingMetadata
+
+
+class PyramidMetadata(ModelMetadata):
+    """What a file of the default recogniser holds beside the weights; field names are keys of the stored JSON.
+
+    Attributes:
+        posture_contrast: of the posture map's soft activity, in squared metres.
+        velocity_contrast: of the velocity map's soft activity, in its squared distance.
+        arm_contrast: of the arm map's soft activity, in its squared distance.
+        arm_shares: the sum of the arm map's activity for the acting arm, and for the other one.
+        mirrors: whether an action of the left arm is read as its mirror image.
+        levels: the number of the pyramid's cells on each level.
+        overlap: how far each cell reaches over its borders, as a fraction of its length.
+        fractions: the share of an action that has been seen at each stage of the discriminants.
+        log_duration_mean: mean of the logarithm of the training segments' durations (s).
+        log_duration_sd: standard deviation of that logarithm.
+        concept_contrast: of the action map's soft activity, in squared scores.
+        gains: the inverse temperatures of the softmax that turns cosines into probabilities, by stage.
+        familiar: the open-set threshold: with a lower familiarity an action may be none of those trained.
+        usual_log_errors: for each action, the mean log(d²) of its postures from the map of postures that a person not
+            trained on may well reach, d in metres over all joints of a standard body.
+        spotting: of the search for actions without marks; None where the model was not trained for that.
+    """
+
+    kind: Literal["pyramid"] = "pyramid"
+    posture_contrast: Positive
+    velocity_contrast: Positive
+    arm_contrast: Positive
+    arm_shares: Annotated[list[Positive], Field(min_length=2, max_length=2)]
+    mirrors: bool
+    levels: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=1)]
+    overlap: Annotated[float, Field(ge=0, le=1)]
+    fractions: Annotated[list[Annotated[float, Field(gt=0, le=1)]], Field(min_length=1)]
+    log_duration_mean: Finite
+    log_duration_sd: Positive
+    concept_contrast: Positive
+    gains: list[Positive]
+    familiar: Finite
+    usual_log_errors: list[Finite]
+    spotting: SpottingMetadata | None = None
+
+    def problem(self) -> str | None:
+        """Return the first inconsistency within it, None where there is none."""
+        actions = len(self.labels)
+        if self.joint_order != list(JOINTS):
+            return "its joint order is not this version's"
+        lengths = len(set(self.labels)), len(self.gains), len(self.usual_log_errors)
+        if lengths != (actions, len(self.fractions), actions):
+            return "its labels or its stages do not fit together"
+        return None if self.spotting is None else self.spotting.problem(actions)

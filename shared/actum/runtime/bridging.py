@@ -1,0 +1,92 @@
+"""Runs a bridge: a service that also publishes and subscribes as a node of another system on the same router."""
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+
+import zenoh
+from zenoh import ext
+
+from actum.bridge import Bridge, Foreign, ForeignNode, ForeignTopic
+from actum.messages import Message
+from actum.node import Tick
+from actum.runtime.inbox import Subscriber, subscribe
+from actum.runtime.outbox import Outbox, Publisher
+from actum.runtime.serving import S, StepService, configured, live
+from actum.settings import ServiceSettings
+
+RING = 256
+"""Payloads that a subscriber to a foreign topic holds while the bridge is busy: as many as of a topic of ours."""
+
+
+def run_bridge(settings_type: type[S], build: Callable[[S], Bridge], flags: Sequence[str] | None = None) -> None:
+    """Run a bridge as this process's service until SIGTERM or SIGINT, set by this process's flags or given ones."""
+    settings, bridge = configured(settings_type, build, flags)
+    live(BridgeService(bridge, settings), settings)
+
+
+class BridgeService(StepService):
+    """Gives a bridge our messages and the other system's payloads, and puts its answers on either side."""
+
+    def __init__(self, bridge: Bridge, settings: ServiceSettings) -> None:
+        super().__init__(bridge, settings)
+        self._bridge = bridge
+        self._publishers: dict[str, ForeignPublisher] = {}
+
+    def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
+        node = self._bridge.foreign_node(str(session.zid()))
+        self._publishers = {topic.name: ForeignPublisher(session, topic) for topic in node.publishes}
+        subscribers = [subscribe(session, topic.key, RING) for topic in node.subscribes]
+        for topic, subscriber in zip(node.subscribes, subscribers, strict=True):
+            reading = (topic, subscriber, outbox, stop)
+            threading.Thread(target=self._read, args=reading, daemon=True).start()
+        tokens = [session.liveliness().declare_token(token) for token in _tokens(node)]
+        try:
+            super()._work(session, outbox, stop, vacant_s)
+        finally:
+            for declared in (*tokens, *subscribers):
+                declared.undeclare()
+
+    def _step(self, message: Message | Tick, outbox: Outbox) -> None:
+        with self._lock:
+            for foreign in self._bridge.handle(message):
+                self._publishers[foreign.topic].put(foreign.payload)
+
+    def _read(self, topic: ForeignTopic, subscriber: Subscriber, outbox: Outbox, stop: threading.Event) -> None:
+        """Hand on what comes on a foreign topic until the subscriber is undeclared."""
+        for sample in subscriber:
+            with self._ending_at_a_bug(topic.key, stop), self._lock:
+                for message in self._bridge.take(Foreign(topic.name, sample.payload.to_bytes())):
+                    outbox.put(message)
+
+
+class ForeignPublisher:
+    """Puts payloads on a foreign topic, numbered from 1, each with the attachment that the other system wants."""
+
+    def __init__(self, session: zenoh.Session, topic: ForeignTopic) -> None:
+        self._topic = topic
+        self._count = 0
+        self._publisher = _declared(session, topic)
+
+    def put(self, payload: bytes) -> None:
+        """Put one payload."""
+        self._count += 1
+        self._publisher.put(payload, attachment=self._topic.attachment(self._count, time.time_ns()))
+
+
+def _declared(session: zenoh.Session, topic: ForeignTopic) -> Publisher:
+    if not topic.latched:
+        return session.declare_publisher(topic.key, priority=zenoh.Priority.DATA_HIGH, express=True)
+    return ext.declare_advanced_publisher(
+        session,
+        topic.key,
+        priority=zenoh.Priority.DATA_HIGH,
+        express=True,
+        cache=ext.CacheConfig(max_samples=1),
+        publisher_detection=True,
+    )
+
+
+def _tokens(node: ForeignNode) -> list[str]:
+    """List the tokens of a node and of its topics, the node's first, as who reads them expects."""
+    return [node.token, *(topic.token for topic in (*node.publishes, *node.subscribes))]

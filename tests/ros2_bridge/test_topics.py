@@ -1,0 +1,100 @@
+"""What is declared is what rmw_zenoh declares: keys, tokens and attachments, letter by letter."""
+
+import struct
+
+import pytest
+from pydantic import ValidationError
+
+from conftest import NEEDS_ROS2_EXTRA
+
+pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
+
+from actum.settings import complaint
+from ros2_bridge.message_types import type_hash
+from ros2_bridge.settings import Settings
+from ros2_bridge.topics import PUBLISHED, node
+
+HASHES = {
+    "std_msgs/msg/String": "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18",
+    "tf2_msgs/msg/TFMessage": "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
+    "visualization_msgs/msg/MarkerArray": "RIHS01_86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf",
+    "vision_msgs/msg/Detection3DArray": "RIHS01_793f5eab9595ac1c0da07873cc859db42eae51f0ee76056db8562515d830e018",
+}
+"""As other programs have them that speak with ROS 2."""
+STRING = f"std_msgs::msg::dds_::String_/{HASHES['std_msgs/msg/String']}"
+
+
+def test_types_have_the_hashes_by_which_ros_knows_them() -> None:
+    assert {name: type_hash(name) for name in HASHES} == HASHES
+
+
+def test_the_hash_of_our_own_type_stays_as_long_as_its_definition() -> None:
+    assert type_hash("actum_msgs/msg/ActionEvent") == (
+        "RIHS01_bca8cd7bdc88f3ddf620f9504d7d3bf9c418dde90fbe9ac81089fb2ffe8211a1"
+    )
+
+
+def test_topics_stand_in_the_sensors_namespace_and_transforms_at_the_root() -> None:
+    declared = node(Settings(), "5e55")
+    assert [topic.key.split("::")[0].rpartition("/")[0] for topic in declared.publishes] == [
+        "0/actum/kinect0/skeletons", "0/tf", "0/tf_static", "0/actum/kinect0/objects", "0/actum/kinect0/event",
+        "0/actum/kinect0/event_json",
+    ]  # fmt: skip
+    assert [topic.key for topic in declared.subscribes] == [f"0/actum/kinect0/mark/{STRING}"]
+
+
+def test_tokens_tell_of_the_node_its_topics_and_their_quality_of_service() -> None:
+    declared = node(Settings(), "5e55")
+    assert declared.token == "@ros2_lv/0/5e55/0/0/NN/%/%actum%kinect0/bridge"
+    tokens = {topic.name: topic.token for topic in (*declared.publishes, *declared.subscribes)}
+    entity = "%/%actum%kinect0/bridge"
+    assert tokens["event_json"] == f"@ros2_lv/0/5e55/0/6/MP/{entity}/%actum%kinect0%event_json/{STRING}/:1:,1:,:,:,,"
+    assert tokens["mark"] == f"@ros2_lv/0/5e55/0/7/MS/{entity}/%actum%kinect0%mark/{STRING}/::,10:,:,:,,"
+    assert tokens["/tf"].endswith(f"/MP/{entity}/%tf/tf2_msgs::msg::dds_::TFMessage_/{HASHES[PUBLISHED[1].type]}/::,100:,:,:,,")  # fmt: skip # noqa: E501
+    assert len({token.split("/")[4] for token in tokens.values()}) == len(tokens), "each has a number of its own"
+
+
+def test_what_is_latched_says_so() -> None:
+    assert {topic.name for topic in node(Settings(), "5e55").publishes if topic.latched} == {
+        "/tf_static", "event", "event_json"
+    }  # fmt: skip
+
+
+def test_the_domain_the_namespace_and_the_topics_are_chosen() -> None:
+    declared = node(Settings(ros_domain_id=42, ros_namespace="/robot1/", ros_topics="mark"), "5e55")
+    assert declared.token == "@ros2_lv/42/5e55/0/0/NN/%/%robot1/bridge"
+    assert declared.publishes == ()
+    assert [topic.key for topic in declared.subscribes] == [f"42/robot1/mark/{STRING}"]
+
+
+def test_without_a_namespace_topics_stand_at_the_root() -> None:
+    declared = node(Settings(ros_namespace="", ros_topics="mark"), "5e55")
+    assert declared.token == "@ros2_lv/0/5e55/0/0/NN/%/%/bridge"
+    assert declared.subscribes[0].key == f"0/mark/{STRING}"
+    assert "/%/%/bridge/%mark/" in declared.subscribes[0].token
+
+
+def test_humble_has_no_hashes() -> None:
+    declared = node(Settings(ros_distro="humble"), "5e55")
+    assert declared.subscribes[0].key == "0/actum/kinect0/mark/std_msgs::msg::dds_::String_/TypeHashNotSupported"
+    assert "RIHS01" not in " ".join(topic.token for topic in declared.publishes)
+
+
+def test_an_attachment_is_number_time_and_who_put_it() -> None:
+    one, other = node(Settings(), "5e55").publishes[:2]
+    number, put_ns, length = struct.unpack_from("<qqB", one.attachment(1, 2))
+    assert (number, put_ns, length, len(one.attachment(1, 2))) == (1, 2, 16, 33)
+    assert one.attachment(1, 2)[17:] == one.attachment(9, 9)[17:] != other.attachment(1, 2)[17:]
+
+
+@pytest.mark.parametrize("namespace", ["a-b", "1a", "a//b", "a/*", "a b"])
+def test_what_is_no_ros_name_is_refused(namespace) -> None:
+    with pytest.raises(ValidationError, match="cannot be a ROS namespace: give --ros-namespace"):
+        Settings(ros_namespace=namespace)
+
+
+def test_a_sensor_whose_name_ros_cannot_have_needs_a_namespace() -> None:
+    with pytest.raises(ValidationError) as refused:
+        Settings(sensor="cam-1")
+    assert complaint(refused.value).startswith("settings: 'actum/cam-1' cannot be a ROS namespace")
+    assert Settings(sensor="cam-1", ros_namespace="cam_1").namespace == "cam_1"
