@@ -11,12 +11,10 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from PIL import Image
 from playwright.sync_api import Browser, sync_playwright
 
 from actum.runtime import Client
@@ -33,8 +31,6 @@ PICTURES: dict[str, dict[str, Any]] = {
     "page-dark.png": WIDE | {"color_scheme": "dark"},
     "page-phone.png": PHONE | {"color_scheme": "light"},
 }
-COLOURS = 256
-"""Of a picture's palette: it is a third as large, and looks the same."""
 PATIENCE_MS = 60_000
 MOMENT_MS = 300
 """Until everything that belongs to an answer is drawn."""
@@ -81,10 +77,9 @@ def take(browser: Browser, address: str, file: Path, options: dict[str, Any]) ->
         page.wait_for_function(f"() => !({ANSWERED})", timeout=PATIENCE_MS)
         page.wait_for_function(f"() => {ANSWERED}", timeout=PATIENCE_MS)
         page.wait_for_timeout(MOMENT_MS)
-        picture = page.screenshot()
+        page.screenshot(path=file)
         if page.evaluate(f"() => {ANSWERED}"):
             break
-    Image.open(BytesIO(picture)).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(file, optimize=True)
     page.context.close()
 
 

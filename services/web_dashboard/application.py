@@ -3,6 +3,7 @@
 import asyncio
 import base64
 import hashlib
+import logging
 import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
@@ -23,6 +24,8 @@ from web_dashboard.encoding import text
 from web_dashboard.hub import Envelope, Hub, Mailbox
 from web_dashboard.orders import LONGEST_ORDER_BYTES, Orders
 from web_dashboard.settings import Settings
+
+log = logging.getLogger("actum")
 
 PAGE = Path(__file__).parent / "page"
 PULSE_S = 0.5
@@ -52,6 +55,8 @@ def application(settings: Settings, hub: Hub, orders: Orders) -> Starlette:
     @asynccontextmanager
     async def lifespan(_app: Starlette) -> AsyncIterator[None]:
         tasks = [asyncio.create_task(_pulse(settings, hub, orders)), asyncio.create_task(_describe(hub, orders))]
+        for task in tasks:
+            task.add_done_callback(lambda ended: _tell_bug(ended, orders))
         yield
         for task in tasks:
             task.cancel()
@@ -147,6 +152,12 @@ def _greeting(settings: Settings) -> str:
         parts=dict(PARTS),
         longest_order_bytes=LONGEST_ORDER_BYTES,
     )
+
+
+def _tell_bug(task: asyncio.Task[None], orders: Orders) -> None:
+    """Log what ended a task that has no end; a session that is closed meanwhile may."""
+    if not task.cancelled() and orders.client is not None:
+        log.error("a bug: pages are no longer told how the services are", exc_info=task.exception())
 
 
 async def _pulse(settings: Settings, hub: Hub, orders: Orders) -> None:

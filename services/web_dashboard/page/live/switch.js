@@ -69,9 +69,9 @@ class Switch {
   }
 
   end() {
-    this.put("end");
-    this.told.textContent = "Marked; waiting for the answer …";
     this.waiting = this.segment.segment_id;
+    this.told.textContent = "Ending …";
+    this.put("end", "Marked; waiting for the answer …");
     this.off();
   }
 
@@ -81,9 +81,11 @@ class Switch {
     this.button.textContent = "Hold to mark";
   }
 
-  async put(kind) {
+  async put(kind, told) {
+    const { segment_id: id } = this.segment;
     try {
       await link.mark({ ...this.segment, kind });
+      if (told && this.waiting === id) this.told.textContent = told;
     } catch (error) {
       this.waiting = null;
       this.off();
