@@ -15,7 +15,7 @@ from som_classifier.spotting.spotting_model import SpottingModel
 
 BEARABLE_PER_MIN = 0.5
 """False alarms in a minute of background that cost nothing in the choice of the threshold."""
-COST_PER_MIN = 0.05
+COST_PER_MIN = 0.1
 """What each further one costs, in units of F1."""
 SHORTEST_BACKGROUND_MIN = 0.5
 """Minutes of background below which false alarms a minute are not counted: too few to tell."""
