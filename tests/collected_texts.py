@@ -20,6 +20,7 @@ PACKAGES = (
     "services/som_classifier",
     "services/marker_tracker",
     "services/action_fusion",
+    "services/web_dashboard",
     "services/ros2_bridge",
 )
 REASONS = ("reason", "why", "complaint")

@@ -9,11 +9,20 @@ import ros2_bridge.settings
 import scene_simulator.settings
 import sensor_gateway.settings
 import som_classifier.settings
+import web_dashboard.settings
 from actum.settings import ServiceSettings
 
 DECLARED: Mapping[str, type[ServiceSettings]] = {
     service.__name__: service.settings.Settings
-    for service in (sensor_gateway, scene_simulator, pose_preprocessor, som_classifier, marker_tracker, action_fusion)
+    for service in (
+        sensor_gateway,
+        scene_simulator,
+        pose_preprocessor,
+        som_classifier,
+        marker_tracker,
+        action_fusion,
+        web_dashboard,
+    )
 }
 """The settings of each service that `actum up` starts, by the service's name."""
 
