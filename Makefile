@@ -4,7 +4,7 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture picture-viewer pages docs schemas wheel clean
+.PHONY: install demo up test test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture picture-viewer screenshots page-libraries pages docs schemas wheel clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -41,6 +41,9 @@ test-live: $(STAMP)  ## all MSR test recordings through live processes
 
 test-containers: $(STAMP)  ## build and run the compose file; needs a container engine
 	$(BIN)/pytest -m containers -s
+
+test-browser: $(STAMP)  ## all tests of the web page in Chromium, which has to be installed
+	$(BIN)/pytest -m browser
 
 test-viewers: $(STAMP)  ## what Rerun and Foxglove are sent; installs both, 600 MB
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[dev,view]"
@@ -100,6 +103,12 @@ picture: $(STAMP)  ## the README's pictures
 	folder=$$(mktemp -d) && $(BIN)/actum simulate $$folder/learnt.mcap && $(BIN)/actum train $$folder/learnt.mcap -o $$folder/model.npz \
 	  && $(BIN)/actum simulate $$folder/seen.mcap --actor 24 --seed 3 --repetitions 2 \
 	  && $(BIN)/actum inspect $$folder/model.npz $$folder/seen.mcap -o $$folder && cp $$folder/time-lift.png docs/time.png && rm -r $$folder
+
+screenshots: $(STAMP)  ## the page's pictures, in docs: light, dark and as wide as a phone; needs Chromium
+	$(BIN)/python -m docs.screenshots docs
+
+page-libraries:  ## the page's JavaScript libraries anew from npm, which has to be installed
+	services/web_dashboard/page/vendored/fetch.sh
 
 picture-viewer: $(STAMP)  ## the picture of Rerun; needs a program chromium
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[view]" "playwright>=1.50,<2"

@@ -22,7 +22,19 @@ root_doc = "README"
 PAGES = [
     f"docs/{page}"
     for page in (
-        *("start", "cameras", "objects", "teaching", "messages", "spotting", "som", "operating", "ros2", "viewers"),
+        *(
+            "start",
+            "cameras",
+            "objects",
+            "teaching",
+            "messages",
+            "spotting",
+            "som",
+            "operating",
+            "page",
+            "ros2",
+            "viewers",
+        ),
         "measured",
         *("paper", "architecture"),
     )

@@ -21,6 +21,7 @@ PACKAGES = (
     "services/marker_tracker",
     "services/action_fusion",
     "services/actum_model_trainer/teaching",
+    "services/web_dashboard",
     "services/ros2_bridge",
 )
 REASONS = ("reason", "why", "complaint")

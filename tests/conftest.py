@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+import chromium
+
 settings.register_profile("patient", deadline=None)
 settings.register_profile("ci", settings.get_profile("patient"), derandomize=True)
 settings.load_profile("ci" if os.environ.get("CI") else "patient")
@@ -27,6 +29,8 @@ SKIPPED = (
     ("with the pose model", NEEDS_LIBRARIES),
     ("of the bridge to ROS 2", NEEDS_ROS2_EXTRA),
     ("with librealsense", "the source realsense needs pyrealsense2"),
+    ("of the page in a browser", chromium.NEEDS_PLAYWRIGHT),
+    ("of the page in a browser", chromium.NEEDS_CHROMIUM),
     ("with Rerun", "rerun-sdk is not installed: pip install -e '.[view]'"),
     ("with Foxglove", "is not installed: pip install -e '.[dev]'"),
     ("with OpenNI 2", "the source openni2 needs OpenNI 2"),
@@ -61,10 +65,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for item in items:
             if item.get_closest_marker("data"):
                 item.add_marker(pytest.mark.skip(reason=NEEDS_DATA))
-    if (reason := pose_model_missing()) is not None:
-        for item in items:
-            if item.get_closest_marker("pose_model"):
-                item.add_marker(pytest.mark.skip(reason=reason))
+    for marker, missing in (("pose_model", pose_model_missing()), ("browser", chromium.missing())):
+        for item in items if missing else ():
+            if item.get_closest_marker(marker):
+                item.add_marker(pytest.mark.skip(reason=missing))
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -55,7 +55,8 @@ BOXES = (
     Box("som_classifier", 130, 326, 190, "which action"),
     Box("switch or script", 16, 216, 134, "marks start, end", ours=False),
     Box("action_fusion", 170, 436, 410, "which object, what became of it"),
-    Box("your program", 275, 530, 200, ours=False),
+    Box("your program", 170, 530, 190, ours=False),
+    Box("web_dashboard", 390, 530, 190, "all keys, in browsers"),
 )
 WAYS = (
     Way(((375, 62), (375, 106)), SKELETON, 0, 0),
@@ -65,9 +66,10 @@ WAYS = (
     Way(((345, 262), (345, 436)), POSTURE, 352, 356),
     Way(((485, 262), (485, 436)), OBJECTS, 493, 356),
     Way(((70, 262), (70, 349), (130, 349)), SEGMENT, 62, 310),
-    Way(((130, 360), (90, 360), (90, 553), (275, 553)), SEGMENT, 82, 460),
+    Way(((130, 360), (90, 360), (90, 553), (170, 553)), SEGMENT, 82, 460),
     Way(((225, 372), (225, 436)), ACTION, 217, 408),
-    Way(((375, 482), (375, 530)), EVENT, 383, 511),
+    Way(((265, 482), (265, 530)), EVENT, 273, 511),
+    Way(((485, 482), (485, 530)), EVENT, 493, 511),
 )
 
 

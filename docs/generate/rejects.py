@@ -163,6 +163,14 @@ OF_FUSION: Mapping[str, Problem] = {
     ),
 }
 
+OF_PAGE: Mapping[str, Problem] = {
+    "refused_browser": Problem(
+        "A browser was refused: another site's page, an unknown name, a wrong token, a mark or command that is wrong or"
+        " cannot be passed on.",
+        "The latest error says which; see [what the page lets in](page.md#who-gets-in).",
+    ),
+}
+
 OF_FUSION_AND_BRIDGE: Mapping[str, Problem] = {
     "bad_joint": Problem(
         "A joint is not finite or beyond 100 m; it counts as missing.",
@@ -194,6 +202,7 @@ OF_TRAINER: Mapping[str, Problem] = {
 
 GATEWAY, PREPROCESSOR, CLASSIFIER = "sensor_gateway", "pose_preprocessor", "som_classifier"
 TRACKER, FUSION, BRIDGE, TRAINER = "marker_tracker", "action_fusion", "ros2_bridge", "model_trainer"
+PAGE = "web_dashboard"
 COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((), OF_ALL),
     ((PREPROCESSOR, CLASSIFIER, TRACKER, FUSION), OF_NODES),
@@ -205,6 +214,7 @@ COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((TRACKER,), OF_TRACKER),
     ((FUSION,), OF_FUSION),
     ((TRAINER,), OF_TRAINER),
+    ((PAGE,), OF_PAGE),
     ((FUSION, BRIDGE), OF_FUSION_AND_BRIDGE),
     ((BRIDGE,), OF_BRIDGE),
 )

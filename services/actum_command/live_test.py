@@ -18,6 +18,7 @@ from actum_command.supervising import Program, Supervisor
 
 READY_S = 30.0  # enough for all processes to start, also on a slow machine
 POLL_S = 0.01  # a third of a frame's interval
+PAGE_S = 10.0  # the page's service starts in a second or two; the demo does without it
 SUBSCRIBER_POLL_S = 0.5  # how soon a stop takes effect while the services start
 
 Tell = Callable[[str], object]
@@ -86,6 +87,8 @@ class LiveTest:
             with Client(self._here, READY_S) as client:
                 self._wait_until_ready(client, listened)
                 self._tell(f"router, {', '.join(processes.SERVICES)} and scene_simulator run as processes of their own")
+                if processes.PAGE in {program.name for program in programs}:
+                    self._tell_page(client)
                 listening = client.listen(keys.everything(self._here.sensor))
                 for appearance in appearances:
                     simulator = processes.simulator(self._here, appearance.arguments)
@@ -101,6 +104,15 @@ class LiveTest:
             if running >= set(processes.SERVICES) and client.wait_for_subscriber(listened, SUBSCRIBER_POLL_S):
                 return
         raise ExperimentError(f"the services are not all up after {READY_S:g} s; see {self._log}")
+
+    def _tell_page(self, client: Client) -> None:
+        deadline_s = time.monotonic() + PAGE_S
+        while time.monotonic() < deadline_s:
+            self._end_if_stopped()
+            for page in (info.page for info in client.infos() if info.page is not None):
+                self._tell(f"watch it in a browser: [bold]{escape(page)}[/bold]")
+                return
+            time.sleep(SUBSCRIBER_POLL_S)
 
     def _hear(self, listening: Listening, witness: Witness, supervisor: Supervisor) -> None:
         """Let a witness hear what is put until it is satisfied, or the person takes too long."""

@@ -1,7 +1,10 @@
 """The processes of a whole system, as programs to supervise."""
 
 import json
+import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
 
@@ -13,6 +16,9 @@ from scene_simulator.parameters import load_parameters
 
 SERVICES = ("pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
 """The services behind the sensor, in the order of the stream."""
+
+PAGE = "web_dashboard"
+"""The service that shows all of it to browsers."""
 
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 """One BLAS thread a process: the processes share the cores, and products as small as theirs gain nothing from more."""
@@ -42,6 +48,23 @@ def system(
         play = ["--path", str(path)] if path else []
         programs.append(gateway(settings, ["--source", source, *play, *arguments_of("sensor_gateway", given)]))
     return programs
+
+
+def with_page(
+    settings: ServiceSettings, programs: Sequence[Program], given: Given = MappingProxyType({})
+) -> list[Program]:
+    """Return programs with the page beside them, and have the classifier put the maps that it shows.
+
+    Where the page's dependencies are not installed they are returned as they are.
+    """
+    if find_spec("uvicorn") is None:
+        return list(programs)
+    maps = {"ACTUM_PUBLISH_MAPS": os.environ.get("ACTUM_PUBLISH_MAPS", "1")}
+    showing = [
+        replace(program, environment={**program.environment, **maps}) if program.name == "som_classifier" else program
+        for program in programs
+    ]
+    return [*showing, Program(PAGE, PAGE, arguments_of(PAGE, given), common(settings))]
 
 
 def common(settings: ServiceSettings) -> dict[str, str]:

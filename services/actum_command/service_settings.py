@@ -10,6 +10,7 @@ import ros2_bridge.settings
 import scene_simulator.settings
 import sensor_gateway.settings
 import som_classifier.settings
+import web_dashboard.settings
 from actum.settings import ServiceSettings
 
 TRAINER = "model_trainer"
@@ -20,6 +21,7 @@ DECLARED: Mapping[str, type[ServiceSettings]] = {
         service.__name__: service.settings.Settings
         for service in (
             sensor_gateway, scene_simulator, pose_preprocessor, som_classifier, marker_tracker, action_fusion,
+            web_dashboard,
         )
     },
     TRAINER: actum_model_trainer.settings.Settings,

@@ -62,6 +62,7 @@ def run_marked(live: LiveTest, here: ServiceSettings, model: Path, actors: Seque
     samples_each = repetitions * len(ACTIONS)
     score = Score(expected=len(actors) * samples_each)
     programs = [*processes.services(here, model, processes.simulated_objects()), processes.scene(here)]
+    programs = processes.with_page(here, programs)
     live.run(programs, keys.TRUTH, _appearances(score, actors, repetitions))
     return score
 

@@ -56,6 +56,7 @@ def run_unmarked(
         RouterUnreachableError, SettingsError, UnusableError: the processes cannot run as they are set.
     """
     programs = processes.services(here, model, processes.simulated_objects(), {"segments": ["auto"]})
+    programs = processes.with_page(here, programs)
     performances: list[Performance] = []
     live.run(programs, keys.SKELETON, _appearances(performances, actors, repetitions))
     return performances

@@ -50,6 +50,7 @@ def test_each_service_is_told_its_own_settings(started: BY_NAME) -> None:
         "marker_tracker": ["--scene=a.yaml"],
         "action_fusion": ["--pointing-labels=point", "--pointing-labels=at"],
         "model_trainer": [],
+        "web_dashboard": [],
     }
 
 
@@ -90,13 +91,21 @@ def test_what_nobody_would_heed_is_refused(arguments: tuple[str, ...], reason: s
 
 def test_without_any_the_simulated_scene_is_started(started: BY_NAME) -> None:
     up()
-    assert set(started) == {"scene_simulator", *processes.SERVICES, "model_trainer", "scene"}
+    assert set(started) == {"scene_simulator", *processes.SERVICES, "model_trainer", "scene", processes.PAGE}
     assert started["scene_simulator"] == []
 
 
 def test_the_simulated_scene_is_told_its_settings(started: BY_NAME) -> None:
     up("--actor", "3", "--seed", "2", "--repetitions", "1", "--image-hz", "0")
     assert started["scene_simulator"] == ["--actor=3", "--seed=2", "--repetitions=1", "--image-hz=0"]
+
+
+def test_the_page_is_told_its_settings_and_can_be_left_out(started: BY_NAME) -> None:
+    up("--page-port", "9000", "--page-names", "lab.example")
+    assert started["web_dashboard"] == ["--page-port=9000", "--page-names=lab.example"]
+    started.clear()
+    up("--no-page")
+    assert processes.PAGE not in started
 
 
 def test_every_setting_of_every_service_stands_in_the_help() -> None:

@@ -12,9 +12,12 @@ from actum.messages import Segment, Skeleton
 from actum.node import SECOND_NS, Counters
 from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import LabelledStream, Samples, samples_from
+from actum_model_trainer.spotting.common_head import mixed_heads, with_common
 from actum_model_trainer.spotting.encoded_stream import EncodedStream
 from actum_model_trainer.spotting.heads_training import fit_heads
 from actum_model_trainer.spotting.logistic_regression import logistic_fit
+from actum_model_trainer.spotting.scanning import ScannedStream
+from actum_model_trainer.spotting.spotting_training import _chosen
 from actum_model_trainer.spotting.training_windows import (
     live_windows,
     overlap_ratio,
@@ -29,14 +32,19 @@ from som_classifier.model import Model
 from som_classifier.pyramid import SCALE
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.segmenter import Segmenter
-from som_classifier.spotting.completeness import completeness_of_iou
+from som_classifier.spotting.completeness import CompletenessHeads, completeness_of_iou
 from som_classifier.spotting.pyramid_spotter import PyramidSpotter
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.spotting.spotting_model import SpottingModel
+from som_classifier.spotting.spotting_model import SpottingMetadata, SpottingModel
 from som_classifier.spotting.windows import FEWEST_FRAMES
 from unmarked import Scene, bounds_ns, postures, recorded, scene, spotting_model, taught
 
 LABELS = ["lift", "push", "swing"]
+METADATA = SpottingMetadata(
+    interval_s=0.1, lag_s=0.2, overlap=0.0, duration_weight=0.0, window_durations_s=[1.0], log_duration_means=[0.0] * 3,
+    log_duration_sds=[0.3] * 3, thresholds=[0.45], false_alarms_per_min=[], recalls=[], threshold=0.45,
+    probability=[1.0, 0.0], background_s=0.0,
+)  # fmt: skip
 
 
 def encoded_live(model: Model, of: Scene, lost: frozenset[int] = frozenset()) -> list[Frame]:
@@ -206,6 +214,45 @@ def test_heads_without_the_only_fold_answer_nothing_and_equal_windows_their_mean
     assert not one.without[0].axes.any() and not one.without[0].offsets.any()
     same = fit_heads(np.ones((4, 6), np.float32), targets[:4], np.array([0, 1, 0, 1]), 2, 0.4)
     np.testing.assert_allclose(same.all.completeness(np.ones(6, np.float32)), targets[:4].mean(axis=0), rtol=1e-5)
+
+
+@given(seed=st.integers(0, 2**32 - 1), share=st.floats(0.0, 1.0))
+@settings(max_examples=20, deadline=None)
+def test_a_mixed_head_is_the_one_that_mixed_targets_give(seed: int, share: float) -> None:
+    """Least squares are linear in what is to be answered."""
+    rng = np.random.default_rng(seed)
+    vectors, own = rng.normal(size=(30, 6)).astype(np.float32), rng.random((30, 3))
+    folds = rng.integers(2, size=30)
+    heads = mixed_heads(fit_heads(vectors, with_common(own), folds, 2, 0.1).all, share)
+    any_action = own.max(axis=1, keepdims=True)
+    expected = fit_heads(vectors, (1 - share) * own + share * any_action, folds, 2, 0.1).all
+    np.testing.assert_allclose(heads.axes, expected.axes, atol=1e-4)
+    np.testing.assert_allclose(heads.offsets, expected.offsets, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("own", "common_in_background", "share"),
+    [(0.2, 0.0, 0.5), (0.8, 0.9, 0.0)],
+    ids=["only what is common tells actions from none", "it tells nothing"],
+)
+def test_the_share_of_the_common_head_is_the_one_with_which_most_is_found(
+    own: float, common_in_background: float, share: float
+) -> None:
+    """One window a second, every third of them an action."""
+    stamps_ns = np.arange(200) * SECOND_NS // 10
+    frames = np.array([[10 * second, 10 * second + 9] for second in range(20)])
+    done = {second: LABELS[second % len(LABELS)] for second in range(1, 18, 3)}
+    segments = tuple((*stamps_ns[frames[second]].tolist(), label) for second, label in done.items())
+    answers = [
+        [*(own * (done.get(second) == label) for label in LABELS), 0.9 if second in done else common_in_background]
+        for second in range(20)
+    ]
+    nothing = np.zeros((200, 15, 3))
+    stream = LabelledStream(stamps_ns, np.zeros((200, 5)), nothing, nothing, segments, "somebody", "file", 1)
+    scanned = ScannedStream(stream, frames, np.array(answers, np.float32))
+    learned = SpottingModel(CompletenessHeads(np.zeros((1, 3), np.float32), np.zeros(3, np.float32)), METADATA)
+    search = replace(TINY.spotting, common_shares=(0.0, 0.3, 0.5), thresholds=(0.45,))
+    assert _chosen([scanned], learned, LABELS, search)[0] == share
 
 
 def test_a_logistic_regression_finds_the_slope_and_intercept_that_made_the_outcomes() -> None:

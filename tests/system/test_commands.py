@@ -89,6 +89,7 @@ def test_up_runs_everything_that_watch_shows_restarts_what_dies_and_leaves_nothi
         assert examined.returncode == 0, examined.stdout
         assert "all services are there" in examined.stdout
         assert "waiting for it" not in up.said(), "the router is there first"
+        wait_until(lambda: re.search(r"the page: http://127.0.0.1:\d+/", up.said()) is not None, "it names the page")
         subprocess.run(["pkill", "-KILL", "-P", str(up.process.pid), "-f", "action_fusion"], check=True)
         wait_until(lambda: "action_fusion ended with code -9: restart" in up.said(), "the supervisor notices")
         assert_recognised(events)
@@ -201,6 +202,7 @@ def test_the_marked_demo_runs_to_its_table_and_leaves_nothing(
     monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
     demo = running.actum("demo", "--marked", "--people", "1", timeout_s=200)
     assert demo.returncode == 0, demo.stdout + demo.stderr
+    assert re.search(r"^watch it in a browser: http://127.0.0.1:\d+/$", demo.stdout, re.M)
     assert len(re.findall(r"^ *\d+/5 ", demo.stdout, re.M)) == 5, demo.stdout
     assert re.search(r"total .*41 \(91.1%\)", demo.stdout)
     assert list((tmp_path / "temporary").iterdir()) == []

@@ -13,12 +13,12 @@ import msgpack
 import pytest
 import zenoh
 
-from actum_command.processes import SERVICES, simulated_objects
+from actum_command.processes import PAGE, SERVICES, simulated_objects
 from compose_files import DEPLOY, MAIN, ROOT, services_of
 from live import System, wait_until
 
 ROUTER_CONFIG = DEPLOY / "zenoh" / "router.json5"
-FIVE = {"scene_simulator", *SERVICES}
+SIX = {"scene_simulator", PAGE, *SERVICES}
 UNCHECKED = {"trainer", "watch"}
 TRAINER = "model_trainer"
 ACTIONS = {"push", "pull", "put", "lift", "point"}
@@ -30,12 +30,12 @@ def services() -> dict[str, dict[str, Any]]:
     return services_of(MAIN)
 
 
-def test_router_six_services_trainer_and_watch_stand_in_one_flat_list(services):
-    assert set(services) == {"router", *FIVE, TRAINER, *UNCHECKED}
+def test_router_seven_services_trainer_and_watch_stand_in_one_flat_list(services):
+    assert set(services) == {"router", *SIX, TRAINER, *UNCHECKED}
     assert not [name for name, service in services.items() if "depends_on" in service]
 
 
-@pytest.mark.parametrize("name", sorted(FIVE))
+@pytest.mark.parametrize("name", sorted(SIX))
 def test_each_service_is_built_from_its_own_folder_and_extra(services, name):
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     assert services[name]["build"]["args"] == {"SERVICE": name}
@@ -49,9 +49,10 @@ def test_every_image_is_built_once(services):
     assert sorted(built) == sorted(set(images))
 
 
-def test_only_the_router_is_reached_from_outside_and_only_from_this_host(services):
+def test_only_router_and_page_are_reached_from_outside_and_only_from_this_host(services):
     assert {name: service["ports"] for name, service in services.items() if "ports" in service} == {
-        "router": ["127.0.0.1:7447:7447"]
+        "router": ["127.0.0.1:7447:7447"],
+        "web_dashboard": ["127.0.0.1:8080:8080"],
     }
 
 
@@ -61,12 +62,12 @@ def test_all_come_back_but_the_trainer_and_all_pass_signals_on(services):
     assert all(service["init"] for service in services.values())
 
 
-def test_router_and_five_services_are_checked(services):
+def test_router_and_six_services_are_checked(services):
     disabled = {name for name, service in services.items() if service.get("healthcheck", {}).get("disable")}
     assert disabled == UNCHECKED
 
 
-@pytest.mark.parametrize("name", sorted(FIVE))
+@pytest.mark.parametrize("name", sorted(SIX))
 def test_every_variable_is_a_setting_of_its_service(services, name):
     known = import_module(f"{name}.settings").Settings.model_fields
     variables = [variable.removeprefix("ACTUM_").lower() for variable in services[name]["environment"]]
@@ -101,10 +102,10 @@ def test_what_is_taught_is_put_where_the_classifier_reads_it_and_stays(services)
     assert services["trainer"]["command"][0].startswith("test -e /models/model.npz && exit;")
 
 
-def test_two_hosts_together_run_the_router_and_the_five_services():
+def test_two_hosts_together_run_the_router_and_the_six_services():
     hosts = [services_of(DEPLOY / f"compose.{host}-host.yml") for host in ("kinect", "compute")]
     extended = [(name, service["extends"]) for host in hosts for name, service in host.items()]
-    assert sorted(name for name, _ in extended) == sorted({"router", *FIVE})
+    assert sorted(name for name, _ in extended) == sorted({"router", *SIX})
     assert all(extends == {"file": "../docker-compose.yml", "service": name} for name, extends in extended)
 
 
@@ -201,7 +202,7 @@ def test_compose_accepts(files, environment, monkeypatch):
         monkeypatch.setenv(name, value)
     resolved = engine("compose", *(word for file in files for word in ("-f", file)), "config", "--format", "json")
     published = {name: s["ports"] for name, s in json.loads(resolved)["services"].items() if "ports" in s}
-    assert all(name == "router" and len(ports) == 1 for name, ports in published.items())
+    assert all(name in ("router", "web_dashboard") and len(ports) == 1 for name, ports in published.items())
     router = json.loads(resolved)["services"].get("router", {})
     assert router.get("image", "").startswith("eclipse/zenoh:") is ("deploy/compose.zenohd.yml" in files)
     assert ("build" in router) is (router.get("image") == "actum/actum_command")
@@ -219,10 +220,10 @@ def project():
 @pytest.mark.containers
 @pytest.mark.timeout(1200)
 def test_up_recognises_and_down_leaves_nothing(project):
-    compose("up", "--detach", "--wait", "--wait-timeout", "120", "router", *FIVE)
+    compose("up", "--detach", "--wait", "--wait-timeout", "120", "router", *SIX)
     print(compose("ps", "--format", "table {{.Service}}\t{{.Status}}"))
     assert engine("wait", *compose("ps", "--all", "--quiet", "trainer").split()) == "0\n"
-    users = {name: compose("exec", "-T", name, "id", "-u").strip() for name in ("router", *FIVE)}
+    users = {name: compose("exec", "-T", name, "id", "-u").strip() for name in ("router", *SIX)}
     assert "0" not in users.values()
 
     events = recognitions(3)
@@ -236,7 +237,7 @@ def test_up_recognises_and_down_leaves_nothing(project):
     compose("down")
     print(f"docker compose down: {time.time() - began_s:.1f} s")
     ended = deaths(began_s)
-    assert len(ended) == len({"router", "watch", *FIVE})
+    assert len(ended) == len({"router", "watch", *SIX})
     assert {end["Actor"]["Attributes"]["exitCode"] for end in ended} == {"0"}
     assert max(end["timeNano"] for end in ended) / 1e9 - began_s < STOPPED_WITHIN_S
     assert containers() == []

@@ -19,6 +19,7 @@ PROGRAMS = {
     "som_classifier": "som_classifier",
     "marker_tracker": "marker_tracker",
     "action_fusion": "action_fusion",
+    "web_dashboard": "web_dashboard",
     **({"ros2_bridge": "ros2_bridge"} if find_spec("rosbags") else {}),
 }
 """What is run for each service: the simulated scene stands in the gateway's place."""

@@ -25,6 +25,8 @@ NO_MARKS = (
     "or 'actum play' beside --source none"
 )
 
+NO_PAGE = "no web page: pip install 'actum[web-dashboard]'"
+
 
 def router(
     listen: Annotated[str | None, typer.Option(help=f"endpoint; default {DEFAULT_ENDPOINT} unless --config")] = None,
@@ -53,6 +55,7 @@ def up(
     model: Annotated[
         Path | None, typer.Option(help="the model; it may come or change later", envvar="ACTUM_MODEL")
     ] = None,
+    page: Annotated[bool, typer.Option("--page/--no-page", help="serve the web page, whose address is printed")] = True,
     *,
     given: Given,
 ) -> None:
@@ -65,6 +68,10 @@ def up(
         say(f"actum starts on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
         if processes.scene(here) not in programs:
             say(NO_MARKS)
+        if page:
+            programs = processes.with_page(here, programs, given)
+            if programs[-1].name != processes.PAGE:
+                say(NO_PAGE, style="yellow")
         taught = processes.taught_model(given)
         if (lack := lack_of_model(taught if model is None and taught.exists() else model)) is not None:
             say(lack, style="yellow")

@@ -3,6 +3,7 @@
 from actum.runtime.bridging import run_bridge
 from actum.runtime.client import Client, Listening, NotAnsweredError, Received
 from actum.runtime.extras import needs_extra
+from actum.runtime.fronting import Front, run_front
 from actum.runtime.parent import end_with_parent
 from actum.runtime.router import serve_router
 from actum.runtime.serving import run, run_source
@@ -11,6 +12,7 @@ from actum.runtime.waiting import Pace, stop_on_signals
 
 __all__ = [
     "Client",
+    "Front",
     "Listening",
     "NotAnsweredError",
     "Pace",
@@ -20,6 +22,7 @@ __all__ = [
     "needs_extra",
     "run",
     "run_bridge",
+    "run_front",
     "run_source",
     "serve_router",
     "stop_on_signals",

@@ -70,16 +70,16 @@ class Listening:
 
 
 class Client:
-    """Puts and listens on one sensor's keys.
+    """Puts and listens on one sensor's keys, by a session of its own or one that is open already.
 
     Raises:
         RouterUnreachableError: no router answered within `wait_s`.
     """
 
-    def __init__(self, settings: ServiceSettings, wait_s: float = OPEN_S) -> None:
+    def __init__(self, settings: ServiceSettings, wait_s: float = OPEN_S, session: zenoh.Session | None = None) -> None:
         self.sensor = settings.sensor
         self.run = format(time.time_ns() // 1_000_000, "x")
-        self._session = _open(settings, wait_s)
+        self._session = session or _open(settings, wait_s)
         self._outbox = Outbox(self._session)
         self._listening: list[Listening] = []
 

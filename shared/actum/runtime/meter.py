@@ -102,6 +102,7 @@ class Meter:
             calibration=self._counters.details.get("calibration"),
             host=socket.gethostname(),
             source=self._counters.details.get("source"),
+            page=self._counters.details.get("page"),
         )
 
 

@@ -8,7 +8,7 @@ import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import TypeVar
 
 import zenoh
@@ -68,11 +68,24 @@ def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[
     sys.exit(UNUSABLE)
 
 
-def live(service: "Service", settings: ServiceSettings) -> None:
-    """Connect, serve until SIGTERM or SIGINT, and exit: with code 0, 1 after a bug, 3 where another runs already."""
+def live(
+    service: "Service",
+    settings: ServiceSettings,
+    beside: Callable[[], AbstractContextManager[None]] = nullcontext,
+) -> None:
+    """Connect, serve until SIGTERM or SIGINT, and exit: with code 0, 1 after a bug, 3 where another runs already.
+
+    `beside` is entered before there is a router, and left at the end.
+    """
     logging.basicConfig(level=os.environ.get("ACTUM_LOG", "INFO"), format=f"{service.name}: %(message)s")
     stop = stop_on_signals()
     service.introduce()
+    with beside():
+        _serve(service, settings, stop)
+    sys.exit(1 if service.failed else 0)
+
+
+def _serve(service: "Service", settings: ServiceSettings, stop: threading.Event) -> None:
     began_s = time.monotonic()
     session = open_session(settings, stop)
     if session is None:
@@ -86,7 +99,6 @@ def live(service: "Service", settings: ServiceSettings) -> None:
         sys.exit(TAKEN)
     finally:
         session.close()
-    sys.exit(1 if service.failed else 0)
 
 
 class Service(ABC):

@@ -1,0 +1,137 @@
+"""What browsers want done: marks, and commands of services. Each is answered, under the number it came with."""
+
+import asyncio
+import json
+import logging
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+
+from actum import keys
+from actum.messages import MANUAL, Segment
+from actum.runtime import Client, NotAnsweredError
+from web_dashboard.encoding import text
+
+log = logging.getLogger("actum")
+
+LONGEST_ORDER_BYTES = 1_000_000
+"""Bytes of one message from a browser; a video comes in parts of half of that."""
+CLASSIFIER_S = 2.0
+"""How long (s) a mark waits for a classifier that is starting to listen."""
+AT_ONCE = 8
+"""Commands that wait for services' answers at the same time, of all browsers."""
+OURS = frozenset({"service", "command", "timeout_s"})
+"""Names that `Client.ask` has taken for itself."""
+NO_ROUTER = "there is no router, so nobody can be asked"
+
+Chunk = Annotated[str, Field(pattern=f"^{keys.CHUNK.pattern}$", max_length=64)]
+
+
+class Ask(BaseModel):
+    """A command of a service, with its fields."""
+
+    model_config = ConfigDict(extra="forbid")
+    service: Chunk
+    command: Chunk
+    fields: dict[str, Any] = {}
+
+    @field_validator("fields")
+    @classmethod
+    def _check_names(cls, fields: dict[str, Any]) -> dict[str, Any]:
+        if taken := fields.keys() & OURS:
+            raise ValueError(f"no command has a field {', '.join(sorted(taken))}")
+        return fields
+
+
+class Mark(BaseModel):
+    """A start or end mark of the switch."""
+
+    model_config = ConfigDict(extra="forbid")
+    kind: Literal["start", "end"]
+    segment_id: Annotated[str, Field(min_length=1, max_length=200)]
+    agent: Annotated[int, Field(ge=1, lt=2**31)] | None = None
+
+
+class Order(BaseModel):
+    """One message from a browser: either of the two, and a number for the answer."""
+
+    model_config = ConfigDict(extra="forbid")
+    id: Annotated[int, Field(ge=0, lt=2**53)]
+    ask: Ask | None = None
+    mark: Mark | None = None
+
+    @model_validator(mode="after")
+    def _check_one(self) -> Self:
+        if (self.ask is None) == (self.mark is None):
+            raise ValueError("one of `ask` and `mark` belongs in it")
+        return self
+
+
+class Orders:
+    """Carries orders out, in threads beside the server's, for a service may take seconds to answer.
+
+    Attributes:
+        client: the session by which they go; None while there is none.
+        refused: what was refused, for the node to count.
+    """
+
+    def __init__(self, sensor: str, refused: deque[str]) -> None:
+        self.client: Client | None = None
+        self.refused = refused
+        self._sensor = sensor
+        self._asking = ThreadPoolExecutor(AT_ONCE, "asking")
+        self._marking = ThreadPoolExecutor(1, "marking")  # one, so that no end overtakes its start
+
+    async def carry_out(self, received: str) -> str:
+        """Carry out one message from a browser, and return the answer as JSON."""
+        try:
+            order = Order.model_validate_json(received)
+        except ValidationError as error:
+            return self.refuse(_number_of(received), _complaint(error))
+        loop = asyncio.get_running_loop()
+        try:
+            if order.mark is not None:
+                return await loop.run_in_executor(self._marking, self._mark, order.id, order.mark)
+            assert order.ask is not None
+            return await loop.run_in_executor(self._asking, self._ask, order.id, order.ask)
+        except (ValueError, NotAnsweredError) as error:
+            return self.refuse(order.id, str(error))
+        except Exception:
+            log.exception("a bug, met while carrying out an order")
+            return self.refuse(order.id, "the page's service failed: its log says why")
+
+    def refuse(self, number: int | None, refusal: str) -> str:
+        """Count a refusal, and return it as an answer."""
+        self.refused.append(refusal)
+        return text(id=number, error=refusal)
+
+    def _mark(self, number: int, mark: Mark) -> str:
+        client = self._connected()
+        if mark.kind == "start" and not client.wait_for_subscriber(keys.SEGMENT, CLASSIFIER_S):
+            raise ValueError("nobody listens for marks: is the classifier running?")
+        client.put(Segment(sensor=self._sensor, origin=MANUAL, **mark.model_dump()))
+        return text(id=number, reply={})
+
+    def _ask(self, number: int, ask: Ask) -> str:
+        return text(id=number, reply=self._connected().ask(ask.service, ask.command, **ask.fields))
+
+    def _connected(self) -> Client:
+        if self.client is None or not self.client.connected():
+            raise ValueError(NO_ROUTER)
+        return self.client
+
+
+def _number_of(received: str) -> int | None:
+    """Return the number of an order that is otherwise wrong, None where it has none."""
+    try:
+        number = json.loads(received)["id"]
+    except (ValueError, TypeError, KeyError, RecursionError):
+        return None
+    return number if isinstance(number, int) else None
+
+
+def _complaint(error: ValidationError) -> str:
+    first = error.errors(include_input=False, include_url=False, include_context=False)[0]
+    return f"{'.'.join(map(str, first['loc'])) or 'the message'}: {first['msg'].removeprefix('Value error, ')}"

@@ -1,0 +1,60 @@
+// What is remembered of each segment: its marks, its early answers, its final action, its event.
+
+import { link } from "../link.js";
+
+const MOST = 300;          // segments
+const MOST_EARLY = 900;    // early answers of one segment: half a minute at 30 Hz
+const segments = new Map();
+const callbacks = new Set();
+
+link.on("segment", ({ segment_id: id, kind, stamp_ns: stamp, agent, origin }) => {
+  const segment = of(id);
+  segment.marked = origin !== "auto";
+  segment.origin = origin;
+  segment.agent ??= agent;
+  segment[kind === "start" ? "start" : "end"] ??= stamp;
+  tell(segment);
+});
+link.on("action", (action) => {
+  const segment = of(action.segment_id);
+  segment.agent = action.agent;
+  segment.start = action.start_ns;
+  if (action.final) {
+    segment.action = action;
+    segment.end = action.end_ns;
+  } else if (segment.early.length < MOST_EARLY) {
+    const { stamp_ns: stamp, action: label, confidence, completeness } = action;
+    segment.early.push({ stamp, label, confidence, completeness });
+  }
+  tell(segment);
+});
+link.on("event", (event) => {
+  const segment = of(event.segment_id);
+  Object.assign(segment, { event, agent: event.agent, start: event.start_ns, end: event.end_ns });
+  tell(segment);
+});
+
+function of(id) {
+  if (!segments.has(id)) {
+    segments.set(id, { id, agent: null, start: null, end: null, early: [], action: null, event: null });
+    if (segments.size > MOST) segments.delete(segments.keys().next().value);
+  }
+  return segments.get(id);
+}
+
+function tell(segment) {
+  for (const callback of callbacks) callback(segment);
+}
+
+// Calls back with each segment of which something new is known.
+export function onSegment(callback) {
+  callbacks.add(callback);
+}
+
+export function allSegments() {
+  return [...segments.values()];
+}
+
+export function segmentOf(id) {
+  return segments.get(id);
+}

@@ -1,0 +1,88 @@
+// What spoke for an answer: its neurons, how familiar it was, the objects' distances, and what was thought before its end.
+
+import { card, element, percent, seconds } from "../elements.js";
+import { segmentOf } from "./answers.js";
+import { Bars } from "./neurons.js";
+
+let view;
+let chosen = null;
+
+export function explanation() {
+  const newer = element("button", { type: "button", class: "small", hidden: true, on: { click: () => follow() } }, "Follow the newest");
+  const body = element("div", { class: "explained", "aria-live": "off" }, element("p", { class: "caption" }, "The newest answer is explained here, or the one you press in the timeline."));
+  view = { newer, body };
+  return card("explanation", "What spoke for it", { controls: [newer] }, body);
+}
+
+// Explains one segment's answer until another is chosen.
+export function explain(id) {
+  chosen = id;
+  view.newer.hidden = false;
+  show(segmentOf(id));
+  view.body.closest("section").scrollIntoView({ block: "nearest", behavior: "smooth" });
+}
+
+export function newest(segment) {
+  if (chosen === null || chosen === segment.id) show(segment);
+}
+
+function follow() {
+  chosen = null;
+  view.newer.hidden = true;
+}
+
+function show(segment) {
+  const { event, action } = segment;
+  const answer = event ?? action;
+  if (!answer) return view.body.replaceChildren(element("p", {}, "It has no answer yet."));
+  const bars = element("ul", { class: "bars", "aria-label": "Activity of each action's neuron in this answer" });
+  if (answer.valid && Object.keys(answer.activations).length) new Bars(bars).show(answer.activations, answer.action);
+  view.body.replaceChildren(
+    element("p", { class: "sentence" }, answer.valid ? (event?.sentence ?? answer.action) : `not answered: ${answer.reason}`),
+    element("dl", {}, ...facts(segment).flatMap(([term, text]) => [element("dt", {}, term), element("dd", {}, text)])),
+    bars,
+  );
+}
+
+// The reasons, each as [what, in words]; those that are not known are left out.
+function facts(segment) {
+  const { event, action, start, end, early, marked, origin } = segment;
+  const answer = event ?? action;
+  return [
+    ["Segment", `${seconds((end - start) / 1e9)}, ${marked ? `marked (${origin ?? "a program"})` : "found by the classifier"}`],
+    ["Sure", `${percent(answer.confidence)}${margin(answer.activations)}`],
+    ["Familiar", action?.familiarity === null || !action ? null : `${action.familiarity.toFixed(2)}${action.unknown ? ": too little, so unknown" : ""}`],
+    ["Early", thoughtBefore(early, answer.action, start, end)],
+    ["Hand", event?.hand ?? action?.part?.replace("_", " ")],
+    ["Object", ofObject(event)],
+    ["Distances", event && Object.entries(event.distances_m).map(([id, m]) => `object ${id}: ${m.toFixed(2)} m`).join(", ")],
+    ["Pointing", event?.pointing && `${event.pointing.angle_deg.toFixed(0)}° off the arm${event.pointing.margin_deg === null ? "" : `, the next object ${event.pointing.margin_deg.toFixed(0)}° further`}`],
+    ["Moved", event?.motion && `${event.result}${event.agrees === null ? "" : event.agrees ? ", as this action does" : ", which this action does not do"}`],
+    ["Why none", event?.why],
+    ["Rests on", `${answer.frames} frames${answer.missed ? `, ${answer.missed} lost` : ""}${answer.missing_joints.length ? `; without ${answer.missing_joints.join(", ").replaceAll("_", " ")}` : ""}`],
+  ].filter(([, text]) => text);
+}
+
+function margin(activations) {
+  const [first, second] = Object.entries(activations).sort(([, one], [, other]) => other - one);
+  return second ? `; ${second[0]} is next, ${(first[1] - second[1]).toFixed(2)} behind` : "";
+}
+
+function thoughtBefore(early, label, start, end) {
+  const first = early.findIndex((_, i) => early.slice(i).every((answer) => answer.label === label));
+  if (first < 0) return early.length ? `other actions seemed likelier until its end` : null;
+  const after = (early[first].stamp - start) / 1e9;
+  return `${label} from ${seconds(Math.max(after, 0))} on, after ${percent(Math.min(Math.max((after * 1e9) / (end - start), 0), 1))} of it`;
+}
+
+function ofObject(event) {
+  if (!event?.object) return null;
+  const { name, id, distance_m: distance, taken_along: along, carried } = event.object;
+  const other = event.candidates.filter((candidate) => candidate.id !== id).map((candidate) => `${candidate.name} ${candidate.id}`);
+  return [
+    `${name} ${id}, ${distance.toFixed(2)} m from the hand`,
+    along && "it went as the hand went",
+    carried && "covered by the hand for a while",
+    other.length && `as likely: ${other.join(", ")}`,
+  ].filter(Boolean).join("; ");
+}

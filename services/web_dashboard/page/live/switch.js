@@ -1,0 +1,106 @@
+// The switch: hold it, or press it for the start and again for the end; the space bar does the same.
+
+import { card, element, seconds } from "../elements.js";
+import { link } from "../link.js";
+import { people } from "./people.js";
+
+const TAP_MS = 350;   // a shorter press switches on, and the next one off
+const RUN = Date.now().toString(36);
+
+export function markSwitch() {
+  const button = element("button", { type: "button", class: "switch", "aria-pressed": "false" }, "Hold to mark");
+  const who = element("select", { "aria-label": "Whose action is marked" });
+  const told = element("p", { class: "caption", role: "status" }, "Hold it, or the space bar, while somebody acts. A short press starts, the next one ends.");
+  new Switch(button, who, told);
+  return card("switch", "Switch", { controls: [who] }, button, told);
+}
+
+class Switch {
+  constructor(button, who, told) {
+    Object.assign(this, { button, who, told, number: 0, segment: null, pressedAt: 0, offered: null });
+    button.addEventListener("pointerdown", (event) => this.press(event));
+    addEventListener("pointerup", () => this.release());
+    addEventListener("pointercancel", () => this.release());
+    addEventListener("keydown", (event) => this.key(event));
+    addEventListener("keyup", (event) => event.key === " " && this.release());
+    addEventListener("blur", () => this.segment && this.end());
+    link.on("event", (event) => this.answered(event));
+    link.on("skeleton", () => this.offer());
+    setInterval(() => this.segment && this.tell(), 100);
+    this.offer();
+  }
+
+  offer() {
+    if (String(people.present) === this.offered) return;
+    this.offered = String(people.present);
+    const before = this.who.value;
+    const each = people.present.map((agent) => element("option", { value: String(agent) }, `Person ${agent}`));
+    this.who.replaceChildren(element("option", { value: "" }, "Whoever acts"), ...each);
+    this.who.value = people.present.includes(Number(before)) ? before : "";
+  }
+
+  key(event) {
+    const elsewhere = event.target.closest?.("input, select, textarea, button, a, summary, [role=application]");
+    if (event.key !== " " || event.repeat || (elsewhere && elsewhere !== this.button) || !this.button.offsetParent) return;
+    this.press(event);
+  }
+
+  press(event) {
+    event.preventDefault();
+    this.button.focus({ preventScroll: true });
+    if (this.held) return;
+    this.held = true;
+    if (this.segment) return this.end();
+    this.pressedAt = performance.now();
+    this.begin();
+  }
+
+  release() {
+    const held = this.held;
+    this.held = false;
+    if (held && this.segment && performance.now() - this.pressedAt > TAP_MS) this.end();
+  }
+
+  begin() {
+    this.segment = { segment_id: `page-${RUN}-${++this.number}`, agent: Number(this.who.value) || null };
+    this.button.setAttribute("aria-pressed", "true");
+    this.button.textContent = "Marking …";
+    this.put("start");
+  }
+
+  end() {
+    this.waiting = this.segment.segment_id;
+    this.told.textContent = "Ending …";
+    this.put("end", "Marked; waiting for the answer …");
+    this.off();
+  }
+
+  off() {
+    this.segment = null;
+    this.button.setAttribute("aria-pressed", "false");
+    this.button.textContent = "Hold to mark";
+  }
+
+  async put(kind, told) {
+    const { segment_id: id } = this.segment;
+    try {
+      await link.mark({ ...this.segment, kind });
+      if (told && this.waiting === id) this.told.textContent = told;
+    } catch (error) {
+      this.waiting = null;
+      this.off();
+      this.told.textContent = `Not marked: ${error.message}`;
+    }
+  }
+
+  tell() {
+    const who = this.segment.agent ? `person ${this.segment.agent}` : "whoever acts";
+    this.told.textContent = `Marking ${who} for ${seconds((performance.now() - this.pressedAt) / 1000)}`;
+  }
+
+  answered({ segment_id: id, valid, sentence, reason }) {
+    if (id !== this.waiting) return;
+    this.waiting = null;
+    this.told.textContent = valid ? `Answer: ${sentence}` : `Not answered: ${reason}`;
+  }
+}

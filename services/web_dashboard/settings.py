@@ -1,0 +1,64 @@
+"""Settings of the web page."""
+
+from ipaddress import ip_address
+from typing import Annotated, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+from pydantic_settings import NoDecode
+
+from actum.settings import HIGHEST_PORT, ServiceSettings
+
+SHORTEST_TOKEN = 16
+"""Characters: too many to guess, as nobody is stopped from trying."""
+
+
+def _names(value: object) -> object:
+    """Split `lab.local,robot` at the commas; return what is no text unchanged."""
+    return [name.strip().lower() for name in value.split(",") if name.strip()] if isinstance(value, str) else value
+
+
+class Settings(ServiceSettings):
+    """What the page's service can be told beside what every service can."""
+
+    page_host: str = Field(
+        "127.0.0.1", description="the address that browsers reach: 0.0.0.0 for any machine, which takes a page-token"
+    )
+    page_port: int | None = Field(
+        None, ge=0, le=HIGHEST_PORT, description="the page's port; default: 8080, or the next one that is free"
+    )
+    page_token: str | None = Field(
+        None,
+        min_length=SHORTEST_TOKEN,
+        pattern=r"^[A-Za-z0-9_.~-]+$",
+        description="the word that opens the page: needed where other machines reach it",
+    )
+    page_guarded: bool = Field(
+        False,
+        description="no page-token is needed: who reaches page-host is let in by something else, such as a container's"
+        " port that is published on 127.0.0.1 alone",
+    )
+    page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(
+        frozenset(), description="names by which browsers may call this machine, beside its own and its addresses"
+    )
+
+    @property
+    def is_local(self) -> bool:
+        """Whether only this machine reaches the page."""
+        return self.page_host == "localhost" or (_is_address(self.page_host) and ip_address(self.page_host).is_loopback)
+
+    @model_validator(mode="after")
+    def _check_token(self) -> Self:
+        if not (self.is_local or self.page_guarded or self.page_token):
+            raise ValueError(
+                f"page-host {self.page_host} lets other machines in: set page-token (ACTUM_PAGE_TOKEN) to "
+                f"{SHORTEST_TOKEN} characters or more, as 'openssl rand -hex 16' prints"
+            )
+        return self
+
+
+def _is_address(text: str) -> bool:
+    try:
+        ip_address(text)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,45 @@
+"""Pages in Chromium, of a service that is given what a live system would put."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+import chromium as installed
+from dashboards import Colleague, served
+from page_scenes import Scene, maps
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Any]:
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=installed.path())
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def open_page(chromium: Any) -> Iterator[Callable[..., Any]]:
+    """Open an address in a browser of its own; what goes wrong in the page fails the test."""
+    contexts, errors = [], []
+
+    def opened(address: str, **options: Any) -> Any:
+        contexts.append(chromium.new_context(**options))
+        page = contexts[-1].new_page()
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("console", lambda said: errors.append(said.text) if "Content Security" in said.text else None)
+        page.goto(address)
+        return page
+
+    yield opened
+    for context in contexts:
+        context.close()
+    assert errors == []
+
+
+@pytest.fixture
+def scene() -> Iterator[Scene]:
+    with served(Colleague(maps)) as page, Scene(page) as made:
+        yield made

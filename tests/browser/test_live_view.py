@@ -1,0 +1,254 @@
+"""The live view in a browser: it shows what goes on, says what it waits for, and can be used by everybody."""
+
+from collections.abc import Callable
+from io import BytesIO
+from typing import Any
+
+import pytest
+from PIL import Image as Picture
+
+import chromium as installed
+from actum.messages import Segment
+from live import wait_until
+from page_scenes import Scene
+
+pytestmark = pytest.mark.browser
+Open = Callable[..., Any]
+COLOURS = 100
+"""An empty canvas has a few dozen: a gradient."""
+
+
+def colours(page: Any, selector: str) -> int:
+    picture = Picture.open(BytesIO(page.locator(selector).screenshot())).convert("RGB")
+    return len(picture.getcolors(1 << 24))
+
+
+def at_rest(view: Any) -> bytes:
+    """Wait until it no longer moves, and return its picture."""
+    seen = [view.screenshot()]
+
+    def rests() -> bool:
+        seen.append(view.screenshot())
+        return seen[-1] == seen[-2]
+
+    wait_until(rests, "the view is at rest")
+    return seen[-1]
+
+
+def wait_for_state(page: Any, text: str) -> None:
+    page.wait_for_function(
+        "text => document.getElementById('state').textContent.includes(text)", arg=text, timeout=30_000
+    )
+
+
+def test_a_skeleton_moves(scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    page.wait_for_timeout(500)
+    assert colours(page, ".scene") > COLOURS
+    first = page.locator(".scene").screenshot()
+    page.wait_for_timeout(400)
+    assert page.locator(".scene").screenshot() != first
+    assert page.locator(".counts").text_content() == "1 person · 1 of 1 objects in sight"
+
+
+def test_the_view_turns_zooms_and_changes_its_frame_by_keys(scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    scene.still = True
+    view = page.get_by_role("group", name="3-D view")
+    view.focus()
+    before = at_rest(view)
+    for key in ("ArrowLeft", "ArrowUp", "+"):
+        page.keyboard.press(key)
+        after = at_rest(view)
+        assert after != before, key
+        before = after
+    page.get_by_label("Frame of the 3-D view").select_option("person")
+    assert at_rest(view) != before
+
+
+def test_an_event_appears_large_in_the_timeline_and_with_what_spoke_for_it(scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    scene.answer("one", "push object 1 cup")
+    page.locator("#now .action", has_text="push").wait_for()
+    page.locator("#now .object", has_text="cup 1").wait_for()
+    scene.go_on(2.0)
+    scene.answer("two", "push object 1 cup again")
+    button = page.get_by_role("button", name="push object 1 cup, ")
+    button.click()
+    page.locator("#explanation .sentence", has_text="push object 1 cup").wait_for()
+    assert "wave is next, 0.70 behind" in page.locator("#explanation").text_content()
+    assert page.locator("#neurons .winner .name").text_content() == "push"
+
+
+def test_labels_with_markup_are_shown_as_they_are(scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    scene.answer("bad", "<img src=x onerror=alert(1)> <b>cup</b>")
+    page.locator("#explanation .sentence", has_text="<img src=x onerror=alert(1)> <b>cup</b>").wait_for()
+    assert page.locator("#explanation img, #explanation b").count() == 0
+
+
+def test_the_maps_are_drawn_and_the_way_over_them_moves(scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
+    page.locator("#actions .key", has_text="wave").wait_for()
+    page.wait_for_timeout(500)
+    assert colours(page, "#postures canvas") > COLOURS
+    assert colours(page, "#actions canvas") > 3
+
+
+def test_each_service_has_its_row(scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
+    row = page.locator("#health tr", has_text="som_classifier")
+    row.locator("td", has_text="1.0 / 2.0 ms").wait_for()
+    row.locator("summary").click()
+    assert "skeleton 30" in row.locator("dl").text_content()
+
+
+@pytest.mark.parametrize("way", ["space held", "space pressed twice", "button held", "button pressed by keyboard"])
+def test_the_switch_marks_start_and_end(scene: Scene, open_page: Open, way: str) -> None:
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    button = page.get_by_role("button", name="Hold to mark")
+    if way == "space held":
+        page.keyboard.down(" ")
+        page.wait_for_timeout(500)
+        page.keyboard.up(" ")
+    elif way == "space pressed twice":
+        page.keyboard.press(" ")
+        page.get_by_role("button", name="Marking").wait_for()
+        page.keyboard.press(" ")
+    elif way == "button held":
+        button.hover()
+        page.mouse.down()
+        page.wait_for_timeout(500)
+        page.mouse.up()
+    else:
+        button.focus()
+        page.keyboard.press(" ")
+        page.get_by_role("button", name="Marking").wait_for()
+        page.keyboard.press(" ")
+    page.locator("#switch .caption", has_text="waiting for the answer").wait_for()
+    marks = scene.page.colleague.put_messages
+    assert [mark.kind for mark in marks if isinstance(mark, Segment)] == ["start", "end"]
+    assert len({mark.segment_id for mark in marks}) == 1
+    scene.answer(marks[0].segment_id, "push object 1 cup")
+    page.locator("#switch .caption", has_text="Answer: push object 1 cup").wait_for()
+
+
+def test_a_mark_that_is_refused_is_told(scene: Scene, open_page: Open) -> None:
+    scene.page.colleague.listened = False
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    page.keyboard.press(" ")
+    page.locator("#switch .caption", has_text="Not marked: nobody listens for marks").wait_for()
+
+
+def test_a_page_that_is_loaded_anew_shows_the_answers_before(scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    scene.answer("one", "push object 1 cup")
+    page.reload()
+    page.get_by_role("button", name="push object 1 cup, ").wait_for()
+
+
+def test_it_says_that_there_is_no_router_and_when_it_is_back(scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    scene.page.colleague.router = False
+    wait_for_state(page, "Waiting for the router at tcp/127.0.0.1:7447")
+    scene.page.colleague.router = True
+    wait_for_state(page, "live")
+
+
+def test_a_network_that_falls_silent_is_noticed(scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    page.context.set_offline(True)
+    wait_for_state(page, "Waiting for")
+    page.context.set_offline(False)
+    wait_for_state(page, "live")
+
+
+def test_a_dropped_connection_is_opened_again(scene: Scene, chromium: Any) -> None:
+    context = chromium.new_context()
+    page = context.new_page()
+    connections = []
+
+    def relay(socket: Any) -> None:
+        socket.connect_to_server()
+        connections.append(socket)
+
+    page.route_web_socket("**/ws", relay)
+    page.goto(scene.page.address)
+    wait_for_state(page, "live")
+    connections[0].close(code=1011)
+    page.wait_for_function("() => document.getElementById('state').textContent !== 'live'")
+    wait_for_state(page, "live")
+    assert len(connections) == 2
+    context.close()
+
+
+def test_a_stalled_tab_costs_the_others_nothing_and_shows_the_newest_afterwards(scene: Scene, open_page: Open) -> None:
+    stalled, other = open_page(scene.page.address), open_page(scene.page.address)
+    for page in (stalled, other):
+        wait_for_state(page, "live")
+    debugger = stalled.context.new_cdp_session(stalled)
+    debugger.send("Debugger.enable")
+    debugger.send("Debugger.pause")
+    scene.answer("one", "push object 1 cup")
+    other.get_by_role("button", name="push object 1 cup, ").wait_for()
+    other.wait_for_timeout(1500)
+    assert other.locator("#state").text_content() == "live"
+    debugger.send("Debugger.resume")
+    stalled.get_by_role("button", name="push object 1 cup, ").wait_for()
+    wait_for_state(stalled, "live")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("phone", [False, True], ids=["wide", "phone"])
+def test_it_has_no_serious_fault_of_accessibility(scene: Scene, open_page: Open, scheme: str, phone: bool) -> None:
+    from axe_playwright_python.sync_playwright import Axe
+
+    size = {"viewport": {"width": 390, "height": 844}, "is_mobile": True, "has_touch": True} if phone else {}
+    page = open_page(scene.page.address, color_scheme=scheme, **size)
+    wait_for_state(page, "live")
+    scene.answer("one", "push object 1 cup")
+    page.get_by_role("button", name="push object 1 cup, ").wait_for()
+    found = Axe().run(page).response["violations"]
+    serious = [fault for fault in found if fault["impact"] in ("serious", "critical")]
+    assert [(fault["id"], [node["html"] for node in fault["nodes"]]) for fault in serious] == []
+    assert page.evaluate("() => document.documentElement.scrollWidth <= innerWidth"), "nothing to scroll sideways"
+
+
+def test_every_control_is_reached_by_the_tabulator_and_has_a_name(scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    scene.answer("one", "push object 1 cup")
+    page.get_by_role("button", name="push object 1 cup, ").wait_for()
+    reached = set()
+    for _ in range(40):
+        page.keyboard.press("Tab")
+        reached.add(page.evaluate("() => document.activeElement.ariaLabel ?? document.activeElement.textContent"))
+    wanted = {
+        "Frame of the 3-D view",
+        "Hold to mark",
+        "Whose action is marked",
+        "Length of the timeline",
+        "som_classifier",
+    }
+    assert wanted <= reached
+
+
+def test_without_3d_it_says_so_and_shows_the_rest(scene: Scene, chromium: Any) -> None:
+    flat = chromium.browser_type.launch(
+        executable_path=installed.path(), args=["--disable-software-rasterizer", "--disable-gpu"]
+    )
+    page = flat.new_page()
+    page.goto(scene.page.address)
+    wait_for_state(page, "live")
+    assert "draws no 3-D" in page.locator("#scene").text_content()
+    assert colours(page, "#picture canvas") > 2
+    flat.close()

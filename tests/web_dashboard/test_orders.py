@@ -1,0 +1,117 @@
+"""What browsers mark and ask: it is passed on, or refused with words, whatever it is."""
+
+import json
+import random
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from websockets.exceptions import ConnectionClosed
+
+from actum.commands import Refusal
+from actum.messages import Segment
+from actum.runtime.client import NotAnsweredError
+from dashboards import Colleague, Served, answered, heard, served
+from web_dashboard.orders import LONGEST_ORDER_BYTES
+
+
+def service(name: str, command: str, **fields: Any) -> dict[str, Any]:
+    if name != "som_classifier":
+        raise NotAnsweredError(f"{name} does not answer")
+    if command == "refuse":
+        raise Refusal("not now")
+    return {"command": command, "fields": fields}
+
+
+@pytest.fixture(scope="module")
+def page() -> Served:
+    with served(Colleague(service)) as made:
+        yield made
+
+
+def test_a_mark_is_put_as_one_by_hand(page: Served) -> None:
+    with page.browser() as browser:
+        for number, kind in enumerate(("start", "end")):
+            mark = {"kind": kind, "segment_id": "page-1", "agent": 2}
+            assert answered(browser, {"id": number, "mark": mark}) == {"id": number, "reply": {}}
+    marks = page.colleague.put_messages[-2:]
+    assert marks == [
+        Segment(sensor="kinect0", kind=kind, segment_id="page-1", agent=2, origin="manual") for kind in ("start", "end")
+    ]
+
+
+def test_a_mark_that_nobody_listens_for_is_refused(page: Served) -> None:
+    page.colleague.listened = False
+    with page.browser() as browser:
+        refused = answered(browser, {"id": 1, "mark": {"kind": "start", "segment_id": "a"}})
+    page.colleague.listened = True
+    assert "is the classifier running?" in refused["error"]
+
+
+def test_a_command_is_answered_by_its_service(page: Served) -> None:
+    with page.browser() as browser:
+        ask = {"service": "som_classifier", "command": "maps", "fields": {"a": [1, None]}}
+        reply = {"command": "maps", "fields": {"a": [1, None]}}
+        assert answered(browser, {"id": 5, "ask": ask}) == {"id": 5, "reply": reply}
+
+
+@pytest.mark.parametrize(
+    ("ask", "error"),
+    [
+        ({"service": "som_classifier", "command": "refuse"}, "not now"),
+        ({"service": "model_trainer", "command": "list"}, "model_trainer does not answer"),
+        ({"service": "../..", "command": "list"}, "ask.service"),
+        ({"service": "som_classifier", "command": "**"}, "ask.command"),
+        (
+            {"service": "som_classifier", "command": "maps", "fields": {"timeout_s": 1e9}},
+            "no command has a field timeout_s",
+        ),
+        ({"service": "som_classifier"}, "ask.command: Field required"),
+    ],
+)
+def test_a_command_that_is_wrong_is_refused_with_words(page: Served, ask: dict[str, Any], error: str) -> None:
+    with page.browser() as browser:
+        answer = answered(browser, {"id": 1, "ask": ask})
+    assert answer["id"] == 1
+    assert error in answer["error"]
+
+
+def test_without_a_router_it_says_so(page: Served) -> None:
+    page.colleague.router = False
+    with page.browser() as browser:
+        assert "no router" in answered(browser, {"id": 1, "ask": {"service": "a", "command": "b"}})["error"]
+    page.colleague.router = True
+
+
+@given(
+    order=st.one_of(
+        st.text(), st.recursive(st.none() | st.booleans() | st.integers() | st.text(), st.lists).map(json.dumps)
+    )
+)
+def test_anything_else_is_answered_with_an_error_and_counted(page: Served, order: str) -> None:
+    before = page.rejects().get("refused_browser", 0)
+    with page.browser() as browser:
+        assert answered(browser, order)["error"]
+        assert page.node.working
+    assert page.rejects()["refused_browser"] == before + 1
+
+
+def test_more_orders_than_can_wait_end_the_connection(page: Served) -> None:
+    with page.browser() as browser, pytest.raises(ConnectionClosed):
+        for _ in range(10_000):
+            browser.send(
+                '{"id": 1, "ask": {"service": "som_classifier", "command": "maps"}}' + " " * random.randint(0, 9)
+            )
+    assert page.node.working
+
+
+def test_a_name_of_ten_megabytes_ends_that_connection_and_no_other(page: Served) -> None:
+    with page.browser() as other, page.browser() as browser:
+        mark = {"kind": "start", "segment_id": "a" * 10_000_000}
+        with pytest.raises(ConnectionClosed) as closed:
+            answered(browser, {"id": 1, "mark": mark})
+        assert closed.value.rcvd is None or closed.value.rcvd.code == 1009
+        heard(other, "pulse")
+        short = answered(other, {"id": 1, "mark": mark | {"segment_id": "a" * (LONGEST_ORDER_BYTES // 2)}})
+        assert "at most 200 characters" in short["error"]
