@@ -22,7 +22,8 @@ def envelope_of(message: Message) -> Envelope:
         length = len(header).to_bytes(LENGTH_BYTES, "little")
         return Envelope(stream, length + header + message.data)
     queued = isinstance(message, Segment | Event) or (isinstance(message, Action) and message.final)
-    return Envelope(stream, text(type=kind, **message.model_dump()), queued, kept=isinstance(message, Status | Training))
+    kept = isinstance(message, Status | Training)
+    return Envelope(stream, text(type=kind, **message.model_dump()), queued, kept)
 
 
 def text(**fields: Any) -> str:

@@ -15,7 +15,7 @@ export async function attempt(line, asked, done = "") {
   say(line, "");
   try {
     const reply = await asked();
-    say(line, typeof done === "function" ? done(reply) : done);
+    if (done) say(line, done);
     return reply;
   } catch (error) {
     say(line, error.message, true);

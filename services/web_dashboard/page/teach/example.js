@@ -15,40 +15,39 @@ const TRIES = 5;          // the classifier takes a new model within a second or
 
 export class Example {
   constructor(set, listed, line) {
-    Object.assign(this, { set, listed, line, trace: null, map: null });
-    const film = element("canvas", { class: "film", role: "img", "aria-label": `Film of ${this.name}` });
-    this.trail = element("canvas", { class: "trail", role: "img", "aria-label": `Way of ${this.name} over the map of postures`, hidden: true });
-    this.element = element("li", { class: "example", "aria-label": this.name, style: { "--action": colourOf(listed.label) } },
-      element("div", { class: "pictures" }, film, this.trail), ...this.texts(), this.buttons());
+    Object.assign(this, { set, listed, line, trace: null, map: null, refusal: null });
+    const film = element("canvas", { class: "film", role: "img" });
+    this.trail = element("canvas", { class: "trail", role: "img", hidden: true });
+    this.about = element("p", { class: "caption" });
+    this.buttons = this.mending();
+    this.element = element("li", { class: "example", style: { "--action": colourOf(listed.label) } },
+      element("div", { class: "pictures" }, film, this.trail), this.about,
+      ...listed.doubts.map((text) => element("p", { class: "doubt" }, text)), element("div", { class: "buttons" }, ...this.buttons));
     this.element.dataset.example = listed.id;
     this.film = new Film(film);
     this.drawTrail = drawn(this.trail, (context, width, height) => this.map && drawTrace(context, width, height, this.trace, this.map, colourOf(listed.label)));
   }
 
-  // What the example is called among the others: their ids are long.
-  get name() {
-    const { label, person, start_ns: start } = this.listed;
-    return `${label}${person ? ` by ${person}` : ""} at ${(start / 1e9 % 1000).toFixed(1)} s`;
+  // Names it by its number among the examples of its action: ids are long.
+  call(number) {
+    const { label, person, origin, mirrored, start_ns: start, end_ns: end } = this.listed;
+    this.name = `${label} ${number}`;
+    const about = [number, person, seconds((end - start) / 1e9), ORIGINS[origin] ?? origin, mirrored && "mirrored", this.refusal];
+    this.about.textContent = about.filter(Boolean).join(" · ");
+    this.element.setAttribute("aria-label", this.name);
+    this.film.canvas.setAttribute("aria-label", `Film of ${this.name}`);
+    this.trail.setAttribute("aria-label", `Way of ${this.name} over the map of postures`);
+    for (const each of this.buttons) each.setAttribute("aria-label", `${each.textContent} ${this.name}`);
   }
 
-  get lengthS() {
-    return (this.listed.end_ns - this.listed.start_ns) / 1e9;
-  }
-
-  texts() {
-    const { person, origin, mirrored, doubts } = this.listed;
-    const about = [person, seconds(this.lengthS), ORIGINS[origin] ?? origin, mirrored && "mirrored"].filter(Boolean).join(" · ");
-    return [element("p", { class: "caption" }, about), ...doubts.map((text) => element("p", { class: "doubt" }, text))];
-  }
-
-  buttons() {
-    const called = (verb) => ({ label: `${verb} ${this.name}`, kind: "small" });
+  mending() {
     const given = { set: this.set, example: this.listed.id };
-    return element("div", { class: "buttons" },
-      button("Trim", () => this.trim(), called("Trim")),
-      button("Relabel", () => this.relabel(), called("Relabel")),
-      button("Mirror", () => attempt(this.line, () => trainer.ask("mirror", given), "left and right exchanged"), called("Mirror")),
-      button("Delete", () => attempt(this.line, () => trainer.ask("delete", given), `${this.name} deleted`), called("Delete")));
+    return [
+      button("Trim", () => this.trim()),
+      button("Relabel", () => this.relabel()),
+      button("Mirror", () => attempt(this.line, () => trainer.ask("mirror", given), "left and right exchanged")),
+      button("Delete", () => attempt(this.line, () => trainer.ask("delete", given), `${this.name} deleted`)),
+    ];
   }
 
   async load() {
@@ -59,7 +58,8 @@ export class Example {
       this.trace = film.trace;
       if (film.trace?.length) this.findMap(TRIES);
     } catch (error) {
-      this.element.querySelector(".caption").textContent += ` · no film: ${error.message}`;
+      this.refusal = `no film: ${error.message}`;
+      this.about.textContent += ` · ${this.refusal}`;
     }
   }
 

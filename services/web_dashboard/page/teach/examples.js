@@ -69,8 +69,9 @@ class Examples {
     const remove = button("Delete all", () => this.deleteAction(set, label, listed.length), { label: `Delete all examples of ${label}` });
     const head = element("div", { class: "group-head", style: { "--action": colourOf(label) } },
       element("i", { class: "swatch" }), element("h3", {}, label), element("span", { class: "caption" }, counted(listed.length, "example")), remove);
-    const tiles = listed.map((each) => this.tiles.get(keyOf(set, each)).element);
-    return element("section", { class: "group", "aria-label": `Examples of ${label}` }, head, element("ul", { class: "tiles" }, ...tiles));
+    const tiles = listed.map((each) => this.tiles.get(keyOf(set, each)));
+    tiles.forEach((tile, i) => tile.call(i + 1));
+    return element("section", { class: "group", "aria-label": `Examples of ${label}` }, head, element("ul", { class: "tiles" }, ...tiles.map((tile) => tile.element)));
   }
 
   async deleteAction(set, label, number) {

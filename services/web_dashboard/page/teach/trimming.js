@@ -36,5 +36,5 @@ export function trimmed(name, { start_ns: start, end_ns: end }, film) {
 }
 
 function handle(name, value, length) {
-  return element("input", { type: "range", "aria-label": name, min: "0", max: String(length), step: String(STEP_S), value: String(value) });
+  return element("input", { type: "range", "aria-label": name, min: String(value % STEP_S), max: String(length), step: String(STEP_S), value: String(value) });
 }

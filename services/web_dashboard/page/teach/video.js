@@ -22,7 +22,7 @@ class Videos {
     this.choice.addEventListener("change", () => this.take(this.choice.files));
     const zone = element("label", { class: "zone", for: "video-file" }, element("span", {}, "Drop a video anywhere on the page, or choose one"), this.choice);
     this.card = card("video", "or from a video", {}, zone,
-      element("p", { class: "caption" }, "Action, person and number are those above; without an action, the file's name says it. Film the whole person from the front."),
+      element("p", { class: "caption" }, "Action, person and number are those of Record; without an action, the file's name says it. Film the whole person from the front."),
       this.line, this.job.element);
     this.watchDrops();
   }
