@@ -12,10 +12,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from docs.screenshots import live_page
 from PIL import Image
 from playwright.sync_api import Page, sync_playwright
-
-from docs.screenshots import live_page
 
 VIEW: dict[str, Any] = {"viewport": {"width": 1120, "height": 784}, "color_scheme": "light", "device_scale_factor": 1}
 SIZE = (800, 560)

@@ -1,5 +1,6 @@
 """Teaching on the page of live processes: by whoever stands before the camera, and from video clips."""
 
+import re
 import shutil
 import time
 from collections.abc import Callable, Iterator
@@ -11,7 +12,11 @@ import pytest
 from live import System, free_endpoint, system, wait_until
 
 pytestmark = [pytest.mark.browser, pytest.mark.system]
+Open = Callable[..., Any]
+SIMULATED = ("scene_simulator", "--driven", "--image-hz", "0")
 ACTIONS = ("lift", "push", "put")
+SHORT = 8
+"""Characters of a model's id that the page shows."""
 QUIET_S = 180.0
 """How long teaching three actions may take on a machine that does nothing else; here it is told only."""
 PATIENCE_MS = 240_000
@@ -25,8 +30,8 @@ def running(tmp_path: Path) -> Iterator[System]:
         yield made
 
 
-def start(running: System, *sensor: str) -> str:
-    """Start everything without a model; return the page's address."""
+def start(running: System, open_page: Open, *sensor: str) -> Any:
+    """Start everything without a model; return the page, open where people teach."""
     model, port = str(running.folder / "in-use.npz"), free_endpoint().rpartition(":")[2]
     running.start_router()
     for name in ("pose_preprocessor", "action_fusion", "marker_tracker"):
@@ -39,11 +44,16 @@ def start(running: System, *sensor: str) -> str:
     with running.client() as client:
         running.wait_for_services(client, "som_classifier", "model_trainer", "web_dashboard")
         wait_until(lambda: any(info.page for info in client.infos()), "the page is served")
-    return f"http://127.0.0.1:{port}/"
+    page = open_page(f"http://127.0.0.1:{port}/")
+    page.set_default_timeout(PATIENCE_MS)
+    page.get_by_role("link", name="Teach").click()
+    press(page, "Make set")
+    wait_for(page, "made")
+    return page
 
 
 def press(page: Any, name: str, within: Any = None) -> None:
-    (within or page).get_by_role("button", name=name, exact=True).locator("visible=true").click(timeout=PATIENCE_MS)
+    (within or page).get_by_role("button", name=name, exact=True).locator("visible=true").click()
 
 
 def record(page: Any, label: str, times: int = 5) -> None:
@@ -58,7 +68,7 @@ def record(page: Any, label: str, times: int = 5) -> None:
 
 
 def wait_for(within: Any, text: str) -> None:
-    within.get_by_text(text).first.wait_for(timeout=PATIENCE_MS)
+    within.get_by_text(text).first.wait_for()
 
 
 def train_and_use(page: Any) -> str:
@@ -66,9 +76,10 @@ def train_and_use(page: Any) -> str:
     page.get_by_role("link", name="Models").click()
     press(page, "Train")
     press(page, "Use this model")
-    used = page.get_by_role("row").filter(has_text="in use")
-    used.wait_for(timeout=PATIENCE_MS)
-    return str(used.get_by_role("rowheader").text_content()).removesuffix("in use")
+    told = page.locator("#training").get_by_text(re.compile("^model [0-9a-f]+: ")).text_content()
+    model = str(told).split()[1].rstrip(":")[:SHORT]
+    page.get_by_role("row", name=model).get_by_text("in use").wait_for()
+    return model
 
 
 def classifier_has(running: System, model: str) -> None:
@@ -81,24 +92,21 @@ def classifier_has(running: System, model: str) -> None:
 
 
 def recognised(running: System, page: Any, actions: tuple[str, ...]) -> None:
-    """Have the simulated person do actions without marks; wait until the page tells each."""
+    """Have the simulated person do actions without marks; wait until the page tells that it found each."""
     page.get_by_role("link", name="Live").click()
     with running.client() as client:
         client.ask("sensor_gateway", "perform", actions=list(actions), object_id=1, pause_s=2.5)
     for action in actions:
-        page.get_by_role("button", name=f"{action} ").first.wait_for(timeout=PATIENCE_MS)
+        page.get_by_role("button", name=re.compile(rf"^{action}\b.*, found$")).first.wait_for()
 
 
 @pytest.mark.timeout(1500)
 def test_three_actions_are_taught_by_clicks_and_keys_and_recognised_without_marks(
-    running: System, open_page: Callable[..., Any], capsys: pytest.CaptureFixture[str]
+    running: System, open_page: Open, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    page = open_page(start(running, "scene_simulator", "--driven", "--image-hz", "0"))
-    page.get_by_text("The classifier has no model yet").wait_for(timeout=PATIENCE_MS)
     began_s = time.monotonic()
-    page.get_by_role("link", name="Teach").click()
-    press(page, "Make set")
-    wait_for(page, "made")
+    page = start(running, open_page, *SIMULATED)
+    page.get_by_text("The classifier has no model yet").wait_for()
     for action in ACTIONS:
         record(page, action)
     first = train_and_use(page)
@@ -118,7 +126,7 @@ def test_three_actions_are_taught_by_clicks_and_keys_and_recognised_without_mark
     second = train_and_use(page)
     assert second != first
     press(page, "Undo: back to the model before")
-    page.get_by_role("row", name=first).get_by_text("in use").wait_for(timeout=PATIENCE_MS)
+    page.get_by_role("row", name=first).get_by_text("in use").wait_for()
     classifier_has(running, first)
 
 
@@ -126,12 +134,9 @@ def test_three_actions_are_taught_by_clicks_and_keys_and_recognised_without_mark
 @pytest.mark.data
 @pytest.mark.pose_model
 def test_clips_dropped_on_the_page_teach_and_one_that_is_none_is_refused(
-    running: System, data: Path, tmp_path: Path, open_page: Callable[..., Any]
+    running: System, data: Path, tmp_path: Path, open_page: Open
 ) -> None:
-    page = open_page(start(running))
-    page.get_by_role("link", name="Teach").click()
-    press(page, "Make set")
-    wait_for(page, "made")
+    page = start(running, open_page)
     page.get_by_role("spinbutton", name="How many times").fill("1")
     files = page.get_by_label("Drop a video anywhere")
     no_video = tmp_path / "wave 0.mp4"
@@ -155,12 +160,8 @@ def clip(data: Path, folder: Path, label: str, person: int) -> Path:
 
 
 @pytest.mark.timeout(300)
-def test_the_take_that_is_recorded_outlives_a_page_that_is_loaded_anew(
-    running: System, open_page: Callable[..., Any]
-) -> None:
-    page = open_page(start(running, "scene_simulator", "--driven", "--image-hz", "0") + "#teach")
-    press(page, "Make set")
-    wait_for(page, "made")
+def test_the_take_that_is_recorded_outlives_a_page_that_is_loaded_anew(running: System, open_page: Open) -> None:
+    page = start(running, open_page, *SIMULATED)
     press(page, "Record background")
     page.reload()
     press(page, "Stop")
