@@ -20,6 +20,7 @@ PACKAGES = (
     "services/som_classifier",
     "services/marker_tracker",
     "services/action_fusion",
+    "services/actum_model_trainer/teaching",
     "services/web_dashboard",
     "services/ros2_bridge",
 )

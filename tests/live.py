@@ -80,6 +80,7 @@ class System:
             **os.environ,
             "ACTUM_CONNECT": self.settings.connect,
             "ACTUM_SENSOR": self.settings.sensor,
+            "ACTUM_TRAINER_DATA": str(self.folder / "teaching"),
             "OPENBLAS_NUM_THREADS": "1",
         }
 

@@ -26,6 +26,7 @@ UNITS = {
     "familiarity": "the model's", "completeness": "0 to 1",
     "quaternion_xyzw": "1", "up_in_camera": "any length", "width": "px", "height": "px", "K": "px", "distortion": "1",
     "skeleton_from_image": "m", "ego_from_camera": "m", "joints": "m", "upright": "m", "motion": "m", "shape": "count",
+    "asked": "count", "counted": "count", "seconds": "s", "people": "count", "done": "0 to 1", "revision": "count",
 }  # fmt: skip
 """Units of the other fields that hold numbers. In transforms the rotation has none."""
 

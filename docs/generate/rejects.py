@@ -189,8 +189,19 @@ OF_BRIDGE: Mapping[str, Problem] = {
     ),
 }
 
+OF_TRAINER: Mapping[str, Problem] = {
+    "lost_take": Problem(
+        "The take that was being recorded is lost: it could not be written, or the sensor has begun anew meanwhile.",
+        "Record it again; where the disk of `ACTUM_TRAINER_DATA` is full, make room.",
+    ),
+    "lost_model": Problem(
+        "Somebody has replaced the model in use, and no copy of it could be kept to return to.",
+        "Make room on the disk of `ACTUM_TRAINER_DATA`.",
+    ),
+}
+
 GATEWAY, PREPROCESSOR, CLASSIFIER = "sensor_gateway", "pose_preprocessor", "som_classifier"
-TRACKER, FUSION, BRIDGE = "marker_tracker", "action_fusion", "ros2_bridge"
+TRACKER, FUSION, BRIDGE, TRAINER = "marker_tracker", "action_fusion", "ros2_bridge", "model_trainer"
 PAGE = "web_dashboard"
 COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((), OF_ALL),
@@ -202,6 +213,7 @@ COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((CLASSIFIER,), OF_CLASSIFIER),
     ((TRACKER,), OF_TRACKER),
     ((FUSION,), OF_FUSION),
+    ((TRAINER,), OF_TRAINER),
     ((PAGE,), OF_PAGE),
     ((FUSION, BRIDGE), OF_FUSION_AND_BRIDGE),
     ((BRIDGE,), OF_BRIDGE),

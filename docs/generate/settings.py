@@ -13,7 +13,11 @@ from actum.settings import ServiceSettings
 SERVICES = sorted(file.parent.name for file in (Path(__file__).parents[2] / "services").glob("*/settings.py"))
 UNITS = {"_per_min": "1/min", "_ns": "ns", "_m": "m", "_deg": "°", "_s": "s", "_px": "px", "_hz": "Hz"}
 VALUES = {"INTEGER": "integer", "NUMBER": "number", "TEXT": "text", "PATH": "path"}
-OF_THIS_PROCESS = {"instance": "host and process id", "pose_model": "`~/.local/share/actum/` and its name"}
+OF_THIS_PROCESS = {
+    "instance": "host and process id",
+    "pose_model": "`~/.local/share/actum/` and its name",
+    "trainer_data": "`~/.local/share/actum/teaching`",
+}
 """Defaults that differ from machine to machine."""
 
 

@@ -1,10 +1,10 @@
 """The segments of one recording, numbered in order of time, and what `actum label` may add beside them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from actum import keys
-from actum.messages import CUT, Action, Event, Segment, segment_marks
+from actum.messages import CUT, Action, Event, Segment
 from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum_model_trainer.cutting.courses import recorded_courses
@@ -116,24 +116,6 @@ def check_span(
             raise LabellingError(
                 f"{start_s:.2f} to {end_s:.2f} s overlaps segment {other.number} ({span}): move or delete that first"
             )
-
-
-def marks_of(cuts: Cuts, names: Iterator[str], label: str, sensor: str) -> list[Segment]:
-    """Return the marks of all repetitions, each a segment with the next of the names."""
-    return [
-        mark
-        for name, each in zip(names, cuts.repetitions, strict=False)
-        for mark in segment_marks(each.start_ns, each.end_ns, sensor, name, label, cuts.course.agent, origin=CUT)
-    ]
-
-
-def free_names(segments: Sequence[LabelledSegment], stem: str) -> Iterator[str]:
-    """Yield names `stem-1`, `stem-2` … that no segment has."""
-    taken, number = {segment.segment_id for segment in segments}, 0
-    while True:
-        number += 1
-        if f"{stem}-{number}" not in taken:
-            yield f"{stem}-{number}"
 
 
 def only_sensor(recording: Recording) -> str:

@@ -9,8 +9,9 @@ from pathlib import Path
 from types import MappingProxyType
 
 from actum.settings import ServiceSettings
-from actum_command.service_settings import Given, arguments_of
+from actum_command.service_settings import TRAINER, Given, arguments_of
 from actum_command.supervising import Program
+from actum_model_trainer.settings import Settings
 from scene_simulator.parameters import load_parameters
 
 SERVICES = ("pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
@@ -26,15 +27,23 @@ ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 def system(
     settings: ServiceSettings, source: str, path: Path | None, model: Path | None, given: Given
 ) -> list[Program]:
-    """Return all programs of a system but its router: the four services, and the sensor that the source names.
+    """Return all programs of a system but its router: the four services, the trainer, and the sensor that is named.
+
+    Where no model is named, the classifier uses the one that was taught last, as soon as there is one.
 
     The simulated scene's actions are marked, unless only those are wanted that the classifier finds by itself.
     """
+    watched = model or taught_model(given)
     if source == "simulator":
         marking = [] if given.get("segments") == ["auto"] else [scene(settings)]
         sensor = simulator(settings, arguments_of("scene_simulator", given))
-        return [*services(settings, model, simulated_objects(), given), sensor, *marking]
-    programs = services(settings, model, {}, given)
+        return [
+            *services(settings, watched, simulated_objects(), given),
+            trainer(settings, watched, given),
+            sensor,
+            *marking,
+        ]
+    programs = [*services(settings, watched, {}, given), trainer(settings, watched, given)]
     if source != "none":
         play = ["--path", str(path)] if path else []
         programs.append(gateway(settings, ["--source", source, *play, *arguments_of("sensor_gateway", given)]))
@@ -86,6 +95,19 @@ def services(
     if model is not None:
         environment["ACTUM_MODEL"] = str(model)
     return [Program(name, name, arguments_of(name, given), environment) for name in SERVICES]
+
+
+def taught_model(given: Given) -> Path:
+    """Return the file of the model that was taught last: in the trainer's folder, as that is set."""
+    folder = given.get("trainer_data")
+    named = folder[-1] if isinstance(folder, list) else Settings().trainer_data
+    return Path(named) / "model.npz"
+
+
+def trainer(settings: ServiceSettings, model: Path, given: Given) -> Program:
+    """Return the program of the trainer, which puts models into use as this file."""
+    environment = {**common(settings), "ACTUM_MODEL": str(model)}
+    return Program(TRAINER, "actum_model_trainer", arguments_of(TRAINER, given), environment)
 
 
 def gateway(settings: ServiceSettings, arguments: Sequence[str]) -> Program:

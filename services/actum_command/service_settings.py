@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import action_fusion.settings
+import actum_model_trainer.settings
 import marker_tracker.settings
 import pose_preprocessor.settings
 import ros2_bridge.settings
@@ -12,18 +13,19 @@ import som_classifier.settings
 import web_dashboard.settings
 from actum.settings import ServiceSettings
 
+TRAINER = "model_trainer"
+"""The service of the package `actum_model_trainer`, which is a library besides."""
+
 DECLARED: Mapping[str, type[ServiceSettings]] = {
-    service.__name__: service.settings.Settings
-    for service in (
-        sensor_gateway,
-        scene_simulator,
-        pose_preprocessor,
-        som_classifier,
-        marker_tracker,
-        action_fusion,
-        web_dashboard,
-    )
-}
+    **{
+        service.__name__: service.settings.Settings
+        for service in (
+            sensor_gateway, scene_simulator, pose_preprocessor, som_classifier, marker_tracker, action_fusion,
+            web_dashboard,
+        )
+    },
+    TRAINER: actum_model_trainer.settings.Settings,
+}  # fmt: skip
 """The settings of each service that `actum up` starts, by the service's name."""
 
 BRIDGE = ros2_bridge.__name__

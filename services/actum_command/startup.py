@@ -9,7 +9,7 @@ from pathlib import Path
 from actum.runtime import Client, RouterUnreachableError
 from actum.settings import ServiceSettings, SettingsError, host_and_port
 from actum_command.processes import PAGE, SERVICES
-from actum_command.service_settings import DECLARED, Given, flag_of, service_of
+from actum_command.service_settings import DECLARED, TRAINER, Given, flag_of, service_of
 from som_classifier.model_loading import ModelError, load_model
 
 CHECK_S = 0.2  # interval of checks for the router: so short that nobody notices the wait
@@ -44,7 +44,8 @@ def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
     if "camera" in given and source in WITHOUT_CAMERA:
         raise SettingsError(f"source {source} takes no --camera: leave --source out, or name camera")
     sensor = SENSORS.get(source, "sensor_gateway")
-    started = (*SERVICES, PAGE) if sensor is None else (*SERVICES, PAGE, sensor)
+    behind = (*SERVICES, TRAINER, PAGE)
+    started = behind if sensor is None else (*behind, sensor)
     of_started = {name for service in started for name in DECLARED[service].model_fields}
     for name in (name for name in given if name not in of_started):
         subject = f"{sensor} takes no {flag_of(name)}: it" if source == "simulator" else flag_of(name)

@@ -28,7 +28,7 @@ def warnings_of(
     actions = {label: n for label, n in sorted(counts.items()) if label not in BACKGROUND}
     people = {sample.person for sample in samples}
     background = [] if background_s >= ENOUGH_BACKGROUND_S else _no_background(counts)
-    return [*_one_person(people), *_few(counts), *_unbalanced(actions), *_confused(answers), *background]
+    return [*_one_person(people), *few(counts), *unbalanced(actions), *_confused(answers), *background]
 
 
 def _one_person(people: set[str]) -> Iterator[str]:
@@ -42,20 +42,22 @@ def _one_person(people: set[str]) -> Iterator[str]:
         yield f"All examples are of one person, {who}: how others differ cannot be known. Record a second person."
 
 
-def _few(counts: Mapping[str, int]) -> Iterator[str]:
+def few(counts: Mapping[str, int]) -> Iterator[str]:
+    """Warn of actions with few examples, from their number by action."""
     few = {label: n for label, n in sorted(counts.items()) if n < MIN_EXAMPLES}
     if few:
-        named = _listed(f"{label} has {n} ({MIN_EXAMPLES - n} more)" for label, n in few.items())
+        named = listed(f"{label} has {n} ({MIN_EXAMPLES - n} more)" for label, n in few.items())
         yield f"Few examples: {named}. Record at least {MIN_EXAMPLES} of each action."
 
 
-def _unbalanced(actions: Mapping[str, int]) -> Iterator[str]:
+def unbalanced(actions: Mapping[str, int]) -> Iterator[str]:
+    """Warn of actions that have many times fewer examples than another, from their number by action."""
     largest = max(actions, key=lambda label: actions[label], default="")
     rare = {label: n for label, n in actions.items() if MAX_RATIO * n < actions[largest]}
     if rare:
-        named = _listed(f"{label} ({n})" for label, n in rare.items())
+        named = listed(f"{label} ({n})" for label, n in rare.items())
         needed = ceil(actions[largest] / MAX_RATIO)
-        more = _listed(f"{needed - n} more of {label}" for label, n in rare.items())
+        more = listed(f"{needed - n} more of {label}" for label, n in rare.items())
         yield (
             f"Unbalanced examples: {largest} has {actions[largest]}, more than {MAX_RATIO} times as many as "
             f"{named}. Record {more}."
@@ -75,10 +77,10 @@ def _confused(answers: Sequence[tuple[str, str]]) -> Iterator[str]:
 def _confused_pair(a: str, b: str, times: Mapping[tuple[str, str], int]) -> str:
     mistaken = [(done, answer) for done, answer in ((a, b), (b, a)) if times[done, answer]]
     tested = {label: sum(n for (done, _), n in times.items() if done == label) for label in (a, b)}
-    confusions = _listed(
+    confusions = listed(
         f"{done} was taken for {other} in {times[done, other]} of {tested[done]}" for done, other in mistaken
     )
-    more = _listed(done for done, _ in mistaken)
+    more = listed(done for done, _ in mistaken)
     return (
         f"{a} and {b} are not told apart: of examples left out, {confusions}. "
         f"Record {MIN_EXAMPLES} more of {more}, also by people who are not in yet; "
@@ -94,6 +96,7 @@ def _no_background(counts: Mapping[str, int]) -> Iterator[str]:
         )
 
 
-def _listed(parts: Iterator[str]) -> str:
+def listed(parts: Iterator[str]) -> str:
+    """Join one or more parts in words: a, b and c."""
     *others, last = parts
     return f"{', '.join(others)} and {last}" if others else last

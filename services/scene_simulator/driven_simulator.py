@@ -2,26 +2,32 @@
 
 from collections import deque
 from collections.abc import Iterator
-from itertools import islice
+from dataclasses import replace
+from itertools import count
 from typing import Any
 
 from pydantic import BaseModel, Field
 
 from actum.commands import Command, Refusal, Request
-from actum.messages import Message
-from actum.node import SECOND_NS, Counters
-from scene_simulator.everyday import FAMILIAR, Everyday
-from scene_simulator.parameters import load_parameters
+from scene_simulator.everyday import FAMILIAR, Everyday, EverydayPerson
 from scene_simulator.programme import ACTIONS, Task, object_ids
+from scene_simulator.random_streams import random_stream
 from scene_simulator.settings import Settings
-from scene_simulator.simulator import GATEWAY, Simulator
+from scene_simulator.simulated_scene import Scene
+from scene_simulator.simulator import Simulator
+from scene_simulator.timeline import Episode, acting, resetting, still
+from scene_simulator.trial import Trial, draw_bulge, draw_timing
 
 MOST_WAITING = 20
 """Performances that may wait: enough for a script that asks ahead, and the memory stays bounded."""
-FRAME_RATE_HZ = load_parameters().camera.frame_rate_hz
-"""Of every scene."""
-IDLE_S = 0.5
+IDLE_S = 0.1
 """How long the person stands before the next performance is looked for (s): it seems to begin at once."""
+USUAL_PAUSE_S = 2.0
+"""Pause after an action where nobody says how long (s): the hand is back, and rests."""
+CHANGE_S = 1.5
+"""How long (s) it takes to arrange the objects for another action."""
+RETURN_SHARE = 0.85
+"""Share of a pause at most in which the hands move."""
 
 
 class Perform(Request):
@@ -31,6 +37,8 @@ class Perform(Request):
     """The actions, one after the other, with pauses."""
     object_id: int | None = None
     """The object that they are done to; null: each to the next one."""
+    pause_s: float = Field(USUAL_PAUSE_S, ge=0.5, le=60)
+    """From the end of an action to the next one (s), the way back of the hand included."""
     everyday_s: float = Field(0.0, ge=0, le=600)
     """Least length of the performance (s), filled with everyday doings between and after the actions; 0: none."""
 
@@ -42,32 +50,89 @@ class Performances(BaseModel):
     """Performances that have not begun."""
 
 
-class DrivenSimulator:
+class DrivenScene(Scene):
+    """A scene without end, in which the person rests, swaying, until a performance waits.
+
+    An action on an object is done in the same place each time, in another tempo and on another way.
+    """
+
+    def __init__(self, settings: Settings, waiting: deque[Perform]) -> None:
+        super().__init__([Task(ACTIONS[0], object_ids()[0])], settings.actor, settings.seed)
+        self.programme: list[Task] = []
+        self._waiting = waiting
+        self._drawn = {self.trials[0].task: self.trials[0]}
+        self._newest = still(self.parameters, self.trials[0].layout, self.parameters.pause.lead_in_s)
+        self._layout = self.trials[0].layout
+        self.trials = ()
+
+    def _episodes(self, _tail_s: float) -> Iterator[Episode]:
+        yield self._newest
+        while True:
+            if self._waiting:
+                yield from self._performance(self._waiting.popleft())
+            else:
+                yield still(self.parameters, self._layout, IDLE_S)
+
+    def _performance(self, asked: Perform) -> Iterator[Episode]:
+        """Yield the actions, and everyday doings between and after them where these are asked for."""
+        person, frames = None, 0
+        if asked.everyday_s:
+            person = EverydayPerson(Everyday(FAMILIAR, asked.everyday_s), self.parameters, self.actor, self.seeds)
+        for task in programme_of(asked):
+            for episode in self._act(task, asked.pause_s, person):
+                frames += len(episode)
+                yield episode
+        pauses = count(len(self.trials))
+        while person is not None and frames < asked.everyday_s * self.parameters.camera.frame_rate_hz:
+            for episode in person.pause(next(pauses), self._layout):
+                frames += len(episode)
+                yield episode
+
+    def _act(self, task: Task, pause_s: float, person: EverydayPerson | None) -> Iterator[Episode]:
+        """Yield an action and the pause after it; before it the way to where its object stands, where that changes."""
+        number, trial = len(self.trials), self._varied(task)
+        self.trials = (*self.trials, trial)
+        self.programme.append(task)
+        if trial.layout is not self._layout:
+            yield resetting(self.parameters, self._newest, trial.layout, CHANGE_S, RETURN_SHARE * CHANGE_S)
+            self._layout = trial.layout
+        if person is not None:
+            yield from person.pause(number, trial.layout)
+        done = acting(self.parameters, trial, number, 0 if self.actor.hand == "left" else 1)
+        yield done
+        self._newest = resetting(
+            self.parameters, done, trial.layout, pause_s, min(trial.pause_s, RETURN_SHARE * pause_s)
+        )
+        yield self._newest
+
+    def _varied(self, task: Task) -> Trial:
+        """Return the trial of a task as it was drawn first, with another tempo and another bulge of the way."""
+        trial = self._drawn.setdefault(task, self._trial(len(self.trials), task))
+        rng = random_stream("driven", *self.seeds, len(self.trials))
+        timing = draw_timing(self.parameters.trial, self.actor, task.action, rng)
+        return replace(trial, timing=timing, bulge_m=draw_bulge(self.parameters.trial, self.actor, rng))
+
+
+class DrivenSimulator(Simulator):
     """An endless stream of one person, who stands still or performs."""
 
-    name = GATEWAY
-    paced = True
-
     def __init__(self, settings: Settings, start_ns: int) -> None:
-        self.counters = Counters()
-        self._settings, self._start_ns = settings, start_ns
+        super().__init__(
+            [Task(ACTIONS[0], object_ids()[0])],
+            settings.actor,
+            settings.seed,
+            sensor=settings.sensor,
+            image_hz=settings.image_hz,
+            start_ns=start_ns,
+            session_id=f"simulator-{start_ns}",
+        )
         self._waiting: deque[Perform] = deque()
+        self.scene: DrivenScene = DrivenScene(settings, self._waiting)
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:
         """The command `perform`."""
         return (Command("perform", Perform, Performances, self._perform),)
-
-    def frames(self) -> Iterator[list[Message]]:
-        """Yield frames for ever."""
-        start_ns, performed = self._start_ns, 0
-        while True:
-            asked = self._waiting.popleft() if self._waiting else None
-            performed += asked is not None
-            for messages in self._standing(start_ns) if asked is None else self._performing(asked, start_ns, performed):
-                yield messages
-                newest_ns = messages[0].stamp_ns
-            start_ns = newest_ns + SECOND_NS // FRAME_RATE_HZ
 
     def _perform(self, request: Perform) -> Performances:
         """Have the simulated person do actions, or everyday things, as soon as the ones before are done."""
@@ -76,35 +141,18 @@ class DrivenSimulator:
         if len(self._waiting) >= MOST_WAITING:
             raise Refusal(f"{MOST_WAITING} performances wait already: ask again when some are done")
         try:
-            _programme(request)
+            programme_of(request)
         except ValueError as error:
             raise Refusal(str(error)) from None
         self._waiting.append(request)
         return Performances(waiting=len(self._waiting))
 
-    def _standing(self, start_ns: int) -> Iterator[list[Message]]:
-        """Yield the moments before a performance, in which the person rests."""
-        scene = self._simulator([Task(ACTIONS[0], object_ids()[0])], None, start_ns, 0)
-        return islice(scene.frames(), round(IDLE_S * FRAME_RATE_HZ))
 
-    def _performing(self, asked: Perform, start_ns: int, number: int) -> Iterator[list[Message]]:
-        everyday = Everyday(FAMILIAR, asked.everyday_s) if asked.everyday_s else None
-        return self._simulator(_programme(asked), everyday, start_ns, number).frames()
+def programme_of(request: Perform) -> list[Task]:
+    """Return the tasks of a performance.
 
-    def _simulator(self, programme: list[Task], everyday: Everyday | None, start_ns: int, number: int) -> Simulator:
-        settings = self._settings
-        return Simulator(
-            programme,
-            settings.actor,
-            settings.seed + number,
-            sensor=settings.sensor,
-            image_hz=settings.image_hz,
-            start_ns=start_ns,
-            session_id=f"simulator-{self._start_ns}",
-            everyday=everyday,
-        )
-
-
-def _programme(request: Perform) -> list[Task]:
+    Raises:
+        ValueError: there is no such action or object.
+    """
     ids = object_ids() if request.object_id is None else (request.object_id,)
     return [Task(action, ids[n % len(ids)]) for n, action in enumerate(request.actions)]

@@ -96,6 +96,7 @@ class Scene:
     ) -> None:
         if not programme and everyday is None:
             raise ValueError("the programme is empty: give at least one task, or everyday doings")
+        self.programme: Sequence[Task] = tuple(programme)
         self.conditions = conditions
         self.parameters = conditions.arranged(parameters or load_parameters()).moved(*place_m)
         self.items = self.parameters.objects.items

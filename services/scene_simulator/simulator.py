@@ -111,7 +111,7 @@ class Simulator:
 
     def _truth(self, state: SceneState, start: SceneState) -> Truth:
         assert state.segment is not None and state.mark is not None
-        task, target = self.programme[state.segment], state.target
+        task, target = self.scene.programme[state.segment], state.target
         moved = None if target is None else (state.positions_m[target] - start.positions_m[target]).tolist()
         return Truth(
             stamp_ns=self.stamp_ns(state.frame),

@@ -1,14 +1,12 @@
 """Settings of the sensor gateway."""
 
-import os
-import sys
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
 from actum.messages import Direction
-from actum.settings import ServiceSettings
+from actum.settings import ServiceSettings, data_folder
 
 SourceName = Literal["camera", "marker-camera", "realsense", "openni2", "recording"]
 
@@ -18,14 +16,7 @@ POSE_MODEL = "pose_landmarker_full.task"
 
 def default_pose_model() -> Path:
     """Return the path at which `actum models fetch` stores the pose model, in the user's data folder."""
-    home = Path.home()
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        base = home / "Library" / "Application Support"
-    else:
-        base = Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share")
-    return base / "actum" / POSE_MODEL
+    return data_folder() / POSE_MODEL
 
 
 def _text(number: object) -> object:

@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import os
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from actum.atomic_file import replaced
 from actum.skeletons import JOINTS
 from som_classifier.frames import Frame
 from som_classifier.recognition import Recognition
@@ -154,13 +154,8 @@ class Model(ABC):
             OSError: the file cannot be written.
         """
         contents: dict[str, NDArray[Any]] = {"metadata": np.array(self._metadata_json()), **self.arrays}
-        unfinished = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-        try:
-            with unfinished.open("wb") as file:
-                np.savez(file, allow_pickle=False, **contents)
-            unfinished.replace(path)
-        finally:
-            unfinished.unlink(missing_ok=True)
+        with replaced(path) as file:
+            np.savez(file, allow_pickle=False, **contents)
 
     def _metadata_json(self) -> str:
         return json.dumps(self.metadata.model_dump(), sort_keys=True)

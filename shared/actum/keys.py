@@ -62,6 +62,8 @@ INFO = Topic("info/{}", m.Info)
 """A service's description; a queryable."""
 TRUTH = Topic("truth", m.Truth, cached=True)
 """The simulated scene's ground truth."""
+TRAINING = Topic("training", m.Training, cached=True)
+"""What the trainer does and has."""
 
 TOPICS: tuple[Topic, ...] = (
     SKELETON,
@@ -75,6 +77,7 @@ TOPICS: tuple[Topic, ...] = (
     STATUS,
     INFO,
     TRUTH,
+    TRAINING,
 )
 _BY_PREFIX = {topic.leaf.removesuffix("/{}"): topic for topic in TOPICS}
 """Topics by their leaf without `/{}`, such as `posture`."""

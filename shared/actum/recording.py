@@ -5,8 +5,10 @@ record `actum.recording` holds `person`, `source` and free fields.
 """
 
 import json
+import os
 from collections import Counter
 from collections.abc import Collection, Iterator
+from contextlib import suppress
 from functools import cache, cached_property
 from heapq import merge
 from itertools import groupby
@@ -18,6 +20,7 @@ from typing import Self
 from mcap.writer import Writer
 
 from actum import codec, keys, schemas
+from actum.atomic_file import UNFINISHED, store_names
 from actum.mcap_file import McapFile, RecordingError, StoredMessage
 from actum.messages import Image, Message, Segment
 from actum.node import Numbering
@@ -47,7 +50,7 @@ class Recorder:
 
     def __init__(self, path: Path, *, person: str, source: str, **fields: str) -> None:
         self.path = path
-        self._part = path.with_name(path.name + ".part")
+        self._part = path.with_name(path.name + UNFINISHED)
         self._numbering = Numbering()
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
@@ -69,9 +72,17 @@ class Recorder:
             self._finish()
 
     def close(self) -> None:
-        """Finish the file and remove the suffix `.part` from its name."""
+        """Finish the file, have it stored and remove the suffix `.part` from its name."""
         self._finish()
         self._part.replace(self.path)
+        store_names(self.path.parent)
+
+    def discard(self) -> None:
+        """Drop the file, whether it is finished or not."""
+        with suppress(OSError):  # a full disk, which no longer matters
+            self._file.close()
+        self._part.unlink(missing_ok=True)
+        self.path.unlink(missing_ok=True)
 
     def write(self, message: Message, log_time_ns: int | None = None) -> None:
         """Store one message, numbered on its key where it has no number.
@@ -107,6 +118,8 @@ class Recorder:
 
     def _finish(self) -> None:
         self._writer.finish()  # type: ignore[no-untyped-call]
+        self._file.flush()
+        os.fsync(self._file.fileno())
         self._file.close()
 
 

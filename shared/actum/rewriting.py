@@ -1,19 +1,18 @@
 """Rewrites a recording with some messages changed, left out or added; all other records are copied unchanged."""
 
-import os
 import shutil
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from tempfile import NamedTemporaryFile
-from typing import BinaryIO, cast
+from typing import BinaryIO
 
 from mcap.records import Attachment, Channel, Header, McapRecord, Message, Metadata, Schema
 from mcap.writer import Writer
 
 from actum import codec, messages
+from actum.atomic_file import replaced
 from actum.mcap_file import McapFile, StoredMessage, encoding_of
-from actum.recording import CHUNK_BYTES, MESSAGE_ENCODING, SCHEMA_ENCODING, json_schema
+from actum.recording import CHUNK_BYTES, MESSAGE_ENCODING, METADATA, SCHEMA_ENCODING, json_schema
 
 Change = Callable[[StoredMessage], StoredMessage | None]
 """Returns the message to write in place of the given one (only payload and stamp count), or None to leave it out."""
@@ -24,35 +23,35 @@ def unchanged(stored: StoredMessage) -> StoredMessage:
     return stored
 
 
-def rewrite(path: Path, change: Change, added: Iterable[messages.Message] = ()) -> None:
+def rewrite(
+    path: Path,
+    change: Change,
+    added: Iterable[messages.Message] = (),
+    metadata: Mapping[str, str] | None = None,
+) -> None:
     """Write the changed recording to a temporary file beside it, which replaces it once complete.
 
     Args:
         path: the recording.
         change: what becomes of each message.
         added: messages with stamps, written behind all others; readers sort by stamp.
+        metadata: fields of the recording's metadata that get another value.
 
     Raises:
         RecordingError: the file is no recording, or damaged.
         OSError: the temporary file cannot be written. In either case the recording is left as it was.
     """
     target = path.resolve()
-    with NamedTemporaryFile("wb", dir=target.parent, prefix=f"{target.name}.", suffix=".part", delete=False) as file:
-        temporary = Path(file.name)
-        try:
-            _copy(McapFile(path), cast(BinaryIO, file), change, added)
-            file.flush()
-            os.fsync(file.fileno())
-            shutil.copymode(target, temporary)
-            temporary.replace(target)
-        except BaseException:
-            temporary.unlink(missing_ok=True)
-            raise
+    with replaced(target) as file:
+        _copy(McapFile(path), file, change, added, metadata or {})
+        shutil.copymode(target, file.name)
 
 
-def _copy(source: McapFile, file: BinaryIO, change: Change, added: Iterable[messages.Message]) -> None:
+def _copy(
+    source: McapFile, file: BinaryIO, change: Change, added: Iterable[messages.Message], metadata: Mapping[str, str]
+) -> None:
     writer = Writer(file, chunk_size=CHUNK_BYTES)
-    copying = _Copying(writer, change)
+    copying = _Copying(writer, change, metadata)
     for record in source.records():
         copying.take(record)
     for message in added:
@@ -63,9 +62,10 @@ def _copy(source: McapFile, file: BinaryIO, change: Change, added: Iterable[mess
 class _Copying:
     """Copies records to the writer. A complete file holds its schemas and channels twice; they are copied once."""
 
-    def __init__(self, writer: Writer, change: Change) -> None:
+    def __init__(self, writer: Writer, change: Change, metadata: Mapping[str, str]) -> None:
         self._writer = writer
         self._change = change
+        self._metadata = metadata
         self._schemas: dict[int, int] = {0: 0}
         self._schema_names: dict[int, str] = {}
         self._channels: dict[int, int] = {}
@@ -88,7 +88,8 @@ class _Copying:
             case Message():
                 self._message(record)
             case Metadata():
-                self._writer.add_metadata(record.name, record.metadata)
+                changed = self._metadata if record.name == METADATA else {}
+                self._writer.add_metadata(record.name, {**record.metadata, **changed})
             case Attachment():
                 self._writer.add_attachment(
                     record.create_time, record.log_time, record.name, record.media_type, record.data

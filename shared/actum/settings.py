@@ -3,6 +3,7 @@
 import os
 import re
 import socket
+import sys
 import tomllib
 from pathlib import Path
 from typing import Annotated
@@ -66,6 +67,18 @@ def default_instance() -> str:
     """Return an instance name for this process: host and process id, as a valid chunk of a key."""
     host = "".join(c if CHUNK.fullmatch(c) else "-" for c in socket.gethostname().lower())
     return f"{host}-{os.getpid()}"
+
+
+def data_folder() -> Path:
+    """Return the folder in which programs of this user keep their files, by the system's custom."""
+    home = Path.home()
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = home / "Library" / "Application Support"
+    else:
+        base = Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share")
+    return base / "actum"
 
 
 class ServiceSettings(BaseSettings):

@@ -363,7 +363,7 @@ def test_what_runs_beside_the_services_and_whether_somebody_marks(
     source: list[str], beside: list[str], told: bool, supervised: list[str]
 ) -> None:
     started = CliRunner().invoke(app, ["up", "--source", *source])
-    assert supervised == [*processes.SERVICES, *beside, processes.PAGE]
+    assert supervised == [*processes.SERVICES, "model_trainer", *beside, processes.PAGE]
     assert ("nobody marks actions here" in started.stdout) == told
 
 

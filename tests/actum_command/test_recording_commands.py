@@ -14,9 +14,10 @@ from actum import codec, keys
 from actum.messages import CUT, MANUAL, SIMULATOR, Message, Segment
 from actum.recording import Recorder, Recording
 from actum.runtime import Received
-from actum_command import repetition_recorder, streaming
+from actum_command import streaming
 from actum_command.__main__ import app
 from actum_command.commands import recording_commands
+from actum_model_trainer.cutting import counting
 from empty_messages import image, mark, skeleton, status
 from people import FRAME_NS
 from repeating import five_waves, rest
@@ -147,7 +148,7 @@ def test_marks_by_hand_are_stored_beside_the_cuts_where_they_are_asked_for(live:
 def test_a_kill_before_the_end_leaves_no_recording_of_that_name(live: Live, tmp_path: Path) -> None:
     live.comes(*five_waves().skeletons())
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(repetition_recorder, "cut", lambda *_: sys.exit("killed"))
+        patch.setattr(counting, "cut", lambda *_: sys.exit("killed"))
         actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5)
     assert [path.name for path in tmp_path.iterdir()] == ["a.mcap.part"]
     assert list(Recording(tmp_path / "a.mcap.part").messages())

@@ -49,6 +49,7 @@ def test_each_service_is_told_its_own_settings(started: BY_NAME) -> None:
         "som_classifier": [],
         "marker_tracker": ["--scene=a.yaml"],
         "action_fusion": ["--pointing-labels=point", "--pointing-labels=at"],
+        "model_trainer": [],
         "web_dashboard": [],
     }
 
@@ -90,7 +91,7 @@ def test_what_nobody_would_heed_is_refused(arguments: tuple[str, ...], reason: s
 
 def test_without_any_the_simulated_scene_is_started(started: BY_NAME) -> None:
     up()
-    assert set(started) == {"scene_simulator", *processes.SERVICES, "scene", processes.PAGE}
+    assert set(started) == {"scene_simulator", *processes.SERVICES, "model_trainer", "scene", processes.PAGE}
     assert started["scene_simulator"] == []
 
 

@@ -165,7 +165,7 @@ def test_where_one_is_missing_the_place_where_two_may_have_run_together_is_named
     activity[dips] = 0.1
     course = Course(1, 0, np.zeros((175, 15, 3)), np.zeros(175), 2.0)
     chain = Chain(np.array([[0, 20], [30, 70], [80, 120], [130, 150], [155, 175]]), np.ones(5), 1.0)
-    assert list(doubts_of(course, activity, chain, asked, 5, 0)) == doubts
+    assert [doubt.text for doubt in doubts_of(course, activity, chain, asked, 5, 0)] == doubts
 
 
 def test_what_cannot_be_found_is_told() -> None:

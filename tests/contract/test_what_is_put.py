@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actum import keys, messages
-from actum.messages import Info, Message, Status, Truth
+from actum.messages import Info, Message, Status, Training, Truth
 from actum.node import SECOND_NS, TICK_NS, Tick
 from node_cases import CASES, Case, every_node_finding_too
 from wire import Wire, packed
@@ -31,6 +31,7 @@ STRANGERS: tuple[Message, ...] = (
         | {"uptime_s": 1.0, "rates": {}, "handled": {}, "drops": {}, "rejects": {}, "last_error": None}
         | {"latency_ms": {}, "state": "running"}
     ),
+    Training(stamp_ns=1, sensor="kinect0", recording=None, job=None, model=None, can_undo=False, revision=0),
 )  # fmt: skip
 
 

@@ -18,7 +18,14 @@ from scene_simulator.simulator import Simulator
 
 pytestmark = pytest.mark.system
 QUICK_DEMO = Path(__file__).parents[1] / "quick_demo.py"
-SERVICES = ("sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
+SERVICES = (
+    "sensor_gateway",
+    "pose_preprocessor",
+    "som_classifier",
+    "marker_tracker",
+    "action_fusion",
+    "model_trainer",
+)
 
 
 def pids_of(system: System) -> set[int]:

@@ -20,6 +20,7 @@ from live import System, wait_until
 ROUTER_CONFIG = DEPLOY / "zenoh" / "router.json5"
 SIX = {"scene_simulator", PAGE, *SERVICES}
 UNCHECKED = {"trainer", "watch"}
+TRAINER = "model_trainer"
 ACTIONS = {"push", "pull", "put", "lift", "point"}
 STOPPED_WITHIN_S = 10.0
 
@@ -29,8 +30,8 @@ def services() -> dict[str, dict[str, Any]]:
     return services_of(MAIN)
 
 
-def test_router_six_services_trainer_and_watch_stand_in_one_flat_list(services):
-    assert set(services) == {"router", *SIX, *UNCHECKED}
+def test_router_seven_services_trainer_and_watch_stand_in_one_flat_list(services):
+    assert set(services) == {"router", *SIX, TRAINER, *UNCHECKED}
     assert not [name for name, service in services.items() if "depends_on" in service]
 
 
@@ -90,6 +91,15 @@ def test_the_trainer_writes_the_model_that_the_classifier_reads(services):
     assert services["trainer"]["command"][0].endswith(f"-o {model}")
     assert services["trainer"]["volumes"] == ["models:/models"]
     assert services["som_classifier"]["volumes"] == ["models:/models:ro"]
+
+
+def test_what_is_taught_is_put_where_the_classifier_reads_it_and_stays(services):
+    trainer, classifier = services[TRAINER], services["som_classifier"]
+    assert trainer["environment"]["ACTUM_MODEL"] == classifier["environment"]["ACTUM_MODEL"]
+    assert trainer["environment"]["ACTUM_TRAINER_DATA"].startswith("/models/")
+    assert trainer["volumes"] == ["models:/models"]
+    assert trainer["entrypoint"] == ["python", "-m", "actum_model_trainer"]
+    assert services["trainer"]["command"][0].startswith("test -e /models/model.npz && exit;")
 
 
 def test_two_hosts_together_run_the_router_and_the_six_services():

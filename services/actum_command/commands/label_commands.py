@@ -20,13 +20,12 @@ from actum_command.labelled_segments import (
     check_span,
     cut_anew,
     first_stamp_ns,
-    free_names,
     labelled_segments,
-    marks_of,
     only_sensor,
     segment_of,
 )
 from actum_command.segment_changes import dropped, moved, relabelled
+from actum_model_trainer.cutting.marks import free_names, marks_of
 from som_classifier.model_loading import ModelError, load_model
 
 RIGHT_ALIGNED = (True, True, True, True, False, False, False, False)
@@ -121,7 +120,7 @@ def add(
         sensor = only_sensor(recording)
     except LabellingError as error:
         fail(str(error))
-    name = next(free_names(segments, "added"))
+    name = next(free_names([segment.segment_id for segment in segments], "added"))
     change_recording(file, unchanged, segment_marks(start_ns, end_ns, sensor, name, label, agent, origin=MANUAL))
     say(f"{label!r} from {start:.2f} s to {end:.2f} s is in {file}")
 
@@ -139,7 +138,7 @@ def cut(
         cuts, sensor = cut_anew(recording, segments, times), only_sensor(recording)
     except LabellingError as error:
         fail(str(error))
-    kept = [segment for segment in segments if segment.origin != CUT]
+    kept = [segment.segment_id for segment in segments if segment.origin != CUT]
     marks = marks_of(cuts, free_names(kept, CUT), label, sensor)
     change_recording(file, dropped({segment.segment_id for segment in segments if segment.origin == CUT}), marks)
     for line in cut_lines(cuts, first_ns):

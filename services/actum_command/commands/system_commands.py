@@ -72,7 +72,8 @@ def up(
             programs = processes.with_page(here, programs, given)
             if programs[-1].name != processes.PAGE:
                 say(NO_PAGE, style="yellow")
-        if (lack := lack_of_model(model)) is not None:
+        taught = processes.taught_model(given)
+        if (lack := lack_of_model(taught if model is None and taught.exists() else model)) is not None:
             say(lack, style="yellow")
         stop = stop_on_signals()
         with Supervisor() as supervisor:

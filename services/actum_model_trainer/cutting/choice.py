@@ -22,6 +22,8 @@ RESTING = 0.3
 """Price of a second of rest within a repetition."""
 MOST_REPETITIONS = 40
 """Most repetitions that are found where nobody says how many: ten minutes of quick ones."""
+LEAST_WAY_M = 0.08
+"""Least way of any joint within a repetition (m): of somebody who stands still sway and noise stay below 0.05 m."""
 IMPOSSIBLE = -1e9
 """Worth of a chain that there is not."""
 
@@ -52,7 +54,8 @@ class Chains:
     def __init__(self, course: Course, rest: Array, most: int = MOST_REPETITIONS) -> None:
         self._movement = movement_about(course, rest)
         self.activity = self._movement.activity
-        self._bursts = bursts_of(self._movement)
+        bursts = bursts_of(self._movement)
+        self._bursts = bursts[_ways_m(course, bursts) >= LEAST_WAY_M]
         self._likeness = likeness_of(course, self._bursts) if len(self._bursts) else np.zeros((0, 0))
         self._worths: list[Array] = []
         self._before: list[Indices] = []
@@ -121,3 +124,12 @@ def _running_maximum(values: Array) -> tuple[Array, Indices]:
     largest = np.maximum.accumulate(values, axis=1)
     columns = np.where(values >= largest, np.arange(values.shape[1]), -1)
     return largest, np.maximum.accumulate(columns, axis=1)
+
+
+def _ways_m(course: Course, bursts: Indices) -> Array:
+    """Return how far the joint that moves most gets from where it was at the start of each burst (b, 2), shape (b,)."""
+    ways_m = np.zeros(len(bursts))
+    for number, (start, end) in enumerate(bursts):
+        away_m = course.postures[start:end] - course.postures[start]
+        ways_m[number] = np.sqrt((away_m**2).sum(axis=2).max())
+    return ways_m

@@ -1,6 +1,7 @@
 """What may be wrong with some cuts, in sentences."""
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,9 +21,16 @@ MIDDLE = 0.2
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 
 
+class Doubt(NamedTuple):
+    """What may be wrong, as a sentence, and with which repetition, counted from 1; None where with their number."""
+
+    text: str
+    repetition: int | None
+
+
 def doubts_of(
     course: Course, activity: Array, chain: Chain, asked: int | None, likeliest: int, first_ns: int
-) -> Iterator[str]:
+) -> Iterator[Doubt]:
     """Yield what may be wrong with a chain; times count from a stamp.
 
     Args:
@@ -35,30 +43,35 @@ def doubts_of(
     """
     offset_s, found = (course.start_ns - first_ns) / SECOND_NS, len(chain.bursts)
     seams = [
-        f"the {_ordinal(number)} and {_ordinal(number + 1)} may have run together at {offset_s + seam / RATE_HZ:.1f} s"
-        for number, seam in _seams(activity, chain)
+        Doubt(
+            f"the {_ordinal(number)} and {_ordinal(number + 1)} may have run together "
+            f"at {offset_s + at / RATE_HZ:.1f} s",
+            burst,
+        )
+        for number, burst, at in _seams(activity, chain)
     ]
     if asked is not None and found < asked:
-        yield ": ".join([f"{found} found, {asked} asked", *seams[: asked - found]])
+        missing = [seam.text for seam in seams[: asked - found]]
+        yield Doubt(": ".join([f"{found} found, {asked} asked", *missing]), None)
     elif asked is not None and likeliest != found:
-        yield f"{asked} were asked for, but {likeliest} would explain the movement better"
+        yield Doubt(f"{asked} were asked for, but {likeliest} would explain the movement better", None)
     if asked is None or found == asked:
         yield from seams
     for number, ((start, end), likeness) in enumerate(zip(chain.bursts, chain.likeness, strict=True), start=1):
-        if likeness < UNLIKE:
+        if found > 1 and likeness < UNLIKE:
             span = f"{offset_s + start / RATE_HZ:.1f} to {offset_s + end / RATE_HZ:.1f} s"
-            yield f"the {_ordinal(number)} ({span}) is unlike the others"
+            yield Doubt(f"the {_ordinal(number)} ({span}) is unlike the others", number)
 
 
-def _seams(activity: Array, chain: Chain) -> Iterator[tuple[int, int]]:
-    """Yield the number of each burst that may be two, counted as if it were, and its instant of least activity."""
+def _seams(activity: Array, chain: Chain) -> Iterator[tuple[int, int, int]]:
+    """Yield of each burst that may be two its number as if it and those before were, its own, and where they meet."""
     lengths = chain.bursts[:, 1] - chain.bursts[:, 0]
     before = 0
     for number, (start, end) in enumerate(chain.bursts, start=1):
         edge = round(MIDDLE * (end - start))
         seam = int(start + edge + np.argmin(activity[start + edge : end - edge]))
         if end - start > TWICE * np.median(lengths) and activity[seam] < STOP * activity[start:end].mean():
-            yield number + before, seam
+            yield number + before, number, seam
             before += 1
 
 

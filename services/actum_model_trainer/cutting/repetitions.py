@@ -10,7 +10,7 @@ from actum.arrays import Array
 from actum.node import SECOND_NS
 from actum_model_trainer.cutting.choice import MOST_REPETITIONS, Chain, Chains
 from actum_model_trainer.cutting.courses import Course
-from actum_model_trainer.cutting.doubts import doubts_of
+from actum_model_trainer.cutting.doubts import Doubt, doubts_of
 from actum_model_trainer.cutting.movement import rest_postures
 
 MARGIN = 3
@@ -43,14 +43,19 @@ class Cuts:
         activity: (n,), of the course: 0 at rest, about 1 in the midst of a movement.
         repetitions: in order; they do not overlap.
         sureness: 0 to 1; of those above 0.5, nearly all are right.
-        doubts: sentences that say what may be wrong and where; times count from the start of the recording.
+        doubted: what may be wrong and where; times count from the start of the recording.
     """
 
     course: Course
     activity: Array
     repetitions: tuple[Repetition, ...]
     sureness: float
-    doubts: tuple[str, ...]
+    doubted: tuple[Doubt, ...]
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Sentences that say what may be wrong and where."""
+        return tuple(doubt.text for doubt in self.doubted)
 
     @property
     def resting_s(self) -> float:
@@ -114,8 +119,8 @@ def _cut(
     sureness = float(chosen.chain.likeness.min())
     if chosen.likeliest_number != len(repetitions) or asked not in (None, len(repetitions)):
         sureness = min(sureness, OTHER_NUMBER)
-    doubts = doubts_of(chosen.course, chosen.activity, chosen.chain, asked, chosen.likeliest_number, first_ns)
-    return Cuts(chosen.course, chosen.activity, repetitions, sureness, tuple(doubts))
+    doubted = doubts_of(chosen.course, chosen.activity, chosen.chain, asked, chosen.likeliest_number, first_ns)
+    return Cuts(chosen.course, chosen.activity, repetitions, sureness, tuple(doubted))
 
 
 def _best_chain(course: Course, asked: int | None, number_of: Callable[[Chains], int]) -> _Found | None:

@@ -45,6 +45,15 @@ def pictures_of(path: Path, start_ns: int = 0) -> Generator[Picture, None, None]
         capture.release()
 
 
+def frame_count(path: Path) -> int:
+    """Return how many frames a file says that it has; 0 where it does not say, or is no video."""
+    capture = cv2.VideoCapture(str(path))
+    try:
+        return max(0, round(capture.get(cv2.CAP_PROP_FRAME_COUNT)))
+    finally:
+        capture.release()
+
+
 def _frame_interval_ns(capture: cv2.VideoCapture) -> int:
     """Return the time between two frames at the file's frame rate, or else at the usual one."""
     rate_hz = capture.get(cv2.CAP_PROP_FPS)

@@ -46,6 +46,7 @@ from actum.messages.recognised import (
 )
 from actum.messages.reported import Info, Status, Truth
 from actum.messages.seen import Agent, Image, Objects, Posture, Skeleton, TrackedObject
+from actum.messages.taught import JobState, TakeState, Training
 
 MESSAGES: tuple[type[Message], ...] = (
     Skeleton,
@@ -58,6 +59,7 @@ MESSAGES: tuple[type[Message], ...] = (
     Status,
     Info,
     Truth,
+    Training,
 )
 
 __all__ = [
@@ -83,6 +85,7 @@ __all__ = [
     "Image",
     "Info",
     "Intrinsics",
+    "JobState",
     "Joint",
     "Joints",
     "Message",
@@ -102,8 +105,10 @@ __all__ = [
     "Skeleton",
     "Stamp",
     "Status",
+    "TakeState",
     "Tensor",
     "TrackedObject",
+    "Training",
     "Transform",
     "Truth",
     "segment_marks",

@@ -1,0 +1,19 @@
+"""Settings of the trainer."""
+
+from pathlib import Path
+
+from pydantic import Field
+
+from actum.settings import ServiceSettings, data_folder
+
+
+class Settings(ServiceSettings):
+    """What the trainer can be told beside what every service can."""
+
+    trainer_data: Path = Field(
+        default_factory=lambda: data_folder() / "teaching",
+        description="the folder of sets, models and jobs of those who teach",
+    )
+    model: Path | None = Field(
+        None, description="the file that the classifier watches; default: model.npz in that folder"
+    )

@@ -1,0 +1,38 @@
+"""What the trainer's commands share: the number of changes, and how a full disk or a damaged file is refused."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from actum.commands import Refusal
+from actum.recording import RecordingError
+
+
+class Changes:
+    """Counts the changes of sets and models."""
+
+    def __init__(self) -> None:
+        self.revision = 0
+
+    @contextmanager
+    def change(self) -> Iterator[None]:
+        """Count a change once the block has made it.
+
+        Raises:
+            Refusal: a file could not be read or written; all are as they were.
+        """
+        with on_disk():
+            yield
+        self.revision += 1
+
+
+@contextmanager
+def on_disk() -> Iterator[None]:
+    """Refuse a command where its files cannot be read or written.
+
+    Raises:
+        Refusal: they cannot.
+    """
+    try:
+        yield
+    except (OSError, RecordingError) as error:
+        raise Refusal(f"{error}; everything is as it was") from None

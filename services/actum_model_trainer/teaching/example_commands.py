@@ -1,0 +1,140 @@
+"""The commands that show and mend examples."""
+
+from typing import Any
+
+import numpy as np
+
+from actum.arrays import Array
+from actum.commands import Command, Refusal
+from actum.recording import Recording
+from actum_model_trainer.teaching import take_mending
+from actum_model_trainer.teaching.changes import Changes, on_disk
+from actum_model_trainer.teaching.film import Film, films_of
+from actum_model_trainer.teaching.model_store import ModelStore
+from actum_model_trainer.teaching.replies import Done, ExampleListed, Examples, FilmReply
+from actum_model_trainer.teaching.requests import DeleteAction, OfExample, OfSet, Relabel, Trim
+from actum_model_trainer.teaching.set_store import SetStore
+from actum_model_trainer.teaching.take_files import Example, Take
+
+MOST_FILMED = 16
+"""Takes whose films are kept in memory: a page asks for those of a take one after the other."""
+SHORTEST_NS = 100_000_000
+"""Shortest example (ns): three frames at 30 Hz, the fewest that a model answers."""
+
+
+class ExampleCommands:
+    """Shows the examples of sets, and mends them."""
+
+    def __init__(self, sets: SetStore, models: ModelStore, changes: Changes) -> None:
+        self._sets = sets
+        self._models = models
+        self._changes = changes
+        self._films: dict[tuple[str, int, str | None], dict[str, Film]] = {}
+
+    @property
+    def commands(self) -> tuple[Command[Any, Any], ...]:
+        """What can be asked."""
+        return (
+            Command("examples", OfSet, Examples, self._examples),
+            Command("film", OfExample, FilmReply, self._film),
+            Command("relabel", Relabel, Done, self._relabel),
+            Command("trim", Trim, Done, self._trim),
+            Command("mirror", OfExample, Done, self._mirror),
+            Command("delete", OfExample, Done, self._delete),
+            Command("delete_action", DeleteAction, Done, self._delete_action),
+        )
+
+    def remove(self, take: Take, examples: list[Example]) -> None:
+        """Take examples out of a take, and delete one of an action that has none left.
+
+        Raises:
+            OSError: it cannot be written; it is as it was.
+        """
+        if take.kind == "action" and len(examples) == len(take.examples):
+            take.path.unlink()
+        else:
+            take_mending.without(take, examples)
+
+    def _examples(self, request: OfSet) -> Examples:
+        """List the examples of a set."""
+        return Examples(examples=[ExampleListed.of(each) for each in self._sets.get(request.set).examples])
+
+    def _film(self, request: OfExample) -> FilmReply:
+        """Show an example: the bodies, and the way over the posture map of the model in use."""
+        take, example = self._found(request)
+        film = self._films_of(take).get(example.segment_id)
+        if film is None:
+            raise Refusal(f"{example.id} has no frame that can be used: delete it")
+        trace = None if film.trace is None else np.round(film.trace, 2).tolist()
+        return FilmReply(stamps_ns=list(film.stamps_ns), joints=[_listed(body) for body in film.joints], trace=trace)
+
+    def _relabel(self, request: Relabel) -> Done:
+        """Give an example another label."""
+        take, example = self._found(request)
+        with self._changes.change():
+            take_mending.relabel(take, example, request.label)
+        return Done(revision=self._changes.revision)
+
+    def _trim(self, request: Trim) -> Done:
+        """Give an example another start and end."""
+        take, example = self._found(request)
+        start_ns, end_ns = request.start_ns, request.end_ns
+        if end_ns - start_ns < SHORTEST_NS:
+            raise Refusal(f"it would end {(end_ns - start_ns) / 1e9:.2f} s after its start: at least 0.1 s are needed")
+        if start_ns < take.first_ns or end_ns > take.last_ns:
+            raise Refusal(f"{take.id} lasts from {take.first_ns} to {take.last_ns} ns: stay within that")
+        for other in take.examples:
+            if other.segment_id != example.segment_id and other.overlaps(start_ns, end_ns):
+                raise Refusal(f"it would overlap {other.id} ({other.start_ns} to {other.end_ns} ns): trim that first")
+        with self._changes.change():
+            take_mending.trim(take, example, start_ns, end_ns)
+        return Done(revision=self._changes.revision)
+
+    def _mirror(self, request: OfExample) -> Done:
+        """Exchange left and right in an example; twice is as before."""
+        take, example = self._found(request)
+        with self._changes.change():
+            take_mending.mirror(take, example)
+        return Done(revision=self._changes.revision)
+
+    def _delete(self, request: OfExample) -> Done:
+        """Delete an example with its frames."""
+        take, example = self._found(request)
+        with self._changes.change():
+            self.remove(take, [example])
+        return Done(revision=self._changes.revision)
+
+    def _delete_action(self, request: DeleteAction) -> Done:
+        """Delete all examples of an action."""
+        stored = self._sets.get(request.set)
+        chosen = {take.id: [each for each in take.examples if each.label == request.label] for take in stored.takes}
+        if not any(chosen.values()):
+            raise Refusal(f"{request.set} has no example of {request.label!r}")
+        with self._changes.change():
+            for take in stored.takes:
+                if chosen[take.id]:
+                    self.remove(take, chosen[take.id])
+        return Done(revision=self._changes.revision)
+
+    def _found(self, request: OfExample) -> tuple[Take, Example]:
+        for take in self._sets.get(request.set).takes:
+            for example in take.examples:
+                if example.id == request.example:
+                    return take, example
+        raise Refusal(f"{request.set} has no example {request.example!r}: ask for its 'examples'")
+
+    def _films_of(self, take: Take) -> dict[str, Film]:
+        """Return the films of a take, of the file as it is now and by the model in use."""
+        model = self._models.loaded
+        key = str(take.path), take.path.stat().st_mtime_ns, None if model is None else model.id
+        if key not in self._films:
+            with on_disk():
+                self._films[key] = films_of(Recording(take.path), model)
+            for oldest in list(self._films)[:-MOST_FILMED]:
+                del self._films[oldest]
+        return self._films[key]
+
+
+def _listed(body: Array) -> list[list[float] | None]:
+    """List the joints (15, 3) of a body to the millimetre; null where one is missing."""
+    return [None if np.isnan(joint).any() else np.round(joint, 3).tolist() for joint in body]

@@ -1,0 +1,237 @@
+"""Models on the disk, and which of them the classifier uses."""
+
+import json
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from actum.atomic_file import UNFINISHED, replaced, write_whole
+from actum.commands import Refusal
+from actum_model_trainer.teaching.set_store import date_of
+from som_classifier.model import Model
+from som_classifier.model_loading import ModelError, load_model
+
+HISTORY = "history.json"
+"""The file with the models that were in use before, in order."""
+MOST_BEFORE = 50
+"""Models that the history remembers: nobody undoes more."""
+
+
+@dataclass(frozen=True)
+class StoredModel:
+    """A model: when it came (ISO 8601), of which set ("" where not known), what it tells apart, of whom it learnt.
+
+    Attributes:
+        samples: the number of examples.
+        scores: what is known of how well it does, by name, numbers.
+    """
+
+    id: str
+    path: Path
+    created: str
+    set: str
+    labels: tuple[str, ...]
+    people: tuple[str, ...]
+    samples: int
+    scores: dict[str, float] = field(default_factory=dict)
+
+
+class ModelStore:
+    """The models in a folder, and the file that the classifier watches.
+
+    A model that somebody else has put there is kept as one more, so that it can be returned to.
+    """
+
+    def __init__(self, folder: Path, watched: Path, now_ns: Callable[[], int]) -> None:
+        self._folder = folder
+        self._watched = watched
+        self._now_ns = now_ns
+        self._version: tuple[int, int] | None = None
+        self._active: str | None = None
+        self._loaded: Model | None = None
+        self._history = _read_history(folder / HISTORY)
+        folder.mkdir(parents=True, exist_ok=True)
+        for unfinished in folder.glob(f".*{UNFINISHED}"):
+            unfinished.unlink(missing_ok=True)
+        self.look()
+
+    @property
+    def active(self) -> str | None:
+        """The id of the model that the classifier is to use; None where there is none."""
+        return self._active
+
+    @property
+    def loaded(self) -> Model | None:
+        """That model itself."""
+        return self._loaded
+
+    @property
+    def before(self) -> list[str]:
+        """The models that were in use before and are still there, in order."""
+        there = [each for each in self._history if self._path(each).exists()]
+        while there and there[-1] == self._active:
+            there.pop()
+        return there
+
+    def all(self) -> list[StoredModel]:
+        """List the models, the oldest first."""
+        for path in self._folder.glob("*.npz"):
+            if not path.with_suffix(".json").exists():
+                self._take_over(path)
+        stored = [_described(path) for path in self._folder.glob("*.npz")]
+        return sorted((each for each in stored if each is not None), key=lambda each: (each.created, each.id))
+
+    def get(self, model_id: str) -> StoredModel:
+        """Return a model's description.
+
+        Raises:
+            Refusal: there is none of that id.
+        """
+        for stored in self.all():
+            if stored.id == model_id:
+                return stored
+        raise Refusal(f"there is no model {model_id!r}: ask for the list of models")
+
+    def add(self, file: Path, set_name: str, scores: dict[str, float]) -> StoredModel:
+        """Keep a copy of a model file.
+
+        Raises:
+            ModelError: it is none.
+            OSError: it cannot be written.
+        """
+        model = load_model(file)
+        self._describe(model, set_name, scores)
+        _copy(file, self._path(model.id))
+        return self.get(model.id)
+
+    def activate(self, model_id: str) -> None:
+        """Put a model in the place of the one that the classifier uses.
+
+        Raises:
+            Refusal: there is none of that id.
+            OSError: the file cannot be written.
+        """
+        path = self.get(model_id).path
+        if self._active is not None and self._active != model_id:
+            self._remember([*self.before, self._active])
+        self._put(path)
+
+    def undo(self) -> str:
+        """Return to the model that was in use before, and return its id.
+
+        Raises:
+            Refusal: there was none.
+            OSError: the file cannot be written.
+        """
+        before = self.before
+        if not before:
+            raise Refusal("there is no model to return to: none was in use before this one")
+        self._put(self.get(before[-1]).path)
+        self._remember(before[:-1])
+        return before[-1]
+
+    def delete(self, model_id: str) -> None:
+        """Delete a model.
+
+        Raises:
+            Refusal: there is none of that id, or it is in use.
+        """
+        path = self.get(model_id).path
+        if model_id == self._active:
+            raise Refusal(f"model {model_id} is in use: activate another one before you delete it")
+        path.unlink()
+        path.with_suffix(".json").unlink(missing_ok=True)
+
+    def look(self) -> bool:
+        """Look whether the watched file has changed; tell so.
+
+        Raises:
+            OSError: it is none of ours, and no copy of it can be kept.
+        """
+        try:
+            stat = self._watched.stat()
+            version = stat.st_mtime_ns, stat.st_size
+        except OSError:
+            version = None
+        if version == self._version:
+            return False
+        self._version = version
+        self._take_in()
+        return True
+
+    def _take_in(self) -> None:
+        """Read the watched file, and keep a copy of it where it is none of ours."""
+        try:
+            self._loaded = load_model(self._watched)
+        except ModelError:
+            self._loaded, self._active = None, None
+            return
+        self._active = self._loaded.id
+        if not self._path(self._active).exists():
+            self.add(self._watched, "", {})
+
+    def _put(self, path: Path) -> None:
+        self._watched.parent.mkdir(parents=True, exist_ok=True)
+        _copy(path, self._watched)
+        self.look()
+
+    def _remember(self, ids: list[str]) -> None:
+        write_whole(self._folder / HISTORY, json.dumps(ids[-MOST_BEFORE:]).encode())
+        self._history = ids[-MOST_BEFORE:]
+
+    def _path(self, model_id: str) -> Path:
+        return self._folder / f"{model_id}.npz"
+
+    def _describe(self, model: Model, set_name: str, scores: dict[str, float]) -> None:
+        """Write beside a model's file what is listed of it."""
+        about = {
+            "created": date_of(self._now_ns()),
+            "set": set_name,
+            "labels": list(model.labels),
+            "people": model.metadata.persons,
+            "samples": model.metadata.samples,
+            "scores": scores,
+        }
+        write_whole(self._path(model.id).with_suffix(".json"), json.dumps(about).encode())
+
+    def _take_over(self, path: Path) -> None:
+        """Describe a model that somebody has copied here, and name its file as all others; leave what is none."""
+        try:
+            model = load_model(path)
+        except ModelError:
+            return
+        self._describe(model, "", {})
+        path.replace(self._path(model.id))
+
+
+def _described(path: Path) -> StoredModel | None:
+    """Read what stands beside a model; None where that cannot be read."""
+    try:
+        about: dict[str, Any] = json.loads(path.with_suffix(".json").read_bytes())
+        return StoredModel(
+            path.stem,
+            path,
+            about["created"],
+            about["set"],
+            tuple(about["labels"]),
+            tuple(about["people"]),
+            about["samples"],
+            about["scores"],
+        )
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _read_history(path: Path) -> list[str]:
+    try:
+        ids = json.loads(path.read_bytes())
+    except (OSError, ValueError):
+        return []
+    return [each for each in ids if isinstance(each, str)] if isinstance(ids, list) else []
+
+
+def _copy(source: Path, target: Path) -> None:
+    with source.open("rb") as read, replaced(target) as written:
+        shutil.copyfileobj(read, written)

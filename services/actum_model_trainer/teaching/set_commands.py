@@ -1,0 +1,88 @@
+"""The commands on whole sets."""
+
+from collections import Counter
+from typing import Any
+
+from actum.commands import Command, NoFields, Refusal
+from actum_model_trainer.teaching.changes import Changes
+from actum_model_trainer.teaching.job_commands import JobCommands
+from actum_model_trainer.teaching.model_store import ModelStore
+from actum_model_trainer.teaching.replies import Done, Everything, ModelListed, SetListed, TakeListed
+from actum_model_trainer.teaching.requests import OfSet, RenameSet
+from actum_model_trainer.teaching.set_store import SetStore, StoredSet
+from actum_model_trainer.teaching.take_commands import TakeCommands
+from som_classifier.presets import DEFAULT, PRESETS
+
+
+class SetCommands:
+    """Lists, creates, renames and deletes sets."""
+
+    def __init__(
+        self, sets: SetStore, models: ModelStore, changes: Changes, takes: TakeCommands, jobs: JobCommands
+    ) -> None:
+        self._sets = sets
+        self._models = models
+        self._changes = changes
+        self._takes = takes
+        self._jobs = jobs
+
+    @property
+    def commands(self) -> tuple[Command[Any, Any], ...]:
+        """What can be asked."""
+        return (
+            Command("list", NoFields, Everything, self._list),
+            Command("create_set", OfSet, Done, self._create),
+            Command("rename_set", RenameSet, Done, self._rename),
+            Command("delete_set", OfSet, Done, self._delete),
+        )
+
+    def _list(self, _: NoFields) -> Everything:
+        """List all sets and models."""
+        active = self._models.active
+        return Everything(
+            sets=[_listed(self._sets.get(name)) for name in self._sets.names()],
+            models=[ModelListed.of(each, active) for each in self._models.all()],
+            active=active,
+            presets=[DEFAULT.name, *(name for name in PRESETS if name != DEFAULT.name)],
+            revision=self._changes.revision,
+        )
+
+    def _create(self, request: OfSet) -> Done:
+        """Make an empty set of examples."""
+        with self._changes.change():
+            self._sets.create(request.set)
+        return Done(revision=self._changes.revision)
+
+    def _rename(self, request: RenameSet) -> Done:
+        """Give a set another name."""
+        self._refuse_busy(request.set)
+        with self._changes.change():
+            self._sets.rename(request.set, request.name)
+        return Done(revision=self._changes.revision)
+
+    def _delete(self, request: OfSet) -> Done:
+        """Delete a set with all its examples; models that were trained on it stay."""
+        self._refuse_busy(request.set)
+        with self._changes.change():
+            self._sets.delete(request.set)
+        return Done(revision=self._changes.revision)
+
+    def _refuse_busy(self, name: str) -> None:
+        """Refuse what would take a set away from what writes to it."""
+        if self._takes.recording_to(name):
+            raise Refusal(f"a take of {name} is being recorded: 'stop' or 'discard' it first")
+        if self._jobs.importing_to(name):
+            raise Refusal(f"a video is being imported into {name}: wait, or 'cancel' the job")
+
+
+def _listed(stored: StoredSet) -> SetListed:
+    examples = stored.examples
+    return SetListed(
+        name=stored.name,
+        created=stored.created,
+        actions=dict(sorted(Counter(example.label for example in examples).items())),
+        people=sorted({take.person for take in stored.takes if take.person}),
+        background_s=sum(take.background_s for take in stored.takes),
+        takes=[TakeListed.of(take) for take in stored.takes],
+        unreadable=list(stored.unreadable),
+    )

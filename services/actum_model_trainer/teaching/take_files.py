@@ -1,0 +1,177 @@
+"""A take of a set: one recording with the marks of its examples; how it is finished, and what is read from it."""
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Literal, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
+
+from actum import keys
+from actum.messages import CUT, MANUAL, Segment
+from actum.node import SECOND_NS
+from actum.recording import Recorder, Recording
+from actum.rewriting import rewrite, unchanged
+from actum_model_trainer.cutting.marks import free_names, marks_of
+from actum_model_trainer.cutting.repetitions import Cuts
+
+KIND, CREATED, DOUBTS, MIRRORED = "kind", "created", "doubts", "mirrored"
+"""Fields of a take's metadata: kind and date; doubts (texts by segment id) and mirrored segment ids, as JSON."""
+OF_THE_TAKE = ""
+"""The key among the doubts of those that are about the take as a whole."""
+TEXTS, IDS = TypeAdapter(dict[str, list[str]]), TypeAdapter(list[str])
+"""The forms of these."""
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Example:
+    """One marked action of a take.
+
+    Attributes:
+        agent: who acts; None where the mark leaves that to the classifier.
+        origin: who marked it.
+        mirrored: whether left and right have been exchanged.
+        doubts: what may be wrong with it, in sentences.
+    """
+
+    take: str
+    segment_id: str
+    sensor: str
+    label: str
+    person: str
+    start_ns: int
+    end_ns: int
+    agent: int | None
+    origin: str
+    mirrored: bool
+    doubts: tuple[str, ...]
+
+    @property
+    def id(self) -> str:
+        """What commands call it."""
+        return f"{self.take}/{self.segment_id}"
+
+    def overlaps(self, start_ns: int, end_ns: int) -> bool:
+        """Tell whether it shares time with a span."""
+        return self.start_ns < end_ns and start_ns < self.end_ns
+
+
+@dataclass(frozen=True)
+class Take:
+    """What a recording of a set holds; times are stamps of its frames."""
+
+    id: str
+    path: Path
+    kind: Literal["action", "background"]
+    person: str
+    created: str
+    first_ns: int
+    last_ns: int
+    examples: tuple[Example, ...]
+    doubts: tuple[str, ...]
+
+    @property
+    def background_s(self) -> float:
+        """For how long nobody did any of the actions (s)."""
+        marked_ns = sum(example.end_ns - example.start_ns for example in self.examples)
+        return max(0.0, (self.last_ns - self.first_ns - marked_ns) / SECOND_NS)
+
+
+def read_take(path: Path) -> Take:
+    """Read a take.
+
+    Raises:
+        RecordingError: the file is no recording, or damaged.
+    """
+    recording = Recording(path)
+    marks, stamps_ns = _marks_and_stamps(recording)
+    doubts, mirrored = _field(recording, DOUBTS, TEXTS, {}), _field(recording, MIRRORED, IDS, [])
+    examples = [
+        _example(path.stem, recording.person, pair["start"], pair["end"], doubts, mirrored)
+        for pair in marks.values()
+        if {"start", "end"} <= pair.keys() and pair["start"].label is not None
+    ]
+    return Take(
+        path.stem,
+        path,
+        "background" if recording.metadata.get(KIND) == "background" else "action",
+        recording.person,
+        recording.metadata.get(CREATED, ""),
+        min(stamps_ns, default=0),
+        max(stamps_ns, default=0),
+        tuple(sorted(examples, key=lambda example: example.start_ns)),
+        tuple(doubts.get(OF_THE_TAKE, ())),
+    )
+
+
+def finish_take(recorder: Recorder, marks: Iterable[Segment], doubts: Mapping[str, Sequence[str]]) -> Path:
+    """Close a take with its marks and what may be wrong with them, texts by segment id; return its path.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    recorder.close()
+    rewrite(recorder.path, unchanged, marks, {DOUBTS: doubts_field(doubts)})
+    return recorder.path
+
+
+def cut_marks(cuts: Cuts, label: str, sensor: str) -> tuple[list[Segment], dict[str, list[str]]]:
+    """Return the marks of what was cut, and what may be wrong with them by segment id."""
+    names = list(islice(free_names((), CUT), len(cuts.repetitions)))
+    doubts: dict[str, list[str]] = {}
+    for text, repetition in cuts.doubted:
+        doubts.setdefault(OF_THE_TAKE if repetition is None else names[repetition - 1], []).append(text)
+    return marks_of(cuts, iter(names), label, sensor), doubts
+
+
+def doubts_field(doubts: Mapping[str, Sequence[str]]) -> str:
+    """Return the metadata field of doubts, from texts by segment id."""
+    return json.dumps({segment_id: list(texts) for segment_id, texts in doubts.items() if texts})
+
+
+def _marks_and_stamps(recording: Recording) -> tuple[dict[tuple[str, str], dict[str, Segment]], list[int]]:
+    """Return the first marks of each segment by their kind, and the stamps of the frames (ns)."""
+    marks: dict[tuple[str, str], dict[str, Segment]] = {}
+    stamps_ns: list[int] = []
+    for message in recording.messages((keys.SKELETON, keys.SEGMENT)):
+        if isinstance(message, Segment):
+            marks.setdefault((message.sensor, message.segment_id), {}).setdefault(message.kind, message)
+        else:
+            stamps_ns.append(message.stamp_ns)
+    return marks, stamps_ns
+
+
+def _example(
+    take: str,
+    person: str,
+    start: Segment,
+    end: Segment,
+    doubts: Mapping[str, Sequence[str]],
+    mirrored: Iterable[str],
+) -> Example:
+    assert start.stamp_ns is not None and end.stamp_ns is not None
+    return Example(
+        take,
+        start.segment_id,
+        start.sensor,
+        start.label or "",
+        person,
+        start.stamp_ns,
+        end.stamp_ns,
+        start.agent,
+        start.origin or MANUAL,
+        start.segment_id in mirrored,
+        tuple(doubts.get(start.segment_id, ())),
+    )
+
+
+def _field(recording: Recording, name: str, form: TypeAdapter[T], default: T) -> T:
+    """Return a field of the metadata that is JSON; one of another form, which only a foreign program writes, counts as
+    none."""
+    try:
+        return form.validate_json(recording.metadata.get(name, ""))
+    except ValidationError:
+        return default

@@ -1,0 +1,130 @@
+"""The trainer's node: takes frames and marks while somebody teaches, answers commands, and says what it does."""
+
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from actum import keys
+from actum.commands import Command, NoFields
+from actum.messages import Message, Segment, Skeleton, Training
+from actum.node import SECOND_NS, Counters, Tick
+from actum_model_trainer.settings import Settings
+from actum_model_trainer.teaching.changes import Changes
+from actum_model_trainer.teaching.example_commands import ExampleCommands
+from actum_model_trainer.teaching.job_commands import JobCommands, Start
+from actum_model_trainer.teaching.job_process import JobProcess
+from actum_model_trainer.teaching.job_store import JobStore
+from actum_model_trainer.teaching.model_commands import ModelCommands
+from actum_model_trainer.teaching.model_store import ModelStore
+from actum_model_trainer.teaching.replies import State
+from actum_model_trainer.teaching.set_commands import SetCommands
+from actum_model_trainer.teaching.set_store import SetStore, date_of
+from actum_model_trainer.teaching.take_commands import TakeCommands
+from actum_model_trainer.teaching.upload_store import UploadStore
+
+TELL_NS = SECOND_NS // 5
+"""Shortest time between two messages (ns): a page that counts along needs no more."""
+REPEAT_NS = SECOND_NS
+"""Longest time between two messages (ns): who comes late waits no longer."""
+LOOK_NS = SECOND_NS
+"""Interval (ns) at which it is looked whether somebody else has replaced the model in use."""
+
+
+class ModelTrainer:
+    """Records takes, keeps sets of them, runs jobs, and puts models into use."""
+
+    name = "model_trainer"
+    inputs = (keys.SKELETON, keys.SEGMENT)
+
+    def __init__(self, folder: Path, model: Path, sensor: str, start: Start, now_ns: Callable[[], int]) -> None:
+        self.counters = Counters()
+        self._sensor = sensor
+        self._changes = Changes()
+        sets = SetStore(folder / "sets", now_ns)
+        self._models = ModelStore(folder / "models", model, now_ns)
+        self._examples = ExampleCommands(sets, self._models, self._changes)
+        self._takes = TakeCommands(sets, self._changes, self._examples.remove)
+        self._jobs = JobCommands(
+            sets,
+            self._models,
+            UploadStore(folder / "uploads"),
+            JobStore(folder / "jobs"),
+            self._changes,
+            start,
+            lambda: date_of(now_ns()),
+        )
+        self._set_commands = SetCommands(sets, self._models, self._changes, self._takes, self._jobs)
+        self._model_commands = ModelCommands(self._models, self._changes)
+        self._newest_ns = 0
+        self._told: Training | None = None
+        self._told_ns = self._looked_ns = 0
+
+    @classmethod
+    def configured(cls, settings: Settings) -> "ModelTrainer":
+        """Build the node as the settings say.
+
+        Raises:
+            ValueError: its folder cannot be written to.
+        """
+        folder = settings.trainer_data
+        try:
+            return cls(folder, settings.model or folder / "model.npz", settings.sensor, JobProcess, time.time_ns)
+        except OSError as error:
+            raise ValueError(f"{folder} cannot be used ({error}): name another in ACTUM_TRAINER_DATA") from None
+
+    @property
+    def commands(self) -> tuple[Command[Any, Any], ...]:
+        """What can be asked."""
+        groups = (self._set_commands, self._takes, self._examples, self._jobs, self._model_commands)
+        own = Command("state", NoFields, State, self._tell)
+        return (own, *(command for group in groups for command in group.commands))
+
+    def handle(self, message: Message | Tick) -> Iterable[Message]:
+        """Take a frame or a mark of the take that is recorded, or a tick; return what has changed, on ticks."""
+        match message:
+            case Skeleton() | Segment():
+                if isinstance(message, Skeleton):
+                    self._newest_ns = message.stamp_ns
+                lost = self._takes.take(message)
+                if lost is not None:
+                    self.counters.reject("lost_take", lost)
+                return []
+            case Tick():
+                return self._tick(message.monotonic_ns)
+            case _:
+                return []
+
+    def _tick(self, now_ns: int) -> list[Message]:
+        self._jobs.look()
+        if abs(now_ns - self._looked_ns) >= LOOK_NS:
+            self._looked_ns = now_ns
+            self._look_at_model()
+        state = self._state()
+        if self._told is not None:
+            changed = state != self._told.model_copy(update={"stamp_ns": state.stamp_ns})
+            if abs(now_ns - self._told_ns) < (TELL_NS if changed else REPEAT_NS):
+                return []
+        self._told, self._told_ns = state, now_ns
+        return [state]
+
+    def _look_at_model(self) -> None:
+        try:
+            self._changes.revision += self._models.look()
+        except OSError as error:
+            self.counters.reject("lost_model", f"no copy of the model in use could be kept: {error}")
+
+    def _tell(self, _: NoFields) -> State:
+        """Tell what is recorded, which job runs, and which model is in use."""
+        return State.model_validate(self._state().model_dump(include=set(State.model_fields)))
+
+    def _state(self) -> Training:
+        return Training(
+            stamp_ns=self._newest_ns,
+            sensor=self._sensor,
+            recording=self._takes.state,
+            job=self._jobs.state,
+            model=self._models.active,
+            can_undo=bool(self._models.before),
+            revision=self._changes.revision,
+        )

@@ -1,0 +1,236 @@
+"""Jobs: training, cross-validation with advice, import of videos, cancelling, dying; models in use, and back."""
+
+import base64
+import json
+import shutil
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from actum.commands import Refusal
+from actum.node import Counters
+from actum_model_trainer.teaching import job
+from actum_model_trainer.teaching.job_process import Ended, JobProcess, JobRequest, Progressing
+from live import wait_until
+from models import QUICK
+from recognisers import tiny_model
+from som_classifier.watched_model import WatchedModel
+from teaching import GOGGLINGS, WAVES, Teacher
+
+
+@pytest.fixture(scope="module")
+def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    teacher = Teacher(tmp_path_factory.mktemp("taught"))
+    teacher.ask("create_set", set="kitchen")
+    for person in ("anna", "bert"):
+        teacher.teach("wave", WAVES, person)
+        teacher.teach("goggles", GOGGLINGS, person)
+    return teacher.folder
+
+
+@pytest.fixture
+def teacher(taught: Path, tmp_path: Path) -> Teacher:
+    shutil.copytree(taught, tmp_path / "copy")
+    return Teacher(tmp_path / "copy")
+
+
+def done_here(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, request: JobRequest) -> list[dict]:
+    """Do a job in this process, with a small preset; return the lines that it prints."""
+    told = json.dumps({"kind": request.kind, "folder": str(request.folder), **request.fields})
+    monkeypatch.setattr(sys, "argv", ["job", told])
+    monkeypatch.setattr(job, "PRESETS", {"pyramid": QUICK})
+    job.main()
+    return [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+
+
+def finish(teacher: Teacher, capsys: Any, monkeypatch: Any) -> dict[str, Any]:
+    lines = done_here(capsys, monkeypatch, teacher.jobs[-1].request)
+    assert all(0 <= line["done"] <= 1 for line in lines[:-1])
+    teacher.jobs[-1].news = Ended(lines[-1].get("result"), lines[-1].get("error", ""))
+    teacher.tick()
+    return teacher.ask("job", job=teacher.told[-1].job.id)
+
+
+def test_a_set_is_trained_put_into_use_and_undone(
+    teacher: Teacher, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    classifier = WatchedModel(teacher.model)
+    assert classifier.poll(Counters()) is None
+    tiny_model().save(teacher.model)
+    first = classifier.poll(Counters())
+    assert first is not None and teacher.tick(20).model == first.id, "one that somebody else has put there"
+    teacher.ask("train", set="kitchen")
+    ended = finish(teacher, capsys, monkeypatch)
+    assert (ended["state"], ended["message"]) == ("done", f"model {ended['result']['model']}: 20 examples of 2 actions")
+    assert not list((teacher.folder / "jobs").glob("*.work"))
+    taught = ended["result"]["model"]
+    listed = {each["id"]: each for each in teacher.ask("list")["models"]}
+    assert listed[taught]["labels"] == ["goggles", "wave"] and listed[taught]["people"] == ["anna", "bert"]
+    assert listed[taught]["set"] == "kitchen" and listed[taught]["scores"]["accuracy_held_out"] == 1.0
+    assert listed[first.id]["active"] and not listed[taught]["active"]
+    teacher.ask("activate", model=taught)
+    second = classifier.poll(Counters())
+    assert second is not None and second.id == taught == teacher.tick().model
+    assert teacher.tick().can_undo
+    film = teacher.ask("film", set="kitchen", example=teacher.examples()[0]["id"])
+    assert film["trace"] and len(film["trace"][0]) == 2
+    teacher.ask("undo")
+    third = classifier.poll(Counters())
+    assert third is not None and third.id == first.id
+    assert not teacher.tick().can_undo
+    with pytest.raises(Refusal, match="no model to return to"):
+        teacher.ask("undo")
+
+
+def test_models_are_compared_and_deleted_but_not_the_one_in_use(teacher: Teacher) -> None:
+    tiny_model().save(teacher.model)
+    teacher.tick(20)
+    used = teacher.tick().model
+    with pytest.raises(Refusal, match="is in use: activate another"):
+        teacher.ask("delete_model", model=used)
+    compared = teacher.ask("compare", model=used, **{"with": used})
+    assert compared["added"] == compared["missing"] == []
+    assert compared["sentence"].startswith(f"{used} has beside {used}: +0 examples, +0 people")
+    shutil.copy(teacher.model, teacher.folder / "models" / "from elsewhere.npz")
+    assert [each["id"] for each in teacher.ask("list")["models"]] == [used], "the same, by another name"
+    for command in ("activate", "delete_model", "compare"):
+        with pytest.raises(Refusal, match="there is no model '../x'"):
+            teacher.ask(command, model="../x")
+
+
+def test_a_set_of_two_people_is_tested_by_people(
+    teacher: Teacher, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    teacher.ask("evaluate", set="kitchen")
+    result = finish(teacher, capsys, monkeypatch)["result"]
+    assert (result["by"], result["labels"], result["confusion"]) == ("people", ["goggles", "wave"], [[10, 0], [0, 10]])
+    assert (result["accuracy"], result["n"]) == (1.0, 20)
+    assert result["false_alarms_per_min"] is not None
+    assert any("background" in sentence for sentence in result["advice"])
+
+
+def test_a_set_of_one_person_is_tested_by_examples(
+    teacher: Teacher, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for example in [each["id"] for each in teacher.examples() if each["person"] == "bert"]:
+        teacher.ask("delete", set="kitchen", example=example)
+    teacher.ask("evaluate", set="kitchen")
+    result = finish(teacher, capsys, monkeypatch)["result"]
+    assert (result["by"], result["n"], result["accuracy"]) == ("examples", 10, 1.0)
+    assert any("All examples are of anna: record 5 of each action by a second person." in it for it in result["advice"])
+
+
+def test_what_cannot_be_trained_fails_with_the_reason(
+    teacher: Teacher, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    teacher.ask("delete_action", set="kitchen", label="wave")
+    for command in ("train", "evaluate"):
+        teacher.ask(command, set="kitchen")
+        ended = finish(teacher, capsys, monkeypatch)
+        assert ended["state"] == "failed" and "at least two actions" in ended["message"] and ended["result"] is None
+    with pytest.raises(Refusal, match="no preset 'none': name one of"):
+        teacher.ask("train", set="kitchen", preset="none")
+
+
+def test_one_job_runs_at_a_time_and_tells_how_far_it_is(teacher: Teacher) -> None:
+    begun = teacher.ask("train", set="kitchen")
+    teacher.jobs[-1].news = Progressing("training the maps", 0.25)
+    state = teacher.tick(4).job
+    assert state is not None and (state.stage, state.done, state.state) == ("training the maps", 0.25, "running")
+    with pytest.raises(Refusal, match=rf"{begun['id']} \(train\) is running"):
+        teacher.ask("evaluate", set="kitchen")
+    assert teacher.ask("cancel", job=begun["id"])["state"] == "cancelled"
+    assert teacher.jobs[-1].ended
+    with pytest.raises(Refusal, match="does not run: it is cancelled"):
+        teacher.ask("cancel", job=begun["id"])
+    assert not list((teacher.folder / "jobs").glob("*.work"))
+
+
+def test_a_job_that_the_service_did_not_outlive_counts_as_cancelled(teacher: Teacher) -> None:
+    begun = teacher.ask("train", set="kitchen")
+    teacher.begin()
+    found = teacher.ask("job", job=begun["id"])
+    assert (found["state"], found["message"]) == ("cancelled", "the service ended while it ran: start it again")
+    assert teacher.tick().job.state == "cancelled"
+
+
+def wait_for_end(running: JobProcess) -> Ended:
+    news: list[Any] = []
+
+    def ended() -> bool:
+        news.append(running.look())
+        return isinstance(news[-1], Ended)
+
+    wait_until(ended, "the job ends", 60)
+    return news[-1]
+
+
+@pytest.mark.system
+@pytest.mark.parametrize("end", [lambda running: running.end(), lambda running: running._process.kill()])
+def test_a_process_that_is_ended_says_how(teacher: Teacher, tmp_path: Path, end: Callable[[JobProcess], None]) -> None:
+    fields = {"takes": str(teacher.folder / "sets/kitchen"), "preset": "pyramid", "seed": 0}
+    running = JobProcess(JobRequest("train", tmp_path, fields))
+    wait_until(lambda: isinstance(running.look(), Progressing), "it has begun", 60)
+    end(running)
+    ended = wait_for_end(running)
+    assert ended.result is None and "it died (signal" in ended.error
+
+
+@pytest.mark.system
+def test_a_process_that_fails_is_told_with_its_last_words(tmp_path: Path) -> None:
+    running = JobProcess(JobRequest("no such kind", tmp_path))
+    ended = wait_for_end(running)
+    assert ended.result is None
+    assert "it died (exit code 1)" in ended.error and "KeyError: 'no such kind'" in ended.error
+
+
+def test_a_file_comes_in_pieces_that_follow_one_another(teacher: Teacher) -> None:
+    def send(offset: int, data: bytes, last: bool = False) -> dict[str, Any]:
+        text = base64.b64encode(data).decode()
+        return teacher.ask("upload", name="clip.mp4", offset=offset, data=text, last=last)
+
+    assert send(0, b"abc")["size"] == 3
+    with pytest.raises(Refusal, match="has 3 bytes so far: go on from there"):
+        send(5, b"x")
+    with pytest.raises(Refusal, match="no finished upload 'clip.mp4'"):
+        teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="wave")
+    assert send(3, b"def", last=True) == {"upload": "clip.mp4", "size": 6}
+    assert (teacher.folder / "uploads" / "clip.mp4").read_bytes() == b"abcdef"
+    with pytest.raises(Refusal, match="base64"):
+        teacher.ask("upload", name="clip.mp4", offset=0, data="no base64!", last=True)
+
+
+@pytest.mark.parametrize("pose_model", [None, "none.task"])
+def test_a_video_that_is_none_or_without_a_pose_model_fails_with_the_reason(
+    teacher: Teacher,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    pose_model: str | None,
+) -> None:
+    if pose_model is not None:
+        monkeypatch.setenv("ACTUM_POSE_MODEL", pose_model)
+    teacher.ask("upload", name="clip.mp4", offset=0, data=base64.b64encode(b"no video").decode(), last=True)
+    teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="wave", person="anna")
+    ended = finish(teacher, capsys, monkeypatch)
+    assert ended["state"] == "failed"
+    assert any(word in ended["message"] for word in ("no video", "pose model", "MediaPipe", "none.task"))
+    assert len(teacher.examples()) == 20
+
+
+@pytest.mark.data
+@pytest.mark.pose_model
+def test_examples_are_cut_out_of_a_video(
+    teacher: Teacher, data: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    video = next(path for path in sorted((data / "florence3d_rgb").rglob("*")) if path.suffix in (".avi", ".mp4"))
+    teacher.ask("upload", name="clip.avi", offset=0, data=base64.b64encode(video.read_bytes()).decode(), last=True)
+    teacher.ask("import_video", set="kitchen", upload="clip.avi", label="drink", person="carl", count=1)
+    ended = finish(teacher, capsys, monkeypatch)
+    assert (ended["state"], ended["message"]) == ("done", "1 examples cut out of the video")
+    (example,) = [each for each in teacher.examples() if each["person"] == "carl"]
+    assert (example["label"], example["origin"], example["take"]) == ("drink", "cut", ended["result"]["take"])
+    assert not (teacher.folder / "uploads" / "clip.avi").exists()
+    assert teacher.ask("film", set="kitchen", example=example["id"])["joints"]
