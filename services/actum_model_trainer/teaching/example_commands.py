@@ -7,7 +7,7 @@ import numpy as np
 from actum.arrays import Array
 from actum.commands import Command, Refusal
 from actum.recording import Recording
-from actum_model_trainer.teaching import take_files
+from actum_model_trainer.teaching import take_mending
 from actum_model_trainer.teaching.changes import Changes, on_disk
 from actum_model_trainer.teaching.film import Film, films_of
 from actum_model_trainer.teaching.model_store import ModelStore
@@ -53,7 +53,7 @@ class ExampleCommands:
         if take.kind == "action" and len(examples) == len(take.examples):
             take.path.unlink()
         else:
-            take_files.without(take, examples)
+            take_mending.without(take, examples)
 
     def _examples(self, request: OfSet) -> Examples:
         """List the examples of a set."""
@@ -72,7 +72,7 @@ class ExampleCommands:
         """Give an example another label."""
         take, example = self._found(request)
         with self._changes.change():
-            take_files.relabel(take, example, request.label)
+            take_mending.relabel(take, example, request.label)
         return Done(revision=self._changes.revision)
 
     def _trim(self, request: Trim) -> Done:
@@ -87,14 +87,14 @@ class ExampleCommands:
             if other.segment_id != example.segment_id and other.overlaps(start_ns, end_ns):
                 raise Refusal(f"it would overlap {other.id} ({other.start_ns} to {other.end_ns} ns): trim that first")
         with self._changes.change():
-            take_files.trim(take, example, start_ns, end_ns)
+            take_mending.trim(take, example, start_ns, end_ns)
         return Done(revision=self._changes.revision)
 
     def _mirror(self, request: OfExample) -> Done:
         """Exchange left and right in an example; twice is as before."""
         take, example = self._found(request)
         with self._changes.change():
-            take_files.mirror(take, example)
+            take_mending.mirror(take, example)
         return Done(revision=self._changes.revision)
 
     def _delete(self, request: OfExample) -> Done:

@@ -1,24 +1,21 @@
-"""A take of a set: one recording with the marks of its examples; what is read from it, and how it is mended."""
+"""A take of a set: one recording with the marks of its examples; how it is finished, and what is read from it."""
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from typing import Literal, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from actum import codec, keys
-from actum.mcap_file import StoredMessage
-from actum.messages import CUT, MANUAL, Agent, Segment, Skeleton, segment_marks
+from actum import keys
+from actum.messages import CUT, MANUAL, Segment
 from actum.node import SECOND_NS
 from actum.recording import Recorder, Recording
-from actum.rewriting import Change, rewrite, unchanged
-from actum.skeletons import INDEX
+from actum.rewriting import rewrite, unchanged
 from actum_model_trainer.cutting.marks import free_names, marks_of
 from actum_model_trainer.cutting.repetitions import Cuts
-from som_classifier.handedness import OPPOSITE
 
 KIND, CREATED, DOUBTS, MIRRORED = "kind", "created", "doubts", "mirrored"
 """Fields of a take's metadata: kind and date; doubts (texts by segment id) and mirrored segment ids, as JSON."""
@@ -26,7 +23,6 @@ OF_THE_TAKE = ""
 """The key among the doubts of those that are about the take as a whole."""
 TEXTS, IDS = TypeAdapter(dict[str, list[str]]), TypeAdapter(list[str])
 """The forms of these."""
-TORSO = INDEX["torso"]
 T = TypeVar("T")
 
 
@@ -91,13 +87,7 @@ def read_take(path: Path) -> Take:
         RecordingError: the file is no recording, or damaged.
     """
     recording = Recording(path)
-    marks: dict[tuple[str, str], dict[str, Segment]] = {}
-    stamps_ns: list[int] = []
-    for message in recording.messages((keys.SKELETON, keys.SEGMENT)):
-        if isinstance(message, Segment):
-            marks.setdefault((message.sensor, message.segment_id), {}).setdefault(message.kind, message)
-        else:
-            stamps_ns.append(message.stamp_ns)
+    marks, stamps_ns = _marks_and_stamps(recording)
     doubts, mirrored = _field(recording, DOUBTS, TEXTS, {}), _field(recording, MIRRORED, IDS, [])
     examples = [
         _example(path.stem, recording.person, pair["start"], pair["end"], doubts, mirrored)
@@ -137,78 +127,21 @@ def cut_marks(cuts: Cuts, label: str, sensor: str) -> tuple[list[Segment], dict[
     return marks_of(cuts, iter(names), label, sensor), doubts
 
 
-def relabel(take: Take, example: Example, label: str) -> None:
-    """Give an example another label.
-
-    Raises:
-        OSError: the file cannot be written; it is as it was.
-    """
-    _replace_marks(take, example, replace(example, label=label))
-
-
-def trim(take: Take, example: Example, start_ns: int, end_ns: int) -> None:
-    """Give an example another start and end; what was doubted about it is settled by that.
-
-    Raises:
-        OSError: the file cannot be written; it is as it was.
-    """
-    trimmed = replace(example, start_ns=start_ns, end_ns=end_ns, origin=MANUAL, doubts=())
-    _replace_marks(take, example, trimmed)
-
-
-def mirror(take: Take, example: Example) -> None:
-    """Exchange left and right of whoever acts, in the frames of an example.
-
-    Raises:
-        OSError: the file cannot be written; it is as it was.
-    """
-    changed = {each.segment_id for each in take.examples if each.mirrored} ^ {example.segment_id}
-
-    def change(stored: StoredMessage) -> StoredMessage | None:
-        skeleton = _skeleton_within(stored, example)
-        if skeleton is None:
-            return stored
-        agents = [_mirrored(agent) if _acts(agent, example) else agent for agent in skeleton.agents]
-        return _with_agents(stored, skeleton, agents)
-
-    rewrite(take.path, change, metadata={MIRRORED: json.dumps(sorted(changed))})
-
-
-def without(take: Take, examples: Sequence[Example]) -> None:
-    """Take examples out: their marks, and whoever acts out of their frames, or they would be learnt as background.
-
-    Raises:
-        OSError: the file cannot be written; it is as it was.
-    """
-
-    def change(stored: StoredMessage) -> StoredMessage | None:
-        for example in examples:
-            if _is_mark_of(stored, example):
-                return None
-            skeleton = _skeleton_within(stored, example)
-            if skeleton is not None:
-                stored = _with_agents(stored, skeleton, [each for each in skeleton.agents if not _acts(each, example)])
-        return stored
-
-    gone = {example.segment_id for example in examples}
-    kept = {each.segment_id: each.doubts for each in take.examples if each.segment_id not in gone}
-    rewrite(take.path, change, metadata=_doubts(take, kept))
-
-
 def doubts_field(doubts: Mapping[str, Sequence[str]]) -> str:
     """Return the metadata field of doubts, from texts by segment id."""
     return json.dumps({segment_id: list(texts) for segment_id, texts in doubts.items() if texts})
 
 
-def _replace_marks(take: Take, old: Example, new: Example) -> None:
-    change: Change = lambda stored: None if _is_mark_of(stored, old) else stored  # noqa: E731 - a line
-    marks = segment_marks(new.start_ns, new.end_ns, new.sensor, new.segment_id, new.label, new.agent, origin=new.origin)
-    kept = {each.segment_id: each.doubts for each in take.examples} | {new.segment_id: new.doubts}
-    rewrite(take.path, change, marks, _doubts(take, kept))
-
-
-def _doubts(take: Take, of_examples: Mapping[str, Sequence[str]]) -> dict[str, str]:
-    return {DOUBTS: doubts_field({OF_THE_TAKE: take.doubts, **of_examples})}
+def _marks_and_stamps(recording: Recording) -> tuple[dict[tuple[str, str], dict[str, Segment]], list[int]]:
+    """Return the first marks of each segment by their kind, and the stamps of the frames (ns)."""
+    marks: dict[tuple[str, str], dict[str, Segment]] = {}
+    stamps_ns: list[int] = []
+    for message in recording.messages((keys.SKELETON, keys.SEGMENT)):
+        if isinstance(message, Segment):
+            marks.setdefault((message.sensor, message.segment_id), {}).setdefault(message.kind, message)
+        else:
+            stamps_ns.append(message.stamp_ns)
+    return marks, stamps_ns
 
 
 def _example(
@@ -242,48 +175,3 @@ def _field(recording: Recording, name: str, form: TypeAdapter[T], default: T) ->
         return form.validate_json(recording.metadata.get(name, ""))
     except ValidationError:
         return default
-
-
-def _is_mark_of(stored: StoredMessage, example: Example) -> bool:
-    if stored.key != keys.key(keys.SEGMENT, example.sensor):
-        return False
-    try:
-        mark = codec.decode(stored.key, stored.payload, stored.encoding)
-    except codec.DecodeError:
-        return False
-    return isinstance(mark, Segment) and mark.segment_id == example.segment_id
-
-
-def _skeleton_within(stored: StoredMessage, example: Example) -> Skeleton | None:
-    """Return the skeleton that is stored, where it is a frame of an example."""
-    within = example.start_ns <= stored.publish_ns <= example.end_ns
-    if not within or stored.key != keys.key(keys.SKELETON, example.sensor):
-        return None
-    try:
-        message = codec.decode(stored.key, stored.payload, stored.encoding)
-    except codec.DecodeError:
-        return None
-    return message if isinstance(message, Skeleton) else None
-
-
-def _acts(agent: Agent, example: Example) -> bool:
-    return example.agent in (None, agent.agent)
-
-
-def _with_agents(stored: StoredMessage, skeleton: Skeleton, agents: list[Agent]) -> StoredMessage:
-    return replace(stored, payload=codec.encode(skeleton.model_copy(update={"agents": agents})).payload)
-
-
-def _mirrored(agent: Agent) -> Agent:
-    """Return a person's mirror image where the person stands: about the plane through the torso to the camera's right.
-
-    Where the torso is not known, the joints' middle stands for it; mirrored twice, everything is as it was.
-    """
-    known = [joint for joint in agent.joints if joint is not None]
-    middle = agent.joints[TORSO] or [sum(joint[0] for joint in known) / max(len(known), 1)]
-    joints = [None if joint is None else [2 * middle[0] - joint[0], *joint[1:]] for joint in agent.joints]
-    update = {
-        "joints": [joints[index] for index in OPPOSITE.tolist()],
-        "confidence": [agent.confidence[index] for index in OPPOSITE.tolist()],
-    }
-    return agent.model_copy(update=update)
