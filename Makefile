@@ -4,7 +4,7 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture picture-viewer screenshots page-libraries pages docs schemas wheel clean
+.PHONY: install demo up test test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -106,6 +106,9 @@ picture: $(STAMP)  ## the README's pictures
 
 screenshots: $(STAMP)  ## the page's pictures, in docs: light, dark and as wide as a phone; needs Chromium
 	$(BIN)/python -m docs.screenshots docs
+
+picture-teaching: $(STAMP)  ## the animated picture of teaching on the page; needs Chromium
+	$(BIN)/python -m docs.teaching_film docs/teaching.png
 
 page-libraries:  ## the page's JavaScript libraries anew from npm, which has to be installed
 	services/web_dashboard/page/vendored/fetch.sh

@@ -137,7 +137,7 @@ def natural(people: str, known: bool) -> Iterator[Result]:
     """MSRC-12 as it is: one gesture about ten times in each file."""
     for path, name in msrc12.stream_names(data() / "msrc12"):
         take = msrc12.read_stream(path, name, "kinect0")
-        points_ns = [int(point) * 1000 for point in msrc12._stream(path, name).points_us]
+        points_ns = [int(point) * 1000 for point in msrc12.stored_stream(path, name).points_us]
         if chosen("msrc12", take.person, people) and len(points_ns) >= FEWEST_POINTS and seen(take):
             yield by_points(take.frames, points_ns, len(points_ns) if known else None)
 

@@ -75,9 +75,9 @@ def header() -> Iterator[str]:
     yield "# Actions found without marks"
     yield f"""`make bench-continuous`: Python {platform.python_version()}, {versions}, one core. Whole recordings are
 given without their marks. People are sorted, and fold f of {FOLDS} tests people f, f + {FOLDS}, … on what all others
-taught; thresholds of the peers are chosen on training people alone, left out in {INNER_FOLDS} inner folds, by the mean
-of event F1 and F1 at IoU .5 less {COST_OF_A_SECOND} for each second of median latency. Ours chooses its own in
-training."""
+taught; thresholds of the peers are chosen on training people alone, MiniRocket's on those left out in {INNER_FOLDS}
+inner folds, by the mean of event F1 and F1 at IoU .5 less {COST_OF_A_SECOND} for each second of median latency. Ours
+chooses its own in training."""
     yield """Events: the right label and a frame in common; F1@.5: an overlap (IoU) of at least .5. Each detection
 claims the truth of its label that it overlaps most, and a truth takes the best claim; all others are false. False
 detections are counted a minute of background, wherever they lie; in brackets those that lie in it. Latency is from the

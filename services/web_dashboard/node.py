@@ -32,6 +32,7 @@ class WebDashboard:
         keys.ACTION,
         keys.EVENT,
         keys.STATUS,
+        keys.TRAINING,
     )
 
     def __init__(self, settings: Settings, hub: Hub, orders: Orders, server: PageServer) -> None:

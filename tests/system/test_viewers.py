@@ -10,7 +10,8 @@ import struct
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -96,13 +97,19 @@ def address_of(serving: Running) -> str:
     return re.search(r"ws://[\d.]+:\d+", serving.said())[0]  # type: ignore[index]
 
 
+def listen(client: Coroutine[Any, Any, dict[str, list[Any]]]) -> dict[str, list[Any]]:
+    """Run a client in a thread of its own: where a browser was tested before, this one's event loop is taken."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(asyncio.run, client).result()
+
+
 @needs_foxglove
 def test_foxglove_is_served_the_live_scene_on_this_machine_only(running: System) -> None:
     start_scene(running)
     serving = running.start("actum_command", "foxglove", "--port", "0")
     address = address_of(serving)
     wanted = {"/tf", "/actum/kinect0/skeleton", "/actum/kinect0/image/color", "/actum/kinect0/truth"}
-    found = asyncio.run(heard(address, lambda found: set(found) >= wanted))
+    found = listen(heard(address, lambda found: set(found) >= wanted))
     encodings = {topic: (channel["encoding"], channel["schemaName"]) for topic, [(_, channel, _), *_] in found.items()}
     assert encodings["/tf"] == ("protobuf", "foxglove.FrameTransforms")
     assert encodings["/actum/kinect0/skeleton"] == ("protobuf", "foxglove.SceneUpdate")
@@ -119,7 +126,7 @@ def test_foxglove_is_served_the_live_scene_on_this_machine_only(running: System)
 def test_a_recording_is_played_from_its_start_once_somebody_subscribes(running: System, scene: Path) -> None:
     serving = running.start("actum_command", "foxglove", "--port", "0", "--speed", "20", str(scene))
     skeletons = "/actum/kinect0/skeleton"
-    found = asyncio.run(heard(address_of(serving), lambda found: len(found.get(skeletons, [])) >= 90))
+    found = listen(heard(address_of(serving), lambda found: len(found.get(skeletons, [])) >= 90))
     assert found[skeletons][0][0] < START_NS + 10**9
     serving.process.wait(timeout=PATIENCE_S)
     assert serving.process.returncode == 0

@@ -3,10 +3,13 @@
 import { element } from "./elements.js";
 import { link } from "./link.js";
 import { live } from "./live/live.js";
+import { models } from "./models/models.js";
+import { parameters } from "./parameters/parameters.js";
+import { teach } from "./teach/teach.js";
 import { waitedFor } from "./waiting.js";
 
 // A panel has a name for the address, a title, and mount(section), which fills its section once. To add one, list it.
-const PANELS = [live];
+const PANELS = [live, teach, models, parameters];
 
 const content = document.getElementById("content");
 const state = document.getElementById("state");

@@ -60,6 +60,8 @@ class Info(Message):
     """What a gateway reads: a simulated scene, a file, a camera; null for other services."""
     page: str | None = None
     """The address of the page that it serves to browsers; null for other services."""
+    commands: list[str] = Field([])
+    """The names of the commands that it can be asked for, such as `parameters`."""
 
 
 class Truth(Message):

@@ -162,7 +162,8 @@ class Service(ABC):
     def _answer_info(self, query: zenoh.Query) -> None:
         with query:
             with self._lock:
-                frame = encode(self._meter.info())
+                commands = sorted(each.name for each in self._commands)
+                frame = encode(self._meter.info().model_copy(update={"commands": commands}))
             query.reply(frame.key, frame.payload, encoding=frame.encoding)
 
 

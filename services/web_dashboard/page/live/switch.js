@@ -7,12 +7,12 @@ import { people } from "./people.js";
 const TAP_MS = 350;   // a shorter press switches on, and the next one off
 const RUN = Date.now().toString(36);
 
-export function markSwitch() {
+export function markSwitch(id = "switch", title = "Switch") {
   const button = element("button", { type: "button", class: "switch", "aria-pressed": "false" }, "Hold to mark");
   const who = element("select", { "aria-label": "Whose action is marked" });
   const told = element("p", { class: "caption", role: "status" }, "Hold it, or the space bar, while somebody acts. A short press starts, the next one ends.");
   new Switch(button, who, told);
-  return card("switch", "Switch", { controls: [who] }, button, told);
+  return card(id, title, { controls: [who] }, button, told);
 }
 
 class Switch {

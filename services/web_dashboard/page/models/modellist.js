@@ -1,0 +1,68 @@
+// All models, and what is done with them: into use, back, compared, deleted.
+
+import { attempt, button, dated, outcome } from "../asking.js";
+import { confirmed } from "../dialogs.js";
+import { card, element, percent } from "../elements.js";
+import { trainer } from "../trainer.js";
+
+const HEADS = ["Model", "Made", "Set", "Actions", "People", "Examples", "Right, held out", "Do"];
+const SHORT = 8;          // characters of a model's id: enough to tell a hundred apart
+
+export function modelList() {
+  const body = element("tbody");
+  const line = outcome();
+  const compared = element("section", { class: "compared", "aria-label": "Comparison", hidden: true });
+  const undo = button("Undo: back to the model before", () => attempt(line, () => trainer.ask("undo"), "back: the model before is in use"));
+  const none = element("p", { class: "none" }, "No model yet.");
+  const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
+  const table = element("table", {}, element("caption", { class: "unseen" }, "Models"), head, body);
+  const scrolled = element("div", { class: "scrolled", tabindex: "0", role: "region", "aria-label": "Table of models" }, table);
+  let shown = null;
+  trainer.on(() => {
+    undo.disabled = !trainer.now?.can_undo;
+    if (!trainer.all || shown === trainer.all) return;
+    shown = trainer.all;
+    scrolled.hidden = !shown.models.length;
+    none.hidden = !scrolled.hidden;
+    body.replaceChildren(...shown.models.toReversed().map((model) => row(model, line, compared)));
+  });
+  return card("model-list", "Models", { wide: true, controls: [undo] }, none, scrolled, line, compared);
+}
+
+function row(model, line, compared) {
+  const { id, created, set, labels, people, samples, active, scores } = model;
+  const name = id.slice(0, SHORT);
+  const held = scores.accuracy_held_out;
+  const texts = [dated(created), set || "–", labels.join(", "), people.join(", ") || "–", samples, held === undefined ? "–" : percent(held)];
+  const cells = texts.map((text, i) => element("td", { "data-head": HEADS[i + 1] }, String(text)));
+  const mark = active ? element("small", { class: "in-use" }, "in use") : null;
+  const named = (verb) => ({ label: `${verb} model ${name}`, kind: "small" });
+  const actions = active ? [] : [
+    button("Use", () => attempt(line, () => trainer.ask("activate", { model: id }), `${name} is in use`), named("Use")),
+    button("Compare", () => compare(id, line, compared), { label: `Compare model ${name} with the one in use`, kind: "small" }),
+    button("Delete", () => removed(id, name, line), named("Delete")),
+  ];
+  return element("tr", { class: active ? "active" : "" }, element("th", { scope: "row" }, name, mark), ...cells,
+    element("td", {}, element("div", { class: "buttons" }, ...actions)));
+}
+
+async function removed(id, name, line) {
+  if (await confirmed(`Delete model ${name}?`, "Delete model")) await attempt(line, () => trainer.ask("delete_model", { model: id }), `${name} deleted`);
+}
+
+async function compare(id, line, compared) {
+  const reply = await attempt(line, () => trainer.ask("compare", { model: id }));
+  compared.hidden = !reply;
+  if (!reply) return;
+  const { model, other, added, missing } = reply;
+  const facts = [
+    ["Examples", model.samples, other.samples],
+    ["People", model.people.join(", ") || "–", other.people.join(", ") || "–"],
+    ["Right, held out", ...[model, other].map(({ scores }) => (scores.accuracy_held_out === undefined ? "–" : percent(scores.accuracy_held_out)))],
+    ["Only it knows", added.join(", ") || "–", missing.join(", ") || "–"],
+  ];
+  const head = ["", model.id.slice(0, SHORT), `${other.id.slice(0, SHORT)}, in use`].map((text) => element("th", { scope: "col" }, text));
+  const rows = facts.map(([name, ...values]) => element("tr", {}, element("th", { scope: "row" }, name), ...values.map((value) => element("td", {}, String(value)))));
+  compared.replaceChildren(element("h3", {}, "Comparison"), element("p", { class: "caption" }, reply.sentence),
+    element("table", { class: "plain" }, element("caption", { class: "unseen" }, "Two models side by side"), element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...rows)));
+}

@@ -1,0 +1,59 @@
+// Training a model on the chosen set, and putting it into use.
+
+import { attempt, button, field, outcome } from "../asking.js";
+import { card, element, percent } from "../elements.js";
+import { JobView } from "../jobs.js";
+import { setChoice } from "../setchoice.js";
+import { trainer } from "../trainer.js";
+import { advice } from "./advice.js";
+
+export function training() {
+  const made = new Training();
+  return card("training", "Train", {}, made.form, made.job.element, made.use, made.line, made.advice.element);
+}
+
+class Training {
+  constructor() {
+    this.preset = element("select");
+    this.job = new JobView(["train"], (job) => this.ended(job));
+    this.line = outcome();
+    this.advice = advice();
+    this.model = null;
+    this.use = element("div", { class: "buttons", hidden: true }, button("Use this model", () => this.activate(), { kind: "primary" }));
+    this.form = element("form", { on: { submit: (event) => this.submitted(event) } },
+      element("div", { class: "fields" }, field("Set", setChoice()), field("Training parameters", this.preset)),
+      element("div", { class: "buttons" }, element("button", { class: "primary" }, "Train")));
+    trainer.on(() => this.offer());
+  }
+
+  offer() {
+    const presets = trainer.all?.presets ?? [];
+    if (presets.length !== this.preset.length) this.preset.replaceChildren(...presets.map((name) => element("option", { value: name }, name)));
+    this.use.hidden = !this.model || this.model === trainer.all?.active || !trainer.all?.models.some(({ id }) => id === this.model);
+  }
+
+  async submitted(event) {
+    event.preventDefault();
+    this.model = null;
+    this.line.textContent = "";
+    this.advice.tell();
+    await this.job.start("train", { set: trainer.set?.name ?? "", preset: this.preset.value });
+    this.offer();
+  }
+
+  ended({ result }) {
+    if (!result) return;
+    const { model, scores, left_out: leftOut, advice: sentences } = result;
+    this.model = model;
+    const held = scores.accuracy_held_out;
+    const right = held === undefined ? [] : [`${percent(held)} right of examples that were left out in turn.`];
+    const lost = leftOut.length ? [`Left out as they cannot be used: ${leftOut.join("; ")}.`] : [];
+    this.line.textContent = [...right, ...lost].join(" ");
+    this.advice.tell(sentences);
+    this.offer();
+  }
+
+  activate() {
+    return attempt(this.line, () => trainer.ask("activate", { model: this.model }), "in use: the classifier takes it within a second or two");
+  }
+}

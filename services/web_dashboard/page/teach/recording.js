@@ -1,0 +1,108 @@
+// Recording a take: what is done, by whom, how often; then the page counts along until it has ended.
+
+import { attempt, button, field, outcome, say, suggesting } from "../asking.js";
+import { card, element } from "../elements.js";
+import { markSwitch } from "../live/switch.js";
+import { trainer } from "../trainer.js";
+import { TakeView } from "./takeview.js";
+import { simulatedPerson } from "./simulated.js";
+
+const USUAL = 5;          // repetitions: fewer say little of how they differ
+const MOST = 40;
+
+export function recording() {
+  const made = new Recording();
+  return { card: made.card, form: made.form };
+}
+
+// What is done, by whom and how often, as the form says it.
+class Form {
+  constructor() {
+    this.label = suggesting("label", { placeholder: "wave" });
+    this.person = suggesting("person", { placeholder: "anna" });
+    this.count = element("input", { type: "number", min: "1", max: String(MOST), value: String(USUAL) });
+    this.element = element("div", { class: "fields" },
+      field("Action", this.label.input), field("Person", this.person.input), field("How many times", this.count),
+      this.label.list, this.person.list);
+    trainer.on(() => this.suggest());
+  }
+
+  get fields() {
+    return { set: trainer.set?.name ?? "", label: this.label.input.value.trim(), person: this.person.input.value.trim(), count: Number(this.count.value) };
+  }
+
+  suggest() {
+    if (this.revision === trainer.all?.revision) return;
+    this.revision = trainer.all?.revision;
+    const sets = trainer.all?.sets ?? [];
+    this.label.suggest([...new Set(sets.flatMap(({ actions }) => Object.keys(actions)))].sort());
+    this.person.suggest([...new Set(sets.flatMap(({ people }) => people))].sort());
+  }
+}
+
+class Recording {
+  constructor() {
+    this.form = new Form();
+    this.line = outcome();
+    this.doubts = element("ul", { class: "doubts" });
+    this.view = new TakeView();
+    this.mark = markSwitch("take-switch", "Mark by hand");
+    const record = element("button", { class: "primary" }, "Record");
+    const background = button("Record background", () => this.begin("background"));
+    const begin = element("form", { on: { submit: (event) => this.submitted(event) } },
+      this.form.element, element("div", { class: "buttons" }, record, background));
+    this.begins = element("div", { class: "begins" }, begin,
+      element("p", { class: "caption" }, "Do it, stand still for a second or two, do it again. Background is what you do besides: none of the actions."));
+    this.stops = element("div", { class: "buttons" }, button("Stop", () => this.stop(), { kind: "primary" }), button("Discard", () => this.discard()), simulatedPerson());
+    this.going = element("div", { class: "begins", hidden: true }, this.stops, this.mark);
+    const left = element("div", { class: "left" }, this.begins, this.going, this.line, this.doubts);
+    this.card = card("record", "2 · Record", {}, element("div", { class: "record" }, left, this.view.element));
+    trainer.on(() => this.show(trainer.now?.recording));
+  }
+
+  submitted(event) {
+    event.preventDefault();
+    this.begin("action");
+  }
+
+  async begin(kind) {
+    const fields = this.form.fields;
+    if (!fields.set) return say(this.line, "Make a set first, on the left.", true);
+    const { label, count, ...others } = fields;
+    const wanted = kind === "background" ? others : { ...others, label, count };
+    await attempt(this.line, () => trainer.ask("record", { ...wanted, kind }), "");
+  }
+
+  stop() {
+    return attempt(this.line, () => trainer.ask("stop"));
+  }
+
+  discard() {
+    return attempt(this.line, () => trainer.ask("discard"), "dropped: nothing was kept");
+  }
+
+  show(take) {
+    const isGoing = Boolean(take) && take.phase !== "done";
+    const isFocused = this.card.contains(document.activeElement);
+    const [began, ended] = [isGoing && this.going.hidden, !isGoing && !this.going.hidden];
+    this.begins.hidden = isGoing;
+    this.going.hidden = !isGoing;
+    this.mark.hidden = take?.kind !== "action";
+    if (began) this.began(isFocused);
+    if (ended && take) this.ended(take, isFocused);
+    this.view.show(take);
+  }
+
+  began(isFocused) {
+    this.doubts.replaceChildren();
+    say(this.line, "");
+    if (isFocused) (this.mark.hidden ? this.stops : this.mark).querySelector("button").focus({ preventScroll: true });
+  }
+
+  ended({ kind, label, counted, doubts }, isFocused) {
+    const what = kind === "background" ? "background recorded" : `${counted} of ${label} recorded`;
+    if (!this.line.classList.contains("refused")) say(this.line, what);
+    this.doubts.replaceChildren(...doubts.map((text) => element("li", { class: "doubt" }, text)));
+    if (isFocused) this.form.label.input.select();
+  }
+}

@@ -1,0 +1,63 @@
+// The trainer as the page knows it: what it does now, which sets and models there are, and which set is chosen.
+
+import { link } from "./link.js";
+
+const SILENT_MS = 3500;   // it tells its state each second
+
+class Trainer {
+  constructor() {
+    // now: its newest `training` message; all: its newest list of sets and models; both null before the first.
+    Object.assign(this, { now: null, all: null, chosen: null, callbacks: new Set(), listing: false });
+    link.on("training", (training) => this.take(training));
+  }
+
+  // Calls back with each change of its state, of the list, or of the choice.
+  on(callback) {
+    this.callbacks.add(callback);
+  }
+
+  ask(command, fields = {}) {
+    return link.ask("model_trainer", command, fields);
+  }
+
+  get isThere() {
+    return link.silentMs("training") < SILENT_MS;
+  }
+
+  // The chosen set as it is listed; the newest one where the chosen one is gone; null without any.
+  get set() {
+    const sets = this.all?.sets ?? [];
+    const newest = sets.reduce((one, other) => (one && one.created >= other.created ? one : other), null);
+    return sets.find(({ name }) => name === this.chosen) ?? newest;
+  }
+
+  choose(name) {
+    this.chosen = name;
+    this.tell();
+  }
+
+  take(training) {
+    this.now = training;
+    if (training.revision !== this.all?.revision) this.list();
+    this.tell();
+  }
+
+  // Lists sets and models anew.
+  async list() {
+    if (this.listing) return;
+    this.listing = true;
+    try {
+      this.all = await this.ask("list");
+      this.tell();
+    } catch {
+      this.all ??= null;  // the next message has it asked again
+    }
+    this.listing = false;
+  }
+
+  tell() {
+    for (const callback of this.callbacks) callback();
+  }
+}
+
+export const trainer = new Trainer();

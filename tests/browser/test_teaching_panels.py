@@ -1,0 +1,397 @@
+"""The panels on which people teach: recording, mending, training, testing, models, parameters; and hostile input."""
+
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from actum_model_trainer.teaching.job_process import Progressing
+from lessons import SET, Lesson, lesson
+from live import wait_until
+from recognisers import tiny_model
+from repeating import Stream, rest
+from teaching import GOGGLINGS, WAVES, Teacher
+
+pytestmark = pytest.mark.browser
+Open = Callable[..., Any]
+SET_VALUE = "(it, value) => { it.value = value }"
+MARKUP = "<img src=x onerror=alert(1)>"
+
+
+@pytest.fixture(scope="module")
+def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which two actions were taught."""
+    teacher = Teacher(tmp_path_factory.mktemp("taught"))
+    teacher.ask("create_set", set=SET)
+    teacher.teach("wave", WAVES)
+    teacher.teach("goggles", GOGGLINGS, person="bert")
+    return teacher.folder
+
+
+@pytest.fixture
+def room(taught: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Lesson]:
+    monkeypatch.setattr("web_dashboard.application.DESCRIBING_S", 0.2)
+    shutil.copytree(taught, tmp_path / "copy")
+    with lesson(tmp_path / "copy") as made:
+        yield made
+
+
+@pytest.fixture
+def teach(room: Lesson, open_page: Open) -> Any:
+    page = open_page(f"{room.page.address}#teach")
+    examples_of(page, "wave", 5)
+    return page
+
+
+@pytest.fixture
+def models(room: Lesson, open_page: Open) -> Any:
+    page = open_page(f"{room.page.address}#models")
+    page.get_by_role("row", name=SET).wait_for()
+    return page
+
+
+def examples_of(page: Any, label: str, number: int) -> Any:
+    """Wait until an action has so many examples, and return them."""
+    group = page.get_by_role("region", name=f"Examples of {label}")
+    if number:
+        group.get_by_text(f"{number} example").wait_for()
+    else:
+        group.wait_for(state="detached")
+    return group.get_by_role("listitem")
+
+
+def press(page: Any, name: str, within: Any = None) -> None:
+    (within or page).get_by_role("button", name=name, exact=True).locator("visible=true").click()
+
+
+def says(page: Any, card: str, text: str) -> None:
+    page.locator(f"#{card}").get_by_text(text).first.wait_for()
+
+
+def fill_in(page: Any, label: str, person: str, count: int) -> None:
+    page.get_by_role("combobox", name="Action").locator("visible=true").fill(label)
+    page.get_by_role("combobox", name="Person").fill(person)
+    page.get_by_role("spinbutton", name="How many times").fill(str(count))
+
+
+def test_a_take_is_begun_by_keys_counted_along_and_ends_by_itself(room: Lesson, teach: Any) -> None:
+    fill_in(teach, "swing", "carla", 3)
+    teach.keyboard.press("Enter")
+    says(teach, "record", "0 of 3")
+    frames = Stream().repeat(WAVES[:3]).then(rest(4)).skeletons(first_ns=10**12)
+    room.see(frames[:190])
+    says(teach, "record", "2 of 3")
+    says(teach, "record", "Resting: now again")
+    room.see(frames[190:])
+    says(teach, "record", "3 of swing recorded")
+    assert examples_of(teach, "swing", 3).count() == 3
+    assert "by anna, bert, carla" in teach.locator("#set").text_content()
+
+
+def test_one_is_stopped_another_dropped_and_background_recorded(room: Lesson, teach: Any) -> None:
+    fill_in(teach, "swing", "carla", 5)
+    press(teach, "Record")
+    says(teach, "record", "0 of 5")
+    room.see(Stream().repeat(WAVES[:2]).skeletons(first_ns=10**12))
+    press(teach, "Stop")
+    says(teach, "record", "2 of swing recorded")
+    press(teach, "Record")
+    press(teach, "Discard")
+    says(teach, "record", "dropped")
+    press(teach, "Record background")
+    says(teach, "record", "0.0 s")
+    room.see(Stream().then(rest(12)).skeletons(first_ns=2 * 10**12))
+    press(teach, "Stop")
+    says(teach, "record", "background recorded")
+    examples_of(teach, "swing", 2)
+
+
+def test_the_space_bar_marks_examples_during_a_take(room: Lesson, teach: Any) -> None:
+    fill_in(teach, "swing", "carla", 1)
+    press(teach, "Record")
+    mark = teach.locator("#take-switch").get_by_role("button", name="Hold to mark")
+    wait_until(lambda: mark.evaluate("it => it === document.activeElement"), "the switch has the keyboard")
+    frames = Stream().repeat(WAVES[:1]).then(rest(4)).skeletons(first_ns=10**12)
+    room.see(frames[:30])
+    teach.keyboard.press(" ")
+    wait_until(lambda: len(room.put_messages) == 1, "the start is marked")
+    room.see(frames[30:80])
+    teach.keyboard.press(" ")
+    wait_until(lambda: len(room.put_messages) == 2, "the end is marked")
+    room.see(frames[80:])
+    assert "marked by hand" in examples_of(teach, "swing", 1).first.text_content()
+
+
+def test_each_example_is_a_film_that_moves_unless_halted(teach: Any) -> None:
+    film = teach.get_by_role("img", name="Film of wave 1", exact=True)
+
+    def seen(after_ms: int) -> bytes:
+        teach.wait_for_timeout(after_ms)
+        return bytes(film.screenshot())
+
+    wait_until(lambda: seen(0) != seen(300), "it moves")
+    teach.get_by_role("checkbox", name="Play the films").uncheck()
+    assert seen(200) == seen(300)
+
+
+def test_an_example_is_trimmed_by_keys(room: Lesson, teach: Any) -> None:
+    before = room.teacher.examples()[0]
+    press(teach, "Trim wave 1")
+    start = teach.get_by_role("slider", name="Start")
+    start.focus()
+    for _ in range(5):
+        teach.keyboard.press("ArrowRight")
+    teach.get_by_role("slider", name="End").press("ArrowLeft")
+    press(teach, "Trim", teach.get_by_role("dialog"))
+    says(teach, "examples", "trimmed")
+    after = room.teacher.examples()[0]
+    assert after["start_ns"] - before["start_ns"] == pytest.approx(0.10e9, abs=1e6)
+    assert before["end_ns"] - after["end_ns"] == pytest.approx(0.02e9, abs=1e6)
+
+
+def test_an_example_is_relabelled_mirrored_deleted_and_escape_changes_nothing(room: Lesson, teach: Any) -> None:
+    press(teach, "Relabel wave 1")
+    teach.keyboard.press("Escape")
+    press(teach, "Relabel wave 1")
+    teach.get_by_role("dialog").get_by_role("combobox", name="Action").fill("goggles")
+    teach.keyboard.press("Enter")
+    examples_of(teach, "goggles", 6)
+    press(teach, "Mirror wave 1")
+    teach.get_by_text("mirrored").first.wait_for()
+    press(teach, "Delete wave 4")
+    examples_of(teach, "wave", 3)
+    assert [each["label"] for each in room.teacher.examples()].count("wave") == 3
+
+
+def test_the_last_is_redone(room: Lesson, teach: Any) -> None:
+    last = room.teacher.examples()[-1]["start_ns"]
+    press(teach, "Redo the last")
+    says(teach, "record", "0 of 1")
+    examples_of(teach, "goggles", 4)
+    room.see(Stream().repeat(GOGGLINGS[:1]).then(rest(4)).skeletons(first_ns=10**12))
+    examples_of(teach, "goggles", 5)
+    assert last not in {each["start_ns"] for each in room.teacher.examples()}
+
+
+def test_an_action_and_a_set_are_deleted_once_that_is_confirmed(room: Lesson, teach: Any) -> None:
+    press(teach, "Delete all examples of wave")
+    press(teach, "Keep", teach.get_by_role("dialog", name="Delete 5 examples of wave?"))
+    press(teach, "Delete all examples of wave")
+    press(teach, "Delete all", teach.get_by_role("dialog"))
+    examples_of(teach, "wave", 0)
+    press(teach, "Delete set")
+    press(teach, "Delete set", teach.get_by_role("dialog", name=f"Delete {SET} with 5 examples?"))
+    teach.get_by_text("Make a set first.").wait_for()
+    assert room.teacher.ask("list")["sets"] == []
+
+
+def test_sets_are_made_chosen_and_renamed(room: Lesson, teach: Any) -> None:
+    teach.get_by_role("textbox", name="Name of a new set").fill("Küche 2")
+    press(teach, "Make set")
+    choice = teach.get_by_role("combobox", name="Set", exact=True).locator("visible=true")
+    wait_until(lambda: choice.input_value() == "Küche 2", "the new set is chosen")
+    press(teach, "Rename")
+    teach.get_by_role("dialog").get_by_role("combobox", name="New name").fill("Garten")
+    teach.keyboard.press("Enter")
+    wait_until(lambda: choice.input_value() == "Garten", "its new name is shown")
+    choice.select_option(SET)
+    examples_of(teach, "wave", 5)
+
+
+def test_the_simulated_person_is_asked_where_one_takes_requests(room: Lesson, teach: Any) -> None:
+    fill_in(teach, "lift", "carla", 4)
+    press(teach, "Record")
+    press(teach, "Have the simulated person do it")
+    says(teach, "record", "on its way")
+    performed = room.page.colleague.performed
+    assert performed == [{"actions": ["lift"] * 4, "object_id": 1}]
+
+
+@pytest.mark.parametrize("way", ["dropped", "chosen"])
+def test_a_video_is_sent_whole_and_read_as_a_job(room: Lesson, teach: Any, tmp_path: Path, way: str) -> None:
+    clip = tmp_path / "wave 2.mp4"
+    clip.write_bytes(bytes(range(256)) * 5000)
+    if way == "chosen":
+        teach.get_by_label("Drop a video anywhere").set_input_files(clip)
+    else:
+        drop(teach, clip.name, 5000)
+    wait_until(lambda: bool(room.teacher.jobs), "it is imported")
+    request = room.teacher.jobs[0].request
+    assert Path(request.fields["video"]).read_bytes() == clip.read_bytes()
+    assert (request.fields["label"], request.fields["count"]) == ("wave", 5)
+    room.teacher.jobs[0].news = Progressing("finding the person", 0.4)
+    says(teach, "video", "Reading the video: finding the person, 40 %")
+    room.end_job(None, "wave 2.mp4 is no video")
+    says(teach, "video", "failed: wave 2.mp4 is no video")
+
+
+DROP = """([name, rounds]) => {
+  const dataTransfer = new DataTransfer();
+  dataTransfer.items.add(new File([new Uint8Array(256 * rounds).map((_, i) => i % 256)], name));
+  for (const type of ["dragover", "drop"]) {
+    document.body.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+  }
+}"""
+
+
+def drop(page: Any, name: str, rounds: int) -> None:
+    """Drop a file with the bytes 0 to 255, so many times, on the page."""
+    page.evaluate(DROP, [name, rounds])
+
+
+def trained(held_out: float = 0.9) -> dict[str, Any]:
+    return {
+        "model": tiny_model().id,
+        "scores": {"accuracy_held_out": held_out},
+        "left_out": [],
+        "advice": [f"{MARKUP} and wave are confused: record 3 more of each from another person."],
+    }
+
+
+def test_a_model_is_trained_put_into_use_compared_undone_and_deleted(room: Lesson, models: Any) -> None:
+    press(models, "Train")
+    wait_until(lambda: bool(room.teacher.jobs), "it is trained")
+    room.teacher.jobs[0].news = Progressing("training the maps", 0.25)
+    says(models, "training", "Training: training the maps, 25 %")
+    room.end_job(trained())
+    says(models, "training", "90 % right of examples that were left out in turn.")
+    says(models, "training", f"{MARKUP} and wave are confused: record 3 more of each from another person.")
+    assert models.locator("#training img").count() == 0
+    press(models, "Use this model")
+    name = tiny_model().id[:8]
+    row = models.get_by_role("row", name=name)
+    row.get_by_text("in use").wait_for()
+    assert room.teacher.model.exists()
+    assert models.get_by_role("button", name="Undo: back to the model before").is_disabled()
+
+
+def test_a_job_is_cancelled(room: Lesson, models: Any) -> None:
+    press(models, "Train")
+    wait_until(lambda: bool(room.teacher.jobs), "it is trained")
+    room.teacher.jobs[0].news = Progressing("training the maps", 0.25)
+    press(models, "Cancel")
+    says(models, "training", "cancelled: it was cancelled")
+    assert room.teacher.jobs[0].ended
+
+
+def test_a_confusion_matrix_is_a_table_that_is_read_by_row_and_column(room: Lesson, models: Any) -> None:
+    press(models, "Test")
+    wait_until(lambda: bool(room.teacher.jobs), "it is tested")
+    room.end_job(
+        {
+            "by": "people", "accuracy": 0.9, "n": 10, "labels": ["goggles", "wave"], "confusion": [[5, 0], [1, 4]],
+            "false_alarms_per_min": 1.25, "found": {"recall": 0.8}, "advice": ["Record 33 s more of background."],
+        }
+    )  # fmt: skip
+    table = models.get_by_role("table", name="How often each action was answered with which")
+    table.wait_for()
+    wave = table.get_by_role("row").filter(has=models.get_by_role("rowheader", name="wave", exact=True))
+    assert wave.get_by_role("cell").all_text_contents() == ["120 %", "480 %"]
+    assert table.get_by_role("columnheader").all_text_contents()[1:] == ["goggles", "wave"]
+    says(models, "testing", "1.3")
+    says(models, "testing", "Record 33 s more of background.")
+
+
+def test_parameters_have_range_unit_and_default_and_a_refusal_stands_beside_them(room: Lesson, open_page: Open) -> None:
+    page = open_page(f"{room.page.address}#parameters")
+    reach = page.get_by_role("textbox", name="reach limit")
+    reach.wait_for()
+    assert reach.input_value() == "10"
+    says(page, "parameters-pose_preprocessor", "more than 0 · default: 10")
+    reach.fill("-3")
+    reach.press("Enter")
+    says(
+        page,
+        "parameters-pose_preprocessor",
+        "refused: settings: reach_limit_m: Input should be greater than 0; it is still 10",
+    )
+    reach.fill("<b>x</b>")
+    reach.press("Enter")
+    says(page, "parameters-pose_preprocessor", "<b>x</b> is no number")
+    reach.fill("7.5")
+    reach.press("Enter")
+    says(page, "parameters-pose_preprocessor", "set")
+    page.reload()
+    wait_until(lambda: reach.is_visible() and reach.input_value() == "7.5", "the service keeps it")
+    press(page, "Default of reach_limit_m of pose_preprocessor")
+    wait_until(lambda: reach.input_value() == "10", "the default is back")
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        (MARKUP, "a name has letters"),
+        ("../../etc", "a name has letters"),
+        ("a/b", "a name has letters"),
+        ("x" * 300, "at most 256 characters"),
+        ("x" * 10_000_000, "too long: at most 1000000 bytes"),
+        ("", "a name has letters"),
+    ],
+    ids=["markup", "way up", "folder", "long", "ten megabytes", "empty"],
+)
+def test_names_that_are_none_are_refused_and_that_is_shown(room: Lesson, teach: Any, name: str, said: str) -> None:
+    teach.get_by_role("textbox", name="Name of a new set").evaluate(SET_VALUE, name)
+    press(teach, "Make set")
+    says(teach, "set", said)
+    teach.get_by_role("combobox", name="Action").locator("visible=true").evaluate(
+        "(it, name) => { it.value = name }", name
+    )
+    press(teach, "Record")
+    says(teach, "record", said if name else "Give a label")
+    assert teach.locator("#set img, #record img").count() == 0
+    assert [each["name"] for each in room.teacher.ask("list")["sets"]] == [SET]
+
+
+def test_what_is_no_name_in_a_file_dropped_is_replaced(room: Lesson, teach: Any) -> None:
+    drop(teach, f"../{MARKUP}.mp4", 1)
+    wait_until(lambda: (room.teacher.folder / "uploads").exists() and any(sent(room)), "it is sent")
+    assert [path.name for path in sent(room)] == ["img src_x onerror_alert_1__.mp4"]
+    says(teach, "video", "import_video: label")
+
+
+def sent(room: Lesson) -> list[Path]:
+    return sorted((room.teacher.folder / "uploads").glob("[!.]*"))
+
+
+def test_a_page_whose_trainer_is_silent_says_so(open_page: Open, scene: Any) -> None:
+    page = open_page(f"{scene.page.address}#teach")
+    page.get_by_role("status").filter(has_text="The trainer is silent").wait_for()
+
+
+@pytest.mark.parametrize("panel", ["teach", "models", "parameters"])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("phone", [False, True], ids=["wide", "phone"])
+def test_no_panel_has_a_serious_fault_of_accessibility(
+    room: Lesson, open_page: Open, panel: str, scheme: str, phone: bool
+) -> None:
+    from axe_playwright_python.sync_playwright import Axe
+
+    size = {"viewport": {"width": 390, "height": 844}, "is_mobile": True, "has_touch": True} if phone else {}
+    page = open_page(f"{room.page.address}#{panel}", color_scheme=scheme, **size)
+    shown = {"teach": "Film of goggles 5", "models": "Confusion matrix", "parameters": "Default of bone_limit_m"}
+    if panel == "models":
+        page.get_by_role("row", name=SET).wait_for()
+        press(page, "Test")
+        wait_until(lambda: bool(room.teacher.jobs), "it is tested")
+        result = {"by": "people", "accuracy": 1.0, "n": 2, "labels": ["a", "b"], "confusion": [[1, 0], [0, 1]]}
+        room.end_job({**result, "false_alarms_per_min": None, "found": None, "advice": ["Record more."]})
+    page.get_by_label(shown[panel]).first.wait_for()
+    found = Axe().run(page).response["violations"]
+    serious = [fault for fault in found if fault["impact"] in ("serious", "critical")]
+    assert [(fault["id"], [node["html"] for node in fault["nodes"]]) for fault in serious] == []
+    assert page.evaluate("() => document.documentElement.scrollWidth <= innerWidth"), "nothing to scroll sideways"
+    assert unnamed(page) == []
+
+
+UNNAMED = """() => {
+  const nameOf = (it) => it.ariaLabel || it.labels?.[0]?.textContent || it.textContent;
+  const controls = [...document.querySelectorAll("button, input, select, a[href], summary")];
+  return controls.filter((it) => it.offsetParent && (it.tabIndex < 0 || !nameOf(it).trim())).map((it) => it.outerHTML);
+}"""
+
+
+def unnamed(page: Any) -> list[str]:
+    """List the controls that have no name, or cannot be reached by the keyboard."""
+    return list(page.evaluate(UNNAMED))
