@@ -1,5 +1,6 @@
 """A session for programs beside the services: commands, tests, benchmarks."""
 
+import secrets
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -78,7 +79,7 @@ class Client:
 
     def __init__(self, settings: ServiceSettings, wait_s: float = OPEN_S, session: zenoh.Session | None = None) -> None:
         self.sensor = settings.sensor
-        self.run = format(time.time_ns() // 1_000_000, "x")
+        self.run = secrets.token_hex(6)
         self._session = session or _open(settings, wait_s)
         self._outbox = Outbox(self._session)
         self._listening: list[Listening] = []

@@ -233,7 +233,13 @@ class NodeService(StepService):
 
 
 def _origin(sample: zenoh.Sample) -> str:
-    """Return the id of the session that put a sample, from its Zenoh timestamp; "" where it has none."""
+    """Return the id of the session that put a sample; "" where nothing says it.
+
+    Where no source stands in it, the Zenoh timestamp's id serves: a router puts its own there in place of that of a
+    program whose clock is ahead.
+    """
+    if sample.source_info is not None:
+        return str(sample.source_info.source_id.zid)
     return str(sample.timestamp.get_id()) if sample.timestamp else ""
 
 
