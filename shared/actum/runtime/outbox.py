@@ -34,7 +34,7 @@ class Outbox:
     """One publisher per key and kind (cached or plain), declared when first needed, `MOST_PUBLISHERS` at the most."""
 
     def __init__(self, session: zenoh.Session) -> None:
-        self._session = session
+        self._session, self._origin = session, str(session.zid())
         self._numbering = Numbering()
         self._publishers: OrderedDict[tuple[str, bool], Publisher] = OrderedDict()
         self._lock = threading.Lock()
@@ -42,7 +42,7 @@ class Outbox:
     def put(self, message: Message) -> None:
         """Number and put one message."""
         with self._lock:
-            frame = encode(self._numbering.numbered(message))
+            frame = encode(self._numbering.numbered(message), self._origin)
             self._publisher(frame.key, _is_cached(message)).put(
                 frame.payload, encoding=frame.encoding, attachment=frame.attachment
             )
