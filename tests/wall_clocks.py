@@ -1,4 +1,4 @@
-"""Wall clocks of processes that a test sets apart and steps while they run; their monotonic clocks stay the machine's."""
+"""Wall clocks of processes, which a test sets apart and steps while they run; monotonic clocks stay as they are."""
 
 import shutil
 import struct
@@ -31,11 +31,15 @@ class WallClock:
     """The wall clock of all processes that are started with `variables`: the machine's, and an offset."""
 
     def __init__(self, file: Path, ahead_s: float) -> None:
-        self._file = file.open("w+b", buffering=0)
-        self.set(ahead_s)
+        self._file = file
+        file.write_bytes(_packed(ahead_s))
         self.variables = {"LD_PRELOAD": str(library()), "WALL_CLOCK": str(file)}
 
     def set(self, ahead_s: float) -> None:
         """Set it so far ahead of the machine's, at once and for all of its processes."""
-        self._file.seek(0)
-        self._file.write(struct.pack("q", round(ahead_s * SECOND_NS)))
+        with self._file.open("r+b", buffering=0) as file:  # the same file: processes have it in their memory
+            file.write(_packed(ahead_s))
+
+
+def _packed(ahead_s: float) -> bytes:
+    return struct.pack("q", round(ahead_s * SECOND_NS))
