@@ -8,7 +8,7 @@ import pytest
 
 from live import System, free_endpoint, system, wait_until
 
-pytestmark = [pytest.mark.browser, pytest.mark.system]
+pytestmark = [pytest.mark.browser, pytest.mark.system, pytest.mark.long]
 
 
 @pytest.fixture
