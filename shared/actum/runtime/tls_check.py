@@ -21,7 +21,7 @@ TURNS = 4
 _STRANGER = "the router knows another authority than that of {certificate}: use a folder of its deployment"
 _NO_TLS = "what listens there does not answer in TLS: use tcp/ in ACTUM_CONNECT, unless it is frozen"
 _REFUSED = {
-    "CERTIFICATE_REQUIRED": "the router wants a certificate and is shown none: set ACTUM_CREDENTIALS to a role's folder",
+    "CERTIFICATE_REQUIRED": "the router wants a certificate and is shown none: set ACTUM_CREDENTIALS to a folder",
     "UNKNOWN_CA": _STRANGER,
     "DECRYPT_ERROR": _STRANGER,  # an authority of the same name, with another key
     "CERTIFICATE_EXPIRED": "to the router {certificate} is not valid now: is the router's clock right?",
@@ -135,9 +135,9 @@ def _routers_fault(host: str, port: int, tls: Tls) -> str | None:
             return f"{reason}: use a folder of its deployment"
         return _DISTRUSTED[error.verify_code].format(host=host, **_routers_certificate(host, port, tls))
     except ssl.SSLError as error:
-        return (
-            None if "ALERT" in (error.reason or "") else "what listens there speaks no TLS: use tcp/ in ACTUM_CONNECT"
-        )
+        return None if "ALERT" in (error.reason or "") else _NO_TLS
+    except TimeoutError:
+        return _NO_TLS
     return None
 
 
