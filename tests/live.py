@@ -73,6 +73,8 @@ class System:
     folder: Path
     settings: ServiceSettings
     running: list[Running] = field(default_factory=list)
+    variables: dict[str, str] = field(default_factory=dict)
+    """What stands in the environment besides."""
 
     @property
     def environment(self) -> dict[str, str]:
@@ -82,6 +84,7 @@ class System:
             "ACTUM_SENSOR": self.settings.sensor,
             "ACTUM_TRAINER_DATA": str(self.folder / "teaching"),
             "OPENBLAS_NUM_THREADS": "1",
+            **self.variables,
         }
 
     def start(self, module: str, *arguments: str) -> Running:

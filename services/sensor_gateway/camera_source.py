@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import replace
 
+from actum import steady_clock
 from actum.messages import Message
 from actum.node import SECOND_NS, Counters
 from sensor_gateway.captured_picture import Picture
@@ -43,7 +44,7 @@ class CameraSource:
         sensor: str,
         session_id: str,
         perceiver: type[Perceiver] = Perceiver,
-        now_ns: Callable[[], int] = time.time_ns,
+        now_ns: Callable[[], int] = steady_clock.now_ns,
         pause: Callable[[float], None] = time.sleep,
     ) -> None:
         self.counters = Counters()

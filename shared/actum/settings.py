@@ -107,6 +107,9 @@ class ServiceSettings(BaseSettings):
     zenoh_config: Path | None = Field(
         None, description="a JSON5 file laid under the session's configuration (TLS, users)"
     )
+    credentials: Path | None = Field(
+        None, description="a folder of one role that actum deploy wrote, shown to a router at tls/host:port"
+    )
     state: Path | None = Field(
         None,
         description="a folder for the last answers of the classifier and the fusion: started anew, they give no others",

@@ -1,11 +1,11 @@
 """A camera or a network stream that OpenCV reads; only the newest picture is kept."""
 
 import threading
-import time
 
 import cv2
 import numpy as np
 
+from actum import steady_clock
 from sensor_gateway.captured_picture import Picture
 from sensor_gateway.devices.capture import CameraLostError
 from sensor_gateway.devices.silence import OPENING_S, Silence
@@ -79,7 +79,7 @@ class LiveCapture:
             done, image = capture.read()
             if not done:
                 return "it gives no more pictures"
-            self._keep(Picture(image.astype(np.uint8, copy=False), time.time_ns()))
+            self._keep(Picture(image.astype(np.uint8, copy=False), steady_clock.now_ns()))
         return "it was closed"
 
     def _opened(self) -> cv2.VideoCapture:

@@ -8,6 +8,7 @@ from actum.runtime.parent import end_with_parent
 from actum.runtime.router import serve_router
 from actum.runtime.serving import run, run_source
 from actum.runtime.session import RouterUnreachableError
+from actum.runtime.unreachable import why_unreachable
 from actum.runtime.waiting import Pace, stop_on_signals
 
 __all__ = [
@@ -26,4 +27,5 @@ __all__ = [
     "run_source",
     "serve_router",
     "stop_on_signals",
+    "why_unreachable",
 ]

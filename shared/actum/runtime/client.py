@@ -1,5 +1,6 @@
 """A session for programs beside the services: commands, tests, benchmarks."""
 
+import secrets
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -16,7 +17,7 @@ from actum.commands import MSGPACK, Refusal, packed, unpacked
 from actum.messages import Info, Message
 from actum.runtime.inbox import Subscriber, subscribe, subscribe_recovering
 from actum.runtime.outbox import Outbox
-from actum.runtime.session import RouterUnreachableError, client_config, connected
+from actum.runtime.session import RouterUnreachableError, connected, secret_config
 from actum.settings import ServiceSettings
 
 OPEN_S = 5.0
@@ -79,7 +80,7 @@ class Client:
 
     def __init__(self, settings: ServiceSettings, wait_s: float = OPEN_S, session: zenoh.Session | None = None) -> None:
         self.sensor = settings.sensor
-        self.run = format(time.time_ns() // 1_000_000, "x")
+        self.run = secrets.token_hex(6)
         self._session = session or _open(settings, wait_s)
         self._outbox = Outbox(self._session)
         self._listening: list[Listening] = []
@@ -181,7 +182,7 @@ def _open(settings: ServiceSettings, wait_s: float) -> zenoh.Session:
     deadline = time.monotonic() + wait_s
     while True:
         try:
-            return zenoh.open(client_config(settings))
+            return zenoh.open(secret_config(settings))
         except zenoh.ZError:
             if time.monotonic() > deadline:
                 raise RouterUnreachableError(settings.connect) from None

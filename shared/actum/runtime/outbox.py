@@ -40,7 +40,7 @@ class Outbox:
     """One publisher per key and manner, declared when first needed, `MOST_PUBLISHERS` at the most."""
 
     def __init__(self, session: zenoh.Session) -> None:
-        self._session = session
+        self._session, self._origin = session, str(session.zid())
         self._keep: Callable[[Frame], None] | None = None
         self._numbering = Numbering()
         self._publishers: OrderedDict[tuple[str, Manner], Publisher] = OrderedDict()
@@ -49,7 +49,7 @@ class Outbox:
     def put(self, message: Message) -> None:
         """Number and put one message."""
         with self._lock:
-            frame = encode(self._numbering.numbered(message))
+            frame = encode(self._numbering.numbered(message), self._origin)
             manner = _manner(message)
             if manner == "cached" and self._keep is not None:
                 self._keep(frame)
