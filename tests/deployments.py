@@ -96,7 +96,7 @@ def free_port() -> int:
 def described(**options: bool) -> Deployment:
     """A camera's host and one that computes, with ports of this machine that are free."""
     hosts = f"camera=127.0.0.1:{free_port()},compute=127.0.0.1:{free_port()}"
-    return Deployment(hosts_of(hosts, None, 7447), simulated=True, **options)
+    return Deployment(hosts_of(hosts), simulated=True, **options)
 
 
 @contextmanager

@@ -43,7 +43,7 @@ def access_control(
     """
     people_and_services = {identity(role, sensor): list(rules(role, sensor)) for role, sensor in subjects}
     between = link_rules(images_cross)
-    policies = [{"subjects": [name], "rules": _ids(own) + [TOLD]} for name, own in people_and_services.items()]
+    policies = [{"subjects": [name], "rules": [*_ids(own), TOLD]} for name, own in people_and_services.items()]
     return {
         "enabled": True,
         "default_permission": "deny",
@@ -60,7 +60,9 @@ def rules(role: Role, sensor: str) -> Iterator[Rule]:
     """Yield the rules of a role for a sensor; of people's roles for all sensors."""
     name, of = identity(role, sensor), sensor if role.services else "*"
     puts, reads = _patterns(role.puts, of), _patterns(role.reads, of)
-    own = [f"{BASE}/{of}/{place.format(service)}" for service in role.services for place in ("info/{}", "command/{}/**")]
+    own = [
+        f"{BASE}/{of}/{place.format(service)}" for service in role.services for place in ("info/{}", "command/{}/**")
+    ]
     states = [keys.key(keys.STATUS, of, service) for service in role.services]
     tokens = [f"{BASE}/{of}/{token.format(service)}" for service in role.services for token in TOKENS]
     asked = _asked(role)

@@ -80,9 +80,7 @@ def new_certificate(
         _unsigned(_name(common_name), issuer.subject, key, now, now + timedelta(days=days))
         .add_extension(x509.BasicConstraints(ca=False, path_length=None), critical=True)
         .add_extension(x509.ExtendedKeyUsage(usages), critical=False)
-        .add_extension(
-            x509.AuthorityKeyIdentifier.from_issuer_public_key(authority.key.public_key()), critical=False
-        )
+        .add_extension(x509.AuthorityKeyIdentifier.from_issuer_public_key(authority.key.public_key()), critical=False)
     )
     if addresses:
         unsigned = unsigned.add_extension(x509.SubjectAlternativeName([_place(each) for each in addresses]), False)

@@ -111,16 +111,16 @@ class Deployment:
             raise SettingsError(f"{folder} holds no {FILE}: make it with 'actum deploy init'") from None
 
 
-def hosts_of(text: str, sensors: str | None, port: int) -> tuple[Host, ...]:
+def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
     """Parse `camera=ADDRESS,compute=ADDRESS:PORT`, and deal the sensors out.
 
     The first camera's sensor is `kinect0`, the second's `kinect1`, unless they are named. Hosts that compute take the
     sensors in turn.
 
     Raises:
-        SettingsError: a name, an address or a port cannot be used; one kind of host is missing; names do not go together.
+        SettingsError: a name, an address or a port cannot be used, or these hosts and sensors do not go together.
     """
-    hosts = [_host(part.strip(), port) for part in text.split(",")]
+    hosts = [_host(part.strip()) for part in text.split(",")]
     cameras = [host for host in hosts if host.kind == "camera"]
     computing = [host for host in hosts if host.kind == "compute"]
     named = sensors.split(",") if sensors else [f"kinect{number}" for number in range(len(cameras))]
@@ -130,16 +130,16 @@ def hosts_of(text: str, sensors: str | None, port: int) -> tuple[Host, ...]:
         raise SettingsError(f"sensors: {sensors!r}: name as many as there are cameras ({len(cameras)}), each once")
     if len(computing) > len(named):
         raise SettingsError(f"hosts: {len(computing)} to compute are more than there are cameras ({len(named)})")
-    its = {host.name: (chunk(sensor),) for host, sensor in zip(cameras, named, strict=True)}
+    its: dict[str, tuple[str, ...]] = {host.name: (chunk(sensor),) for host, sensor in zip(cameras, named, strict=True)}
     its |= {host.name: tuple(named[i :: len(computing)]) for i, host in enumerate(computing)}
     return tuple(replace(host, sensors=its[host.name]) for host in hosts)
 
 
-def _host(text: str, port: int) -> Host:
+def _host(text: str) -> Host:
     name, _, place = text.partition("=")
     address, colon, own_port = place.rpartition(":")
     if not colon or place.endswith("]") or (place.count(":") > 1 and "[" not in place):
-        address, own_port = place, str(port)
+        address, own_port = place, str(DEFAULT_PORT)
     chunk(name)
     if not any(name.startswith(kind) for kind in KINDS):
         raise SettingsError(f"hosts: {text!r}: names begin with {' or '.join(KINDS)}, as camera=192.168.1.5")

@@ -11,10 +11,9 @@ from actum_deployer.access_control import access_control
 from actum_deployer.credential_folders import CREDENTIALS
 from actum_deployer.deployment import Deployment, Host
 from actum_deployer.message_limits import message_limits
+from actum_deployer.programs import INSTALLED
 from actum_deployer.roles import ROUTER, router_identity
 
-INSTALLED = "/etc/actum"
-"""Where a host's folder is found, in containers and by systemd."""
 MOST_SESSIONS = 128
 """Most clients and routers at a time: some tens are in use, and each takes memory."""
 RETRY = {"period_init_ms": 200, "period_max_ms": 1000, "period_increase_factor": 2}
