@@ -66,6 +66,15 @@ class Running:
         return time.monotonic() - began_s
 
 
+def started(command: list[str], environment: dict[str, str], log: Path) -> Running:
+    """Start a process whose output goes to a file."""
+    with log.open("wb") as output:
+        process = subprocess.Popen(
+            command, env=environment, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT
+        )
+    return Running(process, log)
+
+
 @dataclass
 class System:
     """Processes that share a router's endpoint and a sensor."""
@@ -99,15 +108,7 @@ class System:
 
     def _start(self, name: str, *arguments: str) -> Running:
         log = self.folder / f"{name}-{len(self.running)}.log"
-        with log.open("wb") as output:
-            process = subprocess.Popen(
-                [sys.executable, *arguments],
-                env=self.environment,
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-            )
-        running = Running(process, log)
+        running = started([sys.executable, *arguments], self.environment, log)
         self.running.append(running)
         return running
 

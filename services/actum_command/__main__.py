@@ -11,6 +11,7 @@ with needs_extra("actum-command"):
     from actum_command.commands import (
         calibrate_commands,
         demo_command,
+        deploy_commands,
         doctor_command,
         draw_command,
         foxglove_commands,
@@ -81,6 +82,7 @@ app.command("ros2")(ros2_command.ros2)
 app.command("view")(view_command.view)
 app.command("foxglove")(foxglove_commands.foxglove)
 app.command("export")(foxglove_commands.export)
+app.add_typer(deploy_commands.app, name="deploy")
 app.command("doctor")(doctor_command.doctor)
 
 

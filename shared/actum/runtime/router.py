@@ -6,7 +6,7 @@ from pathlib import Path
 
 import zenoh
 
-from actum.runtime.credentials import CERTIFICATE, is_renewed, login_values, router_values
+from actum.runtime.credentials import CERTIFICATE, USERS, check, is_renewed, login_values, router_values
 from actum.runtime.session import TRANSPORT, insert
 from actum.runtime.waiting import wait_for
 from actum.settings import SettingsError
@@ -28,7 +28,8 @@ def router_config(listen: str | None, config_file: Path | None, credentials: Pat
     if listen is not None:
         insert(config, {"listen/endpoints": [listen]})
     if credentials is not None:
-        insert(config, router_values(credentials))
+        check(credentials)
+        insert(config, router_values(credentials, passwords=(credentials / USERS).exists()))
     return config
 
 

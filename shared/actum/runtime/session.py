@@ -9,7 +9,7 @@ from typing import Any
 
 import zenoh
 
-from actum.runtime.credentials import client_values, login_values
+from actum.runtime.credentials import check, client_values, login_values
 from actum.settings import ServiceSettings, SettingsError
 
 log = logging.getLogger("actum")
@@ -55,6 +55,7 @@ def client_config(settings: ServiceSettings) -> zenoh.Config:
     if settings.credentials is not None:
         if not settings.connect.startswith(ENCRYPTED):
             raise SettingsError(f"credentials are shown to no router at {settings.connect}: use tls/host:port")
+        check(settings.credentials)
         insert(config, client_values(settings.credentials))
     return config
 
