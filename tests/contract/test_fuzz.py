@@ -5,14 +5,13 @@ import pytest
 from fuzzing.campaign import run
 from fuzzing.targets import TARGETS
 
-SHARE = 1500
-SEEDS = (11, 12)
+SHARE = 500
+SEED = 11
 
 
-@pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("service", TARGETS)
-def test_hostile_messages_are_counted_and_survived(service: str, seed: int) -> None:
-    outcome = run(service, SHARE, seed)
+def test_hostile_messages_are_counted_and_survived(service: str) -> None:
+    outcome = run(service, SHARE, SEED)
     assert outcome.messages == SHARE
     assert outcome.rejects > SHARE // 3
     assert outcome.flat

@@ -137,10 +137,9 @@ def _dashboard(_: Path) -> Target:
     hub.join(Mailbox(lambda: None))
     orders.client = Colleague()  # type: ignore[assignment]
     node = WebDashboard(PageSettings(page_port=0), hub, orders, _Server())  # type: ignore[arg-type]
-    carrying = asyncio.new_event_loop()
 
     def ordered(payload: bytes) -> Iterable[Message]:
-        carrying.run_until_complete(orders.carry_out(payload.decode("utf-8", "replace")))
+        asyncio.run(orders.carry_out(payload.decode("utf-8", "replace")))
         return ()
 
     return Target(node.name, _everything, node.handle, node.counters, foreign=ordered, sample=ORDER)
