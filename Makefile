@@ -4,7 +4,7 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel clean
+.PHONY: install demo up test fuzz soak test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -48,6 +48,14 @@ test-browser: $(STAMP)  ## all tests of the web page in Chromium, which has to b
 test-viewers: $(STAMP)  ## what Rerun and Foxglove are sent; installs both, 600 MB
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[dev,view]"
 	$(BIN)/pytest tests/actum_command/test_rerun_entries.py tests/actum_command/test_foxglove_messages.py tests/system/test_viewers.py tests/pages/test_viewers_page.py
+
+fuzz: $(STAMP)  ## hostile messages by the hundred thousand to every service, then atheris; twenty minutes
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[fuzz]"
+	PYTHONPATH=tests $(BIN)/python -m fuzzing
+
+MINUTES ?= 20
+soak: $(STAMP)  ## all services with four people and images for MINUTES=20: memory, losses, latency by the minute
+	$(BIN)/python -m benchmarks.soak --minutes $(MINUTES)
 
 check: docs  ## format, lint, types, layers, pages
 	$(BIN)/ruff format --check --quiet .

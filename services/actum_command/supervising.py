@@ -76,6 +76,10 @@ class Supervisor:
         """Start one program."""
         self._children.append(_Child(program, self._spawn(program), time.monotonic()))
 
+    def pids(self) -> dict[int, str]:
+        """Return the names of the programs by their processes' ids."""
+        return {child.process.pid: child.program.name for child in self._children}
+
     def restart_ended(self) -> list[str]:
         """Restart what has ended, with back-off; return a line for each program that has ended since the last call.
 

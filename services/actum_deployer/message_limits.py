@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from actum import keys
-from actum.keys import BASE, MEGABYTE, TOPICS
+from actum.keys import BASE, TOPICS
 from actum_deployer.access_control import ADVANCED
 from actum_deployer.roles import IMAGES, ROLES
 
@@ -12,7 +12,7 @@ ATTACHMENT_BYTES = 1000
 """Room for what comes with a payload: a list of three numbers and a name takes some tens."""
 HEARTBEAT_BYTES = 1000
 """Largest message on a key with `@adv`: a heartbeat is a number."""
-COMMAND_BYTES = 16 * MEGABYTE
+COMMAND_BYTES = 16_000_000
 """Largest command and reply: a video is taught from in parts of half a megabyte, a film of an example takes some."""
 IMAGES_HZ = 120
 """Most images a second of one sensor: twice the fastest camera's. Only the newest counts, so others may be dropped."""

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from itertools import chain
 
 from actum.flow import Flow
-from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
+from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS, MOST_OPEN_SEGMENTS
 from actum.messages import Action, Posture, Segment
 from actum.node import Counters, Tick
 from actum.stamps import Order
@@ -34,7 +34,7 @@ class Segmenter:
 
     def __init__(self, counters: Counters) -> None:
         self._counters = counters
-        self._streams = Streams()
+        self._streams = Streams(counters)
         self._open: OrderedDict[str, OpenSegment] = OrderedDict()
         self._answered = AnsweredSegments(counters)
         self._marked: deque[OpenSegment] = deque(maxlen=MARKED)
@@ -173,7 +173,12 @@ class Segmenter:
             self._counters.reject("duplicate_mark", f"second start of {mark.segment_id!r}")
             return []
         start_ns = self._streams.newest_ns if mark.stamp_ns is None else mark.stamp_ns
-        self._open[mark.segment_id] = OpenSegment.of(mark, start_ns)
+        segment = OpenSegment.of(mark, start_ns)
+        if len(self._open) >= MOST_OPEN_SEGMENTS:
+            self._answered.remember(mark.segment_id, start_ns, None)
+            self._counters.reject("too_many_segments", f"{mark.segment_id!r} beside {len(self._open)} open ones")
+            return [segment.rejected(f"too many open segments: {MOST_OPEN_SEGMENTS} at the most")]
+        self._open[mark.segment_id] = segment
         return self._settle()
 
     def _end(self, mark: Segment) -> list[ClosedSegment]:
