@@ -107,6 +107,9 @@ class ServiceSettings(BaseSettings):
     zenoh_config: Path | None = Field(
         None, description="a JSON5 file laid under the session's configuration (TLS, users)"
     )
+    credentials: Path | None = Field(
+        None, description="a folder of one role that actum deploy wrote, shown to a router at tls/host:port"
+    )
     health_file: Path | None = Field(None, description="a file touched every second while connected and working")
 
     @classmethod

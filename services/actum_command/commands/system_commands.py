@@ -31,14 +31,17 @@ NO_PAGE = "no web page: pip install 'actum[web-dashboard]'"
 def router(
     listen: Annotated[str | None, typer.Option(help=f"endpoint; default {DEFAULT_ENDPOINT} unless --config")] = None,
     config: Annotated[Path | None, typer.Option(help="a Zenoh JSON5 configuration", exists=True)] = None,
+    credentials: Annotated[
+        Path | None, typer.Option(help="the folder of a router's credentials", envvar="ACTUM_CREDENTIALS")
+    ] = None,
 ) -> None:
-    """Run the embedded Zenoh router."""
+    """Run the embedded Zenoh router; with credentials it listens anew by itself when these are renewed."""
     logging.basicConfig(level="INFO", format="router: %(message)s")
     endpoint = listen or (None if config else settings().connect)
     try:
         if endpoint is not None:
             refuse_taken(endpoint)
-        serve_router(endpoint, config, stop_on_signals())
+        serve_router(endpoint, config, stop_on_signals(), credentials)
     except SettingsError as error:
         fail(str(error))
 
@@ -61,6 +64,8 @@ def up(
 ) -> None:
     """Run router and all services here, restart what ends, until Ctrl-C."""
     here = settings()
+    if here.credentials is not None:
+        fail("everything of 'actum up' runs on this machine and shows no credentials: leave ACTUM_CREDENTIALS unset")
     try:
         source = chosen_source(source, given, path)
         refuse_taken(here.connect)

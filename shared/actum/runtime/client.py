@@ -15,7 +15,7 @@ from actum.commands import MSGPACK, Refusal, packed, unpacked
 from actum.messages import Info, Message
 from actum.runtime.inbox import Subscriber, subscribe
 from actum.runtime.outbox import Outbox
-from actum.runtime.session import RouterUnreachableError, client_config, connected
+from actum.runtime.session import RouterUnreachableError, connected, secret_config
 from actum.settings import ServiceSettings
 
 OPEN_S = 5.0
@@ -169,7 +169,7 @@ def _open(settings: ServiceSettings, wait_s: float) -> zenoh.Session:
     deadline = time.monotonic() + wait_s
     while True:
         try:
-            return zenoh.open(client_config(settings))
+            return zenoh.open(secret_config(settings))
         except zenoh.ZError:
             if time.monotonic() > deadline:
                 raise RouterUnreachableError(settings.connect) from None

@@ -28,7 +28,7 @@ from actum.runtime.outbox import Outbox
 from actum.runtime.parent import end_with_parent
 from actum.runtime.place import RETURNING_S, SETTLING_S, Place, PlaceTakenError
 from actum.runtime.reporting import Reporter, StateLog
-from actum.runtime.session import RETRY_S, client_config, open_session
+from actum.runtime.session import RETRY_S, open_session, secret_config
 from actum.runtime.waiting import Pace, stop_on_signals, wait_for
 from actum.settings import ServiceSettings, complaint
 
@@ -59,7 +59,7 @@ def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[
     service = settings_type.__module__.partition(".")[0]
     try:
         settings = from_command_line(settings_type, f"python -m {service}", flags)
-        client_config(settings)  # a wrong one is refused now, before the build, which may take long
+        secret_config(settings)  # a wrong one is refused now, before the build, which may take long
         return settings, build(settings)
     except ValidationError as error:
         print(f"{service}: {complaint(error)} (see --help)", file=sys.stderr)

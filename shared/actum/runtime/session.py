@@ -3,11 +3,13 @@
 import json
 import logging
 import threading
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import zenoh
 
+from actum.runtime.credentials import client_values, login_values
 from actum.settings import ServiceSettings, SettingsError
 
 log = logging.getLogger("actum")
@@ -16,6 +18,8 @@ OPEN_TIMEOUT_MS = 500
 """How long one attempt to reach the router may take (ms)."""
 RETRY_S = 0.2
 """Interval between two attempts (s)."""
+ENCRYPTED = ("tls/", "quic/")
+"""The beginnings of endpoints on which certificates are shown."""
 LEASE_S = 10.0
 """Zenoh's default lease (s): how long the tokens of a silent session are kept."""
 
@@ -41,12 +45,35 @@ class RouterUnreachableError(RuntimeError):
 def client_config(settings: ServiceSettings) -> zenoh.Config:
     """Build a client's configuration: one router, and no discovery, which does not cross container networks.
 
+    It names the files of the credentials and holds no secret.
+
     Raises:
-        SettingsError: the configuration file that it extends cannot be used.
+        SettingsError: the configuration file that it extends, or the credentials, cannot be used.
     """
     config = _base_config(settings.zenoh_config) if settings.zenoh_config else zenoh.Config()
-    for path, value in _client_values(settings.connect).items():
+    insert(config, _client_values(settings.connect))
+    if settings.credentials is not None:
+        if not settings.connect.startswith(ENCRYPTED):
+            raise SettingsError(f"credentials are shown to no router at {settings.connect}: use tls/host:port")
+        insert(config, client_values(settings.credentials))
+    return config
+
+
+def insert(config: zenoh.Config, values: Mapping[str, Any]) -> None:
+    """Set values of a configuration by their paths."""
+    for path, value in values.items():
         config.insert_json5(path, json.dumps(value))
+
+
+def secret_config(settings: ServiceSettings) -> zenoh.Config:
+    """Build the same with the user's name and password, where the credentials have these: to be opened, never shown.
+
+    Raises:
+        SettingsError: as `client_config`.
+    """
+    config = client_config(settings)
+    if settings.credentials is not None:
+        insert(config, login_values(settings.credentials))
     return config
 
 
@@ -74,7 +101,7 @@ def _client_values(endpoint: str) -> dict[str, Any]:
 
 def open_session(settings: ServiceSettings, stop: threading.Event) -> zenoh.Session | None:
     """Open a session, waiting for the router, which is logged once; None if stopped before."""
-    config = client_config(settings)
+    config = secret_config(settings)
     waiting = False
     while not stop.is_set():
         try:
