@@ -4,7 +4,10 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test fuzz soak test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel clean
+LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
+LOCKS := deploy/requirements
+
+.PHONY: install demo up test fuzz soak test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -139,6 +142,20 @@ schemas: $(STAMP)  ## write the JSON Schemas anew
 
 wheel: $(STAMP)  ## source distribution and wheel, in dist
 	$(BIN)/python -m build
+
+lock: $(STAMP)  ## pin what the images install, with hashes; make lock UPGRADE=--upgrade takes newer versions
+	$(BIN)/pip install --quiet --disable-pip-version-check uv
+	echo 'hatchling>=1.27' | $(LOCK) - -o $(LOCKS)/build.txt
+	$(LOCK) pyproject.toml -o $(LOCKS)/service.txt
+	$(LOCK) pyproject.toml --extra scene-simulator -o $(LOCKS)/scene_simulator.txt
+	$(LOCK) pyproject.toml --extra marker-tracker -o $(LOCKS)/marker_tracker.txt
+	$(LOCK) pyproject.toml --extra web-dashboard -o $(LOCKS)/web_dashboard.txt
+	$(LOCK) pyproject.toml --extra command-line -o $(LOCKS)/actum_command.txt
+	@# MediaPipe asks for the OpenCV with windows, which needs 220 MB of Debian's libraries; the one without does as well.
+	echo "opencv-contrib-python; python_version < '3'" > $(LOCKS)/excluded.txt
+	for extra in camera realsense openni2; do \
+	  $(LOCK) pyproject.toml --extra $$extra --extra sensor-gateway --override $(LOCKS)/excluded.txt -o $(LOCKS)/$$extra.txt || exit; done
+	rm $(LOCKS)/excluded.txt
 
 clean:
 	rm -rf $(VENV) site

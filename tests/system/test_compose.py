@@ -1,18 +1,18 @@
 """The container files: what they say, and what they do on a real engine."""
 
 import json
-import os
+import signal
 import subprocess
-import sys
 import time
-import tomllib
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import msgpack
 import pytest
 import zenoh
 
+from actum.health import FRESH_S, is_healthy
 from actum_command.processes import PAGE, SERVICES, simulated_objects
 from compose_files import DEPLOY, MAIN, ROOT, services_of
 from live import System, wait_until
@@ -23,6 +23,17 @@ UNCHECKED = {"trainer", "watch"}
 TRAINER = "model_trainer"
 ACTIONS = {"push", "pull", "put", "lift", "point"}
 STOPPED_WITHIN_S = 10.0
+COMPOSE_FILES = (MAIN, *sorted(DEPLOY.glob("compose.*.yml")))
+OVERLAYS = {"zenohd", "realsense", "openni2"}
+"""Files that are laid over another, whose services they change."""
+HARDENED = {
+    "init": True,
+    "read_only": True,
+    "tmpfs": ["/tmp:size=64m"],
+    "cap_drop": ["ALL"],
+    "security_opt": ["no-new-privileges:true"],
+}
+LOOSENING = {"read_only", "tmpfs", "cap_drop", "cap_add", "security_opt", "privileged", "user", "mem_limit"}
 
 
 @pytest.fixture(scope="module")
@@ -36,11 +47,11 @@ def test_router_seven_services_trainer_and_watch_stand_in_one_flat_list(services
 
 
 @pytest.mark.parametrize("name", sorted(SIX))
-def test_each_service_is_built_from_its_own_folder_and_extra(services, name):
-    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-    assert services[name]["build"]["args"] == {"SERVICE": name}
+def test_each_service_is_built_from_its_own_folder_and_lock(services, name):
+    arguments = services[name]["build"]["args"]
+    assert arguments["SERVICE"] == name
+    assert arguments.get("LOCK", "service") in (name, "service")
     assert services[name]["image"] == f"actum/{name}"
-    assert name.replace("_", "-") in extras
 
 
 def test_every_image_is_built_once(services):
@@ -54,6 +65,18 @@ def test_only_router_and_page_are_reached_from_outside_and_only_from_this_host(s
         "router": ["127.0.0.1:7447:7447"],
         "web_dashboard": ["127.0.0.1:8080:8080"],
     }
+
+
+@pytest.mark.parametrize("file", COMPOSE_FILES, ids=lambda file: file.name)
+def test_nobody_is_root_can_write_or_can_take_all_memory(file):
+    inherited = {name for name, service in services_of(file).items() if "extends" in service}
+    added_to = {"sensor_gateway", "router", "trainer"} if file.stem.partition(".")[2] in OVERLAYS else set()
+    for name, service in services_of(file).items():
+        if name in inherited:
+            assert not LOOSENING & set(service)
+        elif name not in added_to:
+            assert {key: service.get(key) for key in HARDENED} == HARDENED
+            assert set(service) >= {"mem_limit", "pids_limit"}
 
 
 def test_all_come_back_but_the_trainer_and_all_pass_signals_on(services):
@@ -90,7 +113,7 @@ def test_the_trainer_writes_the_model_that_the_classifier_reads(services):
     model = services["som_classifier"]["environment"]["ACTUM_MODEL"]
     assert services["trainer"]["command"][0].endswith(f"-o {model}")
     assert services["trainer"]["volumes"] == ["models:/models"]
-    assert services["som_classifier"]["volumes"] == ["models:/models:ro"]
+    assert "models:/models:ro" in services["som_classifier"]["volumes"]
 
 
 def test_what_is_taught_is_put_where_the_classifier_reads_it_and_stays(services):
@@ -100,6 +123,14 @@ def test_what_is_taught_is_put_where_the_classifier_reads_it_and_stays(services)
     assert trainer["volumes"] == ["models:/models"]
     assert trainer["entrypoint"] == ["python", "-m", "actum_model_trainer"]
     assert services["trainer"]["command"][0].startswith("test -e /models/model.npz && exit;")
+
+
+def test_who_answers_keeps_the_answers_where_they_stay(services):
+    keeping = {name for name, service in services.items() if "ACTUM_STATE" in service.get("environment", {})}
+    assert keeping == {"som_classifier", "action_fusion"}
+    for name in keeping:
+        folder = services[name]["environment"]["ACTUM_STATE"]
+        assert f"state:{folder}" in services[name]["volumes"]
 
 
 def test_two_hosts_together_run_the_router_and_the_six_services():
@@ -123,24 +154,18 @@ def test_the_router_listens_everywhere_inside_its_container():
     assert json.loads(config.get_json("mode")) == "router"
 
 
-def probe(endpoint: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "actum.runtime.probe"],
-        env={**os.environ, "ACTUM_CONNECT": endpoint},
-        capture_output=True,
-        text=True,
-        check=False,
+def test_our_router_runs_on_the_file_and_is_healthy_while_it_does(running: System, tmp_path: Path, monkeypatch):
+    health = tmp_path / "health"
+    monkeypatch.setenv("ACTUM_HEALTH_FILE", str(health))
+    router = running.start(
+        "actum_command", "router", "--config", str(ROUTER_CONFIG), "--listen", running.settings.connect
     )
-
-
-def test_our_router_runs_on_the_file_and_its_health_check_tells_whether_it_does(running: System):
-    endpoint = running.settings.connect
-    before = probe(endpoint)
-    assert before.returncode == 1
-    assert before.stderr.startswith(f"no router answers at {endpoint}")
-    running.start("actum_command", "router", "--config", str(ROUTER_CONFIG), "--listen", endpoint)
     with running.client():
-        assert probe(endpoint).returncode == 0
+        wait_until(lambda: is_healthy(health), "a healthy router")
+    router.process.send_signal(signal.SIGSTOP)
+    wait_until(lambda: not is_healthy(health), "a frozen router that is not healthy", patience_s=2 * FRESH_S)
+    router.process.send_signal(signal.SIGCONT)
+    wait_until(lambda: is_healthy(health), "a healthy router")
 
 
 def engine(*arguments: str) -> str:

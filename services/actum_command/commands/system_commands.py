@@ -37,11 +37,12 @@ def router(
 ) -> None:
     """Run the embedded Zenoh router; with credentials it listens anew by itself when these are renewed."""
     logging.basicConfig(level="INFO", format="router: %(message)s")
-    endpoint = listen or (None if config else settings().connect)
+    here = settings()
+    endpoint = listen or (None if config else here.connect)
     try:
         if endpoint is not None:
             refuse_taken(endpoint)
-        serve_router(endpoint, config, stop_on_signals(), credentials)
+        serve_router(endpoint, config, stop_on_signals(), credentials, here.health_file)
     except SettingsError as error:
         fail(str(error))
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import zenoh
 
+from actum.health import write_health
 from actum.runtime.credentials import CERTIFICATE, USERS, check, is_renewed, login_values, router_values
 from actum.runtime.session import TRANSPORT, insert
 from actum.runtime.waiting import wait_for
@@ -13,8 +14,8 @@ from actum.settings import SettingsError
 
 log = logging.getLogger("actum")
 
-RENEWAL_S = 2.0
-"""Interval (s) at which a router looks whether its certificate was renewed, which happens once in months."""
+LOOK_S = 1.0
+"""Interval (s) at which a router looks whether it works, and whether its certificate was renewed."""
 
 
 def router_config(listen: str | None, config_file: Path | None, credentials: Path | None = None) -> zenoh.Config:
@@ -34,12 +35,17 @@ def router_config(listen: str | None, config_file: Path | None, credentials: Pat
 
 
 def serve_router(
-    listen: str | None, config_file: Path | None, stop: threading.Event, credentials: Path | None = None
+    listen: str | None,
+    config_file: Path | None,
+    stop: threading.Event,
+    credentials: Path | None = None,
+    health_file: Path | None = None,
 ) -> None:
     """Run a router until stopped; with a folder of credentials it is opened anew whenever these have been renewed.
 
-    A router reads its certificate only when it begins to listen. Its clients, which then lose it for some tenths of
-    a second, show theirs anew each time they connect.
+    The health file is touched every second while the router answers queries of what it is. A router reads its
+    certificate only when it begins to listen. Its clients, which then lose it for some tenths of a second, show theirs
+    anew each time they connect.
 
     Raises:
         SettingsError: the endpoint is taken, or the configuration or the credentials are refused.
@@ -48,7 +54,7 @@ def serve_router(
         session = _opened(listen, config_file, credentials)
         log.info("router %s listens on %s", session.zid(), listen or config_file)
         try:
-            _wait_for_renewal(credentials, stop)
+            _wait_for_renewal(session, credentials, health_file, stop)
         finally:
             session.close()
 
@@ -64,16 +70,17 @@ def _opened(listen: str | None, config_file: Path | None, credentials: Path | No
         raise SettingsError(f"no router can be started on {listen or config_file}: {reason}") from None
 
 
-def _wait_for_renewal(credentials: Path | None, stop: threading.Event) -> None:
-    """Wait until stopped, or until the folder holds another certificate that can be used."""
-    if credentials is None:
-        wait_for(stop)
-        return
-    shown = (credentials / CERTIFICATE).read_bytes()
-    while not stop.wait(RENEWAL_S):
-        if is_renewed(credentials, shown):
-            log.info("the certificate in %s was renewed: listening anew", credentials)
+def _wait_for_renewal(
+    session: zenoh.Session, credentials: Path | None, health_file: Path | None, stop: threading.Event
+) -> None:
+    """Wait until stopped, or until the folder holds another certificate that can be used; keep the health file."""
+    shown = (credentials / CERTIFICATE).read_bytes() if credentials else b""
+    while credentials is None or not is_renewed(credentials, shown):
+        if health_file is not None:
+            write_health(health_file, any(session.get(f"@/{session.zid()}/router", timeout=LOOK_S)))
+        if wait_for(stop, LOOK_S):
             return
+    log.info("the certificate in %s was renewed: listening anew", credentials)
 
 
 def _default_config() -> zenoh.Config:
