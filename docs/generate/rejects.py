@@ -43,6 +43,10 @@ OF_ALL: Mapping[str, Problem] = {
         "The message names another sensor, agent or service than the key it came on, or is an image of the other kind.",
         "Let `sensor`, `agent` and `service` be those of the key, or leave `sensor` out.",
     ),
+    "unwritable_state": Problem(
+        "An answer could not be written to the folder `ACTUM_STATE`: after a restart it may be given otherwise.",
+        "Make room on that disk, and the folder writable.",
+    ),
     "refused_command": Problem(
         "A command was not carried out: there is none of that name, its fields are wrong, or it cannot be done now.",
         "The asker was told why; so does the latest error.",
@@ -156,6 +160,10 @@ OF_FUSION: Mapping[str, Problem] = {
     "bad_action": Problem(
         "A final action has no label, or no end; it is answered with an event that is not valid.",
         "Correct the program that puts actions; those of `som_classifier` have both.",
+    ),
+    "incomplete_segment": Problem(
+        "Postures or objects of a segment never came, so that no object can be told; the event has `valid: false`.",
+        "See the event's `reason`, below.",
     ),
     "duplicate_segment": Problem(
         "The same final action came twice; the second is left out.",

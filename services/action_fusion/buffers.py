@@ -66,6 +66,10 @@ class Buffer(Generic[S]):
         """Tell whether a sample belongs to a segment that has been answered without it."""
         return any(stamp_ns in segment for segment in self._answered)
 
+    def stamps_since(self, start_ns: int) -> list[int]:
+        """List the stamps from `MEMORY_NS` before a segment's start on."""
+        return [sample.stamp_ns for sample in self._samples if sample.stamp_ns >= start_ns - MEMORY_NS]
+
     def of_segment(self, start_ns: int, end_ns: int) -> list[S]:
         """List the samples of a segment and of `MEMORY_NS` before it, in the session of the last sample.
 

@@ -8,11 +8,15 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import IO, Self
 
 from actum.runtime.parent import PARENT
 from actum.runtime.serving import TAKEN, UNUSABLE
+
+STATE = "ACTUM_STATE"
+"""The environment variable with the folder in which services keep their last answers."""
 
 RESTART_S = (0.5, 1.0, 2.0, 4.0, 8.0)
 """The back-off (s): how long a program that has ended waits for its first, second … restart."""
@@ -54,10 +58,12 @@ class Supervisor:
     """Starts programs, restarts those that end by themselves, and stops all at the end.
 
     Programs end with this process, even if it is killed. Their output goes to `log`, or to this process's own output.
+    Services keep their last answers in a folder of this run, so that one that is restarted goes on where it ended.
     """
 
     def __init__(self, log: Path | None = None) -> None:
         self._log: IO[bytes] | None = log.open("ab") if log else None
+        self._state = TemporaryDirectory(prefix="actum-state-", ignore_cleanup_errors=True)
         self._children: list[_Child] = []
 
     def __enter__(self) -> Self:
@@ -118,6 +124,7 @@ class Supervisor:
         """Send every process SIGTERM, and kill those that do not end."""
         _stop(self._children)
         self._children.clear()
+        self._state.cleanup()
         if self._log:
             self._log.close()
             self._log = None
@@ -125,7 +132,7 @@ class Supervisor:
     def _spawn(self, program: Program) -> subprocess.Popen[bytes]:
         return subprocess.Popen(
             [sys.executable, "-m", program.module, *program.arguments],
-            env={**os.environ, **program.environment, PARENT: str(os.getpid())},
+            env={STATE: self._state.name, **os.environ, **program.environment, PARENT: str(os.getpid())},
             stdin=subprocess.DEVNULL,
             stdout=self._log,
             stderr=subprocess.STDOUT if self._log else None,

@@ -9,6 +9,8 @@ from actum.limits import MAX_SEGMENT_NS
 from actum.messages import Hand, Segment
 from som_classifier.frames import Frame
 
+WITHOUT_END = "start without end"
+"""How the reasons begin of segments that are given up."""
 LONGEST_WHY = 500
 """Characters of a frame's reason that a segment's reason quotes: a source may send a text of any length."""
 
@@ -46,6 +48,11 @@ class OpenSegment:
     def known_agent(self) -> int | None:
         """The agent that the mark names, or the nearest one; None where neither is known."""
         return self.nearest if self.agent is None else self.agent
+
+    @property
+    def latest_ns(self) -> int:
+        """Its end or, where that is not known, the latest that it may have."""
+        return (self.start_ns or 0) + MAX_SEGMENT_NS if self.end_ns is None else self.end_ns
 
     def holds(self, stamp_ns: int) -> bool:
         """Tell whether an instant lies within it, as far as its start and end are known."""

@@ -19,6 +19,10 @@ MEMORY_NS = MAX_SEGMENT_NS + MAX_SKEW_NS
 """Frames are kept for this long (ns), so that a segment of any length is whole when its late end mark comes."""
 
 
+FAR_FUTURE_NS = 2**62
+"""Stands for the end of what has none: later than any stamp."""
+
+
 class Stream:
     """One agent's postures, stamps rising.
 
@@ -143,6 +147,18 @@ class Streams:
         )
         stamp_ns, _, agent = min(valid, default=(None, None, 0))
         return None if stamp_ns is None else (stamp_ns, agent)
+
+    def nearest(self, start_ns: int, end_ns: int) -> int | None:
+        """Return the agent nearest to the camera at the first valid frame within bounds, once that is certain."""
+        first = self.first(start_ns, end_ns)
+        return first[1] if first is not None and self.complete(start_ns, first[0]) else None
+
+    def since(self, start_ns: int) -> list[Frame]:
+        """List everybody's frames from a stamp on, stamps rising; where there is none, the newest one before it."""
+        listed = chain.from_iterable(stream.between(start_ns, FAR_FUTURE_NS) for stream in self._streams.values())
+        newest = (stream.between(stream.newest_ns, stream.newest_ns) for stream in self._streams.values())
+        frames = list(listed) or list(chain.from_iterable(newest))
+        return sorted(frames, key=lambda frame: frame.stamp_ns)
 
     def first_reason(self, start_ns: int, end_ns: int) -> str | None:
         """Return the reason of the first frame that the preprocessor could not use; None where there is none."""

@@ -27,8 +27,8 @@ class Topic:
     """One row of the table: what a key carries and how it is sent.
 
     `leaf` is the key below `actum/<sensor>/`, with `{}` for the agent or service. `ring` is the depth of a
-    subscriber's ring. `cached` topics go through an advanced publisher, so that late or interrupted
-    subscribers recover them.
+    subscriber's ring. A publisher keeps its last `cache` messages on each key, so that late or interrupted
+    subscribers recover them; 0 where nobody does.
     """
 
     leaf: str
@@ -36,33 +36,38 @@ class Topic:
     congestion: Literal["drop", "block"] = "drop"
     priority: Literal["interactive_high", "data_high", "data_low", "background"] = "data_high"
     ring: int = 256
-    cached: bool = False
+    cache: int = 0
     max_bytes: int = MEGABYTE
 
 
-SKELETON = Topic("skeleton", m.Skeleton)
+TEN_SECONDS = 300
+"""Messages of a stream in ten seconds, at 30 a second: a link that was cut for less loses none."""
+ROOM_FOR_MANY = 2048
+"""Depth of a ring that takes ten seconds of several people's postures at once, as when a link is back."""
+
+SKELETON = Topic("skeleton", m.Skeleton, ring=512, cache=TEN_SECONDS)
 """Joints in the camera frame, of everybody in view."""
 COLOR = Topic("image/color", m.Image, priority="data_low", ring=1, max_bytes=64 * MEGABYTE)
 """Colour images: only the newest counts, so they may be dropped."""
 DEPTH = Topic("image/depth", m.Image, priority="data_low", ring=1, max_bytes=64 * MEGABYTE)
 """Depth images, sent as colour images are."""
-POSTURE = Topic("posture/{}", m.Posture)
+POSTURE = Topic("posture/{}", m.Posture, ring=ROOM_FOR_MANY, cache=TEN_SECONDS)
 """Joints of one person, in the frames of that person's body."""
-OBJECTS = Topic("objects", m.Objects)
+OBJECTS = Topic("objects", m.Objects, ring=512, cache=TEN_SECONDS)
 """Every object's pose."""
-SEGMENT = Topic("segment", m.Segment, congestion="block", priority="interactive_high", cached=True)
-"""Start and end marks: none may be lost."""
-ACTION = Topic("action/{}", m.Action, max_bytes=4 * MEGABYTE)
+SEGMENT = Topic("segment", m.Segment, congestion="block", priority="interactive_high", cache=256)
+"""Start and end marks: none may be lost. Two a second for two minutes are kept."""
+ACTION = Topic("action/{}", m.Action, cache=64, max_bytes=4 * MEGABYTE)
 """The classifier's estimates; with maps and traces they are large."""
-EVENT = Topic("event/{}", m.Event, cached=True)
+EVENT = Topic("event/{}", m.Event, cache=64)
 """Events, one for each segment: verb, object and result."""
 STATUS = Topic("status/{}", m.Status, priority="background")
 """A service's health, once a second."""
 INFO = Topic("info/{}", m.Info)
 """A service's description; a queryable."""
-TRUTH = Topic("truth", m.Truth, cached=True)
+TRUTH = Topic("truth", m.Truth, cache=64)
 """The simulated scene's ground truth."""
-TRAINING = Topic("training", m.Training, cached=True)
+TRAINING = Topic("training", m.Training, cache=64)
 """What the trainer does and has."""
 
 TOPICS: tuple[Topic, ...] = (

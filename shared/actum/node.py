@@ -1,9 +1,9 @@
 """The interface of a service, a pure step over messages and ticks; and its replay without a transport."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from actum import keys
 from actum.messages import Message
@@ -63,6 +63,18 @@ class Node(Protocol):
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
         """Handle one message or tick, and return the messages to put."""
+        ...
+
+
+@runtime_checkable
+class Remembering(Protocol):
+    """A node that answers segments, each once, also across its restarts."""
+
+    def remember(self, answers: Sequence[Message]) -> None:
+        """Take the answers that were given before this process was started: to their segments it gives no others.
+
+        Called before all else, and only where these are known. Messages of that time may then come once more.
+        """
         ...
 
 

@@ -107,6 +107,10 @@ class ServiceSettings(BaseSettings):
     zenoh_config: Path | None = Field(
         None, description="a JSON5 file laid under the session's configuration (TLS, users)"
     )
+    state: Path | None = Field(
+        None,
+        description="a folder for the last answers of the classifier and the fusion: started anew, they give no others",
+    )
     health_file: Path | None = Field(None, description="a file touched every second while connected and working")
 
     @classmethod

@@ -124,6 +124,8 @@ class Action(Message):
     """The mean activity of each map over the segment, rows by columns, by the map's name; null unless asked for."""
     trace: Tensor | None = None
     """The way over the first map, a row and a column per step; null unless asked for."""
+    session_id: Name = ""
+    """The run of the source, as the posture's; empty where no posture had come."""
 
 
 class ObjectPose(Model):
@@ -246,3 +248,5 @@ class Event(Message):
     was to be pushed or pulled went sideways."""
     why: Reason | None = None
     """Why there is no object, and which ones another moved; null where there is one."""
+    session_id: Name = ""
+    """The run of the source, as the action's."""

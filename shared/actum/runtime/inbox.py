@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 
 import zenoh
 from zenoh import ext, handlers
@@ -10,39 +11,64 @@ from actum import keys
 
 Subscriber = zenoh.Subscriber[zenoh.Handler[zenoh.Sample]] | ext.AdvancedSubscriber[zenoh.Handler[zenoh.Sample]]
 
-RECOVERED = (keys.SEGMENT, keys.ACTION, keys.EVENT)
-"""Topics on which every message counts: lost ones are requested again from their publishers."""
+ANSWERED = (keys.SEGMENT, keys.ACTION, keys.EVENT)
+"""Topics on which every message counts: lost ones are requested again, and those of the recent past."""
+STREAMS = (keys.SKELETON, keys.POSTURE, keys.OBJECTS)
+"""Topics on which every message counts as long as its segment is not answered: lost ones are requested again."""
 HISTORY_DEPTH = 16
-"""Most earlier messages requested on each key."""
+"""Most earlier messages requested on each key by a process that does not know what was answered before it."""
 HISTORY_S = 4.0
-"""Oldest message requested (s): two seconds of skew, two of waiting. Older ones have been answered."""
+"""Oldest message that it requests (s): two seconds of skew, two of waiting. Older ones have been answered."""
+RESUMED_S = 90.0
+"""Oldest mark or action requested where it is known what was answered (s): a longest segment, and half as long away."""
+RESUMED_FRAMES_S = 10.0
+"""Oldest frame that it requests (s): as long as publishers keep them."""
 
 
-def subscribe(session: zenoh.Session, key_expr: str, ring: int, history_s: float | None = None) -> Subscriber:
-    """Declare a subscriber. One with `history_s` also requests lost messages, and those put so long before it (s)."""
+@dataclass(frozen=True)
+class Reach:
+    """How far back messages are requested that were put before this process was there.
+
+    Attributes:
+        answered_s: oldest mark, action or event (s).
+        frames_s: oldest skeleton, posture or objects (s); 0 for those alone that come from now on.
+        depth: most of them on each key; None for as many as are kept.
+    """
+
+    answered_s: float = HISTORY_S
+    frames_s: float = 0.0
+    depth: int | None = HISTORY_DEPTH
+
+    def history(self, topic: keys.Topic) -> ext.HistoryConfig | None:
+        """Return the request for a topic's earlier messages, None where there is to be none."""
+        oldest_s = self.answered_s if topic in ANSWERED else self.frames_s
+        if not oldest_s:
+            return None
+        depth = min(self.depth or topic.cache, topic.cache)
+        return ext.HistoryConfig(detect_late_publishers=True, max_samples=depth, max_age=oldest_s)
+
+
+def subscribe(session: zenoh.Session, key_expr: str, ring: int) -> Subscriber:
+    """Declare a subscriber to what is put from now on."""
+    return session.declare_subscriber(key_expr, handlers.RingChannel(ring))
+
+
+def subscribe_recovering(
+    session: zenoh.Session, key_expr: str, ring: int, history: ext.HistoryConfig | None
+) -> Subscriber:
+    """Declare a subscriber that also requests what is lost on the way and, by `history`, what was put before it."""
+    recovery = ext.RecoveryConfig(heartbeat=True, periodic_queries=None)
     channel: handlers.RingChannel[zenoh.Sample] = handlers.RingChannel(ring)
-    if history_s is None:
-        return session.declare_subscriber(key_expr, channel)
-    return ext.declare_advanced_subscriber(
-        session,
-        key_expr,
-        channel,
-        history=ext.HistoryConfig(detect_late_publishers=True, max_samples=HISTORY_DEPTH, max_age=history_s),
-        recovery=ext.RecoveryConfig(heartbeat=True, periodic_queries=None),
-    )
+    return ext.declare_advanced_subscriber(session, key_expr, channel, history=history, recovery=recovery)
 
 
 class Inbox:
-    """The subscriptions of one node; messages of the last `history_s` are requested, of `HISTORY_S` at the most (s)."""
+    """The subscriptions of one node."""
 
     def __init__(
-        self, session: zenoh.Session, topics: Iterable[keys.Topic], sensor: str, history_s: float = HISTORY_S
+        self, session: zenoh.Session, topics: Iterable[keys.Topic], sensor: str, reach: Reach = Reach()
     ) -> None:
-        history_s = min(history_s, HISTORY_S)
-        self._subscribers = [
-            subscribe(session, keys.pattern(topic, sensor), topic.ring, history_s if topic in RECOVERED else None)
-            for topic in topics
-        ]
+        self._subscribers = [_subscribed(session, topic, sensor, reach) for topic in topics]
         self._threads: list[threading.Thread] = []
 
     def start(self, receive: Callable[[zenoh.Sample], None]) -> None:
@@ -63,6 +89,13 @@ class Inbox:
     def working(self) -> bool:
         """Whether every thread still reads."""
         return all(thread.is_alive() for thread in self._threads)
+
+
+def _subscribed(session: zenoh.Session, topic: keys.Topic, sensor: str, reach: Reach) -> Subscriber:
+    pattern = keys.pattern(topic, sensor)
+    if topic in (*ANSWERED, *STREAMS):
+        return subscribe_recovering(session, pattern, topic.ring, reach.history(topic))
+    return subscribe(session, pattern, topic.ring)
 
 
 def _drain(subscriber: Subscriber, receive: Callable[[zenoh.Sample], None]) -> None:
