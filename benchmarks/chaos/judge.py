@@ -7,7 +7,7 @@ from typing import Literal
 
 from actum.messages import Event
 
-from .faults import CAMERA_HOST, LINK, ROUTERS, SERVICES
+from .faults import CAMERA_HOST, LINK, ROUTERS
 from .hearing import Heard
 from .marking import Marked
 from .recovery import Strike
@@ -19,19 +19,23 @@ LOOK_BACK_S = 10.0
 """How long before a segment what went on may still show in it (s): where objects were, which way somebody stood."""
 FRAMES = ("sensor_gateway", "pose_preprocessor", "som_classifier", *ROUTERS, LINK)
 """Those by whose fault the classifier may lack frames."""
-ANYBODY = (*SERVICES, *ROUTERS, LINK)
+OBJECTS = (*CAMERA_HOST, "action_fusion", *ROUTERS, LINK)
+"""Those by whose fault it may be unknown where the objects were."""
 REASONS: Mapping[str, Collection[str]] = {
     "the source started anew": ("sensor_gateway killed",),
+    "the classifier was not there": ("som_classifier killed",),
+    "the fusion was not there": ("action_fusion killed",),
+    "frames lost": FRAMES,
     "no person": FRAMES,
     "no usable frame": FRAMES,
     "too few frames": FRAMES,
+    "postures lost": ("action_fusion", *FRAMES),
+    "objects lost": OBJECTS,
 }
 """How reasons begin that a fault makes true, each with victims, or a victim and what befell it.
 
 That a start or an end of a mark was missing is never true: the client put both, and was there to put them again.
 """
-OBJECTS = (*CAMERA_HOST, "action_fusion", *ROUTERS, LINK)
-"""Those by whose fault it may be unknown where the objects were."""
 
 
 @dataclass(frozen=True)

@@ -60,7 +60,9 @@ class Run:
             RouterUnreachableError: there is no router.
         """
         with Client(self.hosts.client_settings, READY_S) as client:
-            listening = [client.listen(keys.pattern(topic, client.sensor)) for topic in (*STREAMS, *ANSWERS)]
+            streams = [client.listen(keys.pattern(topic, client.sensor)) for topic in STREAMS]
+            answers = [client.listen_back(keys.pattern(topic, client.sensor), SETTLE_S) for topic in ANSWERS]
+            listening = [*streams, *answers]
             self._wait_until_ready(client, listening)
             began_s, waiting = time.monotonic(), deque(self.faults)
             while waiting or self._going_on or self.marker.played < self.segments:
