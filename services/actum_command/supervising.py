@@ -110,6 +110,14 @@ class Supervisor:
         child.due_s = now_s + delay_s
         return f"{child.program.name} ended with code {child.process.returncode}: restart in {delay_s:g} s"
 
+    def process_id(self, program: Program) -> int:
+        """Return the id of the process that runs a program, or of the last one that did.
+
+        Raises:
+            KeyError: it was never started, or was ended.
+        """
+        return {id(child.program): child.process.pid for child in self._children}[id(program)]
+
     def end(self, program: Program) -> None:
         """Stop one program for good."""
         ending = [child for child in self._children if child.program is program]
