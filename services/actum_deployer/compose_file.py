@@ -22,7 +22,7 @@ def compose_file(deployment: Deployment, host: Host) -> str:
     """Return the text of the file."""
     services = {program.name: _service(deployment, host, program) for program in programs(deployment, host)}
     mounts = [mount for service in services.values() for mount in service["volumes"]]
-    volumes = {mount.partition(":")[0]: {} for mount in mounts if not mount.startswith(".")}
+    volumes: dict[str, Any] = {mount.partition(":")[0]: {} for mount in mounts if not mount.startswith(".")}
     content = {"name": f"actum-{host.name}", "services": services, **({"volumes": volumes} if volumes else {})}
     about = f"# What runs on {host.name}, made by 'actum deploy init'. Settings of yours belong into {SETTINGS}.\n"
     return about + yaml.safe_dump(content, sort_keys=False, width=120)
