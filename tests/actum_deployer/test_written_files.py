@@ -16,6 +16,7 @@ from actum_deployer.deployment import Deployment, hosts_of
 from actum_deployer.writing import write_deployment
 
 HOSTS = hosts_of("camera=192.168.1.5,compute=192.168.1.6")
+USUAL = Path(__file__).parents[2] / "deploy" / "zenoh" / "router.json5"
 SECRETS = {"key.pem", "user.json5", "users.txt"}
 
 
@@ -131,3 +132,12 @@ def test_credentials_that_cannot_be_used_are_refused_by_name(damage: str, writte
         (folder / "certificate.pem").write_text("nothing")
     with pytest.raises(SettingsError, match=r"credentials: .*viewer"):
         check(folder)
+
+
+@pytest.mark.parametrize("secured", [True, False])
+def test_but_for_security_a_router_is_the_usual_one(secured: bool, tmp_path: Path) -> None:
+    write_deployment(Deployment(HOSTS, secured=secured), tmp_path, days=30)
+    usual = zenoh.Config.from_file(USUAL)
+    made = zenoh.Config.from_file(tmp_path / "camera" / "router.json5")
+    for path in ("mode", "scouting", "transport/shared_memory", "transport/link/tx", "adminspace"):
+        assert made.get_json(path) == usual.get_json(path), path
