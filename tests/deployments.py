@@ -9,6 +9,7 @@ from pathlib import Path
 
 from actum.runtime import Client
 from actum.settings import ServiceSettings, host_and_port
+from actum_command.processes import simulated_objects
 from actum_deployer.deployment import Deployment, hosts_of
 from actum_deployer.roles import PEOPLES, ROLES, Role
 from actum_deployer.writing import write_deployment
@@ -41,7 +42,7 @@ class Deployed:
         return f"{self.deployment.transport}/127.0.0.1:{port}"
 
     def settings(self, identity: str, host: str, sensor: str = "kinect0") -> ServiceSettings:
-        folder = self.credentials(identity)
+        folder = self.credentials(identity) if self.deployment.secured else None
         return ServiceSettings(connect=self.endpoint(host), sensor=sensor, credentials=folder)
 
     def client(self, identity: str, host: str, sensor: str = "kinect0", wait_s: float = PATIENCE_S) -> Client:
@@ -54,7 +55,8 @@ class Deployed:
 
     def start_router(self, host: str) -> Running:
         folder = self.root / host
-        files = ("--config", str(folder / "router.json5"), "--credentials", str(folder / "credentials" / "router"))
+        credentials = ("--credentials", str(folder / "credentials" / "router")) if self.deployment.secured else ()
+        files = ("--config", str(folder / "router.json5"), *credentials)
         running = self._start(f"router-{host}", {**os.environ}, "-m", "actum_command", "router", *files)
         wait_until(lambda: "listens on" in running.said(), f"the router of {host} listens")
         return running
@@ -64,13 +66,15 @@ class Deployed:
         return self._start(arguments[0], self.environment(identity, host), "-m", "actum_command", *arguments)
 
     def environment(self, identity: str, host: str, sensor: str = "kinect0") -> dict[str, str]:
+        shown = {"ACTUM_CREDENTIALS": str(self.credentials(identity))} if self.deployment.secured else {}
         return {
             **os.environ,
+            **shown,
             "ACTUM_CONNECT": self.endpoint(host),
             "ACTUM_SENSOR": sensor,
-            "ACTUM_CREDENTIALS": str(self.credentials(identity)),
             "ACTUM_TRAINER_DATA": str(self.root / "teaching"),
             "OPENBLAS_NUM_THREADS": "1",
+            **simulated_objects(),
         }
 
     def _start(self, name: str, environment: dict[str, str], *arguments: str) -> Running:

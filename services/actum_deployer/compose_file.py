@@ -10,8 +10,10 @@ from actum_deployer.deployment import Deployment, Host
 from actum_deployer.programs import FILES, INSTALLED, SETTINGS, STATEFUL, Data, Program, environment, programs
 from actum_deployer.roles import CLASSIFIER, GATEWAY, ROUTER, TRACKER, TRAINER
 
-PIDS = 128
+PIDS = 256
 """Most processes and threads of a container: some tens are in use."""
+TEMPORARY = "/tmp:size=64m"
+"""The only place where a container may write besides its volumes: health file, caches of libraries."""
 DATA = Data(models="/models", state="/state")
 """Where volumes are mounted: folders that the images make their users'."""
 PAGE_IN_CONTAINER = {"ACTUM_PAGE_HOST": "0.0.0.0", "ACTUM_PAGE_GUARDED": "1"}
@@ -56,7 +58,7 @@ def _closed(program: Program) -> dict[str, Any]:
         "restart": "unless-stopped",
         "user": f"{SERVICES_USER}:{SERVICES_USER}",
         "read_only": True,
-        "tmpfs": ["/tmp"],
+        "tmpfs": [TEMPORARY],
         "cap_drop": ["ALL"],
         "security_opt": ["no-new-privileges:true"],
         "mem_limit": f"{program.memory_mb}m",
@@ -88,5 +90,4 @@ def _router(host: Host) -> dict[str, Any]:
     return {
         "command": ["router", "--config", f"{INSTALLED}/router.json5"],
         "ports": [f"{host.port}:{host.port}"],
-        "healthcheck": {"test": ["CMD", "python", "-m", "actum.runtime.probe"], "interval": "10s", "retries": 3},
     }

@@ -8,7 +8,7 @@ VENV = "/opt/actum"
 """Where actum is installed: a virtual environment of its own."""
 DATA = Data(models="/var/lib/actum", state="/var/lib/actum/state")
 """Where services keep what they learn and have answered; systemd makes the folder theirs."""
-TASKS = 128
+TASKS = 256
 """Most processes and threads of a service: some tens are in use."""
 UNIT = """\
 # Made by 'actum deploy init'. Settings of yours belong into {installed}/{settings}.

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 import zenoh
+from zenoh import ext
 
 from actum import keys
 from actum.messages import Message, Skeleton
@@ -18,9 +19,9 @@ from actum.settings import ServiceSettings
 from actum_deployer.certificates import Signed, new_authority, new_certificate, now
 from deployments import Deployed, deployed
 from empty_messages import action, image, mark, skeleton, status
+from events import event
 from live import PATIENCE_S, wait_until
 from scenes import acting_on
-from scenes import action as final_action
 from third_session import Third, passed_on, received
 
 pytestmark = pytest.mark.system
@@ -117,22 +118,24 @@ def test_a_router_of_another_authority_is_not_believed(deployment: Deployed, thi
     assert_refused(settings.model_copy(update={"credentials": folder}), third)
 
 
-PUSH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65))
 OTHERS_FRAME = Skeleton(stamp_ns=1, sensor="kinect1", agents=[], session_id="then")
-MARK, POSTURE = mark("start", 1), PUSH.postures()[0]
+MARK, EVENT = mark("start", 1), event("s1", "push object 1, the cup")
+POSTURE = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65)).postures()[0]
 DENIED: list[tuple[str, Message]] = [
     ("viewer", MARK),
-    ("viewer", final_action("push")),
+    ("viewer", EVENT),
+    ("viewer", action(1, 2)),
     ("viewer", status()),
     ("viewer", skeleton(1)),
     ("recorder", MARK),
-    ("switch", final_action("push")),
+    ("switch", EVENT),
     ("gateway.kinect0", OTHERS_FRAME),
     ("gateway.kinect0", MARK),
     ("gateway.kinect0", POSTURE),
     ("preprocessor.kinect0", OTHERS_FRAME),
     ("preprocessor.kinect0", action(1, 2)),
     ("tracker.kinect0", image(1)),
+    ("classifier.kinect0", EVENT),
     ("fusion.kinect0", MARK),
     ("trainer.kinect0", MARK),
 ]
@@ -142,6 +145,7 @@ ALLOWED: list[tuple[str, Message]] = [
     ("classifier.kinect0", MARK),
     ("classifier.kinect0", action(1, 2)),
     ("preprocessor.kinect0", POSTURE),
+    ("fusion.kinect0", EVENT),
 ]
 
 
@@ -182,6 +186,28 @@ def test_a_viewer_gets_no_images_and_who_may_see_them_gets_them(deployment: Depl
         assert came == [key]
         wait_until(lambda: keys.key(keys.SKELETON, "kinect0") in received(wanted[1]), "the viewer is told the rest")
         assert received(wanted[0]) == []
+
+
+def test_who_comes_late_is_told_the_last_events_by_the_other_host(deployment: Deployed) -> None:
+    """History goes by keys of its own, which access control knows as well."""
+    settings = deployment.settings("viewer", "camera")
+    with deployment.client("fusion.kinect0", "compute") as fusion, zenoh.open(secret_config(settings)) as session:
+        fusion.put(EVENT)
+        late = ext.declare_advanced_subscriber(
+            session,
+            keys.pattern(keys.EVENT, "kinect0"),
+            zenoh.handlers.RingChannel(16),
+            history=ext.HistoryConfig(detect_late_publishers=True, max_samples=16),
+        )
+        heard: list[str] = []
+        wait_until(lambda: heard.extend(received_by(late)) or bool(heard), "the event that was put before")
+        assert heard == [keys.key_of(EVENT)]
+        late.undeclare()
+
+
+def received_by(subscriber: ext.AdvancedSubscriber) -> list[str]:
+    sample = subscriber.try_recv()
+    return [] if sample is None else [str(sample.key_expr)]
 
 
 def test_a_viewer_cannot_stand_in_for_a_service(deployment: Deployed, third: Third) -> None:
