@@ -1,7 +1,7 @@
 """The one runtime: everything that knows Zenoh, clocks, signals and threads."""
 
 from actum.runtime.bridging import run_bridge
-from actum.runtime.client import Client, Listening, NotAnsweredError, Received
+from actum.runtime.client import Answer, Client, Listening, NotAnsweredError, Received
 from actum.runtime.extras import needs_extra
 from actum.runtime.fronting import Front, run_front
 from actum.runtime.obstacles import obstacle
@@ -12,6 +12,7 @@ from actum.runtime.session import RouterUnreachableError
 from actum.runtime.waiting import Pace, stop_on_signals
 
 __all__ = [
+    "Answer",
     "Client",
     "Front",
     "Listening",
