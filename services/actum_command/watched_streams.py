@@ -3,7 +3,6 @@
 import hashlib
 from dataclasses import dataclass, field
 
-from actum import keys
 from actum.messages import Image, Message, Skeleton
 from actum.node import SECOND_NS
 
@@ -64,7 +63,7 @@ def _rate_hz(times_ns: list[int]) -> float:
 
 
 def _content(message: Message) -> bytes | None:
-    """Return a digest of what a camera's noise would change; None for a frame without anybody, as of any other message."""
+    """Return what a camera's noise would change; None for a frame without anybody, and for any other message."""
     match message:
         case Image(valid=True, data=data):
             return hashlib.blake2b(data).digest()
@@ -72,7 +71,3 @@ def _content(message: Message) -> bytes | None:
             return repr([agent.joints for agent in message.agents]).encode()
         case _:
             return None
-
-
-WATCHED = (keys.SKELETON, keys.COLOR)
-"""The topics that come from a camera."""

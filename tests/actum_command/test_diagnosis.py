@@ -162,6 +162,10 @@ class Sensorless(System):
     def alive(self) -> list[str]:
         return [key for key in super().alive() if "sensor_gateway" not in key]
 
+    def listen(self, pattern: str, **_ring: int) -> Listened:
+        self._statuses = [each for each in self._statuses if getattr(each, "service", "") != "sensor_gateway"]
+        return super().listen(pattern)
+
 
 def test_where_there_is_no_sensor_both_programs_that_can_be_one_are_named() -> None:
     [problem] = [p for finding in examine(Sensorless(status("som_classifier"))).findings for p in finding.problems]  # type: ignore[arg-type]
