@@ -72,6 +72,7 @@ class CameraSource:
                 for captured in self._watched(capture):
                     if isinstance(captured, Picture):
                         back_off.worked()
+                        self._tell_rate(capture)
                     yield captured
             except CaptureEndedError:
                 return
@@ -80,6 +81,10 @@ class CameraSource:
             finally:
                 capture.close()
             yield from self._waiting(back_off.failed())
+
+    def _tell_rate(self, capture: Capture) -> None:
+        if capture.rate_hz is not None:
+            self.counters.details["rate_hz"] = f"{capture.rate_hz:g}"
 
     def _watched(self, capture: Capture) -> Iterator[Captured]:
         """Yield a capture's pictures until it is lost; frozen or black pictures count as lost unless from a file."""

@@ -32,7 +32,7 @@ class Counters:
     """A node's counters: rejected inputs by kind, the text of the newest error, and the node's state in a word or two.
 
     `counts` is of what else happened and is no fault. `details` names the `model`, the `calibration` or the `source` in
-    use, for the message `info`.
+    use, and the source's `rate_hz`, for the message `info`.
     """
 
     rejects: Counter[str] = field(default_factory=Counter)

@@ -19,13 +19,14 @@ SOURCES = {"sensor_gateway": "sensor", "marker_camera": "marker camera"}
 
 
 def doctor() -> None:
-    """Check router, services, rates, versions and the names of settings; exit 1 if anything is wrong."""
+    """Check router, services, streams, versions, clocks and the names of settings; exit 1 if anything is wrong."""
     with connect() as client:
-        findings = examine(client)
-    show(findings, console)
-    for remark in (remark for finding in findings for remark in finding.remarks):
+        found = examine(client)
+    show(found.findings, console)
+    for remark in (*(remark for finding in found.findings for remark in finding.remarks), *found.remarks):
         say(remark, style="yellow")
-    problems = [*misspelt(os.environ), *(problem for finding in findings for problem in finding.problems)]
+    own = [problem for finding in found.findings for problem in finding.problems]
+    problems = [*misspelt(os.environ), *own, *found.problems]
     for problem in problems:
         say(problem, style="red")
     if problems:
@@ -35,7 +36,7 @@ def doctor() -> None:
 
 def show(findings: list[Finding], console: Console) -> None:
     """Print the findings, as a table if the console is wide enough, and the source of each service that has one."""
-    if console.width >= TABLE_WIDTH:
+    if findings and console.width >= TABLE_WIDTH:
         console.print(table(findings))
     else:
         console.print("\n".join(paragraphs(findings)))

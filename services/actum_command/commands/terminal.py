@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from actum.runtime import Client, RouterUnreachableError, why_unreachable
+from actum.runtime import Client, RouterUnreachableError, obstacle
 from actum.settings import ServiceSettings, SettingsError, complaint
 
 UNATTENDED_WIDTH = 110  # characters, where the output goes to no terminal: enough for every table
@@ -43,8 +43,8 @@ def connect(wait_s: float = 5.0) -> Client:
     try:
         return Client(here, wait_s)
     except RouterUnreachableError as error:
-        reason = why_unreachable(here)
-        fail(f"no router answers at {here.connect}: {reason}" if reason else str(error))
+        found = obstacle(here)
+        fail(f"no router answers at {here.connect}: {found}" if found else str(error))
     except SettingsError as error:
         fail(str(error))
 

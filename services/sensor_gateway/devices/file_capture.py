@@ -18,6 +18,7 @@ class FileCapture:
     """
 
     live = False
+    rate_hz: float | None = None
 
     def __init__(
         self,

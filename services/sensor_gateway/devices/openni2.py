@@ -26,6 +26,7 @@ class OpenNi2Capture:
     """The first connected camera; gives the newest pair of colour and registered depth, stamped by the device."""
 
     live = True
+    rate_hz: float | None = None
 
     def __init__(
         self,

@@ -61,6 +61,7 @@ class RealSenseCapture:
     """The first connected RealSense camera; gives the newest pair of colour and depth, stamped by the device."""
 
     live = True
+    rate_hz: float | None = RATE_HZ
 
     def __init__(self, size: tuple[int, int] | None = None, now_ns: Callable[[], int] = steady_clock.now_ns) -> None:
         self._rs = library()

@@ -28,6 +28,7 @@ class LiveCapture:
         self._lost: str | None = None
         self._closed = False
         self._silence = Silence()
+        self.rate_hz: float | None = None
         self._thread = threading.Thread(target=self._read, daemon=True)
         self._thread.start()
 
@@ -90,6 +91,7 @@ class LiveCapture:
             capture.set(cv2.CAP_PROP_FRAME_WIDTH, self._size[0])
             capture.set(cv2.CAP_PROP_FRAME_HEIGHT, self._size[1])
         capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
+        self.rate_hz = capture.get(cv2.CAP_PROP_FPS) or None
         return capture
 
     def _keep(self, picture: Picture) -> None:

@@ -58,6 +58,8 @@ class Info(Message):
     """The machine it runs on."""
     source: str | None = None
     """What a gateway reads: a simulated scene, a file, a camera; null for other services."""
+    rate_hz: float | None = None
+    """How many frames a second a gateway's source is set to give (Hz); null where it does not say."""
     page: str | None = None
     """The address of the page that it serves to browsers; null for other services."""
     commands: list[str] = Field([])

@@ -1,17 +1,18 @@
 """The one runtime: everything that knows Zenoh, clocks, signals and threads."""
 
 from actum.runtime.bridging import run_bridge
-from actum.runtime.client import Client, Listening, NotAnsweredError, Received
+from actum.runtime.client import Answer, Client, Listening, NotAnsweredError, Received
 from actum.runtime.extras import needs_extra
 from actum.runtime.fronting import Front, run_front
+from actum.runtime.obstacles import obstacle
 from actum.runtime.parent import end_with_parent
 from actum.runtime.router import serve_router
 from actum.runtime.serving import run, run_source
 from actum.runtime.session import RouterUnreachableError
-from actum.runtime.unreachable import why_unreachable
 from actum.runtime.waiting import Pace, stop_on_signals
 
 __all__ = [
+    "Answer",
     "Client",
     "Front",
     "Listening",
@@ -21,11 +22,11 @@ __all__ = [
     "RouterUnreachableError",
     "end_with_parent",
     "needs_extra",
+    "obstacle",
     "run",
     "run_bridge",
     "run_front",
     "run_source",
     "serve_router",
     "stop_on_signals",
-    "why_unreachable",
 ]

@@ -42,6 +42,23 @@ class Received:
     size: int
 
 
+@dataclass(frozen=True)
+class Answer:
+    """A service's description, and when it was asked for and came.
+
+    Attributes:
+        info: the description; its stamp is the wall clock of its host.
+        asked_ns: when it was asked for (monotonic clock, ns).
+        answered_ns: when it came (monotonic clock, ns).
+        came_ns: the wall clock of this host at that time (ns).
+    """
+
+    info: Info
+    asked_ns: int
+    answered_ns: int
+    came_ns: int
+
+
 class NotAnsweredError(RuntimeError):
     """Nobody answered a command in time."""
 
@@ -149,10 +166,35 @@ class Client:
 
     def infos(self) -> list[Info]:
         """Return the descriptions of all services of this sensor."""
+        return [answer.info for answer in self.answers()]
+
+    def answers(self) -> list[Answer]:
+        """Return the descriptions of all services of this sensor, each with when it came."""
         every = zenoh.ConsolidationMode.NONE  # two instances of a service answer on one key
-        replies = self._session.get(keys.pattern(keys.INFO, self.sensor), timeout=1.0, consolidation=every)
-        messages = [_received(reply.ok).message for reply in replies if reply.ok is not None]
-        return [info for info in messages if isinstance(info, Info)]
+        asked_ns, answers = time.monotonic_ns(), []
+        for reply in self._session.get(keys.pattern(keys.INFO, self.sensor), timeout=1.0, consolidation=every):
+            answered_ns, came_ns = time.monotonic_ns(), time.time_ns()
+            info = None if reply.ok is None else _received(reply.ok).message
+            if isinstance(info, Info):
+                answers.append(Answer(info, asked_ns, answered_ns, came_ns))
+        return answers
+
+    def router_tells(self) -> bool:
+        """Tell whether the router describes itself to this session, as it does unless its access control forbids it."""
+        return any(reply.ok is not None for reply in self._session.get("@/*/router", timeout=1.0))
+
+    def is_offered(self, timeout_s: float = 0.5) -> bool:
+        """Tell whether the router knows of a service of this sensor that would answer, if it were asked."""
+        querier = self._session.declare_querier(keys.pattern(keys.INFO, self.sensor))
+        deadline_s = time.monotonic() + timeout_s
+        try:
+            while not querier.matching_status.matching:  # type: ignore[attr-defined]
+                if time.monotonic() > deadline_s:
+                    return False
+                threading.Event().wait(POLL_S)
+            return True
+        finally:
+            querier.undeclare()
 
     def ask(self, service: str, command: str = "", timeout_s: float = ANSWER_S, **fields: Any) -> dict[str, Any]:
         """Ask a service of this sensor for a command, or without one for the list of its commands; return its reply.

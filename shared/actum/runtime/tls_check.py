@@ -90,9 +90,9 @@ def _own_fault(tls: Tls) -> str | None:
     try:
         own = _own_certificate(tls)
     except ssl.SSLError as error:
-        reason = getattr(error, "verify_message", None) or error.reason
+        problem = getattr(error, "verify_message", None) or error.reason
         return (
-            f"{tls.certificate} is not signed by the authority in {tls.authority} ({reason}): use files of one folder"
+            f"{tls.certificate} is not signed by the authority in {tls.authority} ({problem}): use files of one folder"
         )
     if time.time() > ssl.cert_time_to_seconds(own["notAfter"]):
         return f"{tls.certificate} expired on {own['notAfter']}: renew it with 'actum deploy rotate'"
@@ -131,8 +131,8 @@ def _routers_fault(host: str, port: int, tls: Tls) -> str | None:
     except ssl.SSLCertVerificationError as error:
         if error.verify_code not in _DISTRUSTED:
             known = f"the authority in {tls.authority}" if tls.authority else "an authority that this machine knows"
-            reason = f"the router's certificate is not signed by {known} ({error.verify_message})"
-            return f"{reason}: use a folder of its deployment"
+            problem = f"the router's certificate is not signed by {known} ({error.verify_message})"
+            return f"{problem}: use a folder of its deployment"
         return _DISTRUSTED[error.verify_code].format(host=host, **_routers_certificate(host, port, tls))
     except ssl.SSLError as error:
         return None if "ALERT" in (error.reason or "") else _NO_TLS
@@ -159,12 +159,12 @@ def _refused(host: str, port: int, tls: Tls) -> str | None:
     except TimeoutError:
         return None  # it waits for what Zenoh would say now
     except ssl.SSLError as error:
-        reason = error.reason or str(error)
+        alert = error.reason or str(error)
         for end, meaning in _REFUSED.items():
-            if reason.endswith(end):
+            if alert.endswith(end):
                 return meaning.format(certificate=tls.certificate)
         return (
-            f"the router refuses {tls.certificate or 'to be shown no certificate'} ({reason.lower().replace('_', ' ')})"
+            f"the router refuses {tls.certificate or 'to be shown no certificate'} ({alert.lower().replace('_', ' ')})"
         )
     return None
 
