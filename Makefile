@@ -4,7 +4,7 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel clean
+.PHONY: install demo up test test-browser test-data test-live test-containers test-chaos test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -44,6 +44,9 @@ test-containers: $(STAMP)  ## build and run the compose file; needs a container 
 
 test-browser: $(STAMP)  ## all tests of the web page in Chromium, which has to be installed
 	$(BIN)/pytest -m browser
+
+test-chaos: $(STAMP)  ## a few services and routers killed, paused and cut off; `make chaos` does it to all
+	$(BIN)/pytest -m chaos -s
 
 test-viewers: $(STAMP)  ## what Rerun and Foxglove are sent; installs both, 600 MB
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[dev,view]"
@@ -97,6 +100,9 @@ bench-paper: $(STAMP)  ## preset paper by the paper's own protocols, step by ste
 
 bench-tracker: $(STAMP)  ## what the marker tracker costs for an image and how exact it is, beside OpenCV, about ten minutes
 	$(BIN)/python -m benchmarks.tracker
+
+chaos: $(STAMP)  ## 40 times a service or router is killed, paused or cut off, and every answer judged; ten minutes; SEED=1
+	$(BIN)/python -m benchmarks.chaos $(if $(SEED),--seed $(SEED))
 
 picture: $(STAMP)  ## the README's pictures
 	$(BIN)/python -m docs.picture docs/scene.png
