@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
 LOCKS := deploy/requirements
 
-.PHONY: install demo up test fuzz soak test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
+.PHONY: install demo up test fuzz soak test-browser test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -47,6 +47,9 @@ test-containers: $(STAMP)  ## build and run the compose file; needs a container 
 
 test-browser: $(STAMP)  ## all tests of the web page in Chromium, which has to be installed
 	$(BIN)/pytest -m "browser or long"
+
+test-chaos: $(STAMP)  ## a few services and routers killed, paused and cut off; `make chaos` does it to all
+	$(BIN)/pytest -m chaos -s
 
 test-viewers: $(STAMP)  ## what Rerun and Foxglove are sent; installs both, 600 MB
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[dev,view]"
@@ -111,6 +114,9 @@ bench-page: $(STAMP)  ## what the page costs with several browsers, some minutes
 
 bench-tracker: $(STAMP)  ## what the marker tracker costs for an image and how exact it is, beside OpenCV, about ten minutes
 	$(BIN)/python -m benchmarks.tracker
+
+chaos: $(STAMP)  ## 40 times a service or router is killed, paused or cut off, and every answer judged; ten minutes; SEED=1
+	$(BIN)/python -m benchmarks.chaos $(if $(SEED),--seed $(SEED))
 
 picture: $(STAMP)  ## the README's pictures
 	$(BIN)/python -m docs.picture docs/scene.png

@@ -18,7 +18,11 @@ from actum.settings import ServiceSettings
 
 PATIENCE_S = 30.0
 POLL_S = 0.005
-ROUTER = "import sys; from actum.runtime import *; serve_router(sys.argv[1], None, stop_on_signals())"
+ROUTER = """import sys
+from pathlib import Path
+from actum.runtime import serve_router, stop_on_signals
+serve_router(sys.argv[1], Path(sys.argv[2]) if sys.argv[2:] else None, stop_on_signals())
+"""
 """The embedded router without the command line around it, which takes longer to start."""
 
 
@@ -103,8 +107,9 @@ class System:
         """Start a script, which can import what lies beside it."""
         return self._start(script.stem, str(script), *arguments)
 
-    def start_router(self) -> Running:
-        return self._start("router", "-c", ROUTER, self.settings.connect)
+    def start_router(self, configuration: Path | None = None) -> Running:
+        given = [] if configuration is None else [str(configuration)]
+        return self._start("router", "-c", ROUTER, self.settings.connect, *given)
 
     def _start(self, name: str, *arguments: str) -> Running:
         log = self.folder / f"{name}-{len(self.running)}.log"

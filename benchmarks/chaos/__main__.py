@@ -37,7 +37,7 @@ def main() -> int:
     model = given.model or _trained(folder)
     actions = planned(given.seed, given.segments + SPARE)
     span_s = (actions[given.segments - 1].end_ns - actions[0].start_ns) / 1e9
-    faults = drawn(given.seed, given.faults, span_s)
+    faults = drawn(given.seed, given.faults, span_s, given.only)
     print(f"seed {given.seed}: {len(faults)} faults while {given.segments} actions are done; log: {folder}/log.txt")
     here = ServiceSettings()
     services = processes.services(here, model, processes.simulated_objects())
@@ -60,6 +60,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1, help="of the scene, its marks, the faults and their moments")
     parser.add_argument("--faults", type=int, default=FAULTS)
     parser.add_argument("--segments", type=int, default=SEGMENTS, help="how many actions are done, marked or not")
+    parser.add_argument("--only", default="", help="only such faults, as 'killed', 'link' or 'som_classifier paused'")
     parser.add_argument("--model", type=Path, help="a trained model; default: one is trained, which takes a minute")
     parser.add_argument("--folder", type=Path, help="for log, model and states; default: a new one")
     return parser.parse_args()

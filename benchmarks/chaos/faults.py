@@ -46,15 +46,21 @@ def possible() -> list[tuple[str, Kind]]:
     return [*product((*SERVICES, *ROUTERS), KINDS), *product((LINK,), ON_THE_NETWORK)]
 
 
-def drawn(seed: int, count: int, span_s: float) -> list[Fault]:
+def drawn(seed: int, count: int, span_s: float, only: str = "") -> list[Fault]:
     """Draw faults at random moments of a span of time: each possible one before any comes again.
 
-    The span is stretched where so many do not fit into it.
+    The span is stretched where so many do not fit into it. With `only`, just those are drawn whose name holds it.
+
+    Raises:
+        ValueError: there is no such fault.
     """
     rng = random.Random(seed)
+    wanted = [(victim, kind) for victim, kind in possible() if only in f"{victim} {kind}"]
+    if not wanted:
+        raise ValueError(f"no fault is called {only!r}: name a victim, a kind, or both, as 'link cut'")
     struck: list[tuple[str, Kind]] = []
     while len(struck) < count:
-        struck += rng.sample(possible(), len(possible()))
+        struck += rng.sample(wanted, len(wanted))
     free_s = max(span_s - count * APART_S, count * APART_S / 4)
     moments_s = sorted(rng.uniform(0.0, free_s) for _ in range(count))
     chosen = _shuffled(rng, struck[:count])

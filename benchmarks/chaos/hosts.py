@@ -134,22 +134,24 @@ class TwoHosts:
         """Return the program of a router; the camera's connects to the other one, for as long as it takes."""
         listened = f"tcp/127.0.0.1:{self._ports[name]}"
         file = self._folder / f"{name}.json5"
-        file.write_text(json.dumps(self._configuration(linked=_router_of(LINK) != name)))
+        link = None if name == _router_of(LINK) else self._endpoint(LINK)
+        file.write_text(json.dumps(router_configuration(link)))
         arguments = ["router", "--config", str(file), "--listen", listened]
         return Program(name, "actum_command", arguments, processes.common(self._settings))
 
-    def _configuration(self, linked: bool) -> Mapping[str, object]:
-        """Return a router's configuration: that of `actum router`, and the link."""
-        queue = {"size": {"data_high": 16}, "congestion_control": {"drop": {"wait_before_drop": 50_000}}}
-        retry = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
-        link = {"endpoints": [self._endpoint(LINK)], "timeout_ms": -1, "exit_on_failure": False, "retry": retry}
-        return {
-            "mode": "router",
-            "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
-            "transport": {"shared_memory": {"enabled": False}, "link": {"tx": {"queue": queue}}},
-            "adminspace": {"enabled": True},
-            **({"connect": link} if linked else {}),
-        }
+
+def router_configuration(link: str | None) -> Mapping[str, object]:
+    """Return a router's configuration: that of `actum router`, and the endpoint of the router that it links to."""
+    queue = {"size": {"data_high": 16}, "congestion_control": {"drop": {"wait_before_drop": 50_000}}}
+    retry = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
+    linked = {"endpoints": [link], "timeout_ms": -1, "exit_on_failure": False, "retry": retry}
+    return {
+        "mode": "router",
+        "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
+        "transport": {"shared_memory": {"enabled": False}, "link": {"tx": {"queue": queue}}},
+        "adminspace": {"enabled": True},
+        **({} if link is None else {"connect": linked}),
+    }
 
 
 def _router_of(name: str) -> str:

@@ -8,7 +8,7 @@ from typing import Literal
 from actum.messages import Event
 
 from .faults import CAMERA_HOST, LINK, ROUTERS
-from .hearing import Heard
+from .hearing import Heard, told
 from .marking import Marked
 from .recovery import Strike
 
@@ -129,18 +129,6 @@ def _met(marked: Marked, answered_s: float, strikes: Sequence[Strike]) -> list[S
 
 def _object(event: Event) -> int | None:
     return None if event.object is None else event.object.id
-
-
-def told(content: object) -> str:
-    """Say in few words what an event or an action says."""
-    valid, reason = getattr(content, "valid", True), getattr(content, "reason", None)
-    kind = type(content).__name__.lower()
-    if not valid:
-        return f"{kind} rejected ({reason})"
-    thing = getattr(content, "object", None)
-    number = "" if kind == "action" else f" object {'-' if thing is None else thing.id}"
-    action, frames, missed = (getattr(content, name) for name in ("action", "frames", "missed"))
-    return f"{kind} {action}{number} of {frames} frames, {missed} missed"
 
 
 def _twice(heard: Heard) -> list[str]:

@@ -87,11 +87,13 @@ class Run:
             while (received := stream.take()) is not None:
                 if received.message is not None:
                     now_s = time.monotonic()
-                    self.heard.hear(received.message, now_s)
+                    for line in self.heard.hear(received.message, now_s):
+                        self.hosts.note(line)
                     self.signs.hear(received.message, now_s, time.time_ns())
                     if isinstance(received.message, Skeleton):
                         self.marker.hear(received.message, now_s)
         for mark in self.marker.due(time.monotonic(), client.sensor, marking):
+            self.hosts.note(f"{mark.kind} of {mark.segment_id}")
             client.put(mark)
         for line in self.hosts.restart_ended():
             self.tell(line)
