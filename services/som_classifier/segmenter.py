@@ -156,11 +156,21 @@ class Segmenter:
             if segment.known_agent is None and segment.start_ns is not None:
                 segment.nearest = self._streams.nearest(segment.start_ns, segment.latest_ns)
             if segment.end_ns is not None:
-                if segment.known_agent is not None and self._streams.reached(segment.known_agent, segment.end_ns):
+                if self._is_reached(segment) and self._why_incomplete(segment) is None:
                     closed.append(self._close(segment))
             elif self._too_long(segment):
                 closed.append(self._reject(segment, NO_END))
         return closed
+
+    def _is_reached(self, segment: OpenSegment) -> bool:
+        """Tell whether the acting person's stream has reached the end of a segment that has one."""
+        assert segment.end_ns is not None
+        return segment.known_agent is not None and self._streams.reached(segment.known_agent, segment.end_ns)
+
+    def _why_incomplete(self, segment: OpenSegment) -> str | None:
+        """Return why a segment that has its end mark lacks frames, which may yet come on other people's keys."""
+        assert segment.end_ns is not None
+        return why_incomplete(self._streams, segment.start_ns or 0, segment.end_ns, self._beginning.is_resumed)
 
     def _too_long(self, segment: OpenSegment) -> bool:
         newest_ns = self._streams.newest_ns
@@ -203,7 +213,7 @@ class Segmenter:
         """Close a segment that has its end mark, with the frames that have come."""
         assert segment.end_ns is not None
         start_ns = segment.start_ns if segment.start_ns is not None else 0
-        if (reason := why_incomplete(self._streams, start_ns, segment.end_ns, self._beginning.is_resumed)) is not None:
+        if (reason := self._why_incomplete(segment)) is not None:
             return self._reject(segment, reason)
         first = self._streams.first(start_ns, segment.end_ns) if segment.start_ns is not None else None
         agent = segment.known_agent if segment.known_agent is not None or first is None else first[1]

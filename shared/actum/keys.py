@@ -47,15 +47,15 @@ TEN_SECONDS = 300
 ROOM_FOR_MANY = 2048
 """Depth of a ring that takes ten seconds of several people's postures at once, as when a link is back."""
 
-SKELETON = Topic("skeleton", m.Skeleton, ring=512, cache=TEN_SECONDS)
+SKELETON = Topic("skeleton", m.Skeleton, ring=512, cache=TEN_SECONDS, max_bytes=MOST_BYTES // 2)
 """Joints in the camera frame, of everybody in view."""
 COLOR = Topic("image/color", m.Image, priority="data_low", ring=1, max_bytes=MOST_IMAGE_BYTES)
 """Colour images: only the newest counts, so they may be dropped."""
 DEPTH = Topic("image/depth", m.Image, priority="data_low", ring=1, max_bytes=MOST_IMAGE_BYTES)
 """Depth images, sent as colour images are."""
-POSTURE = Topic("posture/{}", m.Posture, ring=ROOM_FOR_MANY, cache=TEN_SECONDS)
+POSTURE = Topic("posture/{}", m.Posture, ring=ROOM_FOR_MANY, cache=TEN_SECONDS, max_bytes=MOST_BYTES // 8)
 """Joints of one person, in the frames of that person's body."""
-OBJECTS = Topic("objects", m.Objects, ring=512, cache=TEN_SECONDS)
+OBJECTS = Topic("objects", m.Objects, ring=512, cache=TEN_SECONDS, max_bytes=MOST_BYTES // 2)
 """Every object's pose."""
 SEGMENT = Topic("segment", m.Segment, congestion="block", priority="interactive_high", cache=256)
 """Start and end marks: none may be lost. Two a second for two minutes are kept."""

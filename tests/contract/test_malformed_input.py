@@ -118,7 +118,7 @@ WRONG_PAYLOADS: dict[str, tuple[str, bytes]] = {
     "keys that are no strings": ("not_msgpack", msgpack.packb({1: 2})),
     "an empty map": ("wrong_fields", msgpack.packb({})),
     "an extension type": ("wrong_fields", msgpack.packb({"stamp_ns": msgpack.Timestamp(1, 2)})),
-    "nested without end": ("not_msgpack", b"\x91" * 100_000),
+    "nested without end": ("not_msgpack", b"\x91" * 30_000),
     "an array said to hold 2³² - 1 values": ("not_msgpack", b"\x81\xa1x\xdd\xff\xff\xff\xff"),
 }
 
