@@ -69,8 +69,8 @@ check: docs  ## format, lint, types, layers, pages
 	$(BIN)/mypy --no-error-summary
 	$(BIN)/lint-imports --no-cache > /dev/null || $(BIN)/lint-imports
 
-bench: $(STAMP)  ## latency beside a bare Zenoh chain, and throughput
-	$(BIN)/python benchmarks/latency.py
+bench: $(STAMP)  ## latency beside a bare Zenoh chain and behind a secured router, and throughput
+	$(BIN)/python -m benchmarks.latency
 
 bench-camera: $(STAMP)  ## real people in video clips, beside the same peers, about five minutes
 	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
