@@ -78,10 +78,11 @@ class Segmenter:
 
     def mark(self, mark: Segment) -> list[ClosedSegment]:
         """Take a start or end mark; return the segments it closes."""
-        if mark.segment_id in self._answered:
+        if mark.segment_id not in self._open and self._answered.has(mark):
             return self._answered.mark_again(mark, self._streams.newest_ns or 0)
         if mark.stamp_ns is None and self._beginning.is_settling:
-            return [self._unplaced(mark)]
+            self._answered.remember(mark.segment_id, None, None)
+            return [OpenSegment.of(mark, self._streams.newest_ns).rejected(UNPLACED)]
         return self._start(mark) if mark.kind == "start" else self._end(mark)
 
     def tick(self, tick: Tick) -> list[ClosedSegment]:
@@ -158,15 +159,9 @@ class Segmenter:
             if segment.end_ns is not None:
                 if segment.known_agent is not None and self._streams.reached(segment.known_agent, segment.end_ns):
                     closed.append(self._close(segment))
-            elif self._too_long(segment):
+            elif segment.is_too_long(self._streams.newest_ns):
                 closed.append(self._reject(segment, NO_END))
         return closed
-
-    def _too_long(self, segment: OpenSegment) -> bool:
-        newest_ns = self._streams.newest_ns
-        if segment.start_ns is None or newest_ns is None:
-            return False
-        return newest_ns > segment.start_ns + MAX_SEGMENT_NS + MAX_SKEW_NS
 
     def _start(self, mark: Segment) -> list[ClosedSegment]:
         if mark.segment_id in self._open:
@@ -215,11 +210,6 @@ class Segmenter:
         self._forget(segment)
         return _cut(segment, stream)
 
-    def _unplaced(self, mark: Segment) -> ClosedSegment:
-        now_ns = self._streams.newest_ns or 0
-        self._answered.remember(mark.segment_id, None, None)
-        return OpenSegment.of(mark, now_ns, now_ns).rejected(UNPLACED)
-
     def _reject(self, segment: OpenSegment, reason: str) -> ClosedSegment:
         self._forget(segment)
         return segment.rejected(reason)
@@ -239,7 +229,7 @@ class Segmenter:
             return []
         closed = [] if first else self._close_all("the source started anew")
         self._streams.clear()
-        self._answered.clear()
+        self._answered.end_session()
         self._marked.clear()
         self._late.clear()
         return closed

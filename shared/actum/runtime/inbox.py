@@ -20,9 +20,12 @@ HISTORY_DEPTH = 16
 HISTORY_S = 4.0
 """Oldest message that it requests (s): two seconds of skew, two of waiting. Older ones have been answered."""
 RESUMED_S = 90.0
-"""Oldest mark or action requested where it is known what was answered (s): a longest segment, and half as long away."""
+"""Oldest message requested where it is known what was answered (s): a longest segment, and half as long away.
+A link that was cut for longer loses what was put meanwhile."""
 RESUMED_FRAMES_S = 10.0
-"""Oldest frame that it requests (s): as long as publishers keep them."""
+"""Oldest frame requested then (s): as long as publishers keep them."""
+ANSWER_S = 1.0
+"""How long publishers may take to say what they keep (s)."""
 
 
 @dataclass(frozen=True)
@@ -30,18 +33,26 @@ class Reach:
     """How far back messages are requested that were put before this process was there.
 
     Attributes:
-        answered_s: oldest mark, action or event (s).
+        answered_s: oldest mark, action or event that is not answered yet (s); earlier ones are left out.
+        requested_s: oldest of these that is requested (s), at the start and of a publisher that is back: of one that
+            was cut off for longer, what it put meanwhile is lost.
         frames_s: oldest skeleton, posture or objects (s); 0 for those alone that come from now on.
-        depth: most of them on each key; None for as many as are kept.
+        depth: most of all these on each key; None for as many as are kept.
     """
 
     answered_s: float = HISTORY_S
+    requested_s: float = HISTORY_S
     frames_s: float = 0.0
     depth: int | None = HISTORY_DEPTH
 
+    @classmethod
+    def unknown(cls, vacant_s: float) -> "Reach":
+        """Return the reach where it is not known what was answered, but how long nobody was there to do so (s)."""
+        return cls(min(vacant_s, HISTORY_S), min(vacant_s, HISTORY_S))
+
     def history(self, topic: keys.Topic) -> ext.HistoryConfig | None:
         """Return the request for a topic's earlier messages, None where there is to be none."""
-        oldest_s = self.answered_s if topic in ANSWERED else self.frames_s
+        oldest_s = self.requested_s if topic in ANSWERED else self.frames_s
         if not oldest_s:
             return None
         depth = min(self.depth or topic.cache, topic.cache)
@@ -68,13 +79,18 @@ class Inbox:
     def __init__(
         self, session: zenoh.Session, topics: Iterable[keys.Topic], sensor: str, reach: Reach = Reach()
     ) -> None:
+        topics = list(topics)
+        answered = [topic for topic in topics if topic in ANSWERED and reach.answered_s < reach.requested_s]
+        self._left_out = {
+            digest for topic in answered for digest in _kept(session, keys.pattern(topic, sensor), reach.answered_s)
+        }
         self._subscribers = [_subscribed(session, topic, sensor, reach) for topic in topics]
         self._threads: list[threading.Thread] = []
 
     def start(self, receive: Callable[[zenoh.Sample], None]) -> None:
         """Call `receive` for each sample, from one thread per subscriber."""
         for subscriber in self._subscribers:
-            thread = threading.Thread(target=_drain, args=(subscriber, receive), daemon=True)
+            thread = threading.Thread(target=self._drain, args=(subscriber, receive), daemon=True)
             thread.start()
             self._threads.append(thread)
 
@@ -90,6 +106,11 @@ class Inbox:
         """Whether every thread still reads."""
         return all(thread.is_alive() for thread in self._threads)
 
+    def _drain(self, subscriber: Subscriber, receive: Callable[[zenoh.Sample], None]) -> None:
+        for sample in subscriber:
+            if not self._left_out or _digest(sample) not in self._left_out:
+                receive(sample)
+
 
 def _subscribed(session: zenoh.Session, topic: keys.Topic, sensor: str, reach: Reach) -> Subscriber:
     pattern = keys.pattern(topic, sensor)
@@ -98,6 +119,17 @@ def _subscribed(session: zenoh.Session, topic: keys.Topic, sensor: str, reach: R
     return subscribe(session, pattern, topic.ring)
 
 
-def _drain(subscriber: Subscriber, receive: Callable[[zenoh.Sample], None]) -> None:
-    for sample in subscriber:
-        receive(sample)
+def _kept(session: zenoh.Session, pattern: str, older_than_s: float) -> set[int]:
+    """Return which messages publishers keep that were put longer ago (s), each by the clock of who put it."""
+    replies = session.get(
+        f"{pattern}/@adv/**?_time=[..now(-{older_than_s:.3f}s)]",
+        target=zenoh.QueryTarget.ALL,
+        consolidation=zenoh.ConsolidationMode.NONE,
+        accept_replies=zenoh.ReplyKeyExpr.ANY,
+        timeout=ANSWER_S,
+    )
+    return {_digest(reply.ok) for reply in replies if reply.ok is not None}
+
+
+def _digest(sample: zenoh.Sample) -> int:
+    return hash((str(sample.key_expr), sample.payload.to_bytes()))

@@ -52,14 +52,15 @@ class Resumption:
         in no journal of ours.
         """
         outbox.keep_by(self._keep)
+        recent_s = min(vacant_s, HISTORY_S)
         if self._journal.is_new:
-            return Reach(min(vacant_s, HISTORY_S))
+            return Reach(recent_s, RESUMED_S, depth=None)
         known = [(answer, message) for answer in self._journal.answers if (message := _decoded(answer))]
         self._node.remember([message for _, message in known])
         outbox.recall(known)
         if vacant_s < math.inf:
-            return Reach(min(vacant_s, HISTORY_S))
-        return Reach(min(self._journal.age_s + HISTORY_S, RESUMED_S), RESUMED_FRAMES_S, depth=None)
+            return Reach(recent_s, RESUMED_S, depth=None)
+        return Reach(min(self._journal.age_s + HISTORY_S, RESUMED_S), RESUMED_S, RESUMED_FRAMES_S, depth=None)
 
     def close(self) -> None:
         """Close the journal."""

@@ -13,7 +13,7 @@ from actum.bridge import Bridge
 from actum.codec import DecodeError, decode
 from actum.messages import Message
 from actum.node import TICK_NS, Node, Tick
-from actum.runtime.inbox import HISTORY_S, Inbox, Reach
+from actum.runtime.inbox import Inbox, Reach
 from actum.runtime.outbox import Outbox
 from actum.runtime.repetitions import Repetitions
 from actum.runtime.resuming import Resumption
@@ -37,7 +37,7 @@ class StepService(Service):
         self._repetitions = Repetitions()
 
     def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
-        self._serve_inputs(session, outbox, stop, Reach(min(vacant_s, HISTORY_S)))
+        self._serve_inputs(session, outbox, stop, Reach.unknown(vacant_s))
 
     def _serve_inputs(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, reach: Reach) -> None:
         """Handle messages and ticks until stopped, and before them the messages that the inbox is to reach back to."""
