@@ -46,6 +46,7 @@ def main() -> int:
         run = Run(hosts, Marker(actions), faults, given.segments, _say)
         run.play()
         sent, received = (carried / 1e6 for carried in hosts.link_bytes)
+    _say("the scene is over, and is told undisturbed for comparison")
     measure(run.strikes, run.signs)
     marked = list(run.marker.marked.values())
     newest = max((each.action.number for each in marked), default=0)

@@ -17,6 +17,8 @@ ALLOWED: tuple[Verdict, ...] = ("right", "rejected")
 """The verdicts that are no violation."""
 LOOK_BACK_S = 10.0
 """How long before a segment what went on may still show in it (s): where objects were, which way somebody stood."""
+BACKLOG_S = 1.0
+"""How long after all works again the backlog may take (s): until then a fault may explain a rejection."""
 FRAMES = ("sensor_gateway", "pose_preprocessor", "som_classifier", *ROUTERS, LINK)
 """Those by whose fault the classifier may lack frames."""
 OBJECTS = (*CAMERA_HOST, "action_fusion", *ROUTERS, LINK)
@@ -51,10 +53,14 @@ class Judged:
 
 @dataclass(frozen=True)
 class Judgement:
-    """All marked segments, and what was wrong with those that were found."""
+    """All marked segments, and what was wrong with those that were found.
+
+    What is told both as marked and as found is no violation: a mark that was held up comes after the action was found.
+    """
 
     segments: Sequence[Judged]
     found: Collection[str]
+    found_though_marked: int
     wrongly_found: Sequence[str]
 
     @property
@@ -75,7 +81,9 @@ def judge(
 ) -> Judgement:
     """Judge what was heard; `undisturbed` is what is told of each action where nothing fails, by its number."""
     segments = [_judged(each, heard, undisturbed[each.action.number], strikes) for each in marked]
-    return Judgement(segments, heard.found, [*_twice(heard), *_overlapping(heard)])
+    told_of = _told_of(heard)
+    both = sum(any(_shared_s(event, each.marked) > 0 for each in segments) for event in told_of.values())
+    return Judgement(segments, heard.found, both, [*_twice(heard), *_overlapping(told_of)])
 
 
 def faults(strikes: Iterable[Strike]) -> str:
@@ -96,14 +104,15 @@ def _judged(marked: Marked, heard: Heard, expected: Event, strikes: Sequence[Str
         return Judged(marked, "answered twice", "; ".join(told(each.content) for each in contents), latency_s, met)
     event = answers[0].content
     assert isinstance(event, Event)
-    verdict = _verdict(event, expected, met)
+    explaining = [strike for strike in met if _until_s(strike) + BACKLOG_S >= marked.started_s]
+    verdict = _verdict(event, expected, met, explaining)
     compared = "" if verdict in ALLOWED else f", undisturbed {told(expected)}"
     return Judged(marked, verdict, told(event) + compared, latency_s, met)
 
 
-def _verdict(event: Event, expected: Event, met: Sequence[Strike]) -> Verdict:
+def _verdict(event: Event, expected: Event, met: Sequence[Strike], explaining: Sequence[Strike]) -> Verdict:
     if not event.valid:
-        return "rejected" if _is_true(event.reason or "", met) else "untrue reason"
+        return "rejected" if _is_true(event.reason or "", explaining) else "untrue reason"
     if event.action != expected.action:
         return "wrong"
     if _object(event) == _object(expected):
@@ -112,19 +121,20 @@ def _verdict(event: Event, expected: Event, met: Sequence[Strike]) -> Verdict:
     return "right" if unseen and any(strike.fault.victim in OBJECTS for strike in met) else "wrong"
 
 
-def _is_true(reason: str, met: Sequence[Strike]) -> bool:
-    """Tell whether one of the faults that a segment met makes a reason true."""
+def _is_true(reason: str, explaining: Sequence[Strike]) -> bool:
+    """Tell whether one of the faults makes a reason true."""
     causes = [cause for beginning, causes in REASONS.items() if reason.startswith(beginning) for cause in causes]
-    return any(name in causes for strike in met for name in (strike.fault.victim, str(strike.fault)))
+    return any(name in causes for strike in explaining for name in (strike.fault.victim, str(strike.fault)))
 
 
 def _met(marked: Marked, answered_s: float, strikes: Sequence[Strike]) -> list[Strike]:
     """List the faults whose time, until all worked again, touches a segment's, from before it until its answer."""
-    return [
-        strike
-        for strike in strikes
-        if strike.began_s <= answered_s and (strike.well_s or float("inf")) >= marked.started_s - LOOK_BACK_S
-    ]
+    since_s = marked.started_s - LOOK_BACK_S
+    return [strike for strike in strikes if strike.began_s <= answered_s and _until_s(strike) >= since_s]
+
+
+def _until_s(strike: Strike) -> float:
+    return float("inf") if strike.well_s is None else strike.well_s
 
 
 def _object(event: Event) -> int | None:
@@ -141,18 +151,21 @@ def _twice(heard: Heard) -> list[str]:
     ]
 
 
-def _overlapping(heard: Heard) -> list[str]:
+def _told_of(heard: Heard) -> dict[str, Event]:
+    """Return what was told of the segments that were found."""
+    told_first = {name: heard.events[name][0].content for name in sorted(heard.found) if heard.events[name]}
+    return {name: content for name, content in told_first.items() if isinstance(content, Event)}
+
+
+def _overlapping(told_of: Mapping[str, Event]) -> list[str]:
     """Say which found segments share time: one action was told as two."""
-    told_of = [(name, heard.events[name][0].content) for name in sorted(heard.found) if heard.events[name]]
     return [
         f"{one} and {other} share {_shared_s(first, second):.1f} s: {told(first)}; {told(second)}"
-        for (one, first), (other, second) in combinations(told_of, 2)
+        for (one, first), (other, second) in combinations(told_of.items(), 2)
         if _shared_s(first, second) > 0
     ]
 
 
-def _shared_s(one: object, other: object) -> float:
-    starts, ends = (
-        [getattr(each, name) for each in (one, other)] for name in ("start_ns", "end_ns")
-    )  # fmt: skip
-    return (min(ends) - max(starts)) / 1e9
+def _shared_s(one: Event, other: Event | Marked) -> float:
+    """Return how long two segments overlap (s), not positive where they do not."""
+    return (min(one.end_ns, other.end_ns) - max(one.start_ns, other.start_ns)) / 1e9

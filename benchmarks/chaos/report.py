@@ -54,4 +54,5 @@ def _answers(judgement: Judgement, heard: Heard) -> Iterator[str]:
     if latencies:
         p50, p99 = np.percentile(latencies, (50, 99))
         yield f"answered after the end mark: p50 {p50:.2f} s, p99 {p99:.2f} s"
-    yield f"found without marks: {len(judgement.found)}; answers repeated with the same content: {heard.repeats}"
+    yield f"found without marks: {len(judgement.found)}, of which {judgement.found_though_marked} were marked as well"
+    yield f"answers repeated with the same content: {heard.repeats}"

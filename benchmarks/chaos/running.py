@@ -53,7 +53,7 @@ class Run:
     _going_on: list[Strike] = field(default_factory=list)
 
     def play(self) -> None:
-        """Run until all faults are over, so many actions were done, and every marked one is answered or will not be.
+        """Run until so many actions were done, all faults are over, all is well and every mark answered, or will not be.
 
         Raises:
             NotReadyError: a program is missing.
@@ -71,7 +71,7 @@ class Run:
                 self._relieve()
                 self._step(client, listening, marking=True)
             deadline_s = time.monotonic() + SETTLE_S
-            while self._unanswered() and time.monotonic() < deadline_s:
+            while self._is_unsettled() and time.monotonic() < deadline_s:
                 self._step(client, listening, marking=False)
 
     def _wait_until_ready(self, client: Client, listening: Sequence[Listening]) -> None:
@@ -113,5 +113,7 @@ class Run:
             strike.over_s = time.monotonic()
             self._going_on.remove(strike)
 
-    def _unanswered(self) -> bool:
-        return any(not self.heard.events[name] for name in self.marker.marked)
+    def _is_unsettled(self) -> bool:
+        """Tell whether a mark has no answer yet, or what the last fault struck does not work yet."""
+        unwell = any(self.signs.well_s(strike) is None for strike in self.strikes[-1:])
+        return unwell or any(not self.heard.events[name] for name in self.marker.marked)

@@ -16,8 +16,8 @@ from som_classifier.model_loading import load_model
 
 IMAGE_HZ = 10
 """Enough to follow what is moved; the test is of processes, not of how much a tracker can see."""
-MARKED_SHARE = 0.6
-"""Share of the actions that are marked: most, since these are the ones of which each has to be answered."""
+MARKED_OF_FIVE = 3
+"""How many of five actions in a row are marked: most, since of these each has to be answered."""
 SESSION = "simulator-"
 """What the simulated scene's sessions are called, before the stamp at which they start."""
 
@@ -49,11 +49,12 @@ def arguments_of(seed: int) -> list[str]:
 
 def planned(seed: int, count: int) -> list[Planned]:
     """Return the first actions that the scene will show in each of its sessions, and draw which of them are marked."""
-    chosen = random.Random(seed)
+    rng = random.Random(seed)
+    chosen = {first + drawn for first in range(1, count + 1, 5) for drawn in rng.sample(range(5), MARKED_OF_FIVE)}
     truths = _truths(simulator_of(settings_of(seed, image_hz=0), 0))
     bounds = zip(range(1, count + 1), truths, truths, strict=False)
     return [
-        Planned(number, start.stamp_ns, end.stamp_ns, end.action, end.object_id, chosen.random() < MARKED_SHARE)
+        Planned(number, start.stamp_ns, end.stamp_ns, end.action, end.object_id, number in chosen)
         for number, start, end in bounds
     ]
 

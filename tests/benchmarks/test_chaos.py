@@ -69,7 +69,7 @@ def test_the_plan_is_what_the_scene_shows() -> None:
     actions = planned(3, 25)
     assert [each.number for each in actions] == [*range(1, 26)]
     assert all(one.start_ns < one.end_ns < next_one.start_ns for one, next_one in pairwise(actions))
-    assert {each.marked for each in actions} == {True, False}
+    assert [sum(each.marked for each in actions[first : first + 5]) for first in range(0, 25, 5)] == [3] * 5
     assert actions == planned(3, 25)
 
 
@@ -132,7 +132,8 @@ def test_a_rejection_is_true_where_a_fault_explains_it() -> None:
     assert verdict(lost) == "untrue reason"
     assert verdict(lost, strikes=(strike("marker_tracker", "killed"),)) == "untrue reason"
     assert verdict(lost, strikes=(strike("pose_preprocessor", "killed"),)) == "rejected"
-    assert verdict(lost, strikes=(strike("pose_preprocessor", "killed", 50.0, 50.0, 52.0),)) == "untrue reason"
+    long_before = strike("pose_preprocessor", "killed", 95.0, 95.0, 97.0)
+    assert verdict(lost, strikes=(long_before,)) == "untrue reason"
 
 
 def test_only_a_scene_that_died_began_anew() -> None:
@@ -155,6 +156,14 @@ def test_what_was_found_is_told_once_and_not_as_two_actions() -> None:
         judged(answer(), *found, told[0], told[0].model_copy(update={"missed": 1})).violations
     )
     assert "auto-1 and auto-2 share" in str(judged(answer(), *found, *told).violations)
+
+
+def test_what_was_marked_and_found_is_counted() -> None:
+    found = mark("start", 1, "auto-1", origin=AUTO)
+    apart = event("auto-1", "", action="lift")
+    same = apart.model_copy(update={"start_ns": MARKED.start_ns + 1, "end_ns": MARKED.end_ns})
+    assert judged(answer(), found, apart).found_though_marked == 0
+    assert judged(answer(), found, same).found_though_marked == 1
 
 
 def test_all_is_well_once_everybody_behind_the_victim_works_on_what_is_new() -> None:
