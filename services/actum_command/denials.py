@@ -1,6 +1,6 @@
 """Whether a router's access control keeps this program from seeing what runs, told apart from that nothing runs."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Protocol
 
 from actum_command.heard import Heard
@@ -16,16 +16,16 @@ class Asking(Protocol):
         """Tell whether the router describes itself."""
         ...
 
-    def is_offered(self) -> bool:
-        """Tell whether the router knows of a service that would answer."""
+    def offers(self, service: str) -> bool:
+        """Tell whether the router knows of such a service that would answer."""
         ...
 
 
-def everything_denied(heard: Heard, client: Asking) -> str | None:
+def everything_denied(heard: Heard, client: Asking, expected: Iterable[str]) -> str | None:
     """Return what access control hides where nothing at all was heard; None where nothing is hidden, or cannot be."""
     if heard.tokens or heard.answers or heard.statuses:
         return None
-    if client.is_offered():
+    if any(client.offers(service) for service in expected):
         return f"services run, and the router's access control tells this program nothing of them: {ROLE}"
     if client.router_tells():
         return None
@@ -39,7 +39,7 @@ def partly_denied(heard: Heard) -> Iterator[str]:
     """Yield what is missing of services that are known otherwise."""
     answering = {answer.info.service for answer in heard.answers}
     running = heard.tokens.keys() | heard.statuses.keys() | answering
-    for what, known in (("that they are alive", heard.tokens.keys()), ("what they are", answering)):
+    for what, known in (("that it is alive", heard.tokens.keys()), ("what it is", answering)):
         if running and not known:
             yield f"no service tells {what}, though some run: the router's access control denies it; {ROLE}"
     if heard.tokens and not heard.statuses:

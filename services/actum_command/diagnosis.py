@@ -72,7 +72,7 @@ class Examination:
 def examine(client: Client) -> Examination:
     """Check every service that is expected or alive, the streams between them, and the hosts' clocks."""
     heard = hear(client, STATUS_S)
-    hidden = everything_denied(heard, client)
+    hidden = everything_denied(heard, client, EXPECTED)
     if hidden is not None:
         return Examination([], (hidden,))
     names = [*EXPECTED, *sorted({*heard.tokens, *heard.statuses} - set(EXPECTED))]

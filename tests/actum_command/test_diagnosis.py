@@ -233,3 +233,32 @@ def test_what_was_found_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     assert examined(counts={"found": 3, "told": 2}).counts == "found 3, told 2"
     _, output = diagnosed(monkeypatch, System(status("som_classifier")))
     assert "counted" not in output
+
+
+def test_beside_the_page_which_reads_everything_the_table_stays_readable() -> None:
+    """A hundred characters wide: what people and services have in common is one rate, and no word is broken."""
+    leaves = [
+        "skeleton",
+        "image/color",
+        "objects",
+        "truth",
+        "segment",
+        "training",
+        *(f"status/{name}" for name in EXPECTED),
+    ]
+    leaves += [f"{topic}/{agent}" for topic in ("posture", "action", "event") for agent in range(1, 5)]
+    silent = {"actum/kinect0/segment": 0.0, "actum/kinect0/truth": 0.0}
+    page = status("web_dashboard", rates={f"actum/kinect0/{leaf}": 29.97 for leaf in leaves} | silent)
+    system = System(page)
+    system.also = ("web_dashboard", "a")
+    console = Console(width=100)
+    with console.capture() as capture:
+        show(examine(system).findings, console)  # type: ignore[arg-type]
+    lines = capture.get().splitlines()
+    assert all(line[-1] in "┓┃┩│┘" for line in lines), "nothing is cut off"
+    [first] = [number for number, line in enumerate(lines) if "web_dashboard" in line]
+    assert len(lines) - first <= 6, "some lines and the table's last"
+    shown = " ".join(line.split("│")[5].strip() for line in lines[first:] if "│" in line)
+    assert shown == (
+        "skeleton 30, image/color 30, objects 30, training 30, status 150, posture 120, action 120, event 120"
+    )

@@ -14,6 +14,10 @@ from actum_command.diagnosis import Finding, examine
 from actum_command.misspelt import misspelt
 
 TABLE_WIDTH = 100  # characters that the table needs so that no word is broken
+LATENCY = "latency p50/p99 (ms)"
+"""A heading that is longer than what stands below it."""
+WIDTHS = {LATENCY: 15}
+"""Most characters of a column, so that those with more to say have room."""
 SOURCES = {"sensor_gateway": "sensor", "marker_camera": "marker camera"}
 """The name of a service's source in the output."""
 
@@ -49,7 +53,8 @@ def show(findings: list[Finding], console: Console) -> None:
 def table(findings: list[Finding]) -> Table:
     """Lay the findings out, one service a row."""
     columns = _columns(findings)
-    result = Table(Column("service", no_wrap=True), "alive", *(Column(name, overflow="fold") for name in columns))
+    own = (Column(name, overflow="fold", max_width=WIDTHS.get(name)) for name in columns)
+    result = Table(Column("service", no_wrap=True), "alive", *own)
     for finding in findings:
         cells = (escape(cell(finding)) for cell in columns.values())
         result.add_row(escape(finding.service), _coloured(finding, f"{finding.instances or 'no'}"), *cells)
@@ -79,9 +84,9 @@ def _columns(findings: list[Finding]) -> dict[str, Callable[[Finding], str]]:
         "rejected": attrgetter("rejects"),
         "dropped": attrgetter("drops"),
         "counted": attrgetter("counts"),
-        "latency p50/p99 (ms)": attrgetter("latency"),
+        LATENCY: attrgetter("latency"),
     }
-    for rare in ("dropped", "counted"):
+    for rare in ("rejected", "dropped", "counted"):
         if not any(columns[rare](finding) for finding in findings):
             del columns[rare]
     return columns

@@ -26,6 +26,8 @@ ANSWER_S = 10.0
 """How long a command may take to be answered (s): a service may be busy with a large message."""
 STARTING_S = 1.0
 """How long a service that is alive may not answer yet (s): its liveliness may be known before its commands are."""
+OFFER_S = 0.2
+"""How long (s) a router may take to say who would answer: some round trips."""
 POLL_S = 0.05
 """Interval (s) at which a program looks for a subscriber."""
 DEEP_RING = 8192
@@ -183,9 +185,9 @@ class Client:
         """Tell whether the router describes itself to this session, as it does unless its access control forbids it."""
         return any(reply.ok is not None for reply in self._session.get("@/*/router", timeout=1.0))
 
-    def is_offered(self, timeout_s: float = 0.5) -> bool:
-        """Tell whether the router knows of a service of this sensor that would answer, if it were asked."""
-        querier = self._session.declare_querier(keys.pattern(keys.INFO, self.sensor))
+    def offers(self, service: str, timeout_s: float = OFFER_S) -> bool:
+        """Tell whether the router knows of such a service that would answer, also where it lets no question through."""
+        querier = self._session.declare_querier(keys.key(keys.INFO, self.sensor, service))
         deadline_s = time.monotonic() + timeout_s
         try:
             while not querier.matching_status.matching:  # type: ignore[attr-defined]
