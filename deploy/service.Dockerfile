@@ -40,7 +40,7 @@ RUN if [ -n "${PACKAGES}" ]; then apt-get install --yes -qq --no-install-recomme
     && find /usr/local/lib -name '*.so*' -type f -exec strip --strip-unneeded {} + \
     && python -m compileall -q --invalidation-mode unchecked-hash . \
     && apt-get purge --yes -qq --auto-remove binutils > /dev/null \
-    && dpkg --purge --force-all apt libapt-pkg6.0 gpgv perl-base > /dev/null 2>&1 \
+    && dpkg --purge --force-all apt libapt-pkg6.0 gpgv libgnutls30 libhogweed6 libnettle8 libp11-kit0 perl-base > /dev/null 2>&1 \
     && rm -rf /usr/share/doc /usr/share/info /usr/share/locale /usr/share/man /usr/lib/*/gconv \
     && rm -rf /var/cache/* /var/log/* /var/lib/apt
 

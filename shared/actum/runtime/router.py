@@ -18,8 +18,12 @@ LOOK_S = 1.0
 """Interval (s) at which a router looks whether it works, and whether its certificate was renewed."""
 
 
-def router_config(listen: str | None, config_file: Path | None, credentials: Path | None = None) -> zenoh.Config:
+def router_config(
+    listen: str | None, config_file: Path | None, credentials: Path | None = None, link: str | None = None
+) -> zenoh.Config:
     """Build the router's configuration from a JSON5 file or the defaults, with the endpoint to listen on.
+
+    `link` is the endpoint of another host's router, which is connected to for as long as it takes.
 
     Raises:
         zenoh.ZError: the file or the endpoint is refused.
@@ -28,6 +32,8 @@ def router_config(listen: str | None, config_file: Path | None, credentials: Pat
     config = zenoh.Config.from_file(config_file) if config_file else _default_config()
     if listen is not None:
         insert(config, {"listen/endpoints": [listen]})
+    if link is not None:
+        insert(config, {"connect/endpoints": [link]})
     if credentials is not None:
         check(credentials)
         insert(config, router_values(credentials, passwords=(credentials / USERS).exists()))
@@ -40,6 +46,7 @@ def serve_router(
     stop: threading.Event,
     credentials: Path | None = None,
     health_file: Path | None = None,
+    link: str | None = None,
 ) -> None:
     """Run a router until stopped; with a folder of credentials it is opened anew whenever these have been renewed.
 
@@ -51,7 +58,7 @@ def serve_router(
         SettingsError: the endpoint is taken, or the configuration or the credentials are refused.
     """
     while not stop.is_set():
-        session = _opened(listen, config_file, credentials)
+        session = _opened(listen, config_file, credentials, link)
         log.info("router %s listens on %s", session.zid(), listen or config_file)
         try:
             _wait_for_renewal(session, credentials, health_file, stop)
@@ -59,9 +66,11 @@ def serve_router(
             session.close()
 
 
-def _opened(listen: str | None, config_file: Path | None, credentials: Path | None) -> zenoh.Session:
+def _opened(
+    listen: str | None, config_file: Path | None, credentials: Path | None, link: str | None
+) -> zenoh.Session:
     try:
-        config = router_config(listen, config_file, credentials)
+        config = router_config(listen, config_file, credentials, link)
         if credentials is not None:
             insert(config, login_values(credentials))
         return zenoh.open(config)
