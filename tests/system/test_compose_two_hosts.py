@@ -1,4 +1,4 @@
-"""Two compose projects, each with networks and a router of its own, that share only the routers' link through a proxy."""
+"""Two compose projects, each with networks and a router of its own, which share the routers' link through a proxy."""
 
 import json
 import os
@@ -120,7 +120,9 @@ def with_mark(message: Message, prefix: str) -> list[Message]:
 
 def told(messages: Iterator[Message] | list[Message], prefix: str = "") -> Told:
     events = [message for message in messages if isinstance(message, Event) and message.segment_id.startswith(prefix)]
-    return {event.segment_id.removeprefix(prefix): (event.action, event.object and event.object.name) for event in events}
+    return {
+        event.segment_id.removeprefix(prefix): (event.action, event.object and event.object.name) for event in events
+    }
 
 
 def play(hosts: Hosts, prefix: str, disturb: Callable[[TcpProxy, threading.Event], None]) -> Told:

@@ -66,9 +66,7 @@ def serve_router(
             session.close()
 
 
-def _opened(
-    listen: str | None, config_file: Path | None, credentials: Path | None, link: str | None
-) -> zenoh.Session:
+def _opened(listen: str | None, config_file: Path | None, credentials: Path | None, link: str | None) -> zenoh.Session:
     try:
         config = router_config(listen, config_file, credentials, link)
         if credentials is not None:
