@@ -16,9 +16,9 @@ from actum.node import Numbering
 from actum.runtime.journal import Answer
 
 HEARTBEAT_S = 0.5
-"""Interval (s) at which a publisher repeats its newest number, so that a loss of the last message is noticed.
+"""How long (s) after a message its publisher repeats the number, so that a loss of the last one is noticed.
 
-It does so for ever: one heartbeat alone may be lost with the message, where the router is away.
+Once: who subscribes later would take all before a number that is repeated for ever for lost, and request it.
 """
 MOST_PUBLISHERS = 256
 """Most open publishers: agents come and go with new numbers, and the publisher silent for longest makes room."""
@@ -115,7 +115,7 @@ class Outbox:
             express=topic.priority in ("interactive_high", "data_high"),
             allowed_destination=destination,
             cache=ext.CacheConfig(topic.cache),
-            sample_miss_detection=ext.MissDetectionConfig(heartbeat=HEARTBEAT_S, sporadic_heartbeat=None),
+            sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT_S),
             publisher_detection=True,
         )
 
