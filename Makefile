@@ -4,7 +4,7 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-paper bench-tracker picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel clean
+.PHONY: install demo up test test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -43,7 +43,7 @@ test-containers: $(STAMP)  ## build and run the compose file; needs a container 
 	$(BIN)/pytest -m containers -s
 
 test-browser: $(STAMP)  ## all tests of the web page in Chromium, which has to be installed
-	$(BIN)/pytest -m browser
+	$(BIN)/pytest -m "browser or long"
 
 test-viewers: $(STAMP)  ## what Rerun and Foxglove are sent; installs both, 600 MB
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[dev,view]"
@@ -94,6 +94,9 @@ bench-objects: $(STAMP)  ## the right object in simulated scenes that are hard t
 bench-paper: $(STAMP)  ## preset paper by the paper's own protocols, step by step, and its figures
 	@test -d "$$ACTUM_DATA" || { echo "bench-paper needs ACTUM_DATA: the folder that holds gharaee_set1/, msr_action3d/ and utkinect/" >&2; exit 1; }
 	$(BIN)/python -m benchmarks.paper
+
+bench-page: $(STAMP)  ## what the page costs with several browsers, some minutes; needs Chromium
+	$(BIN)/python benchmarks/page_cost.py
 
 bench-tracker: $(STAMP)  ## what the marker tracker costs for an image and how exact it is, beside OpenCV, about ten minutes
 	$(BIN)/python -m benchmarks.tracker

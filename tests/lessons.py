@@ -2,7 +2,7 @@
 
 import threading
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -114,3 +114,5 @@ def lesson(folder: Path) -> Iterator[Lesson]:
         finally:
             stop.set()
             thread.join()
+            with suppress(Refusal):  # nothing is recorded
+                teacher.ask("discard")

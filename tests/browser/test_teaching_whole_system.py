@@ -11,7 +11,7 @@ import pytest
 
 from live import System, free_endpoint, system, wait_until
 
-pytestmark = [pytest.mark.browser, pytest.mark.system]
+pytestmark = [pytest.mark.browser, pytest.mark.system, pytest.mark.long]
 Open = Callable[..., Any]
 SIMULATED = ("scene_simulator", "--driven", "--image-hz", "0")
 ACTIONS = ("lift", "push", "put")

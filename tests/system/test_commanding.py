@@ -30,12 +30,18 @@ def asked(session: zenoh.Session, key: str, payload: str | None = None) -> tuple
     return good, [json.loads(reply.err.payload.to_string()) for reply in replies if reply.err is not None]
 
 
+def first_reply(session: zenoh.Session, key: str) -> dict:
+    """Ask until there is a reply: a service may be known to be alive before its commands are."""
+    wait_until(lambda: asked(session, key)[0] != [], f"{key} is answered")
+    return asked(session, key)[0][0]
+
+
 def test_a_service_is_asked_in_json_and_says_what_it_can_be_asked(running: System, client: Client) -> None:
     running.start("pose_preprocessor")
     running.wait_for_services(client, "pose_preprocessor")
     base = keys.commands_key("kinect0", "pose_preprocessor")
     with zenoh.open(client_config(running.settings)) as session:
-        (listed,), _ = asked(session, base)
+        listed = first_reply(session, base)
         assert [each["name"] for each in listed["commands"]] == ["parameters", "set_parameters"]
         (changed,), _ = asked(session, f"{base}/set_parameters", '{"values": {"reach_limit_m": 4}}')
         assert changed["parameters"][0]["value"] == 4.0

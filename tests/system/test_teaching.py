@@ -22,6 +22,7 @@ KILLS = 8
 pytestmark = pytest.mark.system
 
 
+@pytest.mark.long
 @pytest.mark.timeout(240)
 def test_three_actions_are_taught_and_recognised_by_queries_alone(running: System) -> None:
     running.start_router()
