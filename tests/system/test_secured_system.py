@@ -45,13 +45,13 @@ def events_of_the_scene(running: Deployed, client: Client) -> list[Event]:
 
 
 def as_told(events: list[Event]) -> list[tuple[object, ...]]:
-    """What is told of each segment. Stamps begin with the scene, and poses hang on which images are read in time."""
+    """What is told of each segment. Stamps begin with the scene, and poses and what a hand held hang on which images are read in time."""
     return sorted(told(event) for event in events)
 
 
 def told(event: Event) -> tuple[object, ...]:
     assert event.object is not None
-    what = event.object.id, event.object.name, event.object.carried, event.object.in_hand_at_end
+    what = event.object.id, event.object.name
     lasted_ns = event.end_ns - event.start_ns
     sure = round(event.confidence, 6)
     return event.segment_id, event.agent, event.action, sure, *what, event.outcome, event.agrees, lasted_ns

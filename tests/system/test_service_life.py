@@ -146,6 +146,7 @@ def test_tokens_go_with_their_process(running: System) -> None:
         (["pose_preprocessor", "--connect", "127.0.0.1:7551"], "'127.0.0.1:7551' is no endpoint: use tcp/host:port"),
         (["scene_simulator", "--connect", "foo"], "'foo' is no endpoint: use tcp/host:port"),
         (["action_fusion", "--zenoh-config", "/nowhere.json5"], "/nowhere.json5 is no Zenoh configuration"),
+        (["action_fusion", "--state", __file__], f"state: the folder {__file__} cannot be made"),
         (["action_fusion", "--zenoh-config", __file__], f"{__file__} is no Zenoh configuration"),
     ],
 )

@@ -28,11 +28,14 @@ TRANSPORT = {
     "transport/shared_memory/enabled": False,
     "transport/link/tx/queue/size/data_high": 16,
     "transport/link/tx/queue/congestion_control/drop/wait_before_drop": 50_000,  # microseconds
+    "transport/link/tx/queue/congestion_control/block/wait_before_close": 1_000_000,  # microseconds
 }
 """Transport settings of all our sessions, of clients and router alike.
 
 Shared memory loses messages silently when a reader is descheduled. With Zenoh's defaults, two batches and 1 ms, a
 burst of thirty skeletons on a busy machine loses some: rather a put takes some milliseconds than a frame is lost.
+A reader that is stopped stalls what the others read from the same sender until its link is closed, which by default
+takes 5 s; when it goes on it connects anew, and recovers what it has missed.
 """
 
 BEFORE_DROP = 2
