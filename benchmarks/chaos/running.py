@@ -53,7 +53,7 @@ class Run:
     _going_on: list[Strike] = field(default_factory=list)
 
     def play(self) -> None:
-        """Run until the actions were done, all faults are over, all is well and every mark is answered, or will not be.
+        """Run until so many actions were done, all faults are over, all is well, and every mark is answered or too old.
 
         Raises:
             NotReadyError: a program is missing.
