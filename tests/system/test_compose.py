@@ -24,7 +24,7 @@ TRAINER = "model_trainer"
 ACTIONS = {"push", "pull", "put", "lift", "point"}
 STOPPED_WITHIN_S = 10.0
 COMPOSE_FILES = (MAIN, *sorted(DEPLOY.glob("compose.*.yml")))
-OVERLAYS = {"zenohd", "realsense", "openni2"}
+OVERLAYS = {"zenohd", "realsense", "openni2", "one-router"}
 """Files that are laid over another, whose services they change."""
 HARDENED = {
     "init": True,
@@ -33,6 +33,7 @@ HARDENED = {
     "cap_drop": ["ALL"],
     "security_opt": ["no-new-privileges:true"],
 }
+ELSEWHERE = {"ACTUM_CONNECT": "tcp/192.0.2.1:7447", "ACTUM_MODELS": "/srv/models"}
 LOOSENING = {"read_only", "tmpfs", "cap_drop", "cap_add", "security_opt", "privileged", "user", "mem_limit"}
 
 
@@ -62,19 +63,19 @@ def test_every_image_is_built_once(services):
 
 def test_only_router_and_page_are_reached_from_outside_and_only_from_this_host(services):
     assert {name: service["ports"] for name, service in services.items() if "ports" in service} == {
-        "router": ["127.0.0.1:7447:7447"],
-        "web_dashboard": ["127.0.0.1:8080:8080"],
+        "router": ["127.0.0.1:${ACTUM_ROUTER_PORT:-7447}:7447"],
+        "web_dashboard": ["127.0.0.1:${ACTUM_PAGE_PORT:-8080}:8080"],
     }
 
 
 @pytest.mark.parametrize("file", COMPOSE_FILES, ids=lambda file: file.name)
 def test_nobody_is_root_can_write_or_can_take_all_memory(file):
     inherited = {name for name, service in services_of(file).items() if "extends" in service}
-    added_to = {"sensor_gateway", "router", "trainer"} if file.stem.partition(".")[2] in OVERLAYS else set()
+    laid_over = file.stem.partition(".")[2] in OVERLAYS
     for name, service in services_of(file).items():
-        if name in inherited:
+        if laid_over or name in inherited:
             assert not LOOSENING & set(service)
-        elif name not in added_to:
+        else:
             assert {key: service.get(key) for key in HARDENED} == HARDENED
             assert set(service) >= {"mem_limit", "pids_limit"}
 
@@ -133,11 +134,27 @@ def test_who_answers_keeps_the_answers_where_they_stay(services):
         assert f"state:{folder}" in services[name]["volumes"]
 
 
-def test_two_hosts_together_run_the_router_and_the_six_services():
+def test_two_hosts_together_run_the_six_services_and_each_a_router():
     hosts = [services_of(DEPLOY / f"compose.{host}-host.yml") for host in ("kinect", "compute")]
     extended = [(name, service["extends"]) for host in hosts for name, service in host.items()]
-    assert sorted(name for name, _ in extended) == sorted({"router", *SIX})
+    assert sorted(name for name, _ in extended) == sorted(["router", "router", "watch", *SIX])
     assert all(extends == {"file": "../docker-compose.yml", "service": name} for name, extends in extended)
+
+
+def test_where_the_sensors_host_has_the_only_router_all_others_connect_to_it():
+    compute = services_of(DEPLOY / "compose.compute-host.yml")
+    changed = services_of(DEPLOY / "compose.one-router.yml")
+    assert changed.keys() == compute.keys()
+    assert changed["router"] == {"profiles": ["unused"]}
+    assert all("ACTUM_CONNECT" in service["environment"] for name, service in changed.items() if name != "router")
+
+
+def test_the_routers_of_two_hosts_are_alike_but_for_images_and_who_they_are():
+    sensor, compute = (zenoh.Config.from_file(DEPLOY / "zenoh" / f"{name}.json5") for name in ("router", "compute-router"))
+    for path in ("mode", "listen", "scouting", "transport", "adminspace"):
+        assert sensor.get_json(path) == compute.get_json(path)
+    [subject] = json.loads(sensor.get_json("access_control/subjects"))
+    assert subject["zids"] == [json.loads(compute.get_json("id"))]
 
 
 def test_zenohd_reads_the_same_configuration_file(services):
@@ -219,7 +236,8 @@ def deaths(since_s: float) -> list[dict[str, Any]]:
         (["docker-compose.yml"], {}),
         (["docker-compose.yml", "deploy/compose.zenohd.yml"], {}),
         (["deploy/compose.kinect-host.yml"], {}),
-        (["deploy/compose.compute-host.yml"], {"ACTUM_CONNECT": "tcp/192.0.2.1:7447", "ACTUM_MODELS": "/srv/models"}),
+        (["deploy/compose.compute-host.yml"], ELSEWHERE),
+        (["deploy/compose.compute-host.yml", "deploy/compose.one-router.yml"], ELSEWHERE),
     ],
 )
 def test_compose_accepts(files, environment, monkeypatch):
