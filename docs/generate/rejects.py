@@ -235,9 +235,24 @@ OF_TRAINER: Mapping[str, Problem] = {
     ),
 }
 
+OF_HISTORY: Mapping[str, Problem] = {
+    "unwritable_history": Problem(
+        "What happened could not be stored; the latest error says why. It is tried again with each message.",
+        "Make room on the disk, or let its user write the folder that `actum record --events` was given.",
+    ),
+    "unreadable_history": Problem(
+        "A file that a killed process has left is no recording; it is left as it is.",
+        "Copy it away if it matters; nothing else is lost.",
+    ),
+    "mark_without_stamp": Problem(
+        "A mark without a stamp had no answer within 70 s, so nobody knows when it was; it is not stored.",
+        "Does the classifier run? `actum doctor` tells.",
+    ),
+}
+
 GATEWAY, PREPROCESSOR, CLASSIFIER = "sensor_gateway", "pose_preprocessor", "som_classifier"
 TRACKER, FUSION, BRIDGE, TRAINER = "marker_tracker", "action_fusion", "ros2_bridge", "model_trainer"
-PAGE = "web_dashboard"
+PAGE, HISTORY = "web_dashboard", "event_recorder"
 COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((), OF_ALL),
     ((PREPROCESSOR, CLASSIFIER, TRACKER, FUSION), OF_NODES),
@@ -253,6 +268,7 @@ COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((PAGE,), OF_PAGE),
     ((FUSION, BRIDGE), OF_FUSION_AND_BRIDGE),
     ((BRIDGE,), OF_BRIDGE),
+    ((HISTORY,), OF_HISTORY),
 )
 """Which services count which kinds; all of them count what the runtime does."""
 

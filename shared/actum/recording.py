@@ -25,7 +25,7 @@ from actum.mcap_file import REMEDY, McapFile, RecordingError, StoredMessage
 from actum.messages import Image, Message, Segment
 from actum.node import Numbering
 
-__all__ = ["Recorder", "Recording", "RecordingError"]
+__all__ = ["Recorder", "Recording", "RecordingError", "StoredRecorder"]
 
 METADATA = "actum.recording"
 """The name of the metadata record."""
@@ -54,6 +54,8 @@ class Recorder:
     Where an exception ends the `with` block the file keeps the suffix.
     """
 
+    _chunk_bytes: int | None = CHUNK_BYTES
+
     def __init__(self, path: Path, *, person: str, source: str, **fields: str) -> None:
         self.path = path
         self._part = path.with_name(path.name + UNFINISHED)
@@ -62,7 +64,8 @@ class Recorder:
         self._channels: dict[str, int] = {}
         path.parent.mkdir(parents=True, exist_ok=True)
         self._file = self._part.open("wb")
-        self._writer = Writer(self._file, chunk_size=CHUNK_BYTES)
+        chunked = self._chunk_bytes is not None
+        self._writer = Writer(self._file, chunk_size=self._chunk_bytes or 0, use_chunking=chunked)
         self._writer.start()
         self._writer.add_metadata(METADATA, {"person": person, "source": source, **fields})
 
@@ -127,6 +130,31 @@ class Recorder:
         self._file.flush()
         os.fsync(self._file.fileno())
         self._file.close()
+
+
+class StoredRecorder(Recorder):
+    """Writes a recording of rare messages: each by itself, so that a crash loses none that `store` was called after."""
+
+    _chunk_bytes = None
+
+    @property
+    def size_bytes(self) -> int:
+        """How long the file is so far."""
+        return self._file.tell()
+
+    def store(self) -> None:
+        """Have stored on the disk what was written.
+
+        Raises:
+            OSError: the disk does not take it.
+        """
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def abandon(self) -> None:
+        """Leave the file as it is, unfinished: the disk takes no more."""
+        with suppress(OSError):
+            self._file.close()
 
 
 class Recording:

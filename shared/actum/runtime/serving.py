@@ -33,9 +33,9 @@ TAKEN = 3
 """Exit code of a process whose service another process runs already."""
 
 
-def run(settings_type: type[S], build: Callable[[S], Node]) -> None:
-    """Run a node as this process's service until SIGTERM or SIGINT."""
-    settings, node = configured(settings_type, build)
+def run(settings_type: type[S], build: Callable[[S], Node], flags: Sequence[str] | None = None) -> None:
+    """Run a node as this process's service until SIGTERM or SIGINT, set by this process's flags or given ones."""
+    settings, node = configured(settings_type, build, flags)
     live(NodeService(node, settings), settings)
 
 
