@@ -45,7 +45,7 @@ def events_of_the_scene(running: Deployed, client: Client) -> list[Event]:
 
 
 def as_told(events: list[Event]) -> list[tuple[object, ...]]:
-    """What is told of each segment. Stamps begin with the scene, and poses and what a hand held hang on which images are read in time."""
+    """What is told of each segment, but for what hangs on when the scene began, or on which images are read in time."""
     return sorted(told(event) for event in events)
 
 
