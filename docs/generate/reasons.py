@@ -39,6 +39,9 @@ OF_SEGMENTS: Mapping[str, Problem] = {
     "start without end: the frames ended … s after the start": Problem(
         "Postures stopped coming, and no end came within 62 s.", "Has the recording ended, is the camera lost?"
     ),
+    "too many open segments: … at the most": Problem(
+        "32 segments were open when this one started.", "Put the ends of those; see the reject `too_many_segments`."
+    ),
     "segment_id reused": Problem("The name belongs to a segment that was answered.", "Give each action a new name."),
     "frames lost: none came for … s of the segment": Problem(
         "For so long within the segment frames were captured that never came: a service before the classifier was"

@@ -37,6 +37,13 @@ class Buffer(Generic[S]):
         self._guard = StampGuard()
         self._answered: deque[range] = deque(maxlen=MOST_ANSWERED)
 
+    def __len__(self) -> int:
+        return len(self._samples)
+
+    def let_go(self) -> None:
+        """Forget the oldest sample."""
+        self._samples.popleft()
+
     @property
     def newest_ns(self) -> int:
         """Stamp of the newest sample, -1 where there is none."""

@@ -10,13 +10,14 @@ from typing import Any
 from action_fusion.before import Before
 from action_fusion.buffers import LATEST_ACTION_NS, Buffer, S
 from action_fusion.fusion import fuse, rejected
+from action_fusion.known_objects import KnownObjects
 from action_fusion.losses import why_objects_lost, why_postures_lost
 from action_fusion.settings import Settings
 from action_fusion.stream_samples import ObjectsSample, PostureSample, objects_sample, posture_sample
 from actum import keys
 from actum.commands import Command
 from actum.flow import Flow
-from actum.limits import MAX_SKEW_NS
+from actum.limits import MAX_SKEW_NS, MOST_FRAMES, MOST_STREAMS
 from actum.messages import Action, Event, Message, Objects, Posture
 from actum.node import SECOND_NS, Counters, Tick
 from actum.parameters import LiveParameters
@@ -28,8 +29,11 @@ WAIT_NS = MAX_SKEW_NS + SECOND_NS // 5
 REMEMBERED = 10_000
 """Answered segments remembered to recognise duplicates: more than a day has, in little memory."""
 
-MOST_AGENTS = 16
-"""Most people whose postures are kept, to bound the memory: more than a camera tells apart."""
+MOST_PENDING = 64
+"""Most actions that wait: as many as may be marked at once, twice."""
+
+MOST_SIGHTINGS = 4_000
+"""Most messages of objects kept: the time that they count, at 50 a second."""
 
 LIVE = (
     "measure", "reach_m", "grasp_m", "moved_m", "pointing_limit_deg", "uncertainty_m", "pointing_uncertainty_deg",
@@ -65,6 +69,7 @@ class ActionFusion:
         self._parameters = LiveParameters(settings, LIVE, self._use_settings)
         self._postures: dict[int, Buffer[PostureSample]] = {}
         self._objects: Buffer[ObjectsSample] = Buffer()
+        self._known = KnownObjects(self.counters)
         self._pending: list[Pending] = []
         self._answered: dict[tuple[str, int, int | None, str | None], None] = {}
         self._before = Before()
@@ -88,7 +93,7 @@ class ActionFusion:
                 sample = posture_sample(message, self.counters)
                 return self._take(self._buffer(message.agent), sample, f"posture of agent {message.agent}")
             case Objects():
-                return self._take(self._objects, objects_sample(message, self.counters), "objects")
+                return self._take(self._objects, objects_sample(self._known.known(message), self.counters), "objects")
             case Action(final=True):
                 return self._action(message)
             case Tick():
@@ -114,7 +119,17 @@ class ActionFusion:
             self.counters.reject("late", f"{what} at {sample.stamp_ns}, after its segment was answered")
         buffer.append(sample)
         self._flows[Objects if buffer is self._objects else Posture].note()
+        self._make_room()
         return events + self._complete()
+
+    def _make_room(self) -> None:
+        """Forget the oldest sample where there are too many."""
+        if len(self._objects) > MOST_SIGHTINGS:
+            self._objects.let_go()
+            self.counters.reject("too_many_frames", f"more than {MOST_SIGHTINGS} messages of objects in a minute")
+        if sum(map(len, self._postures.values())) > MOST_FRAMES:
+            max(self._postures.values(), key=len).let_go()
+            self.counters.reject("too_many_frames", f"more than {MOST_FRAMES} postures in a minute")
 
     def _clear_streams_beyond(self, stamp_ns: int) -> None:
         """Clear the streams with samples after `stamp_ns`: they lie before a restart of the sensor's clock."""
@@ -144,7 +159,14 @@ class ActionFusion:
             return [rejected(action, "final action without a label or an end")]
         bare = action.model_copy(update={"maps": None, "trace": None})
         self._pending.append(Pending(bare, action.end_ns))
-        return self._complete()
+        return self._complete() + self._overdue()
+
+    def _overdue(self) -> list[Event]:
+        """Return the event of the action that has waited longest where too many wait."""
+        if len(self._pending) <= MOST_PENDING:
+            return []
+        self.counters.reject("too_many_actions", f"more than {MOST_PENDING} wait: the oldest is answered now")
+        return [self._answer(self._pending[0])]
 
     def _tick(self, tick: Tick) -> list[Event]:
         """Return the events of actions that have waited long enough, from the samples received so far."""
@@ -217,9 +239,11 @@ class ActionFusion:
         return why or (why_objects_lost(objects_ns, start_ns, end_ns) if objects_ns else None)
 
     def _buffer(self, agent: int) -> Buffer[PostureSample]:
-        """Return an agent's stream; a new agent's replaces the least recently used one if there are too many."""
-        buffer = self._postures.pop(agent, None) or Buffer()
-        if len(self._postures) == MOST_AGENTS:
-            del self._postures[next(iter(self._postures))]
+        """Return an agent's stream; where there are too many, an empty one or the one used least recently goes."""
+        buffer = self._postures.pop(agent) if agent in self._postures else Buffer()
+        if len(self._postures) == MOST_STREAMS:
+            gone = next((each for each, kept in self._postures.items() if not kept), next(iter(self._postures)))
+            if self._postures.pop(gone):
+                self.counters.reject("too_many_people", f"more than {MOST_STREAMS}: agent {gone} is forgotten")
         self._postures[agent] = buffer
         return buffer

@@ -76,6 +76,10 @@ class Supervisor:
         """Start one program."""
         self._children.append(_Child(program, self._spawn(program), time.monotonic()))
 
+    def pids(self) -> dict[int, str]:
+        """Return the names of the programs by their processes' ids."""
+        return {child.process.pid: child.program.name for child in self._children}
+
     def restart_ended(self) -> list[str]:
         """Restart what has ended, with back-off; return a line for each program that has ended since the last call.
 
@@ -105,6 +109,14 @@ class Supervisor:
         delay_s = RESTART_S[min(child.restarts, len(RESTART_S) - 1)]
         child.due_s = now_s + delay_s
         return f"{child.program.name} ended with code {child.process.returncode}: restart in {delay_s:g} s"
+
+    def process_id(self, program: Program) -> int:
+        """Return the id of the process that runs a program, or of the last one that did.
+
+        Raises:
+            KeyError: it was never started, or was ended.
+        """
+        return {id(child.program): child.process.pid for child in self._children}[id(program)]
 
     def end(self, program: Program) -> None:
         """Stop one program for good."""

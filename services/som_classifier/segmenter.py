@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from itertools import chain
 
 from actum.flow import Flow
-from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
+from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS, MOST_OPEN_SEGMENTS
 from actum.messages import Action, Posture, Segment
 from actum.node import Counters, Tick
 from actum.stamps import Order
@@ -34,7 +34,7 @@ class Segmenter:
 
     def __init__(self, counters: Counters) -> None:
         self._counters = counters
-        self._streams = Streams()
+        self._streams = Streams(counters)
         self._open: OrderedDict[str, OpenSegment] = OrderedDict()
         self._answered = AnsweredSegments(counters)
         self._marked: deque[OpenSegment] = deque(maxlen=MARKED)
@@ -157,18 +157,33 @@ class Segmenter:
             if segment.known_agent is None and segment.start_ns is not None:
                 segment.nearest = self._streams.nearest(segment.start_ns, segment.latest_ns)
             if segment.end_ns is not None:
-                if segment.known_agent is not None and self._streams.reached(segment.known_agent, segment.end_ns):
+                if self._is_reached(segment) and self._why_incomplete(segment) is None:
                     closed.append(self._close(segment))
             elif segment.is_too_long(self._streams.newest_ns):
                 closed.append(self._reject(segment, NO_END))
         return closed
+
+    def _is_reached(self, segment: OpenSegment) -> bool:
+        """Tell whether the acting person's stream has reached the end of a segment that has one."""
+        assert segment.end_ns is not None
+        return segment.known_agent is not None and self._streams.reached(segment.known_agent, segment.end_ns)
+
+    def _why_incomplete(self, segment: OpenSegment) -> str | None:
+        """Return why a segment that has its end mark lacks frames, which may yet come on other people's keys."""
+        assert segment.end_ns is not None
+        return why_incomplete(self._streams, segment.start_ns or 0, segment.end_ns, self._beginning.is_resumed)
 
     def _start(self, mark: Segment) -> list[ClosedSegment]:
         if mark.segment_id in self._open:
             self._counters.reject("duplicate_mark", f"second start of {mark.segment_id!r}")
             return []
         start_ns = self._streams.newest_ns if mark.stamp_ns is None else mark.stamp_ns
-        self._open[mark.segment_id] = OpenSegment.of(mark, start_ns)
+        segment = OpenSegment.of(mark, start_ns)
+        if len(self._open) >= MOST_OPEN_SEGMENTS:
+            self._answered.remember(mark.segment_id, start_ns, None)
+            self._counters.reject("too_many_segments", f"{mark.segment_id!r} beside {len(self._open)} open ones")
+            return [segment.rejected(f"too many open segments: {MOST_OPEN_SEGMENTS} at the most")]
+        self._open[mark.segment_id] = segment
         return self._settle()
 
     def _end(self, mark: Segment) -> list[ClosedSegment]:
@@ -193,7 +208,7 @@ class Segmenter:
         """Close a segment that has its end mark, with the frames that have come."""
         assert segment.end_ns is not None
         start_ns = segment.start_ns if segment.start_ns is not None else 0
-        if (reason := why_incomplete(self._streams, start_ns, segment.end_ns, self._beginning.is_resumed)) is not None:
+        if (reason := self._why_incomplete(segment)) is not None:
             return self._reject(segment, reason)
         first = self._streams.first(start_ns, segment.end_ns) if segment.start_ns is not None else None
         agent = segment.known_agent if segment.known_agent is not None or first is None else first[1]

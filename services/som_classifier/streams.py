@@ -5,8 +5,9 @@ from collections.abc import Callable, Iterator
 from itertools import chain
 from typing import Any
 
-from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
+from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS, MOST_FRAMES, MOST_STREAMS
 from actum.messages import Posture
+from actum.node import Counters
 from actum.stamps import LostFrames, Order, StampGuard
 from som_classifier.frames import Frame, frame_of
 from som_classifier.kinematics import KinematicsFilter
@@ -65,6 +66,13 @@ class Stream:
             self._frames.popleft()
         return order, frame
 
+    def __len__(self) -> int:
+        return len(self._frames)
+
+    def let_go(self) -> None:
+        """Forget the oldest frame."""
+        self._frames.popleft()
+
     def _encode_valid(self, frame: Frame) -> None:
         if self._encode is not None and frame.valid:
             frame.activity = self._encode(frame)
@@ -95,9 +103,13 @@ class Stream:
 
 
 class Streams:
-    """The streams of all agents, and the newest stamp among them."""
+    """The streams of the agents heard last, and the newest stamp among them.
 
-    def __init__(self) -> None:
+    They hold `MOST_FRAMES` together at the most, and of those that are too many the longest ones' oldest go.
+    """
+
+    def __init__(self, counters: Counters) -> None:
+        self._counters = counters
         self._streams: dict[int, Stream] = {}
         self._encoders: Callable[[], Encode] | None = None
         self._plan = NO_SEARCH
@@ -125,13 +137,27 @@ class Streams:
 
     def add(self, posture: Posture) -> tuple[Order, Frame | None]:
         """Keep the next posture of its agent, as `Stream.add` does."""
-        if posture.agent not in self._streams:
-            encode = self._encoders() if self._encoders else None
-            self._streams[posture.agent] = Stream(encode, Search(posture, self._plan))
-        order, frame = self._streams[posture.agent].add(posture)
+        stream = self._streams.pop(posture.agent) if posture.agent in self._streams else self._begun(posture)
+        self._streams[posture.agent] = stream  # behind those heard before it
+        order, frame = stream.add(posture)
         if frame is not None:
             self._advance(posture.stamp_ns)
+            self._make_room()
         return order, frame
+
+    def _begun(self, posture: Posture) -> Stream:
+        return Stream(self._encoders() if self._encoders else None, Search(posture, self._plan))
+
+    def _make_room(self) -> None:
+        """Forget the agent silent for longest where there are too many, and the oldest frame where that is."""
+        if len(self._streams) > MOST_STREAMS:
+            silent = next(iter(self._streams))
+            del self._streams[silent]
+            self._counters.reject("too_many_people", f"more than {MOST_STREAMS}: agent {silent} is forgotten")
+        if sum(map(len, self._streams.values())) > MOST_FRAMES:
+            longest = max(self._streams.values(), key=len)
+            longest.let_go()
+            self._counters.reject("too_many_frames", f"more than {MOST_FRAMES} in a minute: the oldest is forgotten")
 
     def reached(self, agent: int, stamp_ns: int) -> bool:
         """Tell whether an agent's newest frame is at a stamp or after it."""

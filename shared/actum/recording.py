@@ -21,11 +21,11 @@ from mcap.writer import Writer
 
 from actum import codec, keys, schemas
 from actum.atomic_file import UNFINISHED, store_names
-from actum.mcap_file import McapFile, RecordingError, StoredMessage
+from actum.mcap_file import REMEDY, McapFile, RecordingError, StoredMessage
 from actum.messages import Image, Message, Segment
 from actum.node import Numbering
 
-__all__ = ["Recorder", "Recording", "RecordingError"]
+__all__ = ["Recorder", "Recording", "RecordingError", "StoredRecorder"]
 
 METADATA = "actum.recording"
 """The name of the metadata record."""
@@ -38,6 +38,12 @@ SCHEMA_ENCODING = "jsonschema"
 CHUNK_BYTES = 256 * 1024
 """Size of an MCAP chunk: a crash loses at most one, about three seconds of a skeleton stream."""
 
+MOST_HELD = 50
+"""How many times its file's size the messages in memory may take: they are a few times as large as they are stored."""
+LEAST_HELD_BYTES = 64_000_000
+"""What they may take (bytes) however small the file is."""
+MESSAGE_BYTES = 250
+"""What a message in memory takes beside its payload (bytes)."""
 SEQUENCE_MODULUS = 2**32
 """MCAP's message numbers have 32 bits."""
 
@@ -48,6 +54,8 @@ class Recorder:
     Where an exception ends the `with` block the file keeps the suffix.
     """
 
+    _chunk_bytes: int | None = CHUNK_BYTES
+
     def __init__(self, path: Path, *, person: str, source: str, **fields: str) -> None:
         self.path = path
         self._part = path.with_name(path.name + UNFINISHED)
@@ -56,7 +64,8 @@ class Recorder:
         self._channels: dict[str, int] = {}
         path.parent.mkdir(parents=True, exist_ok=True)
         self._file = self._part.open("wb")
-        self._writer = Writer(self._file, chunk_size=CHUNK_BYTES)
+        chunked = self._chunk_bytes is not None
+        self._writer = Writer(self._file, chunk_size=self._chunk_bytes or 0, use_chunking=chunked)
         self._writer.start()
         self._writer.add_metadata(METADATA, {"person": person, "source": source, **fields})
 
@@ -121,6 +130,31 @@ class Recorder:
         self._file.flush()
         os.fsync(self._file.fileno())
         self._file.close()
+
+
+class StoredRecorder(Recorder):
+    """Writes a recording of rare messages: each by itself, so that a crash loses none that `store` was called after."""
+
+    _chunk_bytes = None
+
+    @property
+    def size_bytes(self) -> int:
+        """How long the file is so far."""
+        return self._file.tell()
+
+    def store(self) -> None:
+        """Have stored on the disk what was written.
+
+        Raises:
+            OSError: the disk does not take it.
+        """
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def abandon(self) -> None:
+        """Leave the file as it is, unfinished: the disk takes no more."""
+        with suppress(OSError):
+            self._file.close()
 
 
 class Recording:
@@ -201,6 +235,7 @@ class Recording:
         addresses: dict[str, keys.Address | None] = {}
         without_images: list[StoredMessage] = []
         image_keys: set[str] = set()
+        left = LEAST_HELD_BYTES + MOST_HELD * self.path.stat().st_size
         for stored in self._file.stored():
             address = addresses.setdefault(stored.key, _address(stored.key))
             if address is None:
@@ -209,6 +244,9 @@ class Recording:
                 if address.topic.message is Image:
                     image_keys.add(stored.key)
                 else:
+                    left -= MESSAGE_BYTES + len(stored.payload)
+                    if left < 0:
+                        raise RecordingError(self.path, "far more messages than a file of its size holds", REMEDY)
                     without_images.append(stored)
         return sorted(without_images, key=attrgetter("publish_ns")), image_keys
 

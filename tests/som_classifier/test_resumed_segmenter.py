@@ -83,7 +83,8 @@ def test_frames_lost_within_a_segment_make_it_a_rejection() -> None:
     anew = frames[50].model_copy(update={"previous_ns": None})
     for after in (frames[50], anew):
         run = Run().feed(*frames[:20], after, *frames[51:], mark("start", 0), mark("end", 60 * FRAME_NS))
-        assert run.reasons == ["frames lost: none came for 1.0 s of the segment"]
+        assert run.reasons == []  # they may yet come
+        assert run.wait(3.0).reasons == ["frames lost: none came for 1.0 s of the segment"]
 
 
 def test_frames_that_were_never_captured_are_not_lost() -> None:

@@ -8,7 +8,7 @@ from typing import Annotated, get_args
 import typer
 
 from actum.runtime import serve_router, stop_on_signals
-from actum.settings import DEFAULT_ENDPOINT, SettingsError
+from actum.settings import DEFAULT_ENDPOINT, SettingsError, host_and_port
 from actum_command import processes
 from actum_command.commands.service_flags import with_service_flags
 from actum_command.commands.terminal import fail, say, settings
@@ -31,14 +31,23 @@ NO_PAGE = "no web page: pip install 'actum[web-dashboard]'"
 def router(
     listen: Annotated[str | None, typer.Option(help=f"endpoint; default {DEFAULT_ENDPOINT} unless --config")] = None,
     config: Annotated[Path | None, typer.Option(help="a Zenoh JSON5 configuration", exists=True)] = None,
+    credentials: Annotated[
+        Path | None, typer.Option(help="the folder of a router's credentials", envvar="ACTUM_CREDENTIALS")
+    ] = None,
+    link: Annotated[
+        str | None, typer.Option(help="endpoint of another host's router, to be one system with it")
+    ] = None,
 ) -> None:
-    """Run the embedded Zenoh router."""
+    """Run the embedded Zenoh router; with credentials it listens anew by itself when these are renewed."""
     logging.basicConfig(level="INFO", format="router: %(message)s")
-    endpoint = listen or (None if config else settings().connect)
+    here = settings()
+    endpoint = listen or (None if config else here.connect)
     try:
+        if link is not None:
+            host_and_port(link)
         if endpoint is not None:
             refuse_taken(endpoint)
-        serve_router(endpoint, config, stop_on_signals())
+        serve_router(endpoint, config, stop_on_signals(), credentials, here.health_file, link)
     except SettingsError as error:
         fail(str(error))
 
@@ -61,6 +70,8 @@ def up(
 ) -> None:
     """Run router and all services here, restart what ends, until Ctrl-C."""
     here = settings()
+    if here.credentials is not None:
+        fail("everything of 'actum up' runs on this machine and shows no credentials: leave ACTUM_CREDENTIALS unset")
     try:
         source = chosen_source(source, given, path)
         refuse_taken(here.connect)

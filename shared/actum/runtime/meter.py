@@ -111,6 +111,7 @@ class Meter:
             calibration=self._counters.details.get("calibration"),
             host=socket.gethostname(),
             source=self._counters.details.get("source"),
+            rate_hz=float(self._counters.details["rate_hz"]) if "rate_hz" in self._counters.details else None,
             page=self._counters.details.get("page"),
         )
 

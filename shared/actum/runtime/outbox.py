@@ -16,7 +16,10 @@ from actum.node import Numbering
 from actum.runtime.journal import WrittenAnswer
 
 HEARTBEAT_S = 0.5
-"""Interval (s) at which a publisher repeats its newest number, so that a loss of the last message is noticed."""
+"""How long (s) after a message its publisher repeats the number, so that a loss of the last one is noticed.
+
+Once: who subscribes later would take all before a number that is repeated for ever for lost, and request it.
+"""
 MOST_PUBLISHERS = 256
 """Most open publishers: agents come and go with new numbers, and the publisher silent for longest makes room."""
 
@@ -40,7 +43,7 @@ class Outbox:
     """One publisher per key and manner, declared when first needed, `MOST_PUBLISHERS` at the most."""
 
     def __init__(self, session: zenoh.Session) -> None:
-        self._session = session
+        self._session, self._origin = session, str(session.zid())
         self._keep: Callable[[Frame], None] | None = None
         self._numbering = Numbering()
         self._publishers: OrderedDict[tuple[str, Manner], Publisher] = OrderedDict()
@@ -49,7 +52,7 @@ class Outbox:
     def put(self, message: Message) -> None:
         """Number and put one message."""
         with self._lock:
-            frame = encode(self._numbering.numbered(message))
+            frame = encode(self._numbering.numbered(message), self._origin)
             manner = _manner(message)
             if manner == "cached" and self._keep is not None:
                 self._keep(frame)

@@ -18,7 +18,7 @@ from actum.runtime.parent import end_with_parent
 from actum.runtime.place import RETURNING_S, SETTLING_S, PlaceTakenError
 from actum.runtime.resuming import check_state_folder
 from actum.runtime.service import Service
-from actum.runtime.session import RETRY_S, client_config, open_session
+from actum.runtime.session import RETRY_S, open_session, secret_config
 from actum.runtime.source_service import SourceService
 from actum.runtime.step_service import NodeService
 from actum.runtime.waiting import stop_on_signals
@@ -33,9 +33,9 @@ TAKEN = 3
 """Exit code of a process whose service another process runs already."""
 
 
-def run(settings_type: type[S], build: Callable[[S], Node]) -> None:
-    """Run a node as this process's service until SIGTERM or SIGINT."""
-    settings, node = configured(settings_type, build)
+def run(settings_type: type[S], build: Callable[[S], Node], flags: Sequence[str] | None = None) -> None:
+    """Run a node as this process's service until SIGTERM or SIGINT, set by this process's flags or given ones."""
+    settings, node = configured(settings_type, build, flags)
     live(NodeService(node, settings), settings)
 
 
@@ -51,7 +51,7 @@ def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[
     service = settings_type.__module__.partition(".")[0]
     try:
         settings = from_command_line(settings_type, f"python -m {service}", flags)
-        client_config(settings)  # a wrong one is refused now, before the build, which may take long
+        secret_config(settings)  # a wrong one is refused now, before the build, which may take long
         check_state_folder(settings)
         return settings, build(settings)
     except ValidationError as error:

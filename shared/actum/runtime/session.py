@@ -3,11 +3,14 @@
 import json
 import logging
 import threading
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import zenoh
 
+from actum import keys
+from actum.runtime.credentials import check, client_values, login_values
 from actum.settings import ServiceSettings, SettingsError
 
 log = logging.getLogger("actum")
@@ -16,6 +19,8 @@ OPEN_TIMEOUT_MS = 500
 """How long one attempt to reach the router may take (ms)."""
 RETRY_S = 0.2
 """Interval between two attempts (s)."""
+ENCRYPTED = ("tls/", "quic/")
+"""The beginnings of endpoints on which certificates are shown."""
 LEASE_S = 10.0
 """Zenoh's default lease (s): how long the tokens of a silent session are kept."""
 
@@ -33,6 +38,10 @@ A reader that is stopped stalls what the others read from the same sender until 
 takes 5 s; when it goes on it connects anew, and recovers what it has missed.
 """
 
+BEFORE_DROP = 2
+"""Payloads longer than their key admits are counted by who decodes them, but those this many times as long never come:
+Zenoh drops them before they wait in a ring, where a few hundred may wait. Only the gap in `seq` tells of them."""
+
 
 class RouterUnreachableError(RuntimeError):
     """No router answered at the configured endpoint."""
@@ -44,12 +53,36 @@ class RouterUnreachableError(RuntimeError):
 def client_config(settings: ServiceSettings) -> zenoh.Config:
     """Build a client's configuration: one router, and no discovery, which does not cross container networks.
 
+    It names the files of the credentials and holds no secret.
+
     Raises:
-        SettingsError: the configuration file that it extends cannot be used.
+        SettingsError: the configuration file that it extends, or the credentials, cannot be used.
     """
     config = _base_config(settings.zenoh_config) if settings.zenoh_config else zenoh.Config()
-    for path, value in _client_values(settings.connect).items():
+    insert(config, _client_values(settings.connect))
+    if settings.credentials is not None:
+        if not settings.connect.startswith(ENCRYPTED):
+            raise SettingsError(f"credentials are shown to no router at {settings.connect}: use tls/host:port")
+        check(settings.credentials)
+        insert(config, client_values(settings.credentials))
+    return config
+
+
+def insert(config: zenoh.Config, values: Mapping[str, Any]) -> None:
+    """Set values of a configuration by their paths."""
+    for path, value in values.items():
         config.insert_json5(path, json.dumps(value))
+
+
+def secret_config(settings: ServiceSettings) -> zenoh.Config:
+    """Build the same with the user's name and password, where the credentials have these: to be opened, never shown.
+
+    Raises:
+        SettingsError: as `client_config`.
+    """
+    config = client_config(settings)
+    if settings.credentials is not None:
+        insert(config, login_values(settings.credentials))
     return config
 
 
@@ -71,13 +104,30 @@ def _client_values(endpoint: str) -> dict[str, Any]:
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
         "timestamping/enabled": True,  # late subscribers request messages by age
+        "transport/link/rx/max_message_size": BEFORE_DROP * keys.MOST_IMAGE_BYTES,
+        "low_pass_filter": _size_limits(),
         **TRANSPORT,
     }
 
 
+def _size_limits() -> list[dict[str, Any]]:
+    """Return Zenoh's rules by which it drops payloads that are far too large, on each topic of the table."""
+    sizes = sorted({topic.max_bytes for topic in keys.TOPICS})
+    return [
+        {
+            "id": f"{size} bytes",
+            "messages": ["put", "reply"],
+            "flows": ["ingress"],
+            "key_exprs": [keys.pattern(topic) for topic in keys.TOPICS if topic.max_bytes == size],
+            "size_limit": BEFORE_DROP * size,
+        }
+        for size in sizes
+    ]
+
+
 def open_session(settings: ServiceSettings, stop: threading.Event) -> zenoh.Session | None:
     """Open a session, waiting for the router, which is logged once; None if stopped before."""
-    config = client_config(settings)
+    config = secret_config(settings)
     waiting = False
     while not stop.is_set():
         try:

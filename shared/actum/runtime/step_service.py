@@ -10,7 +10,7 @@ from contextlib import contextmanager
 import zenoh
 
 from actum.bridge import Bridge
-from actum.codec import DecodeError, decode
+from actum.codec import DecodeError, decode, origin_of
 from actum.messages import Message
 from actum.node import TICK_NS, Node, Tick
 from actum.runtime.inbox import Inbox, Reach
@@ -115,5 +115,9 @@ class NodeService(StepService):
 
 
 def _origin(sample: zenoh.Sample) -> str:
-    """Return the id of the session that put a sample, from its Zenoh timestamp; "" where it has none."""
-    return str(sample.timestamp.get_id()) if sample.timestamp else ""
+    """Return the id of the session that put a sample: from its attachment, else from its Zenoh timestamp; else "".
+
+    The timestamp alone would not do: a router puts one of its own in place of that of a host whose clock is ahead.
+    """
+    origin = "" if sample.attachment is None else origin_of(sample.attachment.to_bytes())
+    return origin or (str(sample.timestamp.get_id()) if sample.timestamp else "")
