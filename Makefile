@@ -4,7 +4,10 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: install demo up test test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel clean
+LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
+LOCKS := deploy/requirements
+
+.PHONY: install demo up test fuzz soak test-browser test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -45,9 +48,20 @@ test-containers: $(STAMP)  ## build and run the compose file; needs a container 
 test-browser: $(STAMP)  ## all tests of the web page in Chromium, which has to be installed
 	$(BIN)/pytest -m "browser or long"
 
+test-chaos: $(STAMP)  ## a few services and routers killed, paused and cut off; `make chaos` does it to all
+	$(BIN)/pytest -m chaos -s
+
 test-viewers: $(STAMP)  ## what Rerun and Foxglove are sent; installs both, 600 MB
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[dev,view]"
 	$(BIN)/pytest tests/actum_command/test_rerun_entries.py tests/actum_command/test_foxglove_messages.py tests/system/test_viewers.py tests/pages/test_viewers_page.py
+
+fuzz: $(STAMP)  ## hostile messages by the hundred thousand to every service, then atheris; twenty minutes
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[fuzz]"
+	PYTHONPATH=tests $(BIN)/python -m fuzzing
+
+MINUTES ?= 20
+soak: $(STAMP)  ## all services with four people and images for MINUTES=20: memory, losses, latency by the minute
+	$(BIN)/python -m benchmarks.soak --minutes $(MINUTES)
 
 check: docs  ## format, lint, types, layers, pages
 	$(BIN)/ruff format --check --quiet .
@@ -55,8 +69,8 @@ check: docs  ## format, lint, types, layers, pages
 	$(BIN)/mypy --no-error-summary
 	$(BIN)/lint-imports --no-cache > /dev/null || $(BIN)/lint-imports
 
-bench: $(STAMP)  ## latency beside a bare Zenoh chain, and throughput
-	$(BIN)/python benchmarks/latency.py
+bench: $(STAMP)  ## latency beside a bare Zenoh chain and behind a secured router, and throughput
+	$(BIN)/python -m benchmarks.latency
 
 bench-camera: $(STAMP)  ## real people in video clips, beside the same peers, about five minutes
 	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
@@ -101,6 +115,9 @@ bench-page: $(STAMP)  ## what the page costs with several browsers, some minutes
 bench-tracker: $(STAMP)  ## what the marker tracker costs for an image and how exact it is, beside OpenCV, about ten minutes
 	$(BIN)/python -m benchmarks.tracker
 
+chaos: $(STAMP)  ## 40 times a service or router is killed, paused or cut off, and every answer judged; ten minutes; SEED=1
+	$(BIN)/python -m benchmarks.chaos $(if $(SEED),--seed $(SEED))
+
 picture: $(STAMP)  ## the README's pictures
 	$(BIN)/python -m docs.picture docs/scene.png
 	folder=$$(mktemp -d) && $(BIN)/actum simulate $$folder/learnt.mcap && $(BIN)/actum train $$folder/learnt.mcap -o $$folder/model.npz \
@@ -131,6 +148,20 @@ schemas: $(STAMP)  ## write the JSON Schemas anew
 
 wheel: $(STAMP)  ## source distribution and wheel, in dist
 	$(BIN)/python -m build
+
+lock: $(STAMP)  ## pin what the images install, with hashes; make lock UPGRADE=--upgrade takes newer versions
+	$(BIN)/pip install --quiet --disable-pip-version-check uv
+	echo 'hatchling>=1.27' | $(LOCK) - -o $(LOCKS)/build.txt
+	$(LOCK) pyproject.toml -o $(LOCKS)/service.txt
+	$(LOCK) pyproject.toml --extra scene-simulator -o $(LOCKS)/scene_simulator.txt
+	$(LOCK) pyproject.toml --extra marker-tracker -o $(LOCKS)/marker_tracker.txt
+	$(LOCK) pyproject.toml --extra web-dashboard -o $(LOCKS)/web_dashboard.txt
+	$(LOCK) pyproject.toml --extra command-line -o $(LOCKS)/actum_command.txt
+	@# MediaPipe asks for the OpenCV with windows, which needs 220 MB of Debian's libraries; the one without does as well.
+	echo "opencv-contrib-python; python_version < '3'" > $(LOCKS)/excluded.txt
+	for extra in camera realsense openni2; do \
+	  $(LOCK) pyproject.toml --extra $$extra --extra sensor-gateway --override $(LOCKS)/excluded.txt -o $(LOCKS)/$$extra.txt || exit; done
+	rm $(LOCKS)/excluded.txt
 
 clean:
 	rm -rf $(VENV) site

@@ -9,15 +9,12 @@ with needs_extra("actum-command"):
     import typer
 
     from actum_command.commands import (
-        calibrate_commands,
         demo_command,
+        deploy_commands,
         doctor_command,
-        draw_command,
         foxglove_commands,
-        import_commands,
         inspect_command,
         label_commands,
-        markers_command,
         pose_model_commands,
         recording_commands,
         ros2_command,
@@ -30,6 +27,7 @@ with needs_extra("actum-command"):
         view_command,
         watch_command,
     )
+    from actum_command.commands.picture_commands import add_picture_commands
     from actum_command.commands.plain_help import PlainTyper
     from actum_command.commands.terminal import say
 
@@ -65,11 +63,8 @@ app.command("record")(recording_commands.record)
 app.command("play")(recording_commands.play)
 app.add_typer(takes_commands.app, name="takes")
 app.add_typer(label_commands.app, name="label")
-app.add_typer(import_commands.app, name="import")
+add_picture_commands(app)
 app.add_typer(pose_model_commands.app, name="models")
-app.command("draw")(draw_command.draw)
-app.command("markers")(markers_command.markers)
-app.add_typer(calibrate_commands.app, name="calibrate")
 app.command("train")(training_commands.train_command)
 app.command("evaluate")(training_commands.evaluate_command)
 app.command("tune")(tune_command.tune)
@@ -81,6 +76,7 @@ app.command("ros2")(ros2_command.ros2)
 app.command("view")(view_command.view)
 app.command("foxglove")(foxglove_commands.foxglove)
 app.command("export")(foxglove_commands.export)
+app.add_typer(deploy_commands.app, name="deploy")
 app.command("doctor")(doctor_command.doctor)
 
 

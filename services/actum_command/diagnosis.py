@@ -35,6 +35,9 @@ OLD_MODEL = "model not renewed"
 """The prefix of the state of a classifier whose model file was replaced by one that cannot be used."""
 
 
+LIMIT = "too_many_"
+"""The prefix of the kinds of rejects that count what a service had no room for."""
+
 PROGRAMS = {"sensor_gateway": "'python -m sensor_gateway', for the simulated scene 'python -m scene_simulator',"}
 """The programs to start for a service, where there is more than one of its name."""
 
@@ -165,7 +168,10 @@ def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
 
 
 def _remarks(name: str, status: Status) -> Iterator[str]:
-    """Yield what a service that does well says of itself besides."""
+    """Yield what a service that does well says of itself besides, and which of its limits were met."""
+    met = [f"{kind} {n}" for kind, n in status.rejects.items() if kind.startswith(LIMIT)]
+    if met:
+        yield f"{name} has met its limits: {', '.join(met)}; something puts more than it can take, see docs/messages.md"
     if status.state.startswith(AND):
         yield from (f"{name}: {remark}" for remark in status.state.removeprefix(AND).split("; "))
 

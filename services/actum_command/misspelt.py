@@ -9,7 +9,7 @@ from actum_command.service_settings import SETTINGS
 
 PREFIX = "ACTUM_"
 FILE = PREFIX + "CONFIG"
-OTHERS = ("camera_device", "config", "data", "log", "models", "parent", "videos")
+OTHERS = ("camera_device", "config", "data", "log", "models", "parent", "router_port", "videos")
 """The `ACTUM_…` variables that are no settings of services: the runtime, the compose files or the tests read them."""
 
 KNOWN = sorted({name for settings in SETTINGS.values() for name in settings.model_fields})

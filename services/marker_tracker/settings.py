@@ -6,7 +6,6 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from actum.settings import ServiceSettings
-from marker_tracker.detection.families import canonical
 
 
 class ObjectSpec(BaseModel):
@@ -38,5 +37,7 @@ class Settings(ServiceSettings):
     @field_validator("dictionary")
     @classmethod
     def _known(cls, name: str) -> str:
+        from marker_tracker.detection.families import canonical  # OpenCV's names; others read these settings without it
+
         canonical(name)
         return name

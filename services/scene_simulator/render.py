@@ -8,7 +8,7 @@ from actum.arrays import Array
 from scene_simulator.background import WALL_Z_M, draw_room, draw_table
 from scene_simulator.clutter import draw_clutter
 from scene_simulator.drawing_primitives import Canvas, Pinhole
-from scene_simulator.exposure import mean_image
+from scene_simulator.exposure import mean_image, states_while_open
 from scene_simulator.figure import Figure, Stroke
 from scene_simulator.props import Prop
 from scene_simulator.random_streams import random_stream
@@ -35,10 +35,17 @@ class Renderer:
         self._table, self._table_mask = draw_table(self.camera, parameters, names, scene.places_x_m)
         if self._conditions.clutter:
             self._draw_clutter(scene)
-        self._blur_sd_px = parameters.image.blur_sd_px
+        self._blur_sd_px, self._jpeg_quality = parameters.image.blur_sd_px, parameters.image.jpeg_quality
         self._rng = rng
         size = (self.camera.height + SLACK_PX, self.camera.width + SLACK_PX, 3)
         self._grain = np.round(rng.normal(0, parameters.image.grey_noise_sd, size)).astype(np.int16)
+
+    def jpeg(self, before: SceneState, state: SceneState, share: float) -> bytes:
+        """Render the image exposed over the last `share` (0 to 1) of the interval between two frames, as JPEG."""
+        image = self.image(*states_while_open(before, state, share))
+        done, data = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, self._jpeg_quality])
+        assert done
+        return data.tobytes()
 
     def image(self, *states: SceneState) -> Canvas:
         """Render one image (height, width, 3; BGR) with blur and noise, from the states during the exposure."""

@@ -1,21 +1,21 @@
 """The simulated scene as a source: noisy skeletons, colour images and the truth, stamped and in order."""
 
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
-import cv2
 import numpy as np
 
 from actum.messages import SIMULATOR, Agent, Image, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS, Counters, Source
 from scene_simulator.conditions import PLAIN, Conditions
-from scene_simulator.drawing_primitives import Canvas, Pinhole
 from scene_simulator.everyday import Everyday
-from scene_simulator.exposure import states_while_open
 from scene_simulator.noise import SkeletonNoise
 from scene_simulator.programme import Task
 from scene_simulator.random_streams import random_stream
-from scene_simulator.render import Renderer
 from scene_simulator.simulated_scene import Scene, SceneState
+
+if TYPE_CHECKING:
+    from scene_simulator.render import Renderer
 
 AGENT = 1
 """Number of the person, who usually is the only one."""
@@ -76,7 +76,7 @@ class Simulator:
             self.scene.actor.noise_scale,
             self._rate_hz,
         )
-        renderer = Renderer(self.scene, random_stream("image noise", *self._seeds)) if self._frames_per_image else None
+        renderer = self._renderer() if self._frames_per_image else None
         start = before = None
         for state in self.scene.states(self._tail_s):
             messages: list[Message] = [self._skeleton(state, noise)]
@@ -85,8 +85,8 @@ class Simulator:
             if state.mark is not None and start is not None:
                 messages.insert(0, self._truth(state, start))
             if renderer is not None and state.frame % self._frames_per_image == 0:
-                image = renderer.image(*states_while_open(before or state, state, self._open_share))
-                messages.append(self._image(state, image, renderer.camera))
+                jpeg = renderer.jpeg(before or state, state, self._open_share)
+                messages.append(self._image(state, jpeg, renderer))
             yield messages
             before = state
 
@@ -98,6 +98,11 @@ class Simulator:
         """Return the segment id of a repetition by its number; the id does not tell the action."""
         actor_seed, seed = self._seeds
         return f"s{actor_seed}-{seed}-{number:03d}"
+
+    def _renderer(self) -> "Renderer":
+        from scene_simulator.render import Renderer  # only images need OpenCV
+
+        return Renderer(self.scene, random_stream("image noise", *self._seeds))
 
     def _skeleton(self, state: SceneState, noise: SkeletonNoise) -> Skeleton:
         joints, confidence = noise.measure(state.joints_m)
@@ -126,17 +131,15 @@ class Simulator:
             displacement_m=moved if state.mark == "end" else None,
         )
 
-    def _image(self, state: SceneState, rendered: Canvas, camera: Pinhole) -> Image:
-        quality = self.scene.parameters.image.jpeg_quality
-        done, data = cv2.imencode(".jpg", rendered, [cv2.IMWRITE_JPEG_QUALITY, quality])
-        assert done
+    def _image(self, state: SceneState, jpeg: bytes, renderer: "Renderer") -> Image:
+        camera = renderer.camera
         return Image(
             stamp_ns=self.stamp_ns(state.frame),
             sensor=self._sensor,
             format="jpeg",
             width=camera.width,
             height=camera.height,
-            data=data.tobytes(),
+            data=jpeg,
             K=camera.matrix.ravel().tolist(),
             distortion=[0.0] * 5,
             skeleton_from_image=np.eye(4).ravel().tolist(),

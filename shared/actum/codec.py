@@ -99,12 +99,21 @@ def _check_encoding(encoding: str, expected: type[Message]) -> None:
 
 def _unpack(key: str, payload: bytes) -> dict[str, Any]:
     try:
-        fields = msgpack.unpackb(payload) if len(payload) <= keys.MEGABYTE else _Unpacking().unpack(payload)
+        fields = unpack(payload)
     except UNPACK_ERRORS as error:
         raise DecodeError("not_msgpack", f"{key}: {type(error).__name__} {error}") from None
     if not isinstance(fields, dict):
         raise DecodeError("not_a_map", f"{key}: a {type(fields).__name__}, not a map with string keys")
     return fields
+
+
+def unpack(payload: bytes) -> Any:
+    """Unpack msgpack from anywhere; one of many values is refused where they would take much memory.
+
+    Raises:
+        UNPACK_ERRORS: it is no msgpack, is nested too deeply, or has too many values.
+    """
+    return msgpack.unpackb(payload) if len(payload) <= keys.MOST_BYTES else _Unpacking().unpack(payload)
 
 
 class _Unpacking:

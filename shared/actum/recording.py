@@ -21,7 +21,7 @@ from mcap.writer import Writer
 
 from actum import codec, keys, schemas
 from actum.atomic_file import UNFINISHED, store_names
-from actum.mcap_file import McapFile, RecordingError, StoredMessage
+from actum.mcap_file import REMEDY, McapFile, RecordingError, StoredMessage
 from actum.messages import Image, Message, Segment
 from actum.node import Numbering
 
@@ -38,6 +38,12 @@ SCHEMA_ENCODING = "jsonschema"
 CHUNK_BYTES = 256 * 1024
 """Size of an MCAP chunk: a crash loses at most one, about three seconds of a skeleton stream."""
 
+MOST_HELD = 50
+"""How many times its file's size the messages in memory may take: they are a few times as large as they are stored."""
+LEAST_HELD_BYTES = 64_000_000
+"""What they may take (bytes) however small the file is."""
+MESSAGE_BYTES = 250
+"""What a message in memory takes beside its payload (bytes)."""
 SEQUENCE_MODULUS = 2**32
 """MCAP's message numbers have 32 bits."""
 
@@ -229,6 +235,7 @@ class Recording:
         addresses: dict[str, keys.Address | None] = {}
         without_images: list[StoredMessage] = []
         image_keys: set[str] = set()
+        left = LEAST_HELD_BYTES + MOST_HELD * self.path.stat().st_size
         for stored in self._file.stored():
             address = addresses.setdefault(stored.key, _address(stored.key))
             if address is None:
@@ -237,6 +244,9 @@ class Recording:
                 if address.topic.message is Image:
                     image_keys.add(stored.key)
                 else:
+                    left -= MESSAGE_BYTES + len(stored.payload)
+                    if left < 0:
+                        raise RecordingError(self.path, "far more messages than a file of its size holds", REMEDY)
                     without_images.append(stored)
         return sorted(without_images, key=attrgetter("publish_ns")), image_keys
 

@@ -19,7 +19,7 @@ def running(tmp_path: Path) -> Iterator[System]:
 
 def wait_for_state(page: Any, text: str) -> None:
     page.wait_for_function(
-        "text => document.getElementById('state').textContent.includes(text)", arg=text, timeout=30_000
+        "text => document.getElementById('state').textContent.includes(text)", arg=text, timeout=60_000
     )
 
 

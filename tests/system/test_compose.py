@@ -1,18 +1,18 @@
 """The container files: what they say, and what they do on a real engine."""
 
 import json
-import os
+import signal
 import subprocess
-import sys
 import time
-import tomllib
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import msgpack
 import pytest
 import zenoh
 
+from actum.health import FRESH_S, is_healthy
 from actum_command.processes import PAGE, SERVICES, simulated_objects
 from compose_files import DEPLOY, MAIN, ROOT, services_of
 from live import System, wait_until
@@ -23,6 +23,18 @@ UNCHECKED = {"trainer", "watch"}
 TRAINER = "model_trainer"
 ACTIONS = {"push", "pull", "put", "lift", "point"}
 STOPPED_WITHIN_S = 10.0
+COMPOSE_FILES = (MAIN, *sorted(DEPLOY.glob("compose.*.yml")))
+OVERLAYS = {"zenohd", "realsense", "openni2", "one-router"}
+"""Files that are laid over another, whose services they change."""
+HARDENED = {
+    "init": True,
+    "read_only": True,
+    "tmpfs": ["/tmp:size=64m"],
+    "cap_drop": ["ALL"],
+    "security_opt": ["no-new-privileges:true"],
+}
+ELSEWHERE = {"ACTUM_CONNECT": "tcp/192.0.2.1:7447", "ACTUM_MODELS": "/srv/models"}
+LOOSENING = {"read_only", "tmpfs", "cap_drop", "cap_add", "security_opt", "privileged", "user", "mem_limit"}
 
 
 @pytest.fixture(scope="module")
@@ -36,11 +48,11 @@ def test_router_seven_services_trainer_and_watch_stand_in_one_flat_list(services
 
 
 @pytest.mark.parametrize("name", sorted(SIX))
-def test_each_service_is_built_from_its_own_folder_and_extra(services, name):
-    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-    assert services[name]["build"]["args"] == {"SERVICE": name}
+def test_each_service_is_built_from_its_own_folder_and_lock(services, name):
+    arguments = services[name]["build"]["args"]
+    assert arguments["SERVICE"] == name
+    assert arguments.get("LOCK", "service") in (name, "service")
     assert services[name]["image"] == f"actum/{name}"
-    assert name.replace("_", "-") in extras
 
 
 def test_every_image_is_built_once(services):
@@ -51,9 +63,21 @@ def test_every_image_is_built_once(services):
 
 def test_only_router_and_page_are_reached_from_outside_and_only_from_this_host(services):
     assert {name: service["ports"] for name, service in services.items() if "ports" in service} == {
-        "router": ["127.0.0.1:7447:7447"],
-        "web_dashboard": ["127.0.0.1:8080:8080"],
+        "router": ["127.0.0.1:${ACTUM_ROUTER_PORT:-7447}:7447"],
+        "web_dashboard": ["127.0.0.1:${ACTUM_PAGE_PORT:-8080}:8080"],
     }
+
+
+@pytest.mark.parametrize("file", COMPOSE_FILES, ids=lambda file: file.name)
+def test_nobody_is_root_can_write_or_can_take_all_memory(file):
+    inherited = {name for name, service in services_of(file).items() if "extends" in service}
+    laid_over = file.stem.partition(".")[2] in OVERLAYS
+    for name, service in services_of(file).items():
+        if laid_over or name in inherited:
+            assert not LOOSENING & set(service)
+        else:
+            assert {key: service.get(key) for key in HARDENED} == HARDENED
+            assert set(service) >= {"mem_limit", "pids_limit"}
 
 
 def test_all_come_back_but_the_trainer_and_all_pass_signals_on(services):
@@ -90,7 +114,7 @@ def test_the_trainer_writes_the_model_that_the_classifier_reads(services):
     model = services["som_classifier"]["environment"]["ACTUM_MODEL"]
     assert services["trainer"]["command"][0].endswith(f"-o {model}")
     assert services["trainer"]["volumes"] == ["models:/models"]
-    assert services["som_classifier"]["volumes"] == ["models:/models:ro"]
+    assert "models:/models:ro" in services["som_classifier"]["volumes"]
 
 
 def test_what_is_taught_is_put_where_the_classifier_reads_it_and_stays(services):
@@ -102,11 +126,37 @@ def test_what_is_taught_is_put_where_the_classifier_reads_it_and_stays(services)
     assert services["trainer"]["command"][0].startswith("test -e /models/model.npz && exit;")
 
 
-def test_two_hosts_together_run_the_router_and_the_six_services():
+def test_who_answers_keeps_the_answers_where_they_stay(services):
+    keeping = {name for name, service in services.items() if "ACTUM_STATE" in service.get("environment", {})}
+    assert keeping == {"som_classifier", "action_fusion"}
+    for name in keeping:
+        folder = services[name]["environment"]["ACTUM_STATE"]
+        assert f"state:{folder}" in services[name]["volumes"]
+
+
+def test_two_hosts_together_run_the_six_services_and_each_a_router():
     hosts = [services_of(DEPLOY / f"compose.{host}-host.yml") for host in ("kinect", "compute")]
     extended = [(name, service["extends"]) for host in hosts for name, service in host.items()]
-    assert sorted(name for name, _ in extended) == sorted({"router", *SIX})
+    assert sorted(name for name, _ in extended) == sorted(["router", "router", "watch", *SIX])
     assert all(extends == {"file": "../docker-compose.yml", "service": name} for name, extends in extended)
+
+
+def test_where_the_sensors_host_has_the_only_router_all_others_connect_to_it():
+    compute = services_of(DEPLOY / "compose.compute-host.yml")
+    changed = services_of(DEPLOY / "compose.one-router.yml")
+    assert changed.keys() == compute.keys()
+    assert changed["router"] == {"profiles": ["unused"]}
+    assert all("ACTUM_CONNECT" in service["environment"] for name, service in changed.items() if name != "router")
+
+
+def test_the_routers_of_two_hosts_are_alike_but_for_images_and_who_they_are():
+    sensor, compute = (
+        zenoh.Config.from_file(DEPLOY / "zenoh" / f"{name}.json5") for name in ("router", "compute-router")
+    )
+    for path in ("mode", "listen", "scouting", "transport", "adminspace"):
+        assert sensor.get_json(path) == compute.get_json(path)
+    [subject] = json.loads(sensor.get_json("access_control/subjects"))
+    assert subject["zids"] == [json.loads(compute.get_json("id"))]
 
 
 def test_zenohd_reads_the_same_configuration_file(services):
@@ -123,24 +173,18 @@ def test_the_router_listens_everywhere_inside_its_container():
     assert json.loads(config.get_json("mode")) == "router"
 
 
-def probe(endpoint: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "actum.runtime.probe"],
-        env={**os.environ, "ACTUM_CONNECT": endpoint},
-        capture_output=True,
-        text=True,
-        check=False,
+def test_our_router_runs_on_the_file_and_is_healthy_while_it_does(running: System, tmp_path: Path, monkeypatch):
+    health = tmp_path / "health"
+    monkeypatch.setenv("ACTUM_HEALTH_FILE", str(health))
+    router = running.start(
+        "actum_command", "router", "--config", str(ROUTER_CONFIG), "--listen", running.settings.connect
     )
-
-
-def test_our_router_runs_on_the_file_and_its_health_check_tells_whether_it_does(running: System):
-    endpoint = running.settings.connect
-    before = probe(endpoint)
-    assert before.returncode == 1
-    assert before.stderr.startswith(f"no router answers at {endpoint}")
-    running.start("actum_command", "router", "--config", str(ROUTER_CONFIG), "--listen", endpoint)
     with running.client():
-        assert probe(endpoint).returncode == 0
+        wait_until(lambda: is_healthy(health), "a healthy router")
+    router.process.send_signal(signal.SIGSTOP)
+    wait_until(lambda: not is_healthy(health), "a frozen router that is not healthy", patience_s=2 * FRESH_S)
+    router.process.send_signal(signal.SIGCONT)
+    wait_until(lambda: is_healthy(health), "a healthy router")
 
 
 def engine(*arguments: str) -> str:
@@ -194,7 +238,8 @@ def deaths(since_s: float) -> list[dict[str, Any]]:
         (["docker-compose.yml"], {}),
         (["docker-compose.yml", "deploy/compose.zenohd.yml"], {}),
         (["deploy/compose.kinect-host.yml"], {}),
-        (["deploy/compose.compute-host.yml"], {"ACTUM_CONNECT": "tcp/192.0.2.1:7447", "ACTUM_MODELS": "/srv/models"}),
+        (["deploy/compose.compute-host.yml"], ELSEWHERE),
+        (["deploy/compose.compute-host.yml", "deploy/compose.one-router.yml"], ELSEWHERE),
     ],
 )
 def test_compose_accepts(files, environment, monkeypatch):

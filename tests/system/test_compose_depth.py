@@ -5,7 +5,7 @@ from typing import Any, get_args
 
 import pytest
 
-from compose_files import DEPLOY, ROOT, services_of
+from compose_files import DEPLOY, services_of
 
 SOURCES = {"realsense": "libusb-1.0-0", "openni2": "libopenni2-0"}
 
@@ -17,12 +17,10 @@ def gateway(source: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("source", SOURCES)
-def test_the_image_has_the_sources_extra_and_the_library_it_needs(source: str) -> None:
-    extras = (ROOT / "pyproject.toml").read_text()
+def test_the_image_has_the_sources_lock_and_the_library_it_needs(source: str) -> None:
     arguments = gateway(source)["build"]["args"]
 
-    assert arguments["EXTRA"] == source
-    assert f"\n{source} = [" in extras
+    assert arguments["LOCK"] == source
     assert SOURCES[source] in arguments["PACKAGES"].split()
 
 

@@ -8,7 +8,7 @@ from typing import Annotated, get_args
 import typer
 
 from actum.runtime import serve_router, stop_on_signals
-from actum.settings import DEFAULT_ENDPOINT, SettingsError
+from actum.settings import DEFAULT_ENDPOINT, SettingsError, host_and_port
 from actum_command import processes
 from actum_command.commands.service_flags import with_service_flags
 from actum_command.commands.terminal import fail, say, settings
@@ -34,14 +34,20 @@ def router(
     credentials: Annotated[
         Path | None, typer.Option(help="the folder of a router's credentials", envvar="ACTUM_CREDENTIALS")
     ] = None,
+    link: Annotated[
+        str | None, typer.Option(help="endpoint of another host's router, to be one system with it")
+    ] = None,
 ) -> None:
     """Run the embedded Zenoh router; with credentials it listens anew by itself when these are renewed."""
     logging.basicConfig(level="INFO", format="router: %(message)s")
-    endpoint = listen or (None if config else settings().connect)
+    here = settings()
+    endpoint = listen or (None if config else here.connect)
     try:
+        if link is not None:
+            host_and_port(link)
         if endpoint is not None:
             refuse_taken(endpoint)
-        serve_router(endpoint, config, stop_on_signals(), credentials)
+        serve_router(endpoint, config, stop_on_signals(), credentials, here.health_file, link)
     except SettingsError as error:
         fail(str(error))
 

@@ -9,12 +9,13 @@ from types import TracebackType
 from typing import Any, Self
 
 import zenoh
+from zenoh import ext
 
 from actum import keys
 from actum.codec import DecodeError, decode
 from actum.commands import MSGPACK, Refusal, packed, unpacked
 from actum.messages import Info, Message
-from actum.runtime.inbox import Subscriber, subscribe
+from actum.runtime.inbox import Subscriber, subscribe, subscribe_recovering
 from actum.runtime.outbox import Outbox
 from actum.runtime.session import RouterUnreachableError, connected, secret_config
 from actum.settings import ServiceSettings
@@ -133,8 +134,19 @@ class Client:
         threading.Thread(target=listening.drain, args=(take,), daemon=True).start()
 
     def listen(self, key_expr: str, ring: int = DEEP_RING) -> Listening:
-        """Subscribe to a key expression, without history."""
-        listening = Listening(subscribe(self._session, key_expr, ring))
+        """Subscribe to what is put from now on on keys."""
+        return self._listening_to(subscribe(self._session, key_expr, ring))
+
+    def listen_back(self, key_expr: str, history_s: float, ring: int = DEEP_RING) -> Listening:
+        """Subscribe to keys, request what is lost on the way, and what was put in the last `history_s` (s) and is kept.
+
+        A service that was started anew offers its last answers once more: the same `segment_id` says the same.
+        """
+        history = ext.HistoryConfig(detect_late_publishers=True, max_age=history_s)
+        return self._listening_to(subscribe_recovering(self._session, key_expr, ring, history))
+
+    def _listening_to(self, subscriber: Subscriber) -> Listening:
+        listening = Listening(subscriber)
         self._listening.append(listening)
         return listening
 

@@ -6,19 +6,24 @@ from pathlib import Path
 
 import zenoh
 
-from actum.runtime.credentials import CERTIFICATE, is_renewed, login_values, router_values
+from actum.health import write_health
+from actum.runtime.credentials import CERTIFICATE, USERS, check, is_renewed, login_values, router_values
 from actum.runtime.session import TRANSPORT, insert
 from actum.runtime.waiting import wait_for
 from actum.settings import SettingsError
 
 log = logging.getLogger("actum")
 
-RENEWAL_S = 2.0
-"""Interval (s) at which a router looks whether its certificate was renewed, which happens once in months."""
+LOOK_S = 1.0
+"""Interval (s) at which a router looks whether it works, and whether its certificate was renewed."""
 
 
-def router_config(listen: str | None, config_file: Path | None, credentials: Path | None = None) -> zenoh.Config:
+def router_config(
+    listen: str | None, config_file: Path | None, credentials: Path | None = None, link: str | None = None
+) -> zenoh.Config:
     """Build the router's configuration from a JSON5 file or the defaults, with the endpoint to listen on.
+
+    `link` is the endpoint of another host's router, which is connected to for as long as it takes.
 
     Raises:
         zenoh.ZError: the file or the endpoint is refused.
@@ -27,34 +32,43 @@ def router_config(listen: str | None, config_file: Path | None, credentials: Pat
     config = zenoh.Config.from_file(config_file) if config_file else _default_config()
     if listen is not None:
         insert(config, {"listen/endpoints": [listen]})
+    if link is not None:
+        insert(config, {"connect/endpoints": [link]})
     if credentials is not None:
-        insert(config, router_values(credentials))
+        check(credentials)
+        insert(config, router_values(credentials, passwords=(credentials / USERS).exists()))
     return config
 
 
 def serve_router(
-    listen: str | None, config_file: Path | None, stop: threading.Event, credentials: Path | None = None
+    listen: str | None,
+    config_file: Path | None,
+    stop: threading.Event,
+    credentials: Path | None = None,
+    health_file: Path | None = None,
+    link: str | None = None,
 ) -> None:
     """Run a router until stopped; with a folder of credentials it is opened anew whenever these have been renewed.
 
-    A router reads its certificate only when it begins to listen. Its clients, which then lose it for some tenths of
-    a second, show theirs anew each time they connect.
+    The health file is touched every second while the router answers queries of what it is. A router reads its
+    certificate only when it begins to listen. Its clients, which then lose it for some tenths of a second, show theirs
+    anew each time they connect.
 
     Raises:
         SettingsError: the endpoint is taken, or the configuration or the credentials are refused.
     """
     while not stop.is_set():
-        session = _opened(listen, config_file, credentials)
+        session = _opened(listen, config_file, credentials, link)
         log.info("router %s listens on %s", session.zid(), listen or config_file)
         try:
-            _wait_for_renewal(credentials, stop)
+            _wait_for_renewal(session, credentials, health_file, stop)
         finally:
             session.close()
 
 
-def _opened(listen: str | None, config_file: Path | None, credentials: Path | None) -> zenoh.Session:
+def _opened(listen: str | None, config_file: Path | None, credentials: Path | None, link: str | None) -> zenoh.Session:
     try:
-        config = router_config(listen, config_file, credentials)
+        config = router_config(listen, config_file, credentials, link)
         if credentials is not None:
             insert(config, login_values(credentials))
         return zenoh.open(config)
@@ -63,16 +77,17 @@ def _opened(listen: str | None, config_file: Path | None, credentials: Path | No
         raise SettingsError(f"no router can be started on {listen or config_file}: {reason}") from None
 
 
-def _wait_for_renewal(credentials: Path | None, stop: threading.Event) -> None:
-    """Wait until stopped, or until the folder holds another certificate that can be used."""
-    if credentials is None:
-        wait_for(stop)
-        return
-    shown = (credentials / CERTIFICATE).read_bytes()
-    while not stop.wait(RENEWAL_S):
-        if is_renewed(credentials, shown):
-            log.info("the certificate in %s was renewed: listening anew", credentials)
+def _wait_for_renewal(
+    session: zenoh.Session, credentials: Path | None, health_file: Path | None, stop: threading.Event
+) -> None:
+    """Wait until stopped, or until the folder holds another certificate that can be used; keep the health file."""
+    shown = (credentials / CERTIFICATE).read_bytes() if credentials else b""
+    while credentials is None or not is_renewed(credentials, shown):
+        if health_file is not None:
+            write_health(health_file, any(session.get(f"@/{session.zid()}/router", timeout=LOOK_S)))
+        if wait_for(stop, LOOK_S):
             return
+    log.info("the certificate in %s was renewed: listening anew", credentials)
 
 
 def _default_config() -> zenoh.Config:

@@ -16,6 +16,7 @@ from actum.command_line import from_command_line
 from actum.node import Node, Source
 from actum.runtime.parent import end_with_parent
 from actum.runtime.place import RETURNING_S, SETTLING_S, PlaceTakenError
+from actum.runtime.resuming import check_state_folder
 from actum.runtime.service import Service
 from actum.runtime.session import RETRY_S, open_session, secret_config
 from actum.runtime.source_service import SourceService
@@ -51,6 +52,7 @@ def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[
     try:
         settings = from_command_line(settings_type, f"python -m {service}", flags)
         secret_config(settings)  # a wrong one is refused now, before the build, which may take long
+        check_state_folder(settings)
         return settings, build(settings)
     except ValidationError as error:
         print(f"{service}: {complaint(error)} (see --help)", file=sys.stderr)

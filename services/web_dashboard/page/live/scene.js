@@ -17,6 +17,7 @@ const SQUARE_M = 0.25;
 const STRAYS_M = 0.3;         // how far a person may walk from the middle before the view follows
 const FOLLOWS = 0.04;         // share of the way that the view follows in one frame
 const FLOOR_FOLLOWS = 0.05;   // share of a step of the lowest foot that the floor takes up in one frame
+const SLOW_MS = 100;          // between two pictures where the processor draws them: it has other things to do
 const UP = new THREE.Vector3(0, 1, 0);
 
 export function scene() {
@@ -54,9 +55,10 @@ function offerPeople(who) {
 
 class Stage {
   constructor(box, frames, counts) {
-    Object.assign(this, { box, frames, counts, objects: [], floor: null, changed: true, placed: false });
-    this.renderer = new THREE.WebGLRenderer({ antialias: devicePixelRatio < 2, alpha: true });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    Object.assign(this, { box, frames, counts, objects: [], floor: null, changed: true, placed: false, drawnAt: 0 });
+    this.slow = !drawsFast();
+    this.renderer = new THREE.WebGLRenderer({ antialias: devicePixelRatio < 2 && !this.slow, alpha: true });
+    this.renderer.setPixelRatio(this.slow ? 1 : Math.min(devicePixelRatio, 2));
     box.append(this.renderer.domElement);
     this.renderer.domElement.setAttribute("aria-hidden", "true");
     this.camera = new THREE.PerspectiveCamera(40, 1, 0.05, 60);
@@ -65,7 +67,7 @@ class Stage {
     this.furnish();
     this.listen();
     this.reset();
-    this.renderer.setAnimationLoop(() => this.draw());
+    this.renderer.setAnimationLoop((nowMs) => this.draw(nowMs));
   }
 
   furnish() {
@@ -213,12 +215,21 @@ class Stage {
     this.changed = true;
   }
 
-  draw() {
-    if (!this.changed && !this.things.moving) return;
-    this.changed = false;
+  draw(nowMs) {
+    const hidden = this.box.clientWidth === 0;
+    const early = this.slow && nowMs - this.drawnAt < SLOW_MS;
+    if (hidden || early || (!this.changed && !this.things.moving)) return;
+    Object.assign(this, { changed: false, drawnAt: nowMs });
     this.things.fade();
     this.renderer.render(this.scene, this.camera);
   }
+}
+
+// Tells whether a graphics card draws.
+function drawsFast() {
+  const context = document.createElement("canvas").getContext("webgl2", { failIfMajorPerformanceCaveat: true });
+  context?.getExtension("WEBGL_lose_context")?.loseContext();
+  return context !== null;
 }
 
 function at(point, worldFromCamera) {

@@ -8,10 +8,10 @@ const REST_MS = 500;      // between the end and the next start
 const playing = new Set();
 let wanted = !matchMedia("(prefers-reduced-motion: reduce)").matches;
 
-requestAnimationFrame(function step(nowMs) {
+function step(nowMs) {
   for (const film of playing) film.step(nowMs);
-  requestAnimationFrame(step);
-});
+  if (playing.size) requestAnimationFrame(step);
+}
 
 export function arePlaying() {
   return wanted;
@@ -30,6 +30,7 @@ export class Film {
     this.redraw = drawn(canvas, (context, width, height) => this.draw(context, width, height));
     new IntersectionObserver(([{ isIntersecting }]) => (this.visible = isIntersecting)).observe(canvas);
     playing.add(this);
+    if (playing.size === 1) requestAnimationFrame(step);
   }
 
   show(film) {
