@@ -154,7 +154,9 @@ def test_where_the_sensors_host_has_the_only_router_all_others_connect_to_it():
 
 
 def test_the_routers_of_two_hosts_are_alike_but_for_images_and_who_they_are():
-    sensor, compute = (zenoh.Config.from_file(DEPLOY / "zenoh" / f"{name}.json5") for name in ("router", "compute-router"))
+    sensor, compute = (
+        zenoh.Config.from_file(DEPLOY / "zenoh" / f"{name}.json5") for name in ("router", "compute-router")
+    )
     for path in ("mode", "listen", "scouting", "transport", "adminspace"):
         assert sensor.get_json(path) == compute.get_json(path)
     [subject] = json.loads(sensor.get_json("access_control/subjects"))

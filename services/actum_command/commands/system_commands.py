@@ -34,7 +34,9 @@ def router(
     credentials: Annotated[
         Path | None, typer.Option(help="the folder of a router's credentials", envvar="ACTUM_CREDENTIALS")
     ] = None,
-    link: Annotated[str | None, typer.Option(help="endpoint of another host's router, to be one system with it")] = None,
+    link: Annotated[
+        str | None, typer.Option(help="endpoint of another host's router, to be one system with it")
+    ] = None,
 ) -> None:
     """Run the embedded Zenoh router; with credentials it listens anew by itself when these are renewed."""
     logging.basicConfig(level="INFO", format="router: %(message)s")

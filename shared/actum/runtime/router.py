@@ -49,8 +49,9 @@ def serve_router(
 ) -> None:
     """Run a router until stopped; with a folder of credentials it is opened anew whenever these have been renewed.
 
-    The health file is touched every second while the router answers queries of what it is. A router reads its certificate only when it begins to listen. Its clients, which then lose it for some tenths of
-    a second, show theirs anew each time they connect.
+    The health file is touched every second while the router answers queries of what it is. A router reads its
+    certificate only when it begins to listen. Its clients, which then lose it for some tenths of a second, show theirs
+    anew each time they connect.
 
     Raises:
         SettingsError: the endpoint is taken, or the configuration or the credentials are refused.
@@ -64,9 +65,7 @@ def serve_router(
             session.close()
 
 
-def _opened(
-    listen: str | None, config_file: Path | None, credentials: Path | None, link: str | None
-) -> zenoh.Session:
+def _opened(listen: str | None, config_file: Path | None, credentials: Path | None, link: str | None) -> zenoh.Session:
     try:
         config = router_config(listen, config_file, credentials, link)
         if credentials is not None:
