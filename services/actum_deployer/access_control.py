@@ -18,6 +18,8 @@ ADVANCED = "@adv/**"
 """What advanced publishers and subscribers append to their keys: caches, heartbeats, and who is there."""
 EVERYTHING = (f"{BASE}/**", f"{BASE}/**/{ADVANCED}")
 """All keys of all sensors."""
+ROUTER_ITSELF = "@/*/router"
+"""The key on which a router describes itself: who hears nothing else knows by it that nothing is hidden."""
 TOKENS = ("alive/{0}/*", "candidate/{0}/*/*", "successor/{0}/*/*")
 """The liveliness tokens by which instances of a service hold or ask for their place."""
 WISHES = ("declare_subscriber", "declare_queryable", "query", "liveliness_query", "declare_liveliness_subscriber")
@@ -120,8 +122,8 @@ def _wanted(role: Role, reads: Sequence[str]) -> list[str]:
 
 
 def _asked(role: Role) -> list[str]:
-    """Return what a role asks of services of every sensor."""
-    infos = [keys.pattern(keys.INFO)] if role.inspects else []
+    """Return what a role asks of services of every sensor, and of its router."""
+    infos = [keys.pattern(keys.INFO), ROUTER_ITSELF] if role.inspects else []
     return [*infos, f"{BASE}/*/command/**"] if role.commands else infos
 
 

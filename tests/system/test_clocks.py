@@ -18,7 +18,7 @@ from actum.node import SECOND_NS
 from actum.runtime import Client
 from actum_command.diagnosis import EXPECTED
 from actum_command.processes import simulated_objects
-from live import PATIENCE_S, System, collect, system
+from live import PATIENCE_S, Running, System, collect, system
 from sensors import marker_camera
 from wall_clocks import WallClock
 
@@ -82,8 +82,11 @@ class Hosts:
         self.camera.start("marker_tracker")
         self.compute.start("pose_preprocessor")
         self.compute.start("som_classifier", "--model", str(model), "--segments", "marks")
-        self.compute.start("action_fusion")
+        self.start_fusion()
         self.compute.start("actum_command", "scene")
+
+    def start_fusion(self) -> Running:
+        return self.compute.start("action_fusion", "--state", str(self.compute.folder / "state"))
 
 
 @contextmanager
@@ -112,21 +115,32 @@ class Scene:
             assert self._client.wait_for_subscriber(topic, PATIENCE_S)
         self._running.camera.start("scene_simulator", "--repetitions", "1")
 
+    def restart_fusion(self) -> None:
+        """Kill the fusion once it has answered, and start another, which reads what was answered and when."""
+        collect(self._client.listen(keys.pattern(keys.EVENT, self._client.sensor)), Event, bool, SCENE_S)
+        [fusion] = [each for each in self._running.compute.running if each.log.name.startswith("action_fusion")]
+        fusion.process.kill()
+        self._running.start_fusion()
+
     def told(self) -> list[tuple[object, ...]]:
-        """Each event without its stamps, which begin anew in each run: where it begins and ends after the first."""
-        found: list[Event] = collect(self._events, Event, lambda found: len(found) >= ACTIONS, SCENE_S)
+        """Each event once, without stamps, which begin anew in each run: where it begins and ends after the first."""
+        found: list[Event] = collect(
+            self._events, Event, lambda found: len({event.segment_id for event in found}) >= ACTIONS, SCENE_S
+        )
         began_ns = min(event.start_ns for event in found)
         return sorted(
-            (
-                event.segment_id.rpartition("-")[2],
-                event.valid,
-                event.action,
-                event.object.id if event.object else None,
-                event.hand,
-                event.start_ns - began_ns,
-                None if event.end_ns is None else event.end_ns - began_ns,
-            )
-            for event in found
+            {
+                (
+                    event.segment_id.rpartition("-")[2],
+                    event.valid,
+                    event.action,
+                    event.object.id if event.object else None,
+                    event.hand,
+                    event.start_ns - began_ns,
+                    None if event.end_ns is None else event.end_ns - began_ns,
+                )
+                for event in found
+            }
         )
 
     def share_lost(self, *topics: keys.Topic) -> list[float]:
@@ -160,6 +174,7 @@ def test_hosts_ten_seconds_apart_whose_clocks_are_set_meanwhile_tell_the_same_ev
     ):
         usual.begin(scene_model)
         apart.begin(scene_model)
+        apart.restart_fusion()
         expected, told = usual.told(), apart.told()
         assert len(expected) == ACTIONS
         assert told == expected
