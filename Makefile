@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
 LOCKS := deploy/requirements
 
-.PHONY: install demo up test test-browser test-data test-live test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
+.PHONY: install demo up test fuzz soak test-browser test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -32,7 +32,7 @@ up: $(STAMP)  ## router and all services, until Ctrl-C
 	$(BIN)/actum up
 
 test: check  ## static checks, then every test but the long ones
-	$(BIN)/pytest -n 3 --dist worksteal
+	$(BIN)/pytest -n 4 --dist worksteal
 
 test-data: $(STAMP)  ## only the tests on real recordings; fails without ACTUM_DATA
 	@test -d "$$ACTUM_DATA" || { echo "test-data needs ACTUM_DATA: the folder that holds msr_action3d/ and utkinect/" >&2; exit 1; }
@@ -48,9 +48,20 @@ test-containers: $(STAMP)  ## build and run the compose file; needs a container 
 test-browser: $(STAMP)  ## all tests of the web page in Chromium, which has to be installed
 	$(BIN)/pytest -m "browser or long"
 
+test-chaos: $(STAMP)  ## a few services and routers killed, paused and cut off; `make chaos` does it to all
+	$(BIN)/pytest -m chaos -s
+
 test-viewers: $(STAMP)  ## what Rerun and Foxglove are sent; installs both, 600 MB
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[dev,view]"
 	$(BIN)/pytest tests/actum_command/test_rerun_entries.py tests/actum_command/test_foxglove_messages.py tests/system/test_viewers.py tests/pages/test_viewers_page.py
+
+fuzz: $(STAMP)  ## hostile messages by the hundred thousand to every service, then atheris; twenty minutes
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[fuzz]"
+	PYTHONPATH=tests $(BIN)/python -m fuzzing
+
+MINUTES ?= 20
+soak: $(STAMP)  ## all services with four people and images for MINUTES=20: memory, losses, latency by the minute
+	$(BIN)/python -m benchmarks.soak --minutes $(MINUTES)
 
 check: docs  ## format, lint, types, layers, pages
 	$(BIN)/ruff format --check --quiet .
@@ -58,8 +69,8 @@ check: docs  ## format, lint, types, layers, pages
 	$(BIN)/mypy --no-error-summary
 	$(BIN)/lint-imports --no-cache > /dev/null || $(BIN)/lint-imports
 
-bench: $(STAMP)  ## latency beside a bare Zenoh chain, and throughput
-	$(BIN)/python benchmarks/latency.py
+bench: $(STAMP)  ## latency beside a bare Zenoh chain and behind a secured router, and throughput
+	$(BIN)/python -m benchmarks.latency
 
 bench-camera: $(STAMP)  ## real people in video clips, beside the same peers, about five minutes
 	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
@@ -103,6 +114,9 @@ bench-page: $(STAMP)  ## what the page costs with several browsers, some minutes
 
 bench-tracker: $(STAMP)  ## what the marker tracker costs for an image and how exact it is, beside OpenCV, about ten minutes
 	$(BIN)/python -m benchmarks.tracker
+
+chaos: $(STAMP)  ## 40 times a service or router is killed, paused or cut off, and every answer judged; ten minutes; SEED=1
+	$(BIN)/python -m benchmarks.chaos $(if $(SEED),--seed $(SEED))
 
 picture: $(STAMP)  ## the README's pictures
 	$(BIN)/python -m docs.picture docs/scene.png

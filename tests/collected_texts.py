@@ -23,6 +23,7 @@ PACKAGES = (
     "services/actum_model_trainer/teaching",
     "services/web_dashboard",
     "services/ros2_bridge",
+    "services/actum_command/history",
 )
 REASONS = ("reason", "why", "complaint")
 """The parameters, fields and variables that hold a reason; functions whose names begin so return one."""

@@ -18,7 +18,11 @@ from actum.settings import ServiceSettings
 
 PATIENCE_S = 30.0
 POLL_S = 0.005
-ROUTER = "import sys; from actum.runtime import *; serve_router(sys.argv[1], None, stop_on_signals())"
+ROUTER = """import sys
+from pathlib import Path
+from actum.runtime import serve_router, stop_on_signals
+serve_router(sys.argv[1], Path(sys.argv[2]) if sys.argv[2:] else None, stop_on_signals())
+"""
 """The embedded router without the command line around it, which takes longer to start."""
 
 
@@ -66,6 +70,15 @@ class Running:
         return time.monotonic() - began_s
 
 
+def started(command: list[str], environment: dict[str, str], log: Path) -> Running:
+    """Start a process whose output goes to a file."""
+    with log.open("wb") as output:
+        process = subprocess.Popen(
+            command, env=environment, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT
+        )
+    return Running(process, log)
+
+
 @dataclass
 class System:
     """Processes that share a router's endpoint and a sensor."""
@@ -73,6 +86,8 @@ class System:
     folder: Path
     settings: ServiceSettings
     running: list[Running] = field(default_factory=list)
+    variables: dict[str, str] = field(default_factory=dict)
+    """What stands in the environment besides."""
 
     @property
     def environment(self) -> dict[str, str]:
@@ -82,6 +97,7 @@ class System:
             "ACTUM_SENSOR": self.settings.sensor,
             "ACTUM_TRAINER_DATA": str(self.folder / "teaching"),
             "OPENBLAS_NUM_THREADS": "1",
+            **self.variables,
         }
 
     def start(self, module: str, *arguments: str) -> Running:
@@ -91,20 +107,13 @@ class System:
         """Start a script, which can import what lies beside it."""
         return self._start(script.stem, str(script), *arguments)
 
-    def start_router(self) -> Running:
-        return self._start("router", "-c", ROUTER, self.settings.connect)
+    def start_router(self, configuration: Path | None = None) -> Running:
+        given = [] if configuration is None else [str(configuration)]
+        return self._start("router", "-c", ROUTER, self.settings.connect, *given)
 
     def _start(self, name: str, *arguments: str) -> Running:
         log = self.folder / f"{name}-{len(self.running)}.log"
-        with log.open("wb") as output:
-            process = subprocess.Popen(
-                [sys.executable, *arguments],
-                env=self.environment,
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-            )
-        running = Running(process, log)
+        running = started([sys.executable, *arguments], self.environment, log)
         self.running.append(running)
         return running
 

@@ -4,16 +4,17 @@ import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from docs.generate import fields, reasons, rejects, settings
+from docs.generate import fields, reasons, rejects, roles, settings
 
 DOCS = Path(__file__).parents[1]
-PAGES = (DOCS / "messages.md", DOCS / "operating.md")
+PAGES = (DOCS / "messages.md", DOCS / "operating.md", DOCS.parent / "SECURITY.md")
 PARTS: Mapping[str, Callable[[], str]] = {
     "fields": fields.sections,
     "rejects": rejects.rejects_table,
     "reasons": reasons.reasons_table,
     "absences": reasons.absences_table,
     "settings": settings.sections,
+    "roles": roles.roles_table,
 }
 PART = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end -->)", re.S)
 

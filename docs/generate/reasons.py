@@ -39,7 +39,48 @@ OF_SEGMENTS: Mapping[str, Problem] = {
     "start without end: the frames ended … s after the start": Problem(
         "Postures stopped coming, and no end came within 62 s.", "Has the recording ended, is the camera lost?"
     ),
+    "too many open segments: … at the most": Problem(
+        "32 segments were open when this one started.", "Put the ends of those; see the reject `too_many_segments`."
+    ),
     "segment_id reused": Problem("The name belongs to a segment that was answered.", "Give each action a new name."),
+    "frames lost: none came for … s of the segment": Problem(
+        "For so long within the segment frames were captured that never came: a service before the classifier was"
+        " started anew, or the network lost them.",
+        "Mark the action again; see `drops` in `status`, and which service was restarted.",
+    ),
+    "frames lost: none came for the last … s of the segment": Problem(
+        "The frames stopped coming before the segment's end, and for ten seconds none came.",
+        "Has the recording ended, is the camera or the network lost?",
+    ),
+    "the classifier was not there: its first frame is … s after the start": Problem(
+        "The classifier was started after the segment had begun, and the frames before are kept no more.",
+        "Mark the action again.",
+    ),
+    "the classifier was not there: no frame has come since": Problem(
+        "The classifier was started after the segment, and no frame has come to it yet.", "Does the gateway run?"
+    ),
+    "the classifier had only just started: it cannot tell when a mark without a stamp was put": Problem(
+        "Such a mark means *now*, and it may have been put while the classifier was away.",
+        "Mark the action again, or stamp marks on the sensor's clock.",
+    ),
+    "the fusion was not there: its first posture is … s after the start": Problem(
+        "The fusion was started after the segment had begun, and the postures before are kept no more.",
+        "Mark the action again.",
+    ),
+    "the fusion was not there: no posture has come since": Problem(
+        "The fusion was started after the segment, and no posture has come to it yet.", "Does the gateway run?"
+    ),
+    "the fusion was not there: no objects have come since": Problem(
+        "The fusion was started after the segment, and of the objects that there were none has come to it yet.",
+        "Does the tracker run?",
+    ),
+    "… lost: none came for … s of the segment": Problem(
+        "`objects` or `postures`: for so long none came to the fusion, which cannot tell what became of the objects.",
+        "Were tracker or preprocessor restarted, is the network lost? Mark the action again.",
+    ),
+    "objects lost: the first came … s after the start": Problem(
+        "The tracker began to put objects only then.", "Mark the action again."
+    ),
     "the source started anew": Problem(
         "The sensor began anew while the segment was open, so its stamps do not go on.", "Mark the action again."
     ),

@@ -23,7 +23,8 @@ OF_ALL: Mapping[str, Problem] = {
         "Correct the key; the keys are those of this page.",
     ),
     "too_large": Problem(
-        "The payload is longer than its key admits: 64 MB for images, 4 MB for actions, 1 MB otherwise.",
+        "The payload is longer than its key admits: 64 MB for images, 250 kB otherwise. One twice as long does not even"
+        " arrive: `drops` tells of it, where it is numbered.",
         "Send less: JPEG instead of `bgr8`, a smaller image.",
     ),
     "wrong_schema": Problem(
@@ -31,7 +32,7 @@ OF_ALL: Mapping[str, Problem] = {
     ),
     "higher_version": Problem("The encoding names a later version of the schema.", "Update actum on this machine."),
     "not_msgpack": Problem(
-        "The payload is no msgpack, is nested too deeply, or holds more than 100,000 values.",
+        "The payload is no msgpack, is nested too deeply, or, where it is longer than 250 kB, has over 100,000 values.",
         "Pack the message as one msgpack map; `msgpack.packb(fields)` does in Python.",
     ),
     "not_a_map": Problem("The payload is msgpack, but no map with text keys.", "Send a map of field names to values."),
@@ -42,6 +43,10 @@ OF_ALL: Mapping[str, Problem] = {
     "wrong_key": Problem(
         "The message names another sensor, agent or service than the key it came on, or is an image of the other kind.",
         "Let `sensor`, `agent` and `service` be those of the key, or leave `sensor` out.",
+    ),
+    "unwritable_state": Problem(
+        "An answer could not be written to the folder `ACTUM_STATE`: after a restart it may be given otherwise.",
+        "Make room on that disk, and the folder writable.",
     ),
     "refused_command": Problem(
         "A command was not carried out: there is none of that name, its fields are wrong, or it cannot be done now.",
@@ -56,7 +61,19 @@ OF_NODES: Mapping[str, Problem] = {
     ),
 }
 
+OF_THREE: Mapping[str, Problem] = {
+    "too_many_people": Problem(
+        "More than 64 people came within a minute or so; the one silent for longest is forgotten, with what was kept.",
+        "Does the sensor number the same people anew again and again? Who else puts on this key?",
+    ),
+}
+
 OF_THE_LAST_TWO: Mapping[str, Problem] = {
+    "too_many_frames": Problem(
+        "More frames came in the last minute than are kept: 60,000 postures of all people, 4,000 messages of objects."
+        " The oldest are forgotten, so a long segment lacks its first ones.",
+        "Who puts so many? 60 a second of each of 16 people are kept.",
+    ),
     "late": Problem(
         "A sample or an end mark came after its segment was answered, more than 2 s behind the other streams.",
         "Find what delays that stream: `latency_ms` and `drops` in `status`, the network, a camera's buffering.",
@@ -117,6 +134,10 @@ OF_CLASSIFIER: Mapping[str, Problem] = {
         "A segment was answered without a recognition; the event has `valid: false`.",
         "See the event's `reason`, below.",
     ),
+    "too_many_segments": Problem(
+        "A start came while 32 segments were open; it was answered at once, as rejected.",
+        "Put the ends. Who puts so many starts?",
+    ),
     "duplicate_mark": Problem(
         "A start or an end of a segment came a second time; the first one counts.",
         "Give each action a `segment_id` of its own, and each mark once.",
@@ -124,7 +145,9 @@ OF_CLASSIFIER: Mapping[str, Problem] = {
 }
 
 OF_TRACKER: Mapping[str, Problem] = {
-    "image_too_large": Problem("An image has more than 4096 × 4096 pixels.", "Send smaller images."),
+    "image_too_large": Problem(
+        "An image has more than 4096 × 4096 pixels, or a JPEG has more than 64 scans.", "Send smaller, plain images."
+    ),
     "undecodable_image": Problem("The bytes are no JPEG, or a damaged one.", "Send whole JPEG files as `data`."),
     "black_image": Problem("Nothing can be seen in the image.", "Is the lens covered? Is it dark?"),
     "bad_calibration": Problem(
@@ -153,9 +176,21 @@ OF_TRACKER: Mapping[str, Problem] = {
 
 OF_FUSION: Mapping[str, Problem] = {
     "bad_object": Problem("An object is further away than 100 m; it is left out.", "Are positions in metres?"),
+    "too_many_objects": Problem(
+        "More than 128 different objects came within a minute; the new ones are left out.",
+        "Number objects once; use a smaller dictionary of markers.",
+    ),
+    "too_many_actions": Problem(
+        "More than 64 final actions waited for postures and objects; the oldest is answered with what has come.",
+        "Who puts so many actions? The classifier has at most 32 segments open.",
+    ),
     "bad_action": Problem(
         "A final action has no label, or no end; it is answered with an event that is not valid.",
         "Correct the program that puts actions; those of `som_classifier` have both.",
+    ),
+    "incomplete_segment": Problem(
+        "Postures or objects of a segment never came, so that no object can be told; the event has `valid: false`.",
+        "See the event's `reason`, below.",
     ),
     "duplicate_segment": Problem(
         "The same final action came twice; the second is left out.",
@@ -200,12 +235,28 @@ OF_TRAINER: Mapping[str, Problem] = {
     ),
 }
 
+OF_HISTORY: Mapping[str, Problem] = {
+    "unwritable_history": Problem(
+        "What happened could not be stored; the latest error says why. It is tried again with each message.",
+        "Make room on the disk, or let its user write the folder that `actum record --events` was given.",
+    ),
+    "unreadable_history": Problem(
+        "A file that a killed process has left is no recording; it is left as it is.",
+        "Copy it away if it matters; nothing else is lost.",
+    ),
+    "mark_without_stamp": Problem(
+        "A mark without a stamp had no answer within 70 s, so nobody knows when it was; it is not stored.",
+        "Does the classifier run? `actum doctor` tells.",
+    ),
+}
+
 GATEWAY, PREPROCESSOR, CLASSIFIER = "sensor_gateway", "pose_preprocessor", "som_classifier"
 TRACKER, FUSION, BRIDGE, TRAINER = "marker_tracker", "action_fusion", "ros2_bridge", "model_trainer"
-PAGE = "web_dashboard"
+PAGE, HISTORY = "web_dashboard", "event_recorder"
 COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((), OF_ALL),
     ((PREPROCESSOR, CLASSIFIER, TRACKER, FUSION), OF_NODES),
+    ((PREPROCESSOR, CLASSIFIER, FUSION), OF_THREE),
     ((CLASSIFIER, FUSION), OF_THE_LAST_TWO),
     ((GATEWAY, TRACKER), OF_IMAGES),
     ((GATEWAY,), OF_GATEWAY),
@@ -217,6 +268,7 @@ COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((PAGE,), OF_PAGE),
     ((FUSION, BRIDGE), OF_FUSION_AND_BRIDGE),
     ((BRIDGE,), OF_BRIDGE),
+    ((HISTORY,), OF_HISTORY),
 )
 """Which services count which kinds; all of them count what the runtime does."""
 

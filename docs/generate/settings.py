@@ -10,8 +10,19 @@ from pydantic.fields import FieldInfo
 from actum.command_line import placeholder
 from actum.settings import ServiceSettings
 
-SERVICES = sorted(file.parent.name for file in (Path(__file__).parents[2] / "services").glob("*/settings.py"))
-UNITS = {"_per_min": "1/min", "_ns": "ns", "_m": "m", "_deg": "°", "_s": "s", "_px": "px", "_hz": "Hz"}
+ROOT = Path(__file__).parents[2] / "services"
+SERVICES = sorted(".".join(file.parent.relative_to(ROOT).parts) for file in ROOT.rglob("settings.py"))
+UNITS = {
+    "_mb": "MB",
+    "_hours": "h",
+    "_per_min": "1/min",
+    "_ns": "ns",
+    "_m": "m",
+    "_deg": "°",
+    "_s": "s",
+    "_px": "px",
+    "_hz": "Hz",
+}
 VALUES = {"INTEGER": "integer", "NUMBER": "number", "TEXT": "text", "PATH": "path"}
 OF_THIS_PROCESS = {
     "instance": "host and process id",

@@ -37,6 +37,13 @@ class Buffer(Generic[S]):
         self._guard = StampGuard()
         self._answered: deque[range] = deque(maxlen=MOST_ANSWERED)
 
+    def __len__(self) -> int:
+        return len(self._samples)
+
+    def let_go(self) -> None:
+        """Forget the oldest sample."""
+        self._samples.popleft()
+
     @property
     def newest_ns(self) -> int:
         """Stamp of the newest sample, -1 where there is none."""
@@ -65,6 +72,10 @@ class Buffer(Generic[S]):
     def is_too_late(self, stamp_ns: int) -> bool:
         """Tell whether a sample belongs to a segment that has been answered without it."""
         return any(stamp_ns in segment for segment in self._answered)
+
+    def stamps_since(self, start_ns: int) -> list[int]:
+        """List the stamps from `MEMORY_NS` before a segment's start on."""
+        return [sample.stamp_ns for sample in self._samples if sample.stamp_ns >= start_ns - MEMORY_NS]
 
     def of_segment(self, start_ns: int, end_ns: int) -> list[S]:
         """List the samples of a segment and of `MEMORY_NS` before it, in the session of the last sample.

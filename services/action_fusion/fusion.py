@@ -78,7 +78,7 @@ def rejected(action: Action, reason: str) -> Event:
         distances_m={},
         motion=None,
         result=None,
-        sentence=f"no recognition: {reason}",
+        sentence=f"no recognition: {reason}" if action.action is None else f"no event of {action.action}: {reason}",
         missed=action.missed,
     )
 
@@ -98,6 +98,7 @@ def _common(action: Action) -> dict[str, Any]:
         "missing_joints": action.missing_joints,
         "activations": action.activations,
         "frames": action.frames,
+        "session_id": action.session_id,
     }
 
 

@@ -1,16 +1,23 @@
-"""The fusion's pure step: waits until the input streams have reached a segment's end, and puts one event for it."""
+"""The fusion's pure step: waits until the input streams have reached a segment's end, and puts one event for it.
+
+A stream that stands still, as when a link is cut, is waited for longer than one that goes on.
+"""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from action_fusion.before import Before
 from action_fusion.buffers import LATEST_ACTION_NS, Buffer, S
 from action_fusion.fusion import fuse, rejected
+from action_fusion.known_objects import KnownObjects
+from action_fusion.losses import why_objects_lost, why_postures_lost
 from action_fusion.settings import Settings
 from action_fusion.stream_samples import ObjectsSample, PostureSample, objects_sample, posture_sample
 from actum import keys
 from actum.commands import Command
-from actum.limits import MAX_SKEW_NS
+from actum.flow import Flow
+from actum.limits import MAX_SKEW_NS, MOST_FRAMES, MOST_STREAMS
 from actum.messages import Action, Event, Message, Objects, Posture
 from actum.node import SECOND_NS, Counters, Tick
 from actum.parameters import LiveParameters
@@ -22,8 +29,11 @@ WAIT_NS = MAX_SKEW_NS + SECOND_NS // 5
 REMEMBERED = 10_000
 """Answered segments remembered to recognise duplicates: more than a day has, in little memory."""
 
-MOST_AGENTS = 16
-"""Most people whose postures are kept, to bound the memory: more than a camera tells apart."""
+MOST_PENDING = 64
+"""Most actions that wait: as many as may be marked at once, twice."""
+
+MOST_SIGHTINGS = 4_000
+"""Most messages of objects kept: the time that they count, at 50 a second."""
 
 LIVE = (
     "measure", "reach_m", "grasp_m", "moved_m", "pointing_limit_deg", "uncertainty_m", "pointing_uncertainty_deg",
@@ -59,8 +69,17 @@ class ActionFusion:
         self._parameters = LiveParameters(settings, LIVE, self._use_settings)
         self._postures: dict[int, Buffer[PostureSample]] = {}
         self._objects: Buffer[ObjectsSample] = Buffer()
+        self._known = KnownObjects(self.counters)
         self._pending: list[Pending] = []
         self._answered: dict[tuple[str, int, int | None, str | None], None] = {}
+        self._before = Before()
+        self._flows = {Posture: Flow(), Objects: Flow()}
+
+    def remember(self, answers: Sequence[Message]) -> None:
+        """Take the events that were put before this process was there: it puts no others for their segments."""
+        self._before = Before([answer for answer in answers if isinstance(answer, Event)], resumed=True)
+        for flow in self._flows.values():
+            flow.expect()
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:
@@ -74,7 +93,7 @@ class ActionFusion:
                 sample = posture_sample(message, self.counters)
                 return self._take(self._buffer(message.agent), sample, f"posture of agent {message.agent}")
             case Objects():
-                return self._take(self._objects, objects_sample(message, self.counters), "objects")
+                return self._take(self._objects, objects_sample(self._known.known(message), self.counters), "objects")
             case Action(final=True):
                 return self._action(message)
             case Tick():
@@ -99,7 +118,18 @@ class ActionFusion:
         if buffer.is_too_late(sample.stamp_ns):
             self.counters.reject("late", f"{what} at {sample.stamp_ns}, after its segment was answered")
         buffer.append(sample)
+        self._flows[Objects if buffer is self._objects else Posture].note()
+        self._make_room()
         return events + self._complete()
+
+    def _make_room(self) -> None:
+        """Forget the oldest sample where there are too many."""
+        if len(self._objects) > MOST_SIGHTINGS:
+            self._objects.let_go()
+            self.counters.reject("too_many_frames", f"more than {MOST_SIGHTINGS} messages of objects in a minute")
+        if sum(map(len, self._postures.values())) > MOST_FRAMES:
+            max(self._postures.values(), key=len).let_go()
+            self.counters.reject("too_many_frames", f"more than {MOST_FRAMES} postures in a minute")
 
     def _clear_streams_beyond(self, stamp_ns: int) -> None:
         """Clear the streams with samples after `stamp_ns`: they lie before a restart of the sensor's clock."""
@@ -110,6 +140,9 @@ class ActionFusion:
                 postures.clear()
 
     def _action(self, action: Action) -> list[Event]:
+        if self._before.answered(action):
+            self.counters.counts["actions_told_again"] += 1
+            return []
         segment = (action.segment_id, action.start_ns, action.end_ns, action.reason)
         if segment in self._answered:
             self.counters.reject(
@@ -126,17 +159,36 @@ class ActionFusion:
             return [rejected(action, "final action without a label or an end")]
         bare = action.model_copy(update={"maps": None, "trace": None})
         self._pending.append(Pending(bare, action.end_ns))
-        return self._complete()
+        return self._complete() + self._overdue()
+
+    def _overdue(self) -> list[Event]:
+        """Return the event of the action that has waited longest where too many wait."""
+        if len(self._pending) <= MOST_PENDING:
+            return []
+        self.counters.reject("too_many_actions", f"more than {MOST_PENDING} wait: the oldest is answered now")
+        return [self._answer(self._pending[0])]
 
     def _tick(self, tick: Tick) -> list[Event]:
         """Return the events of actions that have waited long enough, from the samples received so far."""
+        for flow in self._flows.values():
+            flow.tick(tick.monotonic_ns)
         events = []
         for pending in list(self._pending):
             if pending.since_ns is None:
                 pending.since_ns = tick.monotonic_ns
-            elif tick.monotonic_ns - pending.since_ns >= WAIT_NS:
+            elif tick.monotonic_ns - pending.since_ns >= WAIT_NS and self._may_come_no_more(pending, pending.since_ns):
                 events.append(self._answer(pending))
         return events
+
+    def _may_come_no_more(self, pending: Pending, since_ns: int) -> bool:
+        """Tell whether an action that has waited for its samples since a tick is to be answered without them."""
+        newest_ns = {
+            Posture: max((buffer.newest_ns for buffer in self._postures.values()), default=-1),
+            Objects: self._objects.newest_ns,
+        }
+        return all(
+            newest_ns[kind] >= pending.end_ns or flow.ended(since_ns, WAIT_NS) for kind, flow in self._flows.items()
+        )
 
     def _complete(self) -> list[Event]:
         """Return the events of the actions that have all their samples, up to the stamp of the segment's end."""
@@ -167,6 +219,9 @@ class ActionFusion:
         others = [buffer for buffer, _ in self._others(action.agent, postures) if buffer is not None]
         for buffer in (self._buffer(action.agent), self._objects):
             buffer.mark_answered(start_ns, end_ns)
+        if (reason := self._why_incomplete(start_ns, end_ns)) is not None:
+            self.counters.reject("incomplete_segment", f"{action.segment_id}: {reason}")
+            return rejected(action, reason)
         return fuse(
             action,
             postures,
@@ -175,10 +230,20 @@ class ActionFusion:
             self._settings,
         )
 
+    def _why_incomplete(self, start_ns: int, end_ns: int) -> str | None:
+        """Return the reason for which no object can be chosen as samples are lost; None where they have come."""
+        postures_ns = sorted({ns for buffer in self._postures.values() for ns in buffer.stamps_since(start_ns)})
+        objects_ns = self._objects.stamps_since(start_ns)
+        why = self._before.why_missing(bool(postures_ns), bool(objects_ns))
+        why = why or (why_postures_lost(postures_ns, start_ns, end_ns, self._before.resumed) if postures_ns else None)
+        return why or (why_objects_lost(objects_ns, start_ns, end_ns) if objects_ns else None)
+
     def _buffer(self, agent: int) -> Buffer[PostureSample]:
-        """Return an agent's stream; a new agent's replaces the least recently used one if there are too many."""
-        buffer = self._postures.pop(agent, None) or Buffer()
-        if len(self._postures) == MOST_AGENTS:
-            del self._postures[next(iter(self._postures))]
+        """Return an agent's stream; where there are too many, an empty one or the one used least recently goes."""
+        buffer = self._postures.pop(agent) if agent in self._postures else Buffer()
+        if len(self._postures) == MOST_STREAMS:
+            gone = next((each for each, kept in self._postures.items() if not kept), next(iter(self._postures)))
+            if self._postures.pop(gone):
+                self.counters.reject("too_many_people", f"more than {MOST_STREAMS}: agent {gone} is forgotten")
         self._postures[agent] = buffer
         return buffer

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Pixels
+from actum.jpeg import has_too_many_scans
 from actum.messages import Image
 
 LARGEST_PIXELS = 10_000 * 10_000  # 100 MB of grey levels; no camera has more
@@ -72,6 +73,8 @@ def decode_grey(data: bytes, name: str) -> Pixels:
         raise UnusablePictureError(name, "is no image")
     if width * height > LARGEST_PIXELS:
         raise UnusablePictureError(name, f"is too large ({width}x{height})")
+    if has_too_many_scans(data):
+        raise UnusablePictureError(name, "is too large (a JPEG of too many scans)")
     pixels = _decoded(data)
     if pixels is None:
         raise UnusablePictureError(name, "is damaged")

@@ -10,6 +10,7 @@ with needs_extra("actum-command"):
 
     from actum_command.commands import (
         demo_command,
+        deploy_commands,
         doctor_command,
         foxglove_commands,
         inspect_command,
@@ -75,6 +76,7 @@ app.command("ros2")(ros2_command.ros2)
 app.command("view")(view_command.view)
 app.command("foxglove")(foxglove_commands.foxglove)
 app.command("export")(foxglove_commands.export)
+app.add_typer(deploy_commands.app, name="deploy")
 app.command("doctor")(doctor_command.doctor)
 
 

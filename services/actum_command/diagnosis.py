@@ -1,6 +1,6 @@
-"""Checks that every service is there, alive and of one version; says what to do where one is not."""
+"""Checks that every service is there, alive and of one version, and that streams flow; says what to do where not."""
 
-import time
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -8,6 +8,9 @@ from actum import __version__, keys
 from actum.codec import schema_name
 from actum.messages import MESSAGES, Info, Status
 from actum.runtime import Client
+from actum_command import clock_offsets, stream_checks
+from actum_command.denials import everything_denied, partly_denied
+from actum_command.heard import Heard, hear
 from actum_command.processes import SERVICES
 from scene_simulator.endless_simulator import DESCRIPTION
 
@@ -15,7 +18,6 @@ EXPECTED = ("sensor_gateway", *SERVICES)
 """The services of a whole system; the simulated scene replaces the sensor gateway under the same name."""
 
 STATUS_S = 2.5  # a little more than two of the reports that every service sends each second
-POLL_S = 0.02  # short beside a second between reports
 
 ENDED = "source ended"
 """The state of a sensor whose files or scene have ended."""
@@ -32,6 +34,9 @@ UNUSED = ("nothing to do", "settings name")
 OLD_MODEL = "model not renewed"
 """The prefix of the state of a classifier whose model file was replaced by one that cannot be used."""
 
+
+LIMIT = "too_many_"
+"""The prefix of the kinds of rejects that count what a service had no room for."""
 
 PROGRAMS = {"sensor_gateway": "'python -m sensor_gateway', for the simulated scene 'python -m scene_simulator',"}
 """The programs to start for a service, where there is more than one of its name."""
@@ -55,36 +60,32 @@ class Finding:
     remarks: tuple[str, ...] = ()
 
 
-def examine(client: Client) -> list[Finding]:
-    """Check every service that is expected or alive."""
-    statuses = _statuses(client)
-    tokens: dict[str, list[str]] = {}
-    for key in client.alive():
-        service, instance = key.split("/")[-2:]
-        tokens.setdefault(service, []).append(instance)
-    infos = client.infos()
-    names = [*EXPECTED, *sorted(tokens.keys() - set(EXPECTED))]
-    return [
-        _finding(name, tokens.get(name, []), [info for info in infos if info.service == name], statuses.get(name))
-        for name in names
-    ]
+@dataclass(frozen=True)
+class Examination:
+    """What was found: each service by itself, problems of the whole, and what is no problem."""
+
+    findings: list[Finding]
+    problems: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
 
 
-def _statuses(client: Client) -> dict[str, Status]:
-    """Return the latest status of each service that reports within `STATUS_S`, by the service's name."""
-    statuses: dict[str, Status] = {}
-    listening = client.listen(keys.pattern(keys.STATUS, client.sensor))
-    deadline_s = time.monotonic() + STATUS_S
-    while time.monotonic() < deadline_s:
-        received = listening.take()
-        if received is None:
-            time.sleep(POLL_S)
-        elif isinstance(received.message, Status):
-            statuses[received.message.service] = received.message
-    return statuses
+def examine(client: Client) -> Examination:
+    """Check every service that is expected or alive, the streams between them, and the hosts' clocks."""
+    heard = hear(client, STATUS_S)
+    hidden = everything_denied(heard, client, EXPECTED)
+    if hidden is not None:
+        return Examination([], (hidden,))
+    names = [*EXPECTED, *sorted({*heard.tokens, *heard.statuses} - set(EXPECTED))]
+    problems = (*partly_denied(heard), *stream_checks.problems(heard.infos, heard.statuses, heard.streams))
+    clocks = clock_offsets.remarks(clock_offsets.offsets(heard.answers))
+    return Examination([_finding(name, heard) for name in names], problems, tuple(clocks))
 
 
-def _finding(name: str, instances: list[str], infos: list[Info], status: Status | None) -> Finding:
+def _finding(name: str, heard: Heard) -> Finding:
+    infos = [info for info in heard.infos if info.service == name]
+    said = heard.statuses.get(name, [])
+    status = said[-1] if said else None
+    instances = heard.tokens.get(name) or [status.instance for status in said[-1:]]
     return Finding(
         service=name,
         instances=max(len(instances), len(infos) if instances else 0),
@@ -102,7 +103,19 @@ def _finding(name: str, instances: list[str], infos: list[Info], status: Status 
 
 
 def _rates(status: Status) -> str:
-    return ", ".join(f"{_short(key, status)} {rate:g}" for key, rate in status.rates.items())
+    """Return what comes in, or is put, as text: by topic, of all people and services together, without silent ones."""
+    by_topic: defaultdict[str, float] = defaultdict(float)
+    for key, rate in status.rates.items():
+        by_topic[_topic(key, status)] += rate
+    return ", ".join(f"{topic} {rate:.3g}" for topic, rate in by_topic.items() if rate)
+
+
+def _topic(key: str, status: Status) -> str:
+    """Return a key's topic without agent or service, `posture` for `actum/kinect0/posture/1`."""
+    try:
+        return keys.parse(key).topic.leaf.removesuffix("/{}")
+    except keys.InvalidKeyError:
+        return _short(key, status)
 
 
 def _short(key: str, status: Status) -> str:
@@ -155,7 +168,10 @@ def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
 
 
 def _remarks(name: str, status: Status) -> Iterator[str]:
-    """Yield what a service that does well says of itself besides."""
+    """Yield what a service that does well says of itself besides, and which of its limits were met."""
+    met = [f"{kind} {n}" for kind, n in status.rejects.items() if kind.startswith(LIMIT)]
+    if met:
+        yield f"{name} has met its limits: {', '.join(met)}; something puts more than it can take, see docs/messages.md"
     if status.state.startswith(AND):
         yield from (f"{name}: {remark}" for remark in status.state.removeprefix(AND).split("; "))
 

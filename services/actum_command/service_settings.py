@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import action_fusion.settings
+import actum_command.history.settings
 import actum_model_trainer.settings
 import marker_tracker.settings
 import pose_preprocessor.settings
@@ -31,7 +32,14 @@ DECLARED: Mapping[str, type[ServiceSettings]] = {
 BRIDGE = ros2_bridge.__name__
 """The service that `actum ros2` starts."""
 
-SETTINGS: Mapping[str, type[ServiceSettings]] = {**DECLARED, BRIDGE: ros2_bridge.settings.Settings}
+HISTORY = "event_recorder"
+"""The service that `actum record --events` is."""
+
+SETTINGS: Mapping[str, type[ServiceSettings]] = {
+    **DECLARED,
+    BRIDGE: ros2_bridge.settings.Settings,
+    HISTORY: actum_command.history.settings.Settings,
+}
 """The settings of every service, by the service's name."""
 
 Given = Mapping[str, bool | list[str]]

@@ -5,6 +5,7 @@ import time
 from collections.abc import Sequence
 from typing import Protocol
 
+from actum import steady_clock
 from actum.codec import DecodeError
 from actum.messages import Message, Skeleton
 from actum.node import SECOND_NS
@@ -47,7 +48,7 @@ def _store(listening: Listening, recorder: Storing) -> bool:
     if received is None:
         return False
     if received.message is not None:
-        recorder.take(received.message, time.time_ns())
+        recorder.take(received.message, steady_clock.now_ns())
     elif received.error is not None:
         recorder.reject(received.error)
     return True
@@ -61,7 +62,7 @@ def put_all(client: Client, recordings: Sequence[Recording], speed: float, stop:
     Raises:
         RecordingError: a recording is damaged.
     """
-    session_id, start_ns = f"play-{client.run}", time.time_ns()
+    session_id, start_ns = f"play-{client.run}", steady_clock.now_ns()
     client.put(Skeleton(stamp_ns=start_ns - SECOND_NS, sensor=client.sensor, agents=[], session_id=session_id))
     stop.wait(LEAD_IN_S)
     pace, count = Pace(speed), 0

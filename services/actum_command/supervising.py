@@ -8,11 +8,15 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import IO, Self
 
 from actum.runtime.parent import PARENT
 from actum.runtime.serving import TAKEN, UNUSABLE
+
+STATE = "ACTUM_STATE"
+"""The environment variable with the folder in which services keep their last answers."""
 
 RESTART_S = (0.5, 1.0, 2.0, 4.0, 8.0)
 """The back-off (s): how long a program that has ended waits for its first, second … restart."""
@@ -54,10 +58,12 @@ class Supervisor:
     """Starts programs, restarts those that end by themselves, and stops all at the end.
 
     Programs end with this process, even if it is killed. Their output goes to `log`, or to this process's own output.
+    Services keep their last answers in a folder of this run, so that one that is restarted goes on where it ended.
     """
 
     def __init__(self, log: Path | None = None) -> None:
         self._log: IO[bytes] | None = log.open("ab") if log else None
+        self._state = TemporaryDirectory(prefix="actum-state-", ignore_cleanup_errors=True)
         self._children: list[_Child] = []
 
     def __enter__(self) -> Self:
@@ -69,6 +75,10 @@ class Supervisor:
     def start(self, program: Program) -> None:
         """Start one program."""
         self._children.append(_Child(program, self._spawn(program), time.monotonic()))
+
+    def pids(self) -> dict[int, str]:
+        """Return the names of the programs by their processes' ids."""
+        return {child.process.pid: child.program.name for child in self._children}
 
     def restart_ended(self) -> list[str]:
         """Restart what has ended, with back-off; return a line for each program that has ended since the last call.
@@ -100,6 +110,14 @@ class Supervisor:
         child.due_s = now_s + delay_s
         return f"{child.program.name} ended with code {child.process.returncode}: restart in {delay_s:g} s"
 
+    def process_id(self, program: Program) -> int:
+        """Return the id of the process that runs a program, or of the last one that did.
+
+        Raises:
+            KeyError: it was never started, or was ended.
+        """
+        return {id(child.program): child.process.pid for child in self._children}[id(program)]
+
     def end(self, program: Program) -> None:
         """Stop one program for good."""
         ending = [child for child in self._children if child.program is program]
@@ -110,6 +128,7 @@ class Supervisor:
         """Send every process SIGTERM, and kill those that do not end."""
         _stop(self._children)
         self._children.clear()
+        self._state.cleanup()
         if self._log:
             self._log.close()
             self._log = None
@@ -117,7 +136,7 @@ class Supervisor:
     def _spawn(self, program: Program) -> subprocess.Popen[bytes]:
         return subprocess.Popen(
             [sys.executable, "-m", program.module, *program.arguments],
-            env={**os.environ, **program.environment, PARENT: str(os.getpid())},
+            env={STATE: self._state.name, **os.environ, **program.environment, PARENT: str(os.getpid())},
             stdin=subprocess.DEVNULL,
             stdout=self._log,
             stderr=subprocess.STDOUT if self._log else None,

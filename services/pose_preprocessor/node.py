@@ -9,6 +9,7 @@ import numpy as np
 from actum import geometry, keys, standard_body
 from actum.arrays import Array, joints_to_array, joints_to_list
 from actum.commands import Command
+from actum.limits import MOST_STREAMS
 from actum.messages import Agent, Joint, Message, Posture, Skeleton
 from actum.node import Counters, Tick
 from actum.parameters import LiveParameters
@@ -113,6 +114,10 @@ class PosePreprocessor:
         for agent in self._persons.keys() - present:
             if self._persons[agent].motion.restarts_at(frame.stamp_ns):
                 del self._persons[agent]
+        absent = [agent for agent in self._persons if agent not in present]
+        for agent in absent[: max(len(self._persons) - MOST_STREAMS, 0)]:
+            del self._persons[agent]
+            self.counters.reject("too_many_people", f"more than {MOST_STREAMS}: agent {agent} is forgotten")
 
     def _posture(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
         if not frame.valid:

@@ -7,6 +7,7 @@ from actum.node import SECOND_NS, Counters, Source
 from scene_simulator.driven_simulator import DrivenSimulator
 from scene_simulator.everyday import chosen
 from scene_simulator.group import Group
+from scene_simulator.parameters import load_parameters
 from scene_simulator.programme import balanced_programme
 from scene_simulator.settings import Settings
 from scene_simulator.simulator import GATEWAY, Simulator
@@ -26,6 +27,7 @@ def simulator_of(settings: Settings, start_ns: int) -> Source:
     else:
         source = _simulator(settings, start_ns)
     source.counters.details["source"] = DESCRIPTION
+    source.counters.details["rate_hz"] = f"{load_parameters().camera.frame_rate_hz:g}"
     return source
 
 

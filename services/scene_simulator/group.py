@@ -1,4 +1,4 @@
-"""Several people side by side in one stream of skeletons, each with a programme of their own; without images."""
+"""Several people side by side in one stream of skeletons, each with a programme of their own."""
 
 from collections.abc import Iterator, Sequence
 from itertools import zip_longest
@@ -20,7 +20,8 @@ AWAY_M = 0.9
 class Group:
     """A source of skeletons of one to four people, numbered from 1 from the camera's left, and of their truths.
 
-    Each has a table and three objects of their own, which nothing shows: there are no images. Person k is the actor of
+    Each has a table and three objects of their own. Where there are images, they show the one in the middle alone,
+    with table and objects: what a scene of one person costs to draw. Person k is the actor of
     seed `actor_seed` + k and does `programmes[k]`; whoever has done it leaves, and the stream ends with the last. One
     person's joints are the same whatever the others do. The same arguments give the same messages, bit for bit.
 
@@ -41,6 +42,7 @@ class Group:
         sensor: str = "kinect0",
         start_ns: int = 0,
         session_id: str | None = None,
+        image_hz: int = 0,
     ) -> None:
         if not 1 <= len(programmes) <= MOST_PEOPLE:
             raise ValueError(f"{len(programmes)} people do not fit into the view: use 1 to {MOST_PEOPLE}")
@@ -52,7 +54,7 @@ class Group:
                 actor_seed + k,
                 seed,
                 sensor=sensor,
-                image_hz=0,
+                image_hz=image_hz if k == len(programmes) // 2 else 0,
                 start_ns=start_ns,
                 session_id=session_id or f"simulator-{actor_seed}-{seed}",
                 everyday=everyday,

@@ -1,7 +1,6 @@
 """`python -m sensor_gateway`."""
 
-import time
-
+from actum import steady_clock
 from actum.runtime import needs_extra, run_source
 
 with needs_extra("sensor-gateway"):
@@ -11,7 +10,7 @@ with needs_extra("sensor-gateway"):
 
 def main() -> None:
     """Serve until SIGTERM."""
-    run_source(Settings, lambda settings: source_of(settings, start_ns=time.time_ns()))
+    run_source(Settings, lambda settings: source_of(settings, start_ns=steady_clock.now_ns()))
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import replace
 
+from actum import steady_clock
 from actum.messages import Message
 from actum.node import SECOND_NS, Counters
 from sensor_gateway.captured_picture import Picture
@@ -43,7 +44,7 @@ class CameraSource:
         sensor: str,
         session_id: str,
         perceiver: type[Perceiver] = Perceiver,
-        now_ns: Callable[[], int] = time.time_ns,
+        now_ns: Callable[[], int] = steady_clock.now_ns,
         pause: Callable[[float], None] = time.sleep,
     ) -> None:
         self.counters = Counters()
@@ -71,6 +72,7 @@ class CameraSource:
                 for captured in self._watched(capture):
                     if isinstance(captured, Picture):
                         back_off.worked()
+                        self._tell_rate(capture)
                     yield captured
             except CaptureEndedError:
                 return
@@ -79,6 +81,10 @@ class CameraSource:
             finally:
                 capture.close()
             yield from self._waiting(back_off.failed())
+
+    def _tell_rate(self, capture: Capture) -> None:
+        if capture.rate_hz is not None:
+            self.counters.details["rate_hz"] = f"{capture.rate_hz:g}"
 
     def _watched(self, capture: Capture) -> Iterator[Captured]:
         """Yield a capture's pictures until it is lost; frozen or black pictures count as lost unless from a file."""

@@ -29,6 +29,7 @@ def partial_action(segment: OpenSegment, recognition: Recognition, frames: list[
         missed=sum(frame.missed for frame in frames),
         hand=segment.hand,
         missing_joints=_missing(frames),
+        session_id=posture.session_id,
     )
 
 
@@ -50,11 +51,12 @@ def ongoing_action(segment_id: str, ongoing: Ongoing, frames: list[Frame], postu
         missed=sum(frame.missed for frame in frames),
         missing_joints=_missing(frames),
         completeness=ongoing.completeness,
+        session_id=posture.session_id,
     )
 
 
 def final_action(
-    closed: ClosedSegment, recognition: Recognition | None, reason: str | None, sensor: str, **explained: Any
+    closed: ClosedSegment, recognition: Recognition | None, reason: str | None, sensor: str, **more: Any
 ) -> Action:
     """Answer a segment: with what was recognised, or with the reason why it is rejected.
 
@@ -63,7 +65,7 @@ def final_action(
         recognition: None where there is none.
         reason: None where there is none.
         sensor: the viewpoint.
-        explained: the fields `maps` and `trace`, where they are wanted.
+        more: the field `session_id`, and `maps` and `trace` where they are wanted.
     """
     return Action(
         stamp_ns=closed.end_ns,
@@ -82,7 +84,7 @@ def final_action(
         unknown=recognition.unknown if recognition else False,
         familiarity=recognition.familiarity if recognition else None,
         missing_joints=_missing(closed.frames),
-        **explained,
+        **more,
     )
 
 

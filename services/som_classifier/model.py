@@ -19,6 +19,8 @@ from som_classifier.recognition import Recognition
 from som_classifier.spotting.spotted import Spotter, SpottingOptions
 
 Arrays = Mapping[str, NDArray[Any]]
+MOST_SAMPLES = 1_000_000
+"""Most samples that a file may count in one place of its confusion matrix, each of which is listed."""
 
 
 class ModelMetadata(BaseModel):
@@ -54,7 +56,7 @@ class ModelMetadata(BaseModel):
     samples: int
     data_digest: str
     actum_version: str
-    held_out: dict[str, dict[str, int]] = {}
+    held_out: dict[str, dict[str, Annotated[int, Field(ge=0, le=MOST_SAMPLES)]]] = {}
 
     @property
     def held_out_answers(self) -> list[tuple[str, str]]:

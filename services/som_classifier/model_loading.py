@@ -8,7 +8,7 @@ from typing import IO
 import numpy as np
 from pydantic import ValidationError
 
-from actum.som.storage import UNREADABLE
+from actum.som.storage import UNREADABLE, refuse_bomb
 from som_classifier.model import Arrays, Model
 from som_classifier.paper_model import PaperModel
 from som_classifier.pyramid_model import PyramidModel
@@ -52,6 +52,6 @@ def _parts(path: Path, stored: IO[bytes]) -> tuple[str, Arrays]:
     """Return the metadata as JSON, and the arrays by name."""
     if not zipfile.is_zipfile(stored):  # NumPy's own error would advise to read it as a pickle
         raise ModelError(path, "no actum model, or a damaged one")
-    stored.seek(0)
+    refuse_bomb(stored)
     with np.load(stored, allow_pickle=False) as file:
         return str(file["metadata"]), {name: file[name] for name in file.files if name != "metadata"}

@@ -1,6 +1,6 @@
 """The classifier's pure step: postures, and marks where there are any, become partial and final actions."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Protocol
 
 from actum import keys
@@ -67,6 +67,7 @@ class SomClassifier:
         self._parameters: tuple[Command[Any, Any], ...] = ()
         self._ticks = 0
         self._sensor = "unknown"
+        self._session = ""
 
     @classmethod
     def configured(cls, settings: Settings) -> "SomClassifier":
@@ -83,6 +84,10 @@ class SomClassifier:
     def commands(self) -> tuple[Command[Any, Any], ...]:
         """Reading and changing settings while it runs, and what the model's maps stand for."""
         return (*self._parameters, Command("maps", NoFields, MapDescription, self._describe_maps))
+
+    def remember(self, answers: Sequence[Message]) -> None:
+        """Take the answers given before this process was there: it gives no others to their segments."""
+        self._segmenter.remember([answer for answer in answers if isinstance(answer, Action)])
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
         """Take a posture, a mark or a tick; return the marks, partial and final actions that follow from it."""
@@ -137,8 +142,10 @@ class SomClassifier:
         if frame is not None:
             for segment in self._segmenter.open_at(posture.agent, posture.stamp_ns):
                 yield from self._partial(segment, posture)
-        for answer in closed:
+        self._session = self._session or posture.session_id
+        for answer in closed:  # of the session before, where this posture begins another
             yield self._final(answer)
+        self._session = posture.session_id
         search = self._segmenter.search_of(posture.agent)
         if frame is not None and search is not None:
             spotted = search.step(frame)
@@ -200,7 +207,7 @@ class SomClassifier:
 
     def _answer(self, closed: ClosedSegment, recognition: Recognition | None, reason: str | None) -> Action:
         explained = self._map_fields(closed.frames) if recognition and self._publish_maps else {}
-        return final_action(closed, recognition, reason, self._sensor, **explained)
+        return final_action(closed, recognition, reason, self._sensor, session_id=self._session, **explained)
 
     def _map_fields(self, frames: list[Frame]) -> dict[str, Any]:
         """Return the fields that explain an answer: each map's activity, and the trajectory over the first."""

@@ -1,29 +1,32 @@
 """Cuts postures into segments by marks: whose, from when to when, with which frames, or why not.
 
-A segment closes once its posture stream has reached the end, or after two seconds of waiting for it.
+A segment closes once its posture stream has reached the end, or after two seconds of waiting for it; while nobody's
+postures come, as when a link is cut, after ten.
 """
 
 from collections import OrderedDict, deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import chain
 
-from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
-from actum.messages import Posture, Segment
-from actum.node import SECOND_NS, Counters, Tick
+from actum.flow import Flow
+from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS, MOST_OPEN_SEGMENTS
+from actum.messages import Action, Posture, Segment
+from actum.node import Counters, Tick
 from actum.stamps import Order
 from som_classifier.answered_segments import AnsweredSegments
+from som_classifier.beginning import Beginning
 from som_classifier.frames import Frame
+from som_classifier.losses import why_incomplete, why_no_end
 from som_classifier.segments import ClosedSegment, OpenSegment, why_no_recognition, with_cause
 from som_classifier.spotting.search import NO_SEARCH, Search, SearchPlan
-from som_classifier.streams import Encode, Stream, Streams
+from som_classifier.streams import FAR_FUTURE_NS, Encode, Stream, Streams
 
 LATE_FOR = 16
 """Segments remembered of those that closed before all their frames had come; their postures are counted as late."""
 MARKED = 256
 """Closed marked segments remembered, more than anybody marks in minutes: they win over found ones."""
-FAR_FUTURE_NS = 2**62
-"""Stands for the end of a segment without one: later than any stamp."""
 NO_END = "start without end: no end within 60 s"
+UNPLACED = "the classifier had only just started: it cannot tell when a mark without a stamp was put"
 
 
 class Segmenter:
@@ -31,12 +34,23 @@ class Segmenter:
 
     def __init__(self, counters: Counters) -> None:
         self._counters = counters
-        self._streams = Streams()
+        self._streams = Streams(counters)
         self._open: OrderedDict[str, OpenSegment] = OrderedDict()
         self._answered = AnsweredSegments(counters)
         self._marked: deque[OpenSegment] = deque(maxlen=MARKED)
         self._late: deque[tuple[int, range]] = deque(maxlen=LATE_FOR)
         self._session: str | None = None
+        self._flow = Flow()
+        self._beginning = Beginning()
+
+    def remember(self, answers: Sequence[Action]) -> None:
+        """Take the answers given before this process was there; marks that were put meanwhile may come now."""
+        self._beginning.resume(answers)
+        self._flow.expect()
+        for answer in answers:
+            self._answered.recall(answer)
+            known = answer.segment_id, answer.start_ns, answer.agent, answer.hand, None, answer.end_ns
+            self._marked.append(OpenSegment(*known))
 
     def use(self, encoders: Callable[[], Encode], plan: SearchPlan = NO_SEARCH) -> None:
         """Encode every agent's frames by an encoder of its own, kept ones and those to come; search the latter."""
@@ -58,27 +72,39 @@ class Segmenter:
             self._marked.clear()
         elif late:
             self._counters.reject("late", f"{detail}, after its segment was answered")
+        self._flow.note()
         self._note_progress(posture.stamp_ns)
         return frame, closed + self._settle()
 
     def mark(self, mark: Segment) -> list[ClosedSegment]:
         """Take a start or end mark; return the segments it closes."""
-        if mark.segment_id in self._answered:
+        if mark.segment_id not in self._open and self._answered.has(mark):
             return self._answered.mark_again(mark, self._streams.newest_ns or 0)
+        if mark.stamp_ns is None and self._beginning.is_settling:
+            self._answered.remember(mark.segment_id, None, None)
+            return [OpenSegment.of(mark, self._streams.newest_ns).rejected(UNPLACED)]
         return self._start(mark) if mark.kind == "start" else self._end(mark)
 
     def tick(self, tick: Tick) -> list[ClosedSegment]:
         """Close the segments that have waited too long: 2 s for the last frames, a longest segment for an end mark."""
+        self._flow.tick(tick.monotonic_ns)
+        self._beginning.tick(tick.monotonic_ns)
         closed = []
         for segment in list(self._open.values()):
             if segment.waiting_since_ns is None:
                 segment.waiting_since_ns = tick.monotonic_ns
             waited_ns = tick.monotonic_ns - segment.waiting_since_ns
             if segment.end_ns is None and waited_ns > MAX_SEGMENT_NS + MAX_SKEW_NS:
-                closed.append(self._reject(segment, self._why_no_end(segment)))
-            elif segment.end_ns is not None and waited_ns > MAX_SKEW_NS:
+                closed.append(self._reject(segment, why_no_end(segment, self._streams)))
+            elif segment.end_ns is not None and waited_ns > MAX_SKEW_NS and self._may_come_no_more(segment):
                 closed.append(self._close(segment))
         return closed
+
+    def _may_come_no_more(self, segment: OpenSegment) -> bool:
+        """Tell whether a segment that has waited for its last frames is to be closed without them."""
+        assert segment.end_ns is not None and segment.waiting_since_ns is not None
+        passed = self._streams.newest_ns is not None and self._streams.newest_ns >= segment.end_ns
+        return passed or self._flow.ended(segment.waiting_since_ns, MAX_SKEW_NS)
 
     def open_at(self, agent: int, stamp_ns: int) -> list[OpenSegment]:
         """List the open segments of an agent that hold this instant."""
@@ -116,13 +142,6 @@ class Segmenter:
             return []
         return self.frames_between(segment.known_agent, segment.start_ns, segment.end_ns or FAR_FUTURE_NS)
 
-    def _why_no_end(self, segment: OpenSegment) -> str:
-        newest_ns = self._streams.newest_ns
-        if newest_ns is None or segment.start_ns is None or newest_ns < segment.start_ns:
-            return "start without end: no frame came after the start"
-        elapsed_s = (newest_ns - segment.start_ns) / SECOND_NS
-        return f"start without end: the frames ended {elapsed_s:.1f} s after the start"
-
     def _note_progress(self, stamp_ns: int) -> None:
         """Start segments that wait for the first posture; restart the wait for an end mark while postures come."""
         for segment in self._open.values():
@@ -135,42 +154,36 @@ class Segmenter:
         """Determine agents where that is possible; close the segments whose end is reached and those too long."""
         closed = []
         for segment in list(self._open.values()):
-            if segment.known_agent is None:
-                segment.nearest = self._nearest(segment)
+            if segment.known_agent is None and segment.start_ns is not None:
+                segment.nearest = self._streams.nearest(segment.start_ns, segment.latest_ns)
             if segment.end_ns is not None:
-                if segment.known_agent is not None and self._streams.reached(segment.known_agent, segment.end_ns):
+                if self._is_reached(segment) and self._why_incomplete(segment) is None:
                     closed.append(self._close(segment))
-            elif self._too_long(segment):
+            elif segment.is_too_long(self._streams.newest_ns):
                 closed.append(self._reject(segment, NO_END))
         return closed
 
-    def _too_long(self, segment: OpenSegment) -> bool:
-        newest_ns = self._streams.newest_ns
-        if segment.start_ns is None or newest_ns is None:
-            return False
-        return newest_ns > segment.start_ns + MAX_SEGMENT_NS + MAX_SKEW_NS
+    def _is_reached(self, segment: OpenSegment) -> bool:
+        """Tell whether the acting person's stream has reached the end of a segment that has one."""
+        assert segment.end_ns is not None
+        return segment.known_agent is not None and self._streams.reached(segment.known_agent, segment.end_ns)
 
-    def _nearest(self, segment: OpenSegment) -> int | None:
-        """Return the agent nearest to the camera at the first valid frame from the start on, once that is certain."""
-        first = self._first(segment)
-        if first is None or segment.start_ns is None:
-            return None
-        stamp_ns, agent = first
-        return agent if self._streams.complete(segment.start_ns, stamp_ns) else None
-
-    def _first(self, segment: OpenSegment) -> tuple[int, int] | None:
-        """Return stamp and agent of the segment's first valid frame so far, None where there is none."""
-        if segment.start_ns is None:
-            return None
-        end_ns = segment.start_ns + MAX_SEGMENT_NS if segment.end_ns is None else segment.end_ns
-        return self._streams.first(segment.start_ns, end_ns)
+    def _why_incomplete(self, segment: OpenSegment) -> str | None:
+        """Return why a segment that has its end mark lacks frames, which may yet come on other people's keys."""
+        assert segment.end_ns is not None
+        return why_incomplete(self._streams, segment.start_ns or 0, segment.end_ns, self._beginning.is_resumed)
 
     def _start(self, mark: Segment) -> list[ClosedSegment]:
         if mark.segment_id in self._open:
             self._counters.reject("duplicate_mark", f"second start of {mark.segment_id!r}")
             return []
         start_ns = self._streams.newest_ns if mark.stamp_ns is None else mark.stamp_ns
-        self._open[mark.segment_id] = OpenSegment.of(mark, start_ns)
+        segment = OpenSegment.of(mark, start_ns)
+        if len(self._open) >= MOST_OPEN_SEGMENTS:
+            self._answered.remember(mark.segment_id, start_ns, None)
+            self._counters.reject("too_many_segments", f"{mark.segment_id!r} beside {len(self._open)} open ones")
+            return [segment.rejected(f"too many open segments: {MOST_OPEN_SEGMENTS} at the most")]
+        self._open[mark.segment_id] = segment
         return self._settle()
 
     def _end(self, mark: Segment) -> list[ClosedSegment]:
@@ -195,7 +208,9 @@ class Segmenter:
         """Close a segment that has its end mark, with the frames that have come."""
         assert segment.end_ns is not None
         start_ns = segment.start_ns if segment.start_ns is not None else 0
-        first = self._first(segment)
+        if (reason := self._why_incomplete(segment)) is not None:
+            return self._reject(segment, reason)
+        first = self._streams.first(start_ns, segment.end_ns) if segment.start_ns is not None else None
         agent = segment.known_agent if segment.known_agent is not None or first is None else first[1]
         stream = None if agent is None else self._streams.of(agent)
         if stream is None or agent is None:
@@ -225,11 +240,11 @@ class Segmenter:
         if session_id == self._session:
             return []
         first, self._session = self._session is None, session_id
-        if first:
+        if first and self._beginning.is_of(session_id):
             return []
-        closed = self._close_all("the source started anew")
+        closed = [] if first else self._close_all("the source started anew")
         self._streams.clear()
-        self._answered.clear()
+        self._answered.end_session()
         self._marked.clear()
         self._late.clear()
         return closed

@@ -5,7 +5,7 @@ A segment is the frames with start <= stamp <= end; which belong to it is decide
 
 from dataclasses import dataclass, field
 
-from actum.limits import MAX_SEGMENT_NS
+from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
 from actum.messages import Hand, Segment
 from som_classifier.frames import Frame
 
@@ -46,6 +46,15 @@ class OpenSegment:
     def known_agent(self) -> int | None:
         """The agent that the mark names, or the nearest one; None where neither is known."""
         return self.nearest if self.agent is None else self.agent
+
+    @property
+    def latest_ns(self) -> int:
+        """Its end or, where that is not known, the latest that it may have."""
+        return (self.start_ns or 0) + MAX_SEGMENT_NS if self.end_ns is None else self.end_ns
+
+    def is_too_long(self, newest_ns: int | None) -> bool:
+        """Tell whether its end can come no more, as frames come that are newer than any that it may have."""
+        return None not in (self.start_ns, newest_ns) and (newest_ns or 0) > self.latest_ns + MAX_SKEW_NS
 
     def holds(self, stamp_ns: int) -> bool:
         """Tell whether an instant lies within it, as far as its start and end are known."""

@@ -5,8 +5,9 @@ from collections.abc import Callable, Iterator
 from itertools import chain
 from typing import Any
 
-from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
+from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS, MOST_FRAMES, MOST_STREAMS
 from actum.messages import Posture
+from actum.node import Counters
 from actum.stamps import LostFrames, Order, StampGuard
 from som_classifier.frames import Frame, frame_of
 from som_classifier.kinematics import KinematicsFilter
@@ -17,6 +18,10 @@ Encode = Callable[[Frame], Any]
 
 MEMORY_NS = MAX_SEGMENT_NS + MAX_SKEW_NS
 """Frames are kept for this long (ns), so that a segment of any length is whole when its late end mark comes."""
+
+
+FAR_FUTURE_NS = 2**62
+"""Stands for the end of what has none: later than any stamp."""
 
 
 class Stream:
@@ -61,6 +66,13 @@ class Stream:
             self._frames.popleft()
         return order, frame
 
+    def __len__(self) -> int:
+        return len(self._frames)
+
+    def let_go(self) -> None:
+        """Forget the oldest frame."""
+        self._frames.popleft()
+
     def _encode_valid(self, frame: Frame) -> None:
         if self._encode is not None and frame.valid:
             frame.activity = self._encode(frame)
@@ -91,9 +103,13 @@ class Stream:
 
 
 class Streams:
-    """The streams of all agents, and the newest stamp among them."""
+    """The streams of the agents heard last, and the newest stamp among them.
 
-    def __init__(self) -> None:
+    They hold `MOST_FRAMES` together at the most, and of those that are too many the longest ones' oldest go.
+    """
+
+    def __init__(self, counters: Counters) -> None:
+        self._counters = counters
         self._streams: dict[int, Stream] = {}
         self._encoders: Callable[[], Encode] | None = None
         self._plan = NO_SEARCH
@@ -121,13 +137,27 @@ class Streams:
 
     def add(self, posture: Posture) -> tuple[Order, Frame | None]:
         """Keep the next posture of its agent, as `Stream.add` does."""
-        if posture.agent not in self._streams:
-            encode = self._encoders() if self._encoders else None
-            self._streams[posture.agent] = Stream(encode, Search(posture, self._plan))
-        order, frame = self._streams[posture.agent].add(posture)
+        stream = self._streams.pop(posture.agent) if posture.agent in self._streams else self._begun(posture)
+        self._streams[posture.agent] = stream  # behind those heard before it
+        order, frame = stream.add(posture)
         if frame is not None:
             self._advance(posture.stamp_ns)
+            self._make_room()
         return order, frame
+
+    def _begun(self, posture: Posture) -> Stream:
+        return Stream(self._encoders() if self._encoders else None, Search(posture, self._plan))
+
+    def _make_room(self) -> None:
+        """Forget the agent silent for longest where there are too many, and the oldest frame where that is."""
+        if len(self._streams) > MOST_STREAMS:
+            silent = next(iter(self._streams))
+            del self._streams[silent]
+            self._counters.reject("too_many_people", f"more than {MOST_STREAMS}: agent {silent} is forgotten")
+        if sum(map(len, self._streams.values())) > MOST_FRAMES:
+            longest = max(self._streams.values(), key=len)
+            longest.let_go()
+            self._counters.reject("too_many_frames", f"more than {MOST_FRAMES} in a minute: the oldest is forgotten")
 
     def reached(self, agent: int, stamp_ns: int) -> bool:
         """Tell whether an agent's newest frame is at a stamp or after it."""
@@ -143,6 +173,18 @@ class Streams:
         )
         stamp_ns, _, agent = min(valid, default=(None, None, 0))
         return None if stamp_ns is None else (stamp_ns, agent)
+
+    def nearest(self, start_ns: int, end_ns: int) -> int | None:
+        """Return the agent nearest to the camera at the first valid frame within bounds, once that is certain."""
+        first = self.first(start_ns, end_ns)
+        return first[1] if first is not None and self.complete(start_ns, first[0]) else None
+
+    def since(self, start_ns: int) -> list[Frame]:
+        """List everybody's frames from a stamp on, stamps rising; where there is none, the newest one before it."""
+        listed = chain.from_iterable(stream.between(start_ns, FAR_FUTURE_NS) for stream in self._streams.values())
+        newest = (stream.between(stream.newest_ns, stream.newest_ns) for stream in self._streams.values())
+        frames = list(listed) or list(chain.from_iterable(newest))
+        return sorted(frames, key=lambda frame: frame.stamp_ns)
 
     def first_reason(self, start_ns: int, end_ns: int) -> str | None:
         """Return the reason of the first frame that the preprocessor could not use; None where there is none."""

@@ -7,13 +7,18 @@ stream it has one place, which the newest message fills, and a bounded queue for
 import threading
 import time
 from collections import OrderedDict, deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 LONGEST_QUEUE = 1000
 """Messages that wait for one browser; half an hour of a busy scene. In a longer queue the oldest are left out."""
 REMEMBERED = 400
 """Messages that must not be lost, kept for a page that is opened or loaded anew: its timeline's last minutes."""
+MOST_BYTES = 32_000_000
+"""Size (bytes, characters of text) of what waits for one browser, and of what is remembered: a hundred times a scene's.
+In a longer queue, too, the oldest are left out."""
+MOST_KEPT = 32
+"""Most streams of which the newest message is kept for pages opened later: the services' status, and the trainer."""
 MOST_STREAMS = 256
 """Most streams that have a place: agents come and go with new numbers, and the one silent for longest makes room."""
 
@@ -35,15 +40,52 @@ class Envelope:
     kept: bool = False
 
 
+class Queue:
+    """Messages in their order, limited in number and size: the oldest are left out.
+
+    Attributes:
+        left_out: how many.
+    """
+
+    def __init__(self, longest: int) -> None:
+        self.left_out = 0
+        self._longest = longest
+        self._envelopes: deque[Envelope] = deque()
+        self._size = 0
+
+    def __iter__(self) -> Iterator[Envelope]:
+        return iter(self._envelopes)
+
+    def __len__(self) -> int:
+        return len(self._envelopes)
+
+    def append(self, envelope: Envelope) -> None:
+        """Add a message at the end."""
+        self._envelopes.append(envelope)
+        self._size += len(envelope.payload)
+        while len(self._envelopes) > self._longest or self._size > MOST_BYTES:
+            self._size -= len(self._envelopes.popleft().payload)
+            self.left_out += 1
+
+    def clear(self) -> None:
+        """Forget all messages."""
+        self._envelopes.clear()
+        self._size = 0
+
+
 class Mailbox:
     """What one browser has not been sent yet."""
 
     def __init__(self, wake: Callable[[], object]) -> None:
-        self.left_out = 0
         self._wake = wake
-        self._queue: deque[Envelope] = deque()
+        self._queue = Queue(LONGEST_QUEUE)
         self._newest: OrderedDict[str, Envelope] = OrderedDict()
         self._lock = threading.Lock()
+
+    @property
+    def left_out(self) -> int:
+        """How many queued messages were left out."""
+        return self._queue.left_out
 
     def put(self, envelopes: Iterable[Envelope]) -> None:
         """Take messages; those of a stream replace what waits of it, unless they are queued."""
@@ -66,9 +108,6 @@ class Mailbox:
     def _take(self, envelope: Envelope) -> None:
         if envelope.queued:
             self._queue.append(envelope)
-            if len(self._queue) > LONGEST_QUEUE:
-                self._queue.popleft()
-                self.left_out += 1
         else:
             self._newest[envelope.stream] = envelope
             if len(self._newest) > MOST_STREAMS:
@@ -80,7 +119,7 @@ class Hub:
 
     def __init__(self) -> None:
         self._mailboxes: list[Mailbox] = []
-        self._past: deque[Envelope] = deque(maxlen=REMEMBERED)
+        self._past = Queue(REMEMBERED)
         self._kept: OrderedDict[str, tuple[Envelope, float]] = OrderedDict()
         self._lock = threading.Lock()
         self._left_out = 0
@@ -109,7 +148,7 @@ class Hub:
             elif envelope.kept:
                 self._kept[envelope.stream] = envelope, time.monotonic()
                 self._kept.move_to_end(envelope.stream)
-                if len(self._kept) > MOST_STREAMS:
+                if len(self._kept) > MOST_KEPT:
                     self._kept.popitem(last=False)
             for mailbox in self._mailboxes:
                 mailbox.put((envelope,))

@@ -26,7 +26,7 @@ OURS = frozenset({"service", "command", "timeout_s"})
 """Names that `Client.ask` has taken for itself."""
 NO_ROUTER = "there is no router, so nobody can be asked"
 
-Chunk = Annotated[str, Field(pattern=f"^{keys.CHUNK.pattern}$", max_length=64)]
+Chunk = Annotated[str, Field(pattern=f"^{keys.CHUNK.pattern}$")]
 
 
 class Ask(BaseModel):

@@ -18,6 +18,8 @@ UNPACK_ERRORS = (ValueError, TypeError, RecursionError, msgpack.exceptions.Unpac
 """What msgpack raises on bytes that it cannot unpack, for one because they are nested too deeply."""
 MOST_VALUES = 100_000
 """Most values in all maps and lists of a message: one takes a byte on the wire, up to a hundred once unpacked."""
+LONGEST_ORIGIN = 32
+"""Characters of an origin: those of the id of a Zenoh session."""
 KNOWN_ENCODINGS = 256
 """Entries in the cache of accepted encodings: a few per schema are in use."""
 
@@ -45,11 +47,22 @@ def schema_name(message: Message | type[Message]) -> str:
     return f"{message.SCHEMA}/{message.VERSION}"
 
 
-def encode(message: Message) -> Frame:
-    """Pack a message; the attachment repeats `[version, seq, stamp_ns]`."""
+def encode(message: Message, origin: str = "") -> Frame:
+    """Pack a message; the attachment repeats `[version, seq, stamp_ns]` and adds who puts it, if that is given."""
     payload = msgpack.packb(message.model_dump(), use_bin_type=True)
-    attachment = msgpack.packb([message.VERSION, message.seq, message.stamp_ns])
+    attachment = msgpack.packb([message.VERSION, message.seq, message.stamp_ns, *filter(None, [origin])])
     return Frame(keys.key_of(message), payload, f"application/msgpack;{schema_name(message)}", attachment)
+
+
+def origin_of(attachment: bytes) -> str:
+    """Return who put a message, as its attachment says; "" where it does not say so, or is none of ours."""
+    try:
+        match msgpack.unpackb(attachment):
+            case [_, _, _, str(origin), *_]:
+                return origin[:LONGEST_ORIGIN]
+    except UNPACK_ERRORS:
+        pass
+    return ""
 
 
 def decode(key: str, payload: bytes, encoding: str = "") -> Message:
@@ -86,12 +99,21 @@ def _check_encoding(encoding: str, expected: type[Message]) -> None:
 
 def _unpack(key: str, payload: bytes) -> dict[str, Any]:
     try:
-        fields = msgpack.unpackb(payload) if len(payload) <= keys.MEGABYTE else _Unpacking().unpack(payload)
+        fields = unpack(payload)
     except UNPACK_ERRORS as error:
         raise DecodeError("not_msgpack", f"{key}: {type(error).__name__} {error}") from None
     if not isinstance(fields, dict):
         raise DecodeError("not_a_map", f"{key}: a {type(fields).__name__}, not a map with string keys")
     return fields
+
+
+def unpack(payload: bytes) -> Any:
+    """Unpack msgpack from anywhere; one of many values is refused where they would take much memory.
+
+    Raises:
+        UNPACK_ERRORS: it is no msgpack, is nested too deeply, or has too many values.
+    """
+    return msgpack.unpackb(payload) if len(payload) <= keys.MOST_BYTES else _Unpacking().unpack(payload)
 
 
 class _Unpacking:

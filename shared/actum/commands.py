@@ -8,6 +8,8 @@ from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 import msgpack
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from actum.codec import MOST_VALUES, UNPACK_ERRORS, unpack
+
 Q = TypeVar("Q", bound="Request")
 A = TypeVar("A", bound=BaseModel)
 JSON = "application/json"
@@ -16,6 +18,8 @@ MSGPACK = "application/msgpack"
 """The other encoding: it holds bytes as they are."""
 MAX_REQUEST_BYTES = 8_000_000
 """Largest request (bytes): a piece of an uploaded video, as base64, and room to spare."""
+BEFORE_VALUES = (b"[", b"{", b",")
+"""What stands before values in JSON, and now and then within one."""
 
 
 class Refusal(ValueError):  # noqa: N818 - it is an answer, not a fault
@@ -123,12 +127,19 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
     if not payload:
         return {}
     try:
-        fields = msgpack.unpackb(payload) if encoding.startswith(MSGPACK) else json.loads(payload)
-    except (ValueError, TypeError, RecursionError, msgpack.exceptions.UnpackException) as error:
+        fields = unpack(payload) if encoding.startswith(MSGPACK) else _from_json(payload)
+    except UNPACK_ERRORS as error:
         raise Refusal(f"a request that cannot be read ({error}): send a JSON object, or {MSGPACK}") from None
     if not isinstance(fields, dict) or not all(isinstance(name, str) for name in fields):
         raise Refusal(f"a request that is no object: {type(fields).__name__}")
     return fields
+
+
+def _from_json(payload: bytes) -> Any:
+    """Parse JSON; one of many values is refused, for each takes many times its bytes once parsed."""
+    if sum(map(payload.count, BEFORE_VALUES)) > MOST_VALUES:
+        raise ValueError(f"more than {MOST_VALUES} values")
+    return json.loads(payload)
 
 
 def packed(fields: dict[str, Any], encoding: str) -> bytes:

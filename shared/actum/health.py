@@ -13,9 +13,13 @@ FRESH_S = 5.0
 
 
 def write_health(path: Path, healthy: bool) -> None:
-    """Touch the health file of a service that works and has a router; remove that of any other."""
+    """Touch the health file of a service that works and has a router; remove that of any other.
+
+    Its time of modification is the monotonic clock's, which processes of one machine share: the wall clock may be set.
+    """
     if healthy:
-        path.touch()
+        path.open("ab").close()
+        os.utime(path, ns=(time.monotonic_ns(), time.monotonic_ns()))
     else:
         path.unlink(missing_ok=True)
 
@@ -23,7 +27,7 @@ def write_health(path: Path, healthy: bool) -> None:
 def is_healthy(path: Path) -> bool:
     """Tell whether the health file was touched within the last `FRESH_S`."""
     try:
-        return time.time() - path.stat().st_mtime < FRESH_S
+        return 0 <= time.monotonic() - path.stat().st_mtime < FRESH_S
     except OSError:
         return False
 

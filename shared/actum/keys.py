@@ -9,11 +9,13 @@ from actum import messages as m
 
 BASE = "actum"
 """The first chunk of every key."""
-CHUNK = re.compile(r"[a-z0-9_-]+")
-"""The characters of one chunk of a key: those that Zenoh keys, file names and labels all allow."""
+CHUNK = re.compile(r"[a-z0-9_-]{1,64}")
+"""One chunk of a key: characters that Zenoh keys, file names and labels all allow, and few enough for a name."""
 
-MEGABYTE = 1_000_000
-"""In bytes."""
+MOST_BYTES = 250_000
+"""Largest payload without pixels (bytes), ten times that of a busy scene. A full ring of them takes 64 MB."""
+MOST_IMAGE_BYTES = 64_000_000
+"""Largest payload of an image (bytes): 16 million pixels as `bgr8`. Only one waits."""
 CACHED_KEYS = 1024
 """Entries in each cache of built and of parsed keys."""
 
@@ -27,8 +29,8 @@ class Topic:
     """One row of the table: what a key carries and how it is sent.
 
     `leaf` is the key below `actum/<sensor>/`, with `{}` for the agent or service. `ring` is the depth of a
-    subscriber's ring. `cached` topics go through an advanced publisher, so that late or interrupted
-    subscribers recover them.
+    subscriber's ring, `max_bytes` the largest payload that is taken. A publisher keeps its last `cache` messages on
+    each key, so that late or interrupted subscribers recover them; 0 where nobody does.
     """
 
     leaf: str
@@ -36,33 +38,38 @@ class Topic:
     congestion: Literal["drop", "block"] = "drop"
     priority: Literal["interactive_high", "data_high", "data_low", "background"] = "data_high"
     ring: int = 256
-    cached: bool = False
-    max_bytes: int = MEGABYTE
+    cache: int = 0
+    max_bytes: int = MOST_BYTES
 
 
-SKELETON = Topic("skeleton", m.Skeleton)
+TEN_SECONDS = 300
+"""Messages of a stream in ten seconds, at 30 a second: a link that was cut for less loses none."""
+ROOM_FOR_MANY = 2048
+"""Depth of a ring that takes ten seconds of several people's postures at once, as when a link is back."""
+
+SKELETON = Topic("skeleton", m.Skeleton, ring=512, cache=TEN_SECONDS, max_bytes=MOST_BYTES // 2)
 """Joints in the camera frame, of everybody in view."""
-COLOR = Topic("image/color", m.Image, priority="data_low", ring=1, max_bytes=64 * MEGABYTE)
+COLOR = Topic("image/color", m.Image, priority="data_low", ring=1, max_bytes=MOST_IMAGE_BYTES)
 """Colour images: only the newest counts, so they may be dropped."""
-DEPTH = Topic("image/depth", m.Image, priority="data_low", ring=1, max_bytes=64 * MEGABYTE)
+DEPTH = Topic("image/depth", m.Image, priority="data_low", ring=1, max_bytes=MOST_IMAGE_BYTES)
 """Depth images, sent as colour images are."""
-POSTURE = Topic("posture/{}", m.Posture)
+POSTURE = Topic("posture/{}", m.Posture, ring=ROOM_FOR_MANY, cache=TEN_SECONDS, max_bytes=MOST_BYTES // 8)
 """Joints of one person, in the frames of that person's body."""
-OBJECTS = Topic("objects", m.Objects)
+OBJECTS = Topic("objects", m.Objects, ring=512, cache=TEN_SECONDS, max_bytes=MOST_BYTES // 2)
 """Every object's pose."""
-SEGMENT = Topic("segment", m.Segment, congestion="block", priority="interactive_high", cached=True)
-"""Start and end marks: none may be lost."""
-ACTION = Topic("action/{}", m.Action, max_bytes=4 * MEGABYTE)
-"""The classifier's estimates; with maps and traces they are large."""
-EVENT = Topic("event/{}", m.Event, cached=True)
+SEGMENT = Topic("segment", m.Segment, congestion="block", priority="interactive_high", cache=256)
+"""Start and end marks: none may be lost. Two a second for two minutes are kept."""
+ACTION = Topic("action/{}", m.Action, cache=64)
+"""The classifier's estimates."""
+EVENT = Topic("event/{}", m.Event, cache=64)
 """Events, one for each segment: verb, object and result."""
 STATUS = Topic("status/{}", m.Status, priority="background")
 """A service's health, once a second."""
 INFO = Topic("info/{}", m.Info)
 """A service's description; a queryable."""
-TRUTH = Topic("truth", m.Truth, cached=True)
+TRUTH = Topic("truth", m.Truth, cache=64)
 """The simulated scene's ground truth."""
-TRAINING = Topic("training", m.Training, cached=True)
+TRAINING = Topic("training", m.Training, cache=64)
 """What the trainer does and has."""
 
 TOPICS: tuple[Topic, ...] = (
@@ -96,10 +103,10 @@ def chunk(text: str) -> str:
     """Return `text` unchanged if it is a valid chunk of a key.
 
     Raises:
-        InvalidKeyError: it holds anything but a-z, 0-9, `_` and `-`.
+        InvalidKeyError: it holds anything but a-z, 0-9, `_` and `-`, or more than 64 of them.
     """
     if not CHUNK.fullmatch(text):
-        raise InvalidKeyError(f"{text!r} cannot stand in a key: use a-z, 0-9, '_' and '-'")
+        raise InvalidKeyError(f"{text!r} cannot stand in a key: use a-z, 0-9, '_' and '-', 64 at most")
     return text
 
 

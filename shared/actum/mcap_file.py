@@ -3,18 +3,26 @@
 import os
 import struct
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO, cast
 
+import lz4.frame
 import zstandard
 from mcap.exceptions import EndOfFile, McapError
-from mcap.records import Channel, McapRecord, Message, Metadata, Schema
-from mcap.stream_reader import StreamReader
+from mcap.records import Channel, Chunk, McapRecord, Message, Metadata, Schema
+from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import MCAP0_MAGIC
 
 DAMAGE = (McapError, zstandard.ZstdError, ValueError, OverflowError, RuntimeError, KeyError, struct.error, MemoryError)
 """What the library and its decompressors raise on bytes that are not valid MCAP."""
+
+LARGEST_CHUNK = 80_000_000
+"""Largest chunk once decompressed, and largest other record (bytes): an image of the largest size, and other messages.
+A recording's own chunks hold a quarter of a megabyte, or one image."""
+MOST_INFLATION = 5000
+"""How many times its size a file may grow by decompression: recordings do twenty times, raw black images two thousand.
+Files made to fill memory and time do more."""
 
 REMEDY = "name a recording made by `actum record` or `actum import`"
 """What to do about a file that cannot be used."""
@@ -84,9 +92,12 @@ class McapFile:
             RecordingError: as `metadata`.
         """
         with self._opened() as file:
-            reader = StreamReader(cast(BinaryIO, _Exact(file)), validate_crcs=True)
+            source = cast(BinaryIO, _Exact(file))
+            reader = StreamReader(source, emit_chunks=True, validate_crcs=True, record_size_limit=LARGEST_CHUNK)
+            chunks = _Chunks(os.fstat(file.fileno()).st_size)
             try:
-                yield from reader.records
+                for record in reader.records:
+                    yield from chunks.records(record) if isinstance(record, Chunk) else (record,)
             except EndOfFile:
                 self.truncated = True
             except DAMAGE as error:
@@ -115,10 +126,49 @@ class _Exact:
         self._remaining = os.fstat(file.fileno()).st_size
 
     def read(self, length: int) -> bytes:
+        if length < 0:
+            raise ValueError(f"a record of {length} bytes")
         if length > self._remaining:
             raise EndOfFile
         self._remaining -= length
         return self._file.read(length)
+
+
+class _Chunks:
+    """Decompresses the chunks of one pass over a file, and refuses those that grow beyond all measure."""
+
+    def __init__(self, file_bytes: int) -> None:
+        self._left = LARGEST_CHUNK + MOST_INFLATION * file_bytes
+
+    def records(self, chunk: Chunk) -> list[McapRecord]:
+        """Return the records in a chunk.
+
+        Raises:
+            ValueError: it is too large once decompressed, or of another size than it says.
+        """
+        size = chunk.uncompressed_size
+        self._left -= size
+        if size > LARGEST_CHUNK or self._left < 0:
+            raise ValueError(f"{len(chunk.data)} bytes that decompress to {size}")
+        data = _decompressed(chunk)
+        if len(data) != size:
+            raise ValueError(f"a chunk of another size than {size} bytes")
+        return breakup_chunk(replace(chunk, compression="", data=data), validate_crc=True)
+
+
+def _decompressed(chunk: Chunk) -> bytes:
+    """Decompress a chunk, at most a byte more than it says that there is."""
+    most = chunk.uncompressed_size + 1
+    match chunk.compression:
+        case "":
+            return chunk.data
+        case "zstd":
+            with zstandard.ZstdDecompressor().stream_reader(chunk.data) as stream:
+                return stream.read(most)
+        case "lz4":
+            return bytes(lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=most))
+        case other:
+            raise ValueError(f"unknown compression {other!r}")
 
 
 def encoding_of(channel: Channel, schema: str) -> str:

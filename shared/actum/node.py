@@ -1,9 +1,9 @@
 """The interface of a service, a pure step over messages and ticks; and its replay without a transport."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from actum import keys
 from actum.messages import Message
@@ -14,6 +14,8 @@ TICK_NS = SECOND_NS // 10
 """Interval between two ticks (ns): no service needs a finer one."""
 SETTLE_NS = 70 * SECOND_NS
 """How long ticks go on after a replay (ns): longer than any service waits (a segment of 60 s and 2 s of skew)."""
+MOST_KEYS = 4096
+"""Keys whose numbers are remembered: agents come and go with new ones, and the key silent for longest begins anew."""
 LONGEST_COMPLAINT = 500
 """Characters kept of an error text: it may quote a megabyte of input."""
 
@@ -30,7 +32,7 @@ class Counters:
     """A node's counters: rejected inputs by kind, the text of the newest error, and the node's state in a word or two.
 
     `counts` is of what else happened and is no fault. `details` names the `model`, the `calibration` or the `source` in
-    use, for the message `info`.
+    use, and the source's `rate_hz`, for the message `info`.
     """
 
     rejects: Counter[str] = field(default_factory=Counter)
@@ -66,6 +68,18 @@ class Node(Protocol):
         ...
 
 
+@runtime_checkable
+class Remembering(Protocol):
+    """A node that answers segments, each once, also across its restarts."""
+
+    def remember(self, answers: Sequence[Message]) -> None:
+        """Take the answers that were given before this process was started: to their segments it gives no others.
+
+        Called before all else, and only where these are known. Messages of that time may then come once more.
+        """
+        ...
+
+
 class Source(Protocol):
     """A sensor that yields frames in the order of their stamps. The runtime decides when to put each."""
 
@@ -90,17 +104,17 @@ class Numbering:
     """Assigns sequence numbers (`seq`), counted from 0 on each key."""
 
     def __init__(self) -> None:
-        self._next: Counter[str] = Counter()
+        self._next: dict[str, int] = {}
 
     def numbered(self, message: Message) -> Message:
         """Return the message with `seq` set. A message that has a number keeps it, and the next one continues there."""
         key = keys.key_of(message)
-        if message.seq is not None:
-            self._next[key] = message.seq + 1
-            return message
-        seq = self._next[key]
-        self._next[key] += 1
-        return message.model_copy(update={"seq": seq})
+        expected = self._next.pop(key, 0)
+        seq = expected if message.seq is None else message.seq
+        self._next[key] = seq + 1
+        if len(self._next) > MOST_KEYS:
+            del self._next[next(iter(self._next))]
+        return message if message.seq is not None else message.model_copy(update={"seq": seq})
 
 
 def replay(node: Node, messages: Iterable[tuple[int, Message]], settle_ns: int = SETTLE_NS) -> Iterator[Message]:

@@ -21,6 +21,8 @@ OTHER_TRANSPORTS = ("unixsock-stream", "unixpipe", "serial", "vsock")
 """Zenoh's transports with other addresses."""
 HIGHEST_PORT = 65535
 """Ports have 16 bits."""
+LONGEST_HOST = 48
+"""Characters of the host's name in an instance's, so that the process id fits behind it."""
 
 
 class SettingsError(ValueError):
@@ -66,7 +68,7 @@ def _endpoint(text: str) -> str:
 def default_instance() -> str:
     """Return an instance name for this process: host and process id, as a valid chunk of a key."""
     host = "".join(c if CHUNK.fullmatch(c) else "-" for c in socket.gethostname().lower())
-    return f"{host}-{os.getpid()}"
+    return f"{host[:LONGEST_HOST]}-{os.getpid()}"
 
 
 def data_folder() -> Path:
@@ -109,6 +111,10 @@ class ServiceSettings(BaseSettings):
     )
     credentials: Path | None = Field(
         None, description="a folder of one role that actum deploy wrote, shown to a router at tls/host:port"
+    )
+    state: Path | None = Field(
+        None,
+        description="a folder for the last answers of the classifier and the fusion: started anew, they give no others",
     )
     health_file: Path | None = Field(None, description="a file touched every second while connected and working")
 

@@ -147,9 +147,9 @@ def test_without_any_posture_there_is_an_event_without_an_object(node) -> None:
 
 def test_what_comes_after_the_answer_changes_nothing_and_is_counted_late(node) -> None:
     events_of(node, *PUSH.postures(), *PUSH.sightings(end_s=1.0), action("push"))
-    assert len(ticked(node, 3.0)) == 1
+    assert len(ticked(node, 11.0)) == 1
     assert events_of(node, PUSH.objects_seen(1.5), PUSH.objects_seen(1.6), PUSH.objects_seen(2.1)) == []
-    assert node.counters.rejects == {"late": 2}
+    assert node.counters.rejects == {"late": 2, "incomplete_segment": 1}
 
 
 def test_frames_after_the_end_do_not_count() -> None:
@@ -205,7 +205,7 @@ def test_older_and_repeated_stamps_are_counted_and_dropped(node) -> None:
 
 
 def test_time_that_goes_back_answers_what_waits_and_forgets_the_past(node) -> None:
-    events_of(node, *PUSH.postures(end_s=1.5), *PUSH.sightings(), action("push"))
+    events_of(node, *PUSH.postures(end_s=1.7), *PUSH.sightings(), action("push"))
     (event,) = events_of(node, PUSH.posture(-90.0, session_id="new"))
     assert event.object is not None and event.object.id == 1
     events_of(node, PUSH.posture(3.0, session_id="new"), PUSH.objects_seen(3.0, session_id="new"))
@@ -217,7 +217,7 @@ def test_time_may_go_back_without_a_new_session(node) -> None:
     events_of(node, *PUSH.postures(), *PUSH.sightings())
     events_of(node, *[PUSH.posture(t) for t in (-90.0, -89.0, -88.0, 3.0)])
     assert events_of(node, action("push")) == []  # the objects' old time says nothing of the new one
-    (event,) = ticked(node, 3.0)
+    (event,) = ticked(node, 13.0)
     assert (event.object, event.distances_m) == (None, {})
 
 

@@ -97,3 +97,16 @@ def test_rejections_have_a_reason_and_no_action() -> None:
 def test_the_committed_schema_is_the_generated_one(message: type) -> None:
     name = schemas.file_name(message)
     assert schemas.committed(name) == schemas.generated()[name], "run python -m actum.schemas"
+
+
+def test_who_put_a_message_stands_in_its_attachment_where_that_is_told() -> None:
+    frame = codec.encode(skeleton(7, STANDING, seq=3), "a1b2")
+    assert msgpack.unpackb(frame.attachment) == [1, 3, 7, "a1b2"]
+    assert codec.origin_of(frame.attachment) == "a1b2"
+
+
+@pytest.mark.parametrize(
+    "attachment", [b"", b"\xc1", b"\x91" * 5000, *map(msgpack.packb, (7, [1, 3, 7], [1, 3, 7, 9]))]
+)
+def test_who_put_a_message_is_not_known_where_the_attachment_does_not_say_so(attachment: bytes) -> None:
+    assert codec.origin_of(attachment) == ""

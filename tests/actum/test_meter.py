@@ -2,6 +2,7 @@ from actum.node import Counters
 from actum.runtime.meter import MOST_KEYS, MOST_ORIGINS, Meter
 from actum.settings import ServiceSettings
 from people import STANDING, skeleton
+from scenes import action
 
 
 def meter() -> Meter:
@@ -49,3 +50,13 @@ def test_latencies_are_reported_as_percentiles() -> None:
     for milliseconds in range(101):
         watched.took(float(milliseconds))
     assert watched.status().latency_ms == {"p50": 50.0, "p99": 99.0}
+
+
+def test_gaps_between_final_actions_of_before_are_no_losses() -> None:
+    """Publishers keep the final ones alone, and partial ones have numbers between them."""
+    watched = meter()
+    key = "actum/kinect0/action/1"
+    watched.await_history()
+    for seq in (10, 70, 130):
+        watched.received(key, action("push", seq=seq), "one")
+    assert watched.status().drops == {}

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from actum import __version__
 from actum.codec import schema_name
 from actum.messages import MESSAGES, Info, Message, Status
-from actum.runtime import Received
+from actum.runtime import Answer, Received
 from actum_command import __main__, diagnosis
 from actum_command.commands import doctor_command
 from actum_command.commands.doctor_command import show
@@ -63,6 +63,7 @@ class System:
 
     def __init__(self, changed: Status, version: str = __version__, source: str | None = None) -> None:
         self.also: tuple[str, str] | None = None
+        self._asked_ns = 0
         self._sources = {changed.service: source}
         self._statuses: list[Message] = [status(name) for name in EXPECTED if name != changed.service]
         self._statuses.append(changed)
@@ -73,16 +74,18 @@ class System:
 
     def __exit__(self, *_: object) -> None: ...
 
-    def listen(self, _pattern: str) -> Listened:
-        return Listened(self._statuses)
+    def listen(self, pattern: str, **_ring: int) -> Listened:
+        return Listened(self._statuses if "status" in pattern else [])
 
     def alive(self) -> list[str]:
         names = [(name, "a") for name in EXPECTED] + ([self.also] if self.also else [])
         return sorted({f"actum/kinect0/alive/{name}/{instance}" for name, instance in names})
 
-    def infos(self) -> list[Info]:
+    def answers(self) -> list[Answer]:
         found = [info(name, version, source=self._sources.get(name)) for name, version in self._versions.items()]
-        return found + ([info(self.also[0], instance=self.also[1])] if self.also else [])
+        found += [info(self.also[0], instance=self.also[1])] if self.also else []
+        self._asked_ns += 1
+        return [Answer(each, self._asked_ns, self._asked_ns + 2, came_ns=2) for each in found]
 
 
 @pytest.fixture(autouse=True)
@@ -91,7 +94,8 @@ def _brief(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def examined(**fields: Any) -> Finding:
-    [found] = [f for f in examine(System(status("som_classifier", **fields))) if f.service == "som_classifier"]  # type: ignore[arg-type]
+    found_by = examine(System(status("som_classifier", **fields))).findings  # type: ignore[arg-type]
+    [found] = [each for each in found_by if each.service == "som_classifier"]
     return found
 
 
@@ -141,16 +145,16 @@ def test_a_model_that_could_not_be_renewed_is_a_problem() -> None:
 @pytest.mark.parametrize("state", ["source ended", "camera lost: it cannot be opened"])
 def test_a_gateway_that_gives_nothing_is_told_with_what_it_reads(state: str) -> None:
     gateway = System(status("sensor_gateway", state=state), source="file wave.mp4 (camera)")
-    [problem] = [p for finding in examine(gateway) for p in finding.problems]  # type: ignore[arg-type]
+    [problem] = [p for finding in examine(gateway).findings for p in finding.problems]  # type: ignore[arg-type]
     assert problem.startswith(f"sensor_gateway: {state} (file wave.mp4 (camera)); ")
 
 
 def test_a_simulated_scene_that_is_over_is_told_how_it_goes_on_for_ever() -> None:
     scene = System(status("sensor_gateway", state="source ended"), source=DESCRIPTION)
-    [problem] = [p for finding in examine(scene) for p in finding.problems]  # type: ignore[arg-type]
+    [problem] = [p for finding in examine(scene).findings for p in finding.problems]  # type: ignore[arg-type]
     assert problem.endswith("start it again for more, with --repetitions 0 for more and more")
     recording = System(status("sensor_gateway", state="source ended"), source="recording a.mcap")
-    [problem] = [p for finding in examine(recording) for p in finding.problems]  # type: ignore[arg-type]
+    [problem] = [p for finding in examine(recording).findings for p in finding.problems]  # type: ignore[arg-type]
     assert problem.endswith("start it again for more, with --loop for more and more")
 
 
@@ -158,9 +162,13 @@ class Sensorless(System):
     def alive(self) -> list[str]:
         return [key for key in super().alive() if "sensor_gateway" not in key]
 
+    def listen(self, pattern: str, **_ring: int) -> Listened:
+        self._statuses = [each for each in self._statuses if getattr(each, "service", "") != "sensor_gateway"]
+        return super().listen(pattern)
+
 
 def test_where_there_is_no_sensor_both_programs_that_can_be_one_are_named() -> None:
-    [problem] = [p for finding in examine(Sensorless(status("som_classifier"))) for p in finding.problems]  # type: ignore[arg-type]
+    [problem] = [p for finding in examine(Sensorless(status("som_classifier"))).findings for p in finding.problems]  # type: ignore[arg-type]
     assert problem.startswith("sensor_gateway is not running: start it with 'python -m sensor_gateway'")
     assert "for the simulated scene 'python -m scene_simulator'" in problem
 
@@ -185,7 +193,7 @@ def test_two_of_one_identity_are_a_problem_that_names_both(monkeypatch: pytest.M
 def test_where_there_is_no_room_for_a_table_there_are_lines_of_whole_words() -> None:
     console = Console(width=60)
     with console.capture() as capture:
-        show(examine(System(status("som_classifier", drops={"actum/kinect0/skeleton": 3}))), console)  # type: ignore[arg-type]
+        show(examine(System(status("som_classifier", drops={"actum/kinect0/skeleton": 3}))).findings, console)  # type: ignore[arg-type]
     lines = capture.get().splitlines()
     assert "som_classifier, 1 alive" in lines
     assert "  dropped: skeleton 3" in lines
@@ -225,3 +233,32 @@ def test_what_was_found_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     assert examined(counts={"found": 3, "told": 2}).counts == "found 3, told 2"
     _, output = diagnosed(monkeypatch, System(status("som_classifier")))
     assert "counted" not in output
+
+
+def test_beside_the_page_which_reads_everything_the_table_stays_readable() -> None:
+    """A hundred characters wide: what people and services have in common is one rate, and no word is broken."""
+    leaves = [
+        "skeleton",
+        "image/color",
+        "objects",
+        "truth",
+        "segment",
+        "training",
+        *(f"status/{name}" for name in EXPECTED),
+    ]
+    leaves += [f"{topic}/{agent}" for topic in ("posture", "action", "event") for agent in range(1, 5)]
+    silent = {"actum/kinect0/segment": 0.0, "actum/kinect0/truth": 0.0}
+    page = status("web_dashboard", rates={f"actum/kinect0/{leaf}": 29.97 for leaf in leaves} | silent)
+    system = System(page)
+    system.also = ("web_dashboard", "a")
+    console = Console(width=100)
+    with console.capture() as capture:
+        show(examine(system).findings, console)  # type: ignore[arg-type]
+    lines = capture.get().splitlines()
+    assert all(line[-1] in "┓┃┩│┘" for line in lines), "nothing is cut off"
+    [first] = [number for number, line in enumerate(lines) if "web_dashboard" in line]
+    assert len(lines) - first <= 6, "some lines and the table's last"
+    shown = " ".join(line.split("│")[5].strip() for line in lines[first:] if "│" in line)
+    assert shown == (
+        "skeleton 30, image/color 30, objects 30, training 30, status 150, posture 120, action 120, event 120"
+    )

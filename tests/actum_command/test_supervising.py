@@ -37,6 +37,19 @@ def test_what_ends_is_announced_and_started_again(ending: type[Program], tmp_pat
         assert outcome(supervisor) == ["worker ended with code 1: restart in 0.5 s"]
 
 
+def test_what_is_killed_is_another_process_afterwards(tmp_path: Path) -> None:
+    (tmp_path / "waiting.py").write_text("import time; time.sleep(60)")
+    waiting = Program("worker", "waiting", environment={"PYTHONPATH": str(tmp_path)})
+    with Supervisor(tmp_path / "log") as supervisor:
+        supervisor.start(waiting)
+        first = supervisor.process_id(waiting)
+        os.kill(first, signal.SIGKILL)
+        outcome(supervisor)
+        wait_until(lambda: supervisor.restart_ended() == [] and supervisor.process_id(waiting) != first, "it is back")
+    with pytest.raises(KeyError):
+        supervisor.process_id(waiting)
+
+
 def test_what_runs_elsewhere_is_tried_again_now_and_then(
     ending: type[Program], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -193,3 +193,15 @@ def test_every_command_says_what_it_does_and_what_each_of_its_fields_is(teacher:
         for schema in (command.request, command.reply):
             for name, field in schema.get("properties", {}).items():
                 assert field.get("description"), (command.name, name)
+
+
+def test_a_take_of_too_many_frames_or_marks_ends_by_itself(teacher: Teacher, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("actum_model_trainer.teaching.take_in_progress.MOST_FRAMES", 100)
+    monkeypatch.setattr("actum_model_trainer.teaching.take_in_progress.MOST_MARKED", 5)
+    teacher.ask("record", set="kitchen", label="wave", person="anna", count=5)
+    teacher.act(Stream().repeat(WAVES))
+    assert teacher.tick().recording.phase == "done"
+    teacher.ask("record", set="kitchen", label="wave", person="anna", count=5)
+    teacher.act(Stream().then(rest(1)))
+    teacher.see(mark("start", f"m{i}") for i in range(5))
+    assert teacher.tick().recording.phase == "done"

@@ -101,7 +101,7 @@ def test_a_segment_far_ahead_does_not_make_everything_after_it_late(case: Case) 
     wire.send(*case.warm_up(NOON_NS - SECOND_NS, "task"))
     ahead = [m for m in case.messages(2**61, "ahead") if isinstance(m, Action | Segment)]
     wire.send(*(m.model_copy(update={"agent": 1}) for m in ahead))
-    answered = [output for i in range(30) for output in wire.handle(Tick(i * SECOND_NS // 10))]
+    answered = [output for i in range(130) for output in wire.handle(Tick(i * SECOND_NS // 10))]
     assert [output.segment_id for output in answered] == ["ahead"]
     wire.send(*case.messages())
     assert set(wire.node.counters.rejects) <= {"rejected_segment"}

@@ -72,7 +72,10 @@ REJECTED: dict[str, tuple[tuple[Segment, ...], str]] = {
     "end before start": ((mark("start", 12), mark("end", 3)), "end before start"),
     "nobody there": ((mark("start", NOBODY_FROM + 1), mark("end", NOBODY_TO - 2)), "no person"),
     "somebody else there": ((mark("start", 2, agent=7), mark("end", 12, agent=7)), "no person"),
-    "before anything was seen": ((mark("start", FAR), mark("end", FAR + 30)), "no person"),
+    "after the last frame": (
+        (mark("start", FAR), mark("end", FAR + 30)),
+        "frames lost: none came for the last 1.0 s of the segment",
+    ),
     "no frame": ((mark("start", 4.3), mark("end", 4.6)), "no person"),
     "no frame, of an agent": ((mark("start", 4.3, agent=1), mark("end", 4.6)), "no person"),
     "one frame": ((mark("start", 4), mark("end", 4)), "too few frames: 1, at least 3 are needed"),

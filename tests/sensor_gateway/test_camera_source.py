@@ -33,7 +33,7 @@ class World:
         self.now_ns = 10 * SECOND_NS
         self.opened: list[int] = []
         self.closed = 0
-        self.live = live
+        self.live, self.rate_hz = live, None
         self.model_closed = False
         self._cameras = [iter(steps) for steps in cameras]
         self._rng = np.random.default_rng(0)

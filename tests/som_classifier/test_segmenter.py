@@ -3,55 +3,12 @@ from collections.abc import Iterable
 import numpy as np
 import pytest
 
-from actum.messages import Posture, Segment
-from actum.node import SECOND_NS, TICK_NS, Counters, Tick
+from actum.messages import Posture
+from actum.node import SECOND_NS
 from people import FRAME_NS, STANDING, reaches, reaching, skeleton
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
-from som_classifier.segmenter import Segmenter
-from som_classifier.segments import ClosedSegment
-
-
-def postures(frames: int = 30, first_ns: int = 0) -> list[Posture]:
-    node = PosePreprocessor(PoseSettings.defaults())
-    return [p for frame in reaches(frames, first_ns) for p in node.handle(frame) if isinstance(p, Posture)]
-
-
-def mark(kind: str, stamp_ns: int | None = None, segment_id: str = "a", **more: object) -> Segment:
-    fields = {"sensor": "kinect0", "kind": kind, "segment_id": segment_id, "stamp_ns": stamp_ns, **more}
-    return Segment.model_validate(fields)
-
-
-class Run:
-    """A segmenter fed step by step."""
-
-    def __init__(self) -> None:
-        self.counters = Counters()
-        self.segmenter = Segmenter(self.counters)
-        self.closed: list[ClosedSegment] = []
-        self._now_ns = 0
-
-    def feed(self, *inputs: Posture | Segment) -> "Run":
-        for item in inputs:
-            if isinstance(item, Posture):
-                self.closed += self.segmenter.posture(item)[1]
-            else:
-                self.closed += self.segmenter.mark(item)
-        return self
-
-    def wait(self, seconds: float) -> "Run":
-        for _ in range(int(seconds * SECOND_NS / TICK_NS)):
-            self._now_ns += TICK_NS
-            self.closed += self.segmenter.tick(Tick(self._now_ns))
-        return self
-
-    @property
-    def reasons(self) -> list[str | None]:
-        return [closed.reason for closed in self.closed]
-
-
-def stamps(closed: ClosedSegment) -> list[int]:
-    return [frame.stamp_ns // FRAME_NS for frame in closed.frames]
+from segmenter_runs import Run, mark, postures, stamps
 
 
 def test_a_segment_is_the_frames_from_start_to_end_inclusive() -> None:
@@ -66,14 +23,43 @@ def test_it_closes_with_the_frame_that_reaches_its_end() -> None:
     assert len(run.feed(postures(10)[9]).closed) == 1
 
 
-def test_it_closes_after_two_seconds_without_its_stream() -> None:
-    run = Run().feed(*postures(10), mark("start", 0), mark("end", 20 * FRAME_NS)).wait(2.0)
+def other(posture: Posture) -> Posture:
+    """The same instant of somebody else, who is seen beside the first."""
+    return posture.model_copy(update={"agent": 2})
+
+
+def test_it_closes_after_two_seconds_where_the_frames_of_others_go_on() -> None:
+    run = Run().feed(*postures(10), mark("start", 0, agent=1), mark("end", 20 * FRAME_NS))
+    run.feed(*map(other, postures(25)[10:])).wait(2.0)
     assert run.closed == []
     assert stamps(run.wait(0.3).closed[0]) == list(range(10))
 
 
+def test_while_nobodys_frames_come_it_waits_for_ten_seconds_and_answers_with_all_that_comes() -> None:
+    frames = postures(30)
+    run = Run().feed(*frames[:10], mark("start", 0), mark("end", 20 * FRAME_NS)).wait(8.0)
+    assert run.closed == [], "a link may be cut, and its publisher keeps the frames"
+    run.feed(frames[10]).wait(0.5)
+    assert run.closed == [], "the others follow"
+    assert stamps(run.feed(*frames[11:]).closed[0]) == list(range(21))
+
+
+def test_it_closes_with_what_has_come_once_the_stream_has_stood_still_for_ten_seconds() -> None:
+    run = Run().feed(*postures(10), mark("start", 0), mark("end", 20 * FRAME_NS)).wait(10.0)
+    assert run.closed == []
+    assert stamps(run.wait(0.4).closed[0]) == list(range(10))
+
+
+def test_a_stream_that_stutters_for_ever_is_not_waited_for_for_ever() -> None:
+    frames = postures(15)
+    run = Run().feed(*frames[:5], mark("start", 0), mark("end", 20 * FRAME_NS))
+    for frame in frames[5:]:
+        run.wait(1.5).feed(frame)
+    assert len(run.closed) == 1
+
+
 def test_what_comes_after_the_answer_is_late_and_changes_nothing() -> None:
-    run = Run().feed(*postures(10), mark("start", 0), mark("end", 20 * FRAME_NS)).wait(2.3)
+    run = Run().feed(*postures(10), mark("start", 0), mark("end", 20 * FRAME_NS)).wait(10.3)
     run.feed(*postures(15)[10:])
     assert len(run.closed) == 1
     assert run.counters.rejects["late"] == 5

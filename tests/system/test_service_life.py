@@ -98,7 +98,7 @@ def test_bad_payloads_are_counted_in_status_and_survived(preprocessor_client: Cl
     client.put_raw(key, msgpack.packb([1, 2, 3]))
     client.put_raw(key, msgpack.packb({"stamp_ns": "soon", "agents": []}))
     client.put_raw(key, good.payload, "application/msgpack;actum.skeleton/9")
-    client.put_raw(key, bytes(2_000_000))
+    client.put_raw(key, bytes(2 * keys.SKELETON.max_bytes))
     client.put_raw(key, good.payload, good.encoding)
     assert collect(postures, Posture, bool)[0].stamp_ns == 1
     expected = {"not_msgpack": 1, "not_a_map": 1, "wrong_fields": 1, "higher_version": 1, "too_large": 1}
@@ -146,6 +146,7 @@ def test_tokens_go_with_their_process(running: System) -> None:
         (["pose_preprocessor", "--connect", "127.0.0.1:7551"], "'127.0.0.1:7551' is no endpoint: use tcp/host:port"),
         (["scene_simulator", "--connect", "foo"], "'foo' is no endpoint: use tcp/host:port"),
         (["action_fusion", "--zenoh-config", "/nowhere.json5"], "/nowhere.json5 is no Zenoh configuration"),
+        (["action_fusion", "--state", __file__], f"state: the folder {__file__} cannot be made"),
         (["action_fusion", "--zenoh-config", __file__], f"{__file__} is no Zenoh configuration"),
     ],
 )

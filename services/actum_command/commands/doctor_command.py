@@ -14,18 +14,23 @@ from actum_command.diagnosis import Finding, examine
 from actum_command.misspelt import misspelt
 
 TABLE_WIDTH = 100  # characters that the table needs so that no word is broken
+LATENCY = "latency p50/p99 (ms)"
+"""A heading that is longer than what stands below it."""
+WIDTHS = {LATENCY: 15}
+"""Most characters of a column, so that those with more to say have room."""
 SOURCES = {"sensor_gateway": "sensor", "marker_camera": "marker camera"}
 """The name of a service's source in the output."""
 
 
 def doctor() -> None:
-    """Check router, services, rates, versions and the names of settings; exit 1 if anything is wrong."""
+    """Check router, services, streams, versions, clocks and the names of settings; exit 1 if anything is wrong."""
     with connect() as client:
-        findings = examine(client)
-    show(findings, console)
-    for remark in (remark for finding in findings for remark in finding.remarks):
+        found = examine(client)
+    show(found.findings, console)
+    for remark in (*(remark for finding in found.findings for remark in finding.remarks), *found.remarks):
         say(remark, style="yellow")
-    problems = [*misspelt(os.environ), *(problem for finding in findings for problem in finding.problems)]
+    own = [problem for finding in found.findings for problem in finding.problems]
+    problems = [*misspelt(os.environ), *own, *found.problems]
     for problem in problems:
         say(problem, style="red")
     if problems:
@@ -35,7 +40,7 @@ def doctor() -> None:
 
 def show(findings: list[Finding], console: Console) -> None:
     """Print the findings, as a table if the console is wide enough, and the source of each service that has one."""
-    if console.width >= TABLE_WIDTH:
+    if findings and console.width >= TABLE_WIDTH:
         console.print(table(findings))
     else:
         console.print("\n".join(paragraphs(findings)))
@@ -48,7 +53,8 @@ def show(findings: list[Finding], console: Console) -> None:
 def table(findings: list[Finding]) -> Table:
     """Lay the findings out, one service a row."""
     columns = _columns(findings)
-    result = Table(Column("service", no_wrap=True), "alive", *(Column(name, overflow="fold") for name in columns))
+    own = (Column(name, overflow="fold", max_width=WIDTHS.get(name)) for name in columns)
+    result = Table(Column("service", no_wrap=True), "alive", *own)
     for finding in findings:
         cells = (escape(cell(finding)) for cell in columns.values())
         result.add_row(escape(finding.service), _coloured(finding, f"{finding.instances or 'no'}"), *cells)
@@ -78,9 +84,9 @@ def _columns(findings: list[Finding]) -> dict[str, Callable[[Finding], str]]:
         "rejected": attrgetter("rejects"),
         "dropped": attrgetter("drops"),
         "counted": attrgetter("counts"),
-        "latency p50/p99 (ms)": attrgetter("latency"),
+        LATENCY: attrgetter("latency"),
     }
-    for rare in ("dropped", "counted"):
+    for rare in ("rejected", "dropped", "counted"):
         if not any(columns[rare](finding) for finding in findings):
             del columns[rare]
     return columns

@@ -10,12 +10,16 @@ import typer
 
 from actum import keys
 from actum.messages import CUT, MANUAL
-from actum.recording import Recorder, RecordingError
+from actum.recorder import Recorder
+from actum.recording import RecordingError
 from actum.runtime import stop_on_signals
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
+from actum_command.commands.service_flags import with_history_flags
 from actum_command.commands.terminal import connect, fail, refuse_ending, refuse_unwritable, say
 from actum_command.cut_lines import cut_lines
+from actum_command.event_keeping import keep_events
 from actum_command.repetition_recorder import RepetitionRecorder
+from actum_command.service_settings import Given
 from actum_command.stream_recorder import IMAGES, STREAMS, StreamRecorder
 from actum_command.streaming import put_all, store_all
 
@@ -24,8 +28,9 @@ ALL = "all"
 """The value of `--marks` for every origin."""
 
 
-def record(
-    output: Annotated[Path, typer.Argument(help="the file to write")],
+@with_history_flags
+def record(  # noqa: PLR0913 - one parameter is one option
+    output: Annotated[Path, typer.Argument(help="the file to write; with --events a folder")],
     person: Annotated[str, typer.Option(help="who acts; kept in the file, used to split training from test")] = "",
     label: Annotated[str | None, typer.Option(help="what is done in the segments marked while recording")] = None,
     times: Annotated[
@@ -41,8 +46,20 @@ def record(
     ] = None,
     images: Annotated[bool, typer.Option(help="also store images (faces are personal data)")] = False,
     seconds: Annotated[float | None, typer.Option(min=0, help="stop by itself; default: at Ctrl-C")] = None,
+    events: Annotated[
+        bool, typer.Option("--events", help="keep events, final actions and all marks for months: files in a folder")
+    ] = False,
+    *,
+    given: Given,
 ) -> None:
-    """Record a sensor's streams and your marks to a file; with --times, mark the repetitions of one action."""
+    """Record a sensor's streams and your marks to a file; with --times, mark the repetitions of one action.
+
+    With --events it is a service that waits for the router, reports its status, and keeps files of events in the folder
+    that OUTPUT names.
+    """
+    if events:
+        keep_events(output, given)
+        return
     refuse_unwritable(output)
     refuse_ending(output, ".mcap")
     if output.exists():

@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 from actum.command_line import explained, placeholder
 from actum.settings import ServiceSettings
 from actum_command.search_settings import CLASSIFIER, SEARCH_SETTINGS
-from actum_command.service_settings import BRIDGE, DECLARED, SETTINGS, flag_of, negated_flag_of
+from actum_command.service_settings import BRIDGE, DECLARED, HISTORY, SETTINGS, flag_of, negated_flag_of
 
 
 def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
@@ -25,6 +25,11 @@ def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
 def with_bridge_flags(command: Callable[..., None]) -> Callable[..., None]:
     """Add to a command an option for each setting of the bridge to ROS 2; it gets their values as `given`."""
     return _with_flags(command, _own(BRIDGE))
+
+
+def with_history_flags(command: Callable[..., None]) -> Callable[..., None]:
+    """Add to a command an option for each setting of the service that keeps events; it gets their values as `given`."""
+    return _with_flags(command, _own(HISTORY))
 
 
 def with_search_flags(command: Callable[..., None]) -> Callable[..., None]:

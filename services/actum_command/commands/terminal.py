@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from actum.runtime import Client, RouterUnreachableError
+from actum.runtime import Client, RouterUnreachableError, obstacle
 from actum.settings import ServiceSettings, SettingsError, complaint
 
 UNATTENDED_WIDTH = 110  # characters, where the output goes to no terminal: enough for every table
@@ -38,10 +38,14 @@ def fail(message: str) -> NoReturn:
 
 
 def connect(wait_s: float = 5.0) -> Client:
-    """Open a session with the router, or fail saying how to get one."""
+    """Open a session with the router, or fail saying why there is none and how to get one."""
+    here = settings()
     try:
-        return Client(settings(), wait_s)
-    except (RouterUnreachableError, SettingsError) as error:
+        return Client(here, wait_s)
+    except RouterUnreachableError as error:
+        found = obstacle(here)
+        fail(f"no router answers at {here.connect}: {found}" if found else str(error))
+    except SettingsError as error:
         fail(str(error))
 
 

@@ -1,6 +1,7 @@
 """`actum watch`: what happens on a sensor's keys, one line per message."""
 
 import threading
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -8,7 +9,8 @@ from rich.live import Live
 
 from actum import keys
 from actum.messages import Action
-from actum.runtime import Client
+from actum.recording import Recording, RecordingError
+from actum.runtime import Client, Received
 from actum_command.commands.terminal import connect, console, fail
 from actum_command.message_lines import WATCHABLE, json_line, line, received_on
 from actum_command.ongoing_lines import OngoingLines
@@ -21,27 +23,51 @@ def watch(
     as_json: Annotated[
         bool, typer.Option("--json", help="one JSON object a line, with all fields; bytes are URL-safe base64")
     ] = False,
+    recorded: Annotated[
+        list[Path] | None, typer.Option("--from", help="recordings, or folders of them, instead of what happens now")
+    ] = None,
 ) -> None:
     """Print what happens, one line per message: when, on which key, in which segment, what; until Ctrl-C.
 
-    On a terminal, events and actions stand above a line for each person: what they are doing and how far it is.
+    On a terminal, events and actions stand above a line for each person: what they are doing and how far it is. With
+    --from it prints what was recorded, also by 'actum record --events' in a file that is still being written.
     """
     unknown = [name for name in topics or [] if name not in WATCHABLE]
     if unknown:
         fail(f"no topic {unknown[0]!r}: use any of {', '.join(WATCHABLE)}")
     wanted = [WATCHABLE[name] for name in topics] if topics else BY_DEFAULT
+    if recorded:
+        _show_recorded(recorded, wanted, as_json)
+        return
     with connect() as client:
         try:
             if console.is_terminal and not as_json and {keys.EVENT, keys.ACTION} & {*wanted}:
                 _show_above_what_goes_on(client, wanted)
             else:
                 for received in received_on(client, wanted):
-                    if as_json:
-                        print(json_line(received), flush=True)
-                    else:
-                        console.print(line(received), soft_wrap=True)
+                    _print(received, as_json)
         except KeyboardInterrupt:
             return
+
+
+def _print(received: Received, as_json: bool) -> None:
+    if as_json:
+        print(json_line(received), flush=True)
+    else:
+        console.print(line(received), soft_wrap=True)
+
+
+def _show_recorded(named: list[Path], wanted: list[keys.Topic], as_json: bool) -> None:
+    """Print the messages of recordings on the wanted topics, one recording after another by name."""
+    files = [file for path in named for file in (sorted(path.glob("*.mcap*")) if path.is_dir() else [path])]
+    if not files:
+        fail(f"no recordings in {', '.join(map(str, named))}: name files or folders of *.mcap")
+    try:
+        for recording in map(Recording, files):
+            for message in recording.messages(wanted):
+                _print(Received(keys.key_of(message), message, None, 0), as_json)
+    except RecordingError as error:
+        fail(str(error))
 
 
 def _show_above_what_goes_on(client: Client, wanted: list[keys.Topic]) -> None:

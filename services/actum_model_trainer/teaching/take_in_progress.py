@@ -6,12 +6,16 @@ from dataclasses import dataclass, replace
 from actum.commands import Refusal
 from actum.messages import MANUAL, Segment, Skeleton, TakeState, segment_marks
 from actum.node import SECOND_NS
-from actum.recording import Recorder
+from actum.recorder import Recorder
 from actum_model_trainer.cutting.counting import LAST_REST_S, RepetitionCounter
 from actum_model_trainer.teaching.take_files import OF_THE_TAKE, cut_marks
 
 LONGEST_S = 600.0
 """Longest take (s): forty repetitions with pauses, and what a page can show."""
+MOST_FRAMES = 36_000
+"""Most frames of a take: so long at 60 a second."""
+MOST_MARKED = 500
+"""Most segments that somebody marks in a take: one a second."""
 NOBODY = "nobody was seen moving, so nothing was kept"
 BEGUN_ANEW = "the sensor has begun anew meanwhile, so nothing was kept: record it again"
 EMPTY = "nobody was seen, so nothing was kept"
@@ -49,6 +53,7 @@ class TakeInProgress:
         self._sensor = self._session_id = ""
         self._first_ns: int | None = None
         self._newest_ns = 0
+        self._frames = 0
 
     def skeleton(self, skeleton: Skeleton) -> None:
         """Store a frame and count along; one that is no newer than the one before it is left out.
@@ -64,6 +69,7 @@ class TakeInProgress:
         elif skeleton.stamp_ns <= self._newest_ns:
             return
         self._sensor, self._newest_ns = skeleton.sensor, skeleton.stamp_ns
+        self._frames += 1
         self.recorder.write(skeleton)
         self._counter.take(skeleton)
         update = {
@@ -89,7 +95,7 @@ class TakeInProgress:
     @property
     def over(self) -> bool:
         """Whether it ends by itself now: all repetitions are done and a long rest follows, or it gets too long."""
-        if self.state.seconds > LONGEST_S:
+        if self.state.seconds > LONGEST_S or self._frames >= MOST_FRAMES or len(self._marked) >= MOST_MARKED:
             return True
         if self.state.kind == "background":
             return False

@@ -9,6 +9,7 @@ import numpy as np
 
 from actum.arrays import Pixels
 from actum.darkness import is_black
+from actum.jpeg import MOST_SCANS, has_too_many_scans
 from actum.messages import Image
 
 LARGEST_PIXELS = 4096 * 4096
@@ -56,6 +57,8 @@ def _from_jpeg(image: Image) -> Pixels:
         raise UnusableImageError(
             "image_size_mismatch", f"a JPEG of {size[0]}x{size[1]} in a message of {image.width}x{image.height}"
         )
+    if has_too_many_scans(image.data):
+        raise UnusableImageError("image_too_large", f"a JPEG of more than {MOST_SCANS} scans")
     flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION
     pixels = cv2.imdecode(np.frombuffer(image.data, dtype=np.uint8), flags)
     if pixels is None or pixels.shape != (image.height, image.width):

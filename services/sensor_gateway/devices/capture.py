@@ -21,6 +21,11 @@ class Capture(Protocol):
         """Whether frozen or black pictures mean a failed camera; false for files, and where depth alone is used."""
         ...
 
+    @property
+    def rate_hz(self) -> float | None:
+        """How many pictures a second it is set to give; None where it does not say."""
+        ...
+
     def next(self, patience_s: float) -> Picture | None:
         """Return the next picture, or None if none comes within `patience_s`.
 

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Generator
 from pathlib import Path
 
+from actum import steady_clock
 from actum.joining import PAUSE_NS
 from sensor_gateway.captured_picture import Picture
 from sensor_gateway.devices.capture import CameraLostError, CaptureEndedError
@@ -17,11 +18,12 @@ class FileCapture:
     """
 
     live = False
+    rate_hz: float | None = None
 
     def __init__(
         self,
         path: Path,
-        now_ns: Callable[[], int] = time.time_ns,
+        now_ns: Callable[[], int] = steady_clock.now_ns,
         read: Callable[[Path, int], Generator[Picture, None, None]] = pictures_of,
         pause: Callable[[float], None] = time.sleep,
         loop: bool = False,

@@ -1,11 +1,11 @@
 """Cameras that OpenNI 2 has a driver for (Kinect v1, Xtion, Astra), and OpenNI 2's recordings."""
 
 import os
-import time
 from collections.abc import Callable, Generator
 from pathlib import Path
 from typing import Any
 
+from actum import steady_clock
 from sensor_gateway.captured_picture import Picture
 from sensor_gateway.devices.capture import CameraLostError
 from sensor_gateway.devices.device_clock import DeviceClock
@@ -26,12 +26,13 @@ class OpenNi2Capture:
     """The first connected camera; gives the newest pair of colour and registered depth, stamped by the device."""
 
     live = True
+    rate_hz: float | None = None
 
     def __init__(
         self,
         size: tuple[int, int] | None = None,
         field_of_view_deg: float = 60.0,
-        now_ns: Callable[[], int] = time.time_ns,
+        now_ns: Callable[[], int] = steady_clock.now_ns,
     ) -> None:
         self._openni2 = library()
         self._size, self._field_of_view_deg = size or SIZE, field_of_view_deg

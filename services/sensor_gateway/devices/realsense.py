@@ -1,6 +1,5 @@
 """RealSense cameras, and librealsense's recordings of them, read with pyrealsense2."""
 
-import time
 from collections.abc import Callable, Generator
 from pathlib import Path
 from typing import Any
@@ -9,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from actum import steady_clock
 from actum.arrays import Array
 from sensor_gateway.captured_picture import DepthPicture, Picture
 from sensor_gateway.devices.capture import CameraLostError
@@ -61,8 +61,9 @@ class RealSenseCapture:
     """The first connected RealSense camera; gives the newest pair of colour and depth, stamped by the device."""
 
     live = True
+    rate_hz: float | None = RATE_HZ
 
-    def __init__(self, size: tuple[int, int] | None = None, now_ns: Callable[[], int] = time.time_ns) -> None:
+    def __init__(self, size: tuple[int, int] | None = None, now_ns: Callable[[], int] = steady_clock.now_ns) -> None:
         self._rs = library()
         self._size = size or SIZE
         self._clock = DeviceClock(now_ns)

@@ -1,11 +1,11 @@
 """A camera or a network stream that OpenCV reads; only the newest picture is kept."""
 
 import threading
-import time
 
 import cv2
 import numpy as np
 
+from actum import steady_clock
 from sensor_gateway.captured_picture import Picture
 from sensor_gateway.devices.capture import CameraLostError
 from sensor_gateway.devices.silence import OPENING_S, Silence
@@ -28,6 +28,7 @@ class LiveCapture:
         self._lost: str | None = None
         self._closed = False
         self._silence = Silence()
+        self.rate_hz: float | None = None
         self._thread = threading.Thread(target=self._read, daemon=True)
         self._thread.start()
 
@@ -79,7 +80,7 @@ class LiveCapture:
             done, image = capture.read()
             if not done:
                 return "it gives no more pictures"
-            self._keep(Picture(image.astype(np.uint8, copy=False), time.time_ns()))
+            self._keep(Picture(image.astype(np.uint8, copy=False), steady_clock.now_ns()))
         return "it was closed"
 
     def _opened(self) -> cv2.VideoCapture:
@@ -90,6 +91,7 @@ class LiveCapture:
             capture.set(cv2.CAP_PROP_FRAME_WIDTH, self._size[0])
             capture.set(cv2.CAP_PROP_FRAME_HEIGHT, self._size[1])
         capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
+        self.rate_hz = capture.get(cv2.CAP_PROP_FPS) or None
         return capture
 
     def _keep(self, picture: Picture) -> None:

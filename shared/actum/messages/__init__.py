@@ -5,6 +5,8 @@ x right, y down, z forward) unless the field says otherwise. Transforms are 4x4,
 """
 
 from actum.messages.base import (
+    LARGEST_SIDE_PX,
+    MOST_ACTIONS,
     MOST_AGENTS,
     MOST_OBJECTS,
     AgentId,
@@ -65,8 +67,10 @@ MESSAGES: tuple[type[Message], ...] = (
 __all__ = [
     "AUTO",
     "CUT",
+    "LARGEST_SIDE_PX",
     "MANUAL",
     "MESSAGES",
+    "MOST_ACTIONS",
     "MOST_AGENTS",
     "MOST_OBJECTS",
     "REPLAY",

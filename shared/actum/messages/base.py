@@ -24,8 +24,12 @@ Hand = Literal["left", "right"]
 
 MOST_AGENTS = 64
 """Most people in one message: a camera sees fewer, and services keep memory for each."""
-MOST_OBJECTS = 1024
+MOST_OBJECTS = 128
 """Most objects in one message, for the same reason."""
+MOST_ACTIONS = 1000
+"""Most actions that one message gives an activity of."""
+LARGEST_SIDE_PX = 65_535
+"""Longest side of an image (px): what a JPEG can have. The tracker decodes less."""
 _SHORTEST = 1e-3
 """A direction vector shorter than this, or longer than its reciprocal, is taken for an error."""
 

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, FiniteFloat
 
 from actum.messages.base import (
+    MOST_ACTIONS,
     AgentId,
     Count,
     FinitePoint,
@@ -18,11 +19,13 @@ from actum.messages.base import (
     Stamp,
 )
 
+Activations = Annotated[dict[str, FiniteFloat], Field(max_length=MOST_ACTIONS)]
+
 
 class Tensor(Model):
     """A dense array."""
 
-    dtype: str
+    dtype: Name
     """The kind of number in NumPy's notation with byte order, such as `<f4`."""
     shape: list[int]
     """The lengths of the axes."""
@@ -102,7 +105,7 @@ class Action(Message):
     """The likeliest action; null where there is none."""
     confidence: FiniteFloat
     """The probability that `action` is right, calibrated on people held out, 0 to 1."""
-    activations: dict[str, FiniteFloat]
+    activations: Activations
     """The activity of each trained action's neuron, by the action's name; empty in partial ones that nobody marked."""
     part: Name | None
     """The body part that moved most: right_arm, left_arm, right_leg, left_leg or body; null where none is known."""
@@ -124,6 +127,8 @@ class Action(Message):
     """The mean activity of each map over the segment, rows by columns, by the map's name; null unless asked for."""
     trace: Tensor | None = None
     """The way over the first map, a row and a column per step; null unless asked for."""
+    session_id: Name = ""
+    """The run of the source, as the posture's; empty where no posture had come."""
 
 
 class ObjectPose(Model):
@@ -143,7 +148,7 @@ class ActedObject(Model):
 
     id: int
     """The object's number."""
-    name: str
+    name: Name
     """What it is called."""
     distance_m: FiniteFloat
     """The smallest distance from the hand's joint to it during the segment (m)."""
@@ -170,7 +175,7 @@ class HeldObject(Model):
 
     id: int
     """The object's number."""
-    name: str
+    name: Name
     """What it is called."""
 
 
@@ -205,11 +210,11 @@ class Event(Message):
     """The stamp of the segment's start (ns)."""
     end_ns: Stamp
     """The stamp of its end (ns)."""
-    action: str | None
+    action: Name | None
     """What was done; null where it was not recognised."""
     confidence: FiniteFloat
     """The probability that `action` is right, 0 to 1."""
-    activations: dict[str, FiniteFloat]
+    activations: Activations
     """The activity of each trained action's neuron, by the action's name."""
     object: ActedObject | None
     """What it was done to; null where it was nothing, see `why`."""
@@ -246,3 +251,5 @@ class Event(Message):
     was to be pushed or pulled went sideways."""
     why: Reason | None = None
     """Why there is no object, and which ones another moved; null where there is one."""
+    session_id: Name = ""
+    """The run of the source, as the action's."""

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from actum.messages.base import FinitePoint, Hand, Message, SegmentId
+from actum.messages.base import FinitePoint, Hand, Message, Name, SegmentId
 
 
 class Status(Message):
@@ -58,6 +58,8 @@ class Info(Message):
     """The machine it runs on."""
     source: str | None = None
     """What a gateway reads: a simulated scene, a file, a camera; null for other services."""
+    rate_hz: float | None = None
+    """How many frames a second a gateway's source is set to give (Hz); null where it does not say."""
     page: str | None = None
     """The address of the page that it serves to browsers; null for other services."""
     commands: list[str] = Field([])
@@ -76,11 +78,11 @@ class Truth(Message):
     """Who acts."""
     hand: Hand
     """The hand that acts."""
-    action: str
+    action: Name
     """What is really done."""
     object_id: int
     """The number of the object it is done to; -1 for a pantomime."""
-    object_name: str
+    object_name: Name
     """Its name; empty for a pantomime."""
     displacement_m: FinitePoint | None
     """How far the object moved, camera frame (m), at the end; null at the start and for a pantomime."""

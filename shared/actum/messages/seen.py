@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, FiniteFloat
 
 from actum.messages.base import (
+    LARGEST_SIDE_PX,
     MOST_AGENTS,
     MOST_OBJECTS,
     AgentId,
@@ -56,9 +57,9 @@ class Image(Message):
     format: Literal["jpeg", "bgr8", "depth16_mm"]
     """How `data` is written: `jpeg`, `bgr8` (rows of blue, green, red bytes), or `depth16_mm` (rows of little-endian
     16-bit millimetres, 0 where unknown)."""
-    width: Annotated[int, Field(gt=0)]
+    width: Annotated[int, Field(gt=0, le=LARGEST_SIDE_PX)]
     """Columns (px)."""
-    height: Annotated[int, Field(gt=0)]
+    height: Annotated[int, Field(gt=0, le=LARGEST_SIDE_PX)]
     """Rows (px)."""
     data: bytes
     """The picture's bytes."""

@@ -12,7 +12,8 @@ from actum.messages import Message
 from actum.node import Tick
 from actum.runtime.inbox import Subscriber, subscribe
 from actum.runtime.outbox import Outbox, Publisher
-from actum.runtime.serving import S, StepService, configured, live
+from actum.runtime.serving import S, configured, live
+from actum.runtime.step_service import StepService
 from actum.settings import ServiceSettings
 
 RING = 256

@@ -1,5 +1,6 @@
 """A session for programs beside the services: commands, tests, benchmarks."""
 
+import secrets
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -8,12 +9,13 @@ from types import TracebackType
 from typing import Any, Self
 
 import zenoh
+from zenoh import ext
 
 from actum import keys
 from actum.codec import DecodeError, decode
 from actum.commands import MSGPACK, Refusal, packed, unpacked
 from actum.messages import Info, Message
-from actum.runtime.inbox import Subscriber, subscribe
+from actum.runtime.inbox import Subscriber, subscribe, subscribe_recovering
 from actum.runtime.outbox import Outbox
 from actum.runtime.session import RouterUnreachableError, connected, secret_config
 from actum.settings import ServiceSettings
@@ -24,6 +26,8 @@ ANSWER_S = 10.0
 """How long a command may take to be answered (s): a service may be busy with a large message."""
 STARTING_S = 1.0
 """How long a service that is alive may not answer yet (s): its liveliness may be known before its commands are."""
+OFFER_S = 0.2
+"""How long (s) a router may take to say who would answer: some round trips."""
 POLL_S = 0.05
 """Interval (s) at which a program looks for a subscriber."""
 DEEP_RING = 8192
@@ -38,6 +42,23 @@ class Received:
     message: Message | None
     error: DecodeError | None
     size: int
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A service's description, and when it was asked for and came.
+
+    Attributes:
+        info: the description; its stamp is the wall clock of its host.
+        asked_ns: when it was asked for (monotonic clock, ns).
+        answered_ns: when it came (monotonic clock, ns).
+        came_ns: the wall clock of this host at that time (ns).
+    """
+
+    info: Info
+    asked_ns: int
+    answered_ns: int
+    came_ns: int
 
 
 class NotAnsweredError(RuntimeError):
@@ -78,7 +99,7 @@ class Client:
 
     def __init__(self, settings: ServiceSettings, wait_s: float = OPEN_S, session: zenoh.Session | None = None) -> None:
         self.sensor = settings.sensor
-        self.run = format(time.time_ns() // 1_000_000, "x")
+        self.run = secrets.token_hex(6)
         self._session = session or _open(settings, wait_s)
         self._outbox = Outbox(self._session)
         self._listening: list[Listening] = []
@@ -113,8 +134,19 @@ class Client:
         threading.Thread(target=listening.drain, args=(take,), daemon=True).start()
 
     def listen(self, key_expr: str, ring: int = DEEP_RING) -> Listening:
-        """Subscribe to a key expression, without history."""
-        listening = Listening(subscribe(self._session, key_expr, ring))
+        """Subscribe to what is put from now on on keys."""
+        return self._listening_to(subscribe(self._session, key_expr, ring))
+
+    def listen_back(self, key_expr: str, history_s: float, ring: int = DEEP_RING) -> Listening:
+        """Subscribe to keys, request what is lost on the way, and what was put in the last `history_s` (s) and is kept.
+
+        A service that was started anew offers its last answers once more: the same `segment_id` says the same.
+        """
+        history = ext.HistoryConfig(detect_late_publishers=True, max_age=history_s)
+        return self._listening_to(subscribe_recovering(self._session, key_expr, ring, history))
+
+    def _listening_to(self, subscriber: Subscriber) -> Listening:
+        listening = Listening(subscriber)
         self._listening.append(listening)
         return listening
 
@@ -136,10 +168,35 @@ class Client:
 
     def infos(self) -> list[Info]:
         """Return the descriptions of all services of this sensor."""
+        return [answer.info for answer in self.answers()]
+
+    def answers(self) -> list[Answer]:
+        """Return the descriptions of all services of this sensor, each with when it came."""
         every = zenoh.ConsolidationMode.NONE  # two instances of a service answer on one key
-        replies = self._session.get(keys.pattern(keys.INFO, self.sensor), timeout=1.0, consolidation=every)
-        messages = [_received(reply.ok).message for reply in replies if reply.ok is not None]
-        return [info for info in messages if isinstance(info, Info)]
+        asked_ns, answers = time.monotonic_ns(), []
+        for reply in self._session.get(keys.pattern(keys.INFO, self.sensor), timeout=1.0, consolidation=every):
+            answered_ns, came_ns = time.monotonic_ns(), time.time_ns()
+            info = None if reply.ok is None else _received(reply.ok).message
+            if isinstance(info, Info):
+                answers.append(Answer(info, asked_ns, answered_ns, came_ns))
+        return answers
+
+    def router_tells(self) -> bool:
+        """Tell whether the router describes itself to this session, as it does unless its access control forbids it."""
+        return any(reply.ok is not None for reply in self._session.get("@/*/router", timeout=1.0))
+
+    def offers(self, service: str, timeout_s: float = OFFER_S) -> bool:
+        """Tell whether the router knows of such a service that would answer, also where it lets no question through."""
+        querier = self._session.declare_querier(keys.key(keys.INFO, self.sensor, service))
+        deadline_s = time.monotonic() + timeout_s
+        try:
+            while not querier.matching_status.matching:  # type: ignore[attr-defined]
+                if time.monotonic() > deadline_s:
+                    return False
+                threading.Event().wait(POLL_S)
+            return True
+        finally:
+            querier.undeclare()
 
     def ask(self, service: str, command: str = "", timeout_s: float = ANSWER_S, **fields: Any) -> dict[str, Any]:
         """Ask a service of this sensor for a command, or without one for the list of its commands; return its reply.

@@ -26,12 +26,7 @@ LOGIN = "transport/auth/usrpwd"
 
 
 def client_values(folder: Path) -> dict[str, Any]:
-    """Return the values of Zenoh's configuration by which a client shows its certificate and asks for the router's.
-
-    Raises:
-        SettingsError: a file is missing, cannot be read, or the key is not the certificate's.
-    """
-    check(folder)
+    """Return the values of Zenoh's configuration by which a client shows its certificate and asks for the router's."""
     return {
         f"{TLS}/root_ca_certificate": str(folder / AUTHORITY),
         f"{TLS}/connect_certificate": str(folder / CERTIFICATE),
@@ -41,17 +36,17 @@ def client_values(folder: Path) -> dict[str, Any]:
     }
 
 
-def router_values(folder: Path) -> dict[str, Any]:
+def router_values(folder: Path, passwords: bool) -> dict[str, Any]:
     """Return the same for a router, which shows its certificate to clients and to other routers.
 
-    Raises:
-        SettingsError: as `client_values`.
+    With `passwords` it lets in only who is in its list of users as well.
     """
-    values = client_values(folder)
-    values[f"{TLS}/listen_certificate"] = values[f"{TLS}/connect_certificate"]
-    values[f"{TLS}/listen_private_key"] = values[f"{TLS}/connect_private_key"]
-    users = folder / USERS
-    return {**values, f"{LOGIN}/dictionary_file": str(users)} if users.exists() else values
+    return {
+        **client_values(folder),
+        f"{TLS}/listen_certificate": str(folder / CERTIFICATE),
+        f"{TLS}/listen_private_key": str(folder / KEY),
+        **({f"{LOGIN}/dictionary_file": str(folder / USERS)} if passwords else {}),
+    }
 
 
 def login_values(folder: Path) -> dict[str, str]:

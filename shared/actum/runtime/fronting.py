@@ -10,7 +10,8 @@ import zenoh
 from actum.node import Node
 from actum.runtime.client import Client
 from actum.runtime.outbox import Outbox
-from actum.runtime.serving import NodeService, S, configured, live
+from actum.runtime.serving import S, configured, live
+from actum.runtime.step_service import NodeService
 from actum.settings import ServiceSettings
 
 

@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 
 import zenoh
 from zenoh import ext, handlers
@@ -10,45 +11,86 @@ from actum import keys
 
 Subscriber = zenoh.Subscriber[zenoh.Handler[zenoh.Sample]] | ext.AdvancedSubscriber[zenoh.Handler[zenoh.Sample]]
 
-RECOVERED = (keys.SEGMENT, keys.ACTION, keys.EVENT)
-"""Topics on which every message counts: lost ones are requested again from their publishers."""
+ANSWERED = (keys.SEGMENT, keys.ACTION, keys.EVENT)
+"""Topics on which every message counts: lost ones are requested again, and those of the recent past."""
+STREAMS = (keys.SKELETON, keys.POSTURE, keys.OBJECTS)
+"""Topics on which every message counts as long as its segment is not answered: lost ones are requested again."""
 HISTORY_DEPTH = 16
-"""Most earlier messages requested on each key."""
+"""Most earlier messages requested on each key by a process that does not know what was answered before it."""
 HISTORY_S = 4.0
-"""Oldest message requested (s): two seconds of skew, two of waiting. Older ones have been answered."""
+"""Oldest message that it requests (s): two seconds of skew, two of waiting. Older ones have been answered."""
+RESUMED_S = 90.0
+"""Oldest message requested where it is known what was answered (s): a longest segment, and half as long away.
+A link that was cut for longer loses what was put meanwhile."""
+RESUMED_FRAMES_S = 10.0
+"""Oldest frame requested then (s): as long as publishers keep them."""
+ANSWER_S = 1.0
+"""How long publishers may take to say what they keep (s)."""
 
 
-def subscribe(session: zenoh.Session, key_expr: str, ring: int, history_s: float | None = None) -> Subscriber:
-    """Declare a subscriber. One with `history_s` also requests lost messages, and those put so long before it (s)."""
+@dataclass(frozen=True)
+class Reach:
+    """How far back messages are requested that were put before this process was there.
+
+    Attributes:
+        answered_s: oldest mark, action or event that is not answered yet (s); earlier ones are left out.
+        requested_s: oldest of these that is requested (s), at the start and of a publisher that is back: of one that
+            was cut off for longer, what it put meanwhile is lost.
+        frames_s: oldest skeleton, posture or objects (s); 0 for those alone that come from now on.
+        depth: most of all these on each key; None for as many as are kept.
+    """
+
+    answered_s: float = HISTORY_S
+    requested_s: float = HISTORY_S
+    frames_s: float = 0.0
+    depth: int | None = HISTORY_DEPTH
+
+    @classmethod
+    def unknown(cls, vacant_s: float) -> "Reach":
+        """Return the reach where it is not known what was answered, but how long nobody was there to do so (s)."""
+        return cls(min(vacant_s, HISTORY_S), min(vacant_s, HISTORY_S))
+
+    def history(self, topic: keys.Topic) -> ext.HistoryConfig | None:
+        """Return the request for a topic's earlier messages, None where there is to be none."""
+        oldest_s = self.requested_s if topic in ANSWERED else self.frames_s
+        if not oldest_s:
+            return None
+        depth = min(self.depth or topic.cache, topic.cache)
+        return ext.HistoryConfig(detect_late_publishers=True, max_samples=depth, max_age=oldest_s)
+
+
+def subscribe(session: zenoh.Session, key_expr: str, ring: int) -> Subscriber:
+    """Declare a subscriber to what is put from now on."""
+    return session.declare_subscriber(key_expr, handlers.RingChannel(ring))
+
+
+def subscribe_recovering(
+    session: zenoh.Session, key_expr: str, ring: int, history: ext.HistoryConfig | None
+) -> Subscriber:
+    """Declare a subscriber that also requests what is lost on the way and, by `history`, what was put before it."""
+    recovery = ext.RecoveryConfig(heartbeat=True, periodic_queries=None)
     channel: handlers.RingChannel[zenoh.Sample] = handlers.RingChannel(ring)
-    if history_s is None:
-        return session.declare_subscriber(key_expr, channel)
-    return ext.declare_advanced_subscriber(
-        session,
-        key_expr,
-        channel,
-        history=ext.HistoryConfig(detect_late_publishers=True, max_samples=HISTORY_DEPTH, max_age=history_s),
-        recovery=ext.RecoveryConfig(heartbeat=True, periodic_queries=None),
-    )
+    return ext.declare_advanced_subscriber(session, key_expr, channel, history=history, recovery=recovery)
 
 
 class Inbox:
-    """The subscriptions of one node; messages of the last `history_s` are requested, of `HISTORY_S` at the most (s)."""
+    """The subscriptions of one node."""
 
     def __init__(
-        self, session: zenoh.Session, topics: Iterable[keys.Topic], sensor: str, history_s: float = HISTORY_S
+        self, session: zenoh.Session, topics: Iterable[keys.Topic], sensor: str, reach: Reach = Reach()
     ) -> None:
-        history_s = min(history_s, HISTORY_S)
-        self._subscribers = [
-            subscribe(session, keys.pattern(topic, sensor), topic.ring, history_s if topic in RECOVERED else None)
-            for topic in topics
-        ]
+        topics = list(topics)
+        answered = [topic for topic in topics if topic in ANSWERED and reach.answered_s < reach.requested_s]
+        self._left_out = {
+            digest for topic in answered for digest in _kept(session, keys.pattern(topic, sensor), reach.answered_s)
+        }
+        self._subscribers = [_subscribed(session, topic, sensor, reach) for topic in topics]
         self._threads: list[threading.Thread] = []
 
     def start(self, receive: Callable[[zenoh.Sample], None]) -> None:
         """Call `receive` for each sample, from one thread per subscriber."""
         for subscriber in self._subscribers:
-            thread = threading.Thread(target=_drain, args=(subscriber, receive), daemon=True)
+            thread = threading.Thread(target=self._drain, args=(subscriber, receive), daemon=True)
             thread.start()
             self._threads.append(thread)
 
@@ -64,7 +106,30 @@ class Inbox:
         """Whether every thread still reads."""
         return all(thread.is_alive() for thread in self._threads)
 
+    def _drain(self, subscriber: Subscriber, receive: Callable[[zenoh.Sample], None]) -> None:
+        for sample in subscriber:
+            if not self._left_out or _digest(sample) not in self._left_out:
+                receive(sample)
 
-def _drain(subscriber: Subscriber, receive: Callable[[zenoh.Sample], None]) -> None:
-    for sample in subscriber:
-        receive(sample)
+
+def _subscribed(session: zenoh.Session, topic: keys.Topic, sensor: str, reach: Reach) -> Subscriber:
+    pattern = keys.pattern(topic, sensor)
+    if topic in (*ANSWERED, *STREAMS):
+        return subscribe_recovering(session, pattern, topic.ring, reach.history(topic))
+    return subscribe(session, pattern, topic.ring)
+
+
+def _kept(session: zenoh.Session, pattern: str, older_than_s: float) -> set[int]:
+    """Return which messages publishers keep that were put longer ago (s), each by the clock of who put it."""
+    replies = session.get(
+        f"{pattern}/@adv/**?_time=[..now(-{older_than_s:.3f}s)]",
+        target=zenoh.QueryTarget.ALL,
+        consolidation=zenoh.ConsolidationMode.NONE,
+        accept_replies=zenoh.ReplyKeyExpr.ANY,
+        timeout=ANSWER_S,
+    )
+    return {_digest(reply.ok) for reply in replies if reply.ok is not None}
+
+
+def _digest(sample: zenoh.Sample) -> int:
+    return hash((str(sample.key_expr), sample.payload.to_bytes()))

@@ -8,7 +8,7 @@ import numpy as np
 
 from actum import __version__
 from actum.codec import schema_name
-from actum.messages import MESSAGES, Info, Message, Status
+from actum.messages import MESSAGES, Action, Info, Message, Status
 from actum.node import Counters
 from actum.settings import ServiceSettings
 from actum.skeletons import JOINTS
@@ -19,6 +19,8 @@ MOST_KEYS = 256
 """Most keys that are counted: the one silent for longest, such as that of an agent who left, makes room."""
 MOST_ORIGINS = 16
 """Most publishers on a key whose numbers are followed: each mark may come from a process of its own."""
+HISTORY_NS = 1_000_000_000
+"""How long after their request earlier actions may come (ns), in whose numbers there are gaps: they come at once."""
 
 
 class Meter:
@@ -34,7 +36,12 @@ class Meter:
         self._reported: Counter[str] = Counter()
         self._drops: Counter[str] = Counter()
         self._last_seq: dict[str, dict[str, int]] = {}
+        self._actions_count_from_ns = self._started_ns
         self._latencies_ms: deque[float] = deque(maxlen=LATENCIES)
+
+    def await_history(self) -> None:
+        """Take gaps in the numbers of actions for no losses for now: of those of before only the final are kept."""
+        self._actions_count_from_ns = time.monotonic_ns() + HISTORY_NS
 
     def received(self, key: str, message: Message, origin: str = "") -> None:
         """Count a message, and those lost before it by the gap in `seq`; each publisher (`origin`) numbers its own."""
@@ -42,7 +49,9 @@ class Meter:
         if message.seq is None:
             return
         numbers = self._last_seq.setdefault(key, {})
-        self._drops[key] += max(message.seq - numbers.pop(origin, message.seq) - 1, 0)
+        lost = max(message.seq - numbers.pop(origin, message.seq) - 1, 0)
+        if not isinstance(message, Action) or time.monotonic_ns() >= self._actions_count_from_ns:
+            self._drops[key] += lost
         numbers[origin] = message.seq
         if len(numbers) > MOST_ORIGINS:
             del numbers[next(iter(numbers))]
@@ -102,6 +111,7 @@ class Meter:
             calibration=self._counters.details.get("calibration"),
             host=socket.gethostname(),
             source=self._counters.details.get("source"),
+            rate_hz=float(self._counters.details["rate_hz"]) if "rate_hz" in self._counters.details else None,
             page=self._counters.details.get("page"),
         )
 

@@ -2,19 +2,24 @@
 
 import threading
 from collections import OrderedDict
+from collections.abc import Callable, Iterable
+from datetime import UTC, datetime
+from typing import Literal
 
 import zenoh
 from zenoh import ext
 
 from actum import keys
-from actum.codec import encode
+from actum.codec import Frame, encode
 from actum.messages import Action, Message
 from actum.node import Numbering
+from actum.runtime.journal import WrittenAnswer
 
-CACHE_DEPTH = 64
-"""Messages that a publisher keeps on each key for late or interrupted subscribers: more than any requests."""
 HEARTBEAT_S = 0.5
-"""Interval (s) at which a publisher repeats its newest number, so that a loss of the last message is noticed."""
+"""How long (s) after a message its publisher repeats the number, so that a loss of the last one is noticed.
+
+Once: who subscribes later would take all before a number that is repeated for ever for lost, and request it.
+"""
 MOST_PUBLISHERS = 256
 """Most open publishers: agents come and go with new numbers, and the publisher silent for longest makes room."""
 
@@ -30,37 +35,68 @@ _PRIORITY = {
 Publisher = zenoh.Publisher | ext.AdvancedPublisher
 
 
+Manner = Literal["plain", "cached", "recalled"]
+"""Whether a publisher only puts, also keeps what it puts, or only keeps it."""
+
+
 class Outbox:
-    """One publisher per key and kind (cached or plain), declared when first needed, `MOST_PUBLISHERS` at the most."""
+    """One publisher per key and manner, declared when first needed, `MOST_PUBLISHERS` at the most."""
 
     def __init__(self, session: zenoh.Session) -> None:
-        self._session = session
+        self._session, self._origin = session, str(session.zid())
+        self._keep: Callable[[Frame], None] | None = None
         self._numbering = Numbering()
-        self._publishers: OrderedDict[tuple[str, bool], Publisher] = OrderedDict()
+        self._publishers: OrderedDict[tuple[str, Manner], Publisher] = OrderedDict()
         self._lock = threading.Lock()
 
     def put(self, message: Message) -> None:
         """Number and put one message."""
         with self._lock:
-            frame = encode(self._numbering.numbered(message))
-            self._publisher(frame.key, _is_cached(message)).put(
-                frame.payload, encoding=frame.encoding, attachment=frame.attachment
-            )
+            frame = encode(self._numbering.numbered(message), self._origin)
+            manner = _manner(message)
+            if manner == "cached" and self._keep is not None:
+                self._keep(frame)
+            self._publisher(frame.key, manner).put(frame.payload, encoding=frame.encoding, attachment=frame.attachment)
+
+    def keep_by(self, keep: Callable[[Frame], None]) -> None:
+        """Have `keep` called with each message that late subscribers recover, before it is put."""
+        self._keep = keep
+
+    def recall(self, answers: Iterable[tuple[WrittenAnswer, Message]]) -> None:
+        """Offer what was put before this process to late subscribers, unchanged; others are not sent it once more.
+
+        The numbers on each key go on behind it.
+        """
+        source = self._session.new_timestamp().get_id()
+        with self._lock:
+            for answer, message in answers:
+                frame, given = answer.frame, datetime.fromtimestamp(answer.given_ns / 1e9, UTC)
+                self._numbering.numbered(message)
+                self._publisher(frame.key, "recalled").put(
+                    frame.payload,
+                    encoding=frame.encoding,
+                    attachment=frame.attachment,
+                    timestamp=zenoh.Timestamp(given, source),
+                )
 
     def declare(self, key: str) -> None:
         """Declare a key's publisher ahead of the first put."""
         with self._lock:
-            self._publisher(key, keys.parse(key).topic.cached)
+            self._publisher(key, "cached" if keys.parse(key).topic.cache else "plain")
 
-    def _publisher(self, key: str, cached: bool) -> Publisher:
-        if (key, cached) not in self._publishers:
-            topic = keys.parse(key).topic
-            declare = self._declare_cached if cached else self._declare_plain
-            self._publishers[key, cached] = declare(key, topic)
+    def _publisher(self, key: str, manner: Manner) -> Publisher:
+        if (key, manner) not in self._publishers:
+            self._publishers[key, manner] = self._declared(key, keys.parse(key).topic, manner)
             if len(self._publishers) > MOST_PUBLISHERS:
                 self._publishers.popitem(last=False)[1].undeclare()
-        self._publishers.move_to_end((key, cached))
-        return self._publishers[key, cached]
+        self._publishers.move_to_end((key, manner))
+        return self._publishers[key, manner]
+
+    def _declared(self, key: str, topic: keys.Topic, manner: Manner) -> Publisher:
+        if manner == "plain":
+            return self._declare_plain(key, topic)
+        here_alone = zenoh.Locality.SESSION_LOCAL if manner == "recalled" else zenoh.Locality.ANY
+        return self._declare_cached(key, topic, here_alone)
 
     def _declare_plain(self, key: str, topic: keys.Topic) -> Publisher:
         return self._session.declare_publisher(
@@ -70,21 +106,21 @@ class Outbox:
             express=topic.priority in ("interactive_high", "data_high"),
         )
 
-    def _declare_cached(self, key: str, topic: keys.Topic) -> Publisher:
+    def _declare_cached(self, key: str, topic: keys.Topic, destination: zenoh.Locality) -> Publisher:
         return ext.declare_advanced_publisher(
             self._session,
             key,
             congestion_control=_CONGESTION[topic.congestion],
             priority=_PRIORITY[topic.priority],
-            express=True,
-            cache=ext.CacheConfig(CACHE_DEPTH),
+            express=topic.priority in ("interactive_high", "data_high"),
+            allowed_destination=destination,
+            cache=ext.CacheConfig(topic.cache),
             sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT_S),
             publisher_detection=True,
         )
 
 
-def _is_cached(message: Message) -> bool:
+def _manner(message: Message) -> Manner:
     """Tell whether late subscribers recover a message. Of actions only the final do: a partial one is soon outdated."""
-    if isinstance(message, Action):
-        return message.final
-    return keys.address_of(message).topic.cached
+    recovered = message.final if isinstance(message, Action) else keys.address_of(message).topic.cache > 0
+    return "cached" if recovered else "plain"

@@ -7,7 +7,7 @@ from pathlib import Path
 import zenoh
 
 from actum.health import write_health
-from actum.runtime.credentials import CERTIFICATE, is_renewed, login_values, router_values
+from actum.runtime.credentials import CERTIFICATE, USERS, check, is_renewed, login_values, router_values
 from actum.runtime.session import TRANSPORT, insert
 from actum.runtime.waiting import wait_for
 from actum.settings import SettingsError
@@ -35,7 +35,8 @@ def router_config(
     if link is not None:
         insert(config, {"connect/endpoints": [link]})
     if credentials is not None:
-        insert(config, router_values(credentials))
+        check(credentials)
+        insert(config, router_values(credentials, passwords=(credentials / USERS).exists()))
     return config
 
 

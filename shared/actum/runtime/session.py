@@ -9,7 +9,8 @@ from typing import Any
 
 import zenoh
 
-from actum.runtime.credentials import client_values, login_values
+from actum import keys
+from actum.runtime.credentials import check, client_values, login_values
 from actum.settings import ServiceSettings, SettingsError
 
 log = logging.getLogger("actum")
@@ -27,12 +28,19 @@ TRANSPORT = {
     "transport/shared_memory/enabled": False,
     "transport/link/tx/queue/size/data_high": 16,
     "transport/link/tx/queue/congestion_control/drop/wait_before_drop": 50_000,  # microseconds
+    "transport/link/tx/queue/congestion_control/block/wait_before_close": 1_000_000,  # microseconds
 }
 """Transport settings of all our sessions, of clients and router alike.
 
 Shared memory loses messages silently when a reader is descheduled. With Zenoh's defaults, two batches and 1 ms, a
 burst of thirty skeletons on a busy machine loses some: rather a put takes some milliseconds than a frame is lost.
+A reader that is stopped stalls what the others read from the same sender until its link is closed, which by default
+takes 5 s; when it goes on it connects anew, and recovers what it has missed.
 """
+
+BEFORE_DROP = 2
+"""Payloads longer than their key admits are counted by who decodes them, but those this many times as long never come:
+Zenoh drops them before they wait in a ring, where a few hundred may wait. Only the gap in `seq` tells of them."""
 
 
 class RouterUnreachableError(RuntimeError):
@@ -55,6 +63,7 @@ def client_config(settings: ServiceSettings) -> zenoh.Config:
     if settings.credentials is not None:
         if not settings.connect.startswith(ENCRYPTED):
             raise SettingsError(f"credentials are shown to no router at {settings.connect}: use tls/host:port")
+        check(settings.credentials)
         insert(config, client_values(settings.credentials))
     return config
 
@@ -95,8 +104,25 @@ def _client_values(endpoint: str) -> dict[str, Any]:
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
         "timestamping/enabled": True,  # late subscribers request messages by age
+        "transport/link/rx/max_message_size": BEFORE_DROP * keys.MOST_IMAGE_BYTES,
+        "low_pass_filter": _size_limits(),
         **TRANSPORT,
     }
+
+
+def _size_limits() -> list[dict[str, Any]]:
+    """Return Zenoh's rules by which it drops payloads that are far too large, on each topic of the table."""
+    sizes = sorted({topic.max_bytes for topic in keys.TOPICS})
+    return [
+        {
+            "id": f"{size} bytes",
+            "messages": ["put", "reply"],
+            "flows": ["ingress"],
+            "key_exprs": [keys.pattern(topic) for topic in keys.TOPICS if topic.max_bytes == size],
+            "size_limit": BEFORE_DROP * size,
+        }
+        for size in sizes
+    ]
 
 
 def open_session(settings: ServiceSettings, stop: threading.Event) -> zenoh.Session | None:

@@ -1,5 +1,6 @@
 """Files of maps and of trainings under way: npz without pickle, so that reading one runs no code."""
 
+import math
 import os
 import tokenize
 import zipfile
@@ -7,7 +8,7 @@ import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,16 @@ UNREADABLE = (
     tokenize.TokenError, zipfile.BadZipFile, zlib.error,
 )  # fmt: skip
 """What NumPy and zipfile are known to raise on files of another kind, truncated or altered."""
+
+MOST_INFLATION = 20
+"""How many times its size the arrays of a file may take: npz files of ours are not compressed, those of others a few
+times smaller. Files made to fill memory grow a thousand times."""
+NPY: Any = np.lib.format
+"""NumPy's file format, which has types in some of its versions only."""
+HEADERS = {(1, 0): NPY.read_array_header_1_0, (2, 0): NPY.read_array_header_2_0}
+"""NumPy's readers of an array's header, by the version of its format; later ones are for named columns."""
+LEAST_BYTES = 16_000_000
+"""What they may take (bytes) however small the file is."""
 
 
 class SomError(ValueError):
@@ -52,6 +63,30 @@ def write(path: Path, file_format: str, arrays: Mapping[str, NDArray[Any]]) -> N
         unfinished.unlink(missing_ok=True)
 
 
+def refuse_bomb(stored: IO[bytes]) -> None:
+    """Refuse an npz file whose arrays take far more memory than the file, and rewind any other.
+
+    Raises:
+        ValueError, OSError, zipfile.BadZipFile: it is such a file, or is damaged.
+    """
+    with zipfile.ZipFile(stored) as archive:
+        size = sum(max(member.file_size, _array_bytes(archive, member)) for member in archive.infolist())
+    most = LEAST_BYTES + MOST_INFLATION * stored.seek(0, os.SEEK_END)
+    if size > most:
+        raise ValueError(f"its arrays would take {size} bytes")
+    stored.seek(0)
+
+
+def _array_bytes(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> int:
+    """Return how many bytes NumPy would allocate for an array, as its header says."""
+    with archive.open(member) as array:
+        read_header = HEADERS.get(NPY.read_magic(array))
+        if read_header is None:
+            raise ValueError(f"{member.filename} is of a format that NumPy did not write for it")
+        shape, _, dtype = read_header(array)
+    return int(math.prod(shape) * dtype.itemsize)
+
+
 @contextmanager
 def reading(path: Path, file_format: str) -> Iterator[Mapping[str, NDArray[Any]]]:
     """Return a context with the arrays of a file; errors of reading or using them in the `with` block are `SomError`s.
@@ -63,7 +98,7 @@ def reading(path: Path, file_format: str) -> Iterator[Mapping[str, NDArray[Any]]
         with path.open("rb") as stored:
             if not zipfile.is_zipfile(stored):
                 raise SomError(path, "this is no npz file")
-            stored.seek(0)
+            refuse_bomb(stored)
             with np.load(stored, allow_pickle=False) as file:
                 if str(file["format"]) != file_format:
                     raise SomError(path, f"its format is {str(file['format'])!r}, not {file_format!r}")

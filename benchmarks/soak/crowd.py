@@ -1,0 +1,43 @@
+"""`python -m benchmarks.soak.crowd`: the sensor of the soak, four people at 30 frames a second with images."""
+
+import time
+from collections.abc import Iterator
+
+from actum.messages import Message
+from actum.node import SECOND_NS, Counters
+from actum.runtime import run_source
+from scene_simulator.group import MOST_PEOPLE, Group
+from scene_simulator.programme import balanced_programme
+from scene_simulator.settings import Settings
+from scene_simulator.simulator import GATEWAY
+
+REPETITIONS = 4
+"""Of each action in one scene; the next one follows."""
+
+
+class Crowd:
+    """An endless sequence of scenes of four people, as one stream."""
+
+    name = GATEWAY
+    paced = True
+
+    def __init__(self, settings: Settings) -> None:
+        self.counters = Counters()
+        self._settings = settings
+
+    def frames(self) -> Iterator[list[Message]]:
+        """Yield frames for ever."""
+        start_ns, seed = time.time_ns(), self._settings.seed
+        session = f"crowd-{start_ns}"
+        while True:
+            programmes = [balanced_programme(REPETITIONS, seed, actor) for actor in range(MOST_PEOPLE)]
+            sensor, hz = self._settings.sensor, self._settings.image_hz
+            group = Group(programmes, 0, seed, sensor=sensor, start_ns=start_ns, session_id=session, image_hz=hz)
+            for messages in group.frames():
+                yield messages
+                newest_ns = messages[0].stamp_ns
+            start_ns, seed = newest_ns + SECOND_NS, seed + 1
+
+
+if __name__ == "__main__":
+    run_source(Settings, Crowd)

@@ -1,0 +1,85 @@
+"""`actum deploy`: what the hosts of a lab need, each a folder, with credentials that their routers ask for."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from actum.keys import InvalidKeyError
+from actum.runtime import needs_extra
+from actum.settings import SettingsError
+from actum_command.commands.plain_help import PlainTyper
+from actum_command.commands.terminal import fail, say
+from actum_deployer.deployment import Deployment, Host, hosts_of
+
+app = PlainTyper(
+    no_args_is_help=True, help="Write what each host needs: compose file, router, units, credentials; and renew these."
+)
+
+DirArgument = Annotated[Path, typer.Argument(metavar="DIR", help="the deployment's folder; keep it private")]
+YEAR = 365
+"""How long certificates are valid (days) where nothing else is said."""
+
+
+@app.command()
+def init(
+    folder: DirArgument,
+    hosts: Annotated[
+        str,
+        typer.Option(metavar="NAME=ADDRESS,…", help="camera=…,compute=…; more: camera2=…; each with :PORT if wanted"),
+    ],
+    sensors: Annotated[
+        str | None, typer.Option(metavar="NAME,…", help="the cameras' sensors; default: kinect0,kinect1,…")
+    ] = None,
+    one_router: Annotated[bool, typer.Option("--one-router", help="only the first host runs a router")] = False,
+    passwords: Annotated[bool, typer.Option("--passwords", help="ask for user names and passwords as well")] = False,
+    images: Annotated[bool, typer.Option("--images", help="let images go from one host to another")] = False,
+    simulate: Annotated[bool, typer.Option("--simulate", help="the simulated scene in the place of cameras")] = False,
+    not_secured: Annotated[
+        bool, typer.Option("--open", help="ask nobody who they are, encrypt nothing: on a network you trust")
+    ] = False,
+) -> None:
+    """Write a folder for each host, and one for people's programs; what is there already is renewed."""
+    if not_secured and passwords:
+        fail("--open asks nobody for passwords: leave one of the two out")
+    try:
+        placed = hosts_of(hosts, sensors)
+    except (SettingsError, InvalidKeyError) as error:
+        fail(str(error))
+    deployment = Deployment(placed, not not_secured, passwords, images, one_router, simulate)
+    _write(deployment, folder, YEAR)
+    for host in placed:
+        say(f"{host.name}: copy {folder / host.name} to {host.address}, and do there what its README.md says")
+    if deployment.secured:
+        say(f"people: copy a folder of {folder / 'people'} and name it in ACTUM_CREDENTIALS: {_example(placed[0])}")
+        say(f"keep {folder / 'authority'} where nobody else reads it: its key makes credentials", style="yellow")
+
+
+@app.command()
+def rotate(
+    folder: DirArgument,
+    days: Annotated[float, typer.Option(min=0, help="how long they are valid (days)")] = YEAR,
+) -> None:
+    """Renew all certificates and their keys; copied to the hosts, they are used without a stop."""
+    try:
+        deployment = Deployment.load(folder)
+    except SettingsError as error:
+        fail(str(error))
+    if not deployment.secured:
+        fail(f"{folder} was made with --open and has no credentials")
+    _write(deployment, folder, days)
+    names = ", ".join(host.name for host in deployment.hosts)
+    say(f"copy the folders of {names}, and those of people, to their machines again")
+
+
+def _write(deployment: Deployment, folder: Path, days: float) -> None:
+    with needs_extra("deploy"):
+        from actum_deployer.writing import write_deployment
+    try:
+        write_deployment(deployment, folder, days)
+    except (SettingsError, OSError) as error:
+        fail(str(error))
+
+
+def _example(host: Host) -> str:
+    return f"ACTUM_CONNECT=tls/{host.endpoint} ACTUM_CREDENTIALS=…/viewer actum watch"

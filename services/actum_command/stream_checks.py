@@ -1,0 +1,101 @@
+"""What is wrong with a sensor's streams, in words: too slow, stopped, repeated, or not reaching who reads them."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from actum import keys
+from actum.keys import Topic
+from actum.messages import Info, Status
+from actum_command.watched_streams import Watched
+
+SENSOR = "sensor_gateway"
+"""The service that puts skeletons and images."""
+READERS: Mapping[str, tuple[Topic, ...]] = {
+    "pose_preprocessor": (keys.SKELETON,),
+    "marker_tracker": (keys.COLOR,),
+    "som_classifier": (keys.POSTURE,),
+    "action_fusion": (keys.POSTURE, keys.OBJECTS),
+}
+"""The streams that each service reads all the time."""
+SLOW = 0.6
+"""Share of a rate below which it is told: a busy machine delays frames, and they come all the same."""
+FEWEST_HZ = 2.0
+"""Least rate (Hz) of which missing messages are told: of a slower stream two seconds show too little."""
+MEASURED_S = 1.0
+"""Least time (s) between two statuses from which rates are measured."""
+
+Statuses = Mapping[str, Sequence[Status]]
+"""The statuses that each service has sent meanwhile, in their order."""
+
+
+def problems(infos: Sequence[Info], statuses: Statuses, streams: Mapping[Topic, Watched]) -> Iterator[str]:
+    """Yield what is wrong with the streams of a sensor."""
+    put_hz = {topic: _put_hz(topic, statuses, streams) for topic in (keys.SKELETON, keys.COLOR, *_read())}
+    yield from _slow_source(infos, put_hz[keys.SKELETON] or streams[keys.COLOR].rate_hz, streams[keys.SKELETON])
+    yield from _stopped(statuses)
+    yield from _frozen(streams)
+    yield from _readers(statuses, put_hz)
+
+
+def handled_hz(statuses: Sequence[Status], topic: Topic) -> float | None:
+    """Return how many messages of a topic a service has handled a second; None where it is too early to say."""
+    same = [status for status in statuses if status.instance == statuses[-1].instance]
+    elapsed_s = same[-1].uptime_s - same[0].uptime_s if same else 0.0
+    if elapsed_s < MEASURED_S:
+        return None
+    return (_handled(same[-1], topic) - _handled(same[0], topic)) / elapsed_s
+
+
+def _handled(status: Status, topic: Topic) -> int:
+    """Return how many messages of a topic were handled since the start, of all people together."""
+    prefix = keys.pattern(topic, status.sensor).removesuffix("*")
+    return sum(count for key, count in status.handled.items() if key.startswith(prefix))
+
+
+def _read() -> list[Topic]:
+    return [topic for topics in READERS.values() for topic in topics]
+
+
+def _put_hz(topic: Topic, statuses: Statuses, streams: Mapping[Topic, Watched]) -> float:
+    """Return how many messages of a topic are put a second: as its source says, or as they come here."""
+    said = handled_hz(statuses.get(SENSOR, ()), topic) if topic in (keys.SKELETON, keys.COLOR) else None
+    return max(said or 0.0, streams[topic].rate_hz if topic in streams else 0.0)
+
+
+def _slow_source(infos: Sequence[Info], put_hz: float, skeletons: Watched) -> Iterator[str]:
+    for info in infos:
+        if info.service == SENSOR and info.rate_hz and 0 < put_hz < SLOW * info.rate_hz:
+            few = f"{SENSOR} puts {put_hz:.0f} frames a second, and its source is set to {info.rate_hz:g}"
+            yield f"{few}: is the machine busy, the room too dark for short exposures, the camera's cable slow?"
+    if 0 < skeletons.rate_hz < SLOW * skeletons.stamped_hz:
+        yield (
+            f"{skeletons.rate_hz:.0f} skeletons come in a second, and by their stamps there are "
+            f"{skeletons.stamped_hz:.0f}: the source is late, or puts them too slowly"
+        )
+
+
+def _stopped(statuses: Statuses) -> Iterator[str]:
+    gateway = statuses.get(SENSOR, ())
+    for topic in (keys.SKELETON, keys.COLOR) if gateway and gateway[-1].state.startswith("running") else ():
+        if handled_hz(gateway, topic) == 0 and _handled(gateway[-1], topic):
+            yield f"{SENSOR} puts no {topic.leaf} any more, {_handled(gateway[-1], topic)} so far: start it again"
+
+
+def _frozen(streams: Mapping[Topic, Watched]) -> Iterator[str]:
+    for topic, words in ((keys.SKELETON, "skeletons"), (keys.COLOR, "images")):
+        if streams[topic].stands_still:
+            yield f"stamps of {words} stand still, so all but the first are refused: start the sensor again"
+        elif streams[topic].repeats:
+            yield f"{words} repeat, bit for bit: the camera is frozen, so unplug it and plug it in again"
+
+
+def _readers(statuses: Statuses, put_hz: Mapping[Topic, float]) -> Iterator[str]:
+    for service, topics in READERS.items():
+        for topic in topics:
+            got_hz, all_hz = handled_hz(statuses.get(service, ()), topic), put_hz[topic]
+            if got_hz is None or all_hz < FEWEST_HZ:
+                continue
+            of_all = f"of the {all_hz:.0f} messages a second on {topic.leaf.removesuffix('/{}')}"
+            if got_hz == 0:
+                yield f"{service} gets none {of_all}: may its role read them, is the link between routers up?"
+            elif got_hz < SLOW * all_hz and topic is not keys.COLOR:
+                yield f"{service} gets {got_hz:.0f} {of_all}: is its machine or the network between too slow?"

@@ -1,0 +1,135 @@
+"""Zenoh's access control, made from the table of roles: whatever no rule allows is denied.
+
+A router asks it of each message that comes from a client or another router (ingress) and that goes to one (egress).
+Advanced publishers and subscribers also use keys with the chunk `@adv`, which `**` does not match.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, Literal
+
+from actum import keys
+from actum.keys import BASE, Topic
+from actum_deployer.roles import IMAGES, Role, identity
+
+Rule = dict[str, Any]
+"""One rule of Zenoh's access control."""
+
+ADVANCED = "@adv/**"
+"""What advanced publishers and subscribers append to their keys: caches, heartbeats, and who is there."""
+EVERYTHING = (f"{BASE}/**", f"{BASE}/**/{ADVANCED}")
+"""All keys of all sensors."""
+ROUTER_ITSELF = "@/*/router"
+"""The key on which a router describes itself: who hears nothing else knows by it that nothing is hidden."""
+TOKENS = ("alive/{0}/*", "candidate/{0}/*/*", "successor/{0}/*/*")
+"""The liveliness tokens by which instances of a service hold or ask for their place."""
+WISHES = ("declare_subscriber", "declare_queryable", "query", "liveliness_query", "declare_liveliness_subscriber")
+"""What a router tells a client of others, so that it knows for whom to put and answers queries: no content."""
+LOOKING = ("liveliness_query", "declare_liveliness_subscriber")
+"""Asking who is there, once and from now on."""
+TOLD = "everybody is told what others wish"
+"""The name of the rule that all roles have."""
+LINK = "routers pass on"
+"""The beginning of the names of the rules between routers."""
+
+
+def access_control(
+    subjects: Sequence[tuple[Role, str]], routers: Sequence[str], images_cross: bool, passwords: bool
+) -> dict[str, Any]:
+    """Return the section `access_control` of a router's configuration.
+
+    Args:
+        subjects: every role with the sensor it is for; that of people's roles does not matter.
+        routers: the common names of all routers' certificates.
+        images_cross: whether images go from one router to another.
+        passwords: whether a role is known by its user name as well, which is the common name.
+    """
+    people_and_services = {identity(role, sensor): list(rules(role, sensor)) for role, sensor in subjects}
+    between = link_rules(images_cross)
+    policies = [{"subjects": [name], "rules": [*_ids(own), TOLD]} for name, own in people_and_services.items()]
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": [_told(), *(rule for own in people_and_services.values() for rule in own), *between],
+        "subjects": [
+            *(_subject(name, passwords) for name in people_and_services),
+            *(_subject(name, False) for name in routers),  # who connects learns no user name of whom it connects to
+        ],
+        "policies": [*policies, {"subjects": list(routers), "rules": _ids(between)}],
+    }
+
+
+def rules(role: Role, sensor: str) -> Iterator[Rule]:
+    """Yield the rules of a role for a sensor; of people's roles for all sensors."""
+    name, of = identity(role, sensor), sensor if role.services else "*"
+    puts, reads = _patterns(role.puts, of), _patterns(role.reads, of)
+    own = [
+        f"{BASE}/{of}/{place.format(service)}" for service in role.services for place in ("info/{}", "command/{}/**")
+    ]
+    states = [keys.key(keys.STATUS, of, service) for service in role.services]
+    tokens = [f"{BASE}/{of}/{token.format(service)}" for service in role.services for token in TOKENS]
+    asked = _asked(role)
+    places = [keys.claims(of, service) for service in role.services]
+    looked = [f"{BASE}/*/alive/**"] if role.inspects else []
+    yield from _allowed(f"{name} puts", "ingress", ["put"], [*puts, *_advanced(puts), *states])
+    yield from _allowed(f"{name} offers", "ingress", ["declare_queryable", "reply"], [*puts, *_advanced(puts), *own])
+    yield from _allowed(f"{name} is there", "ingress", ["liveliness_token"], [*tokens, *_advanced(puts)])
+    yield from _allowed(f"{name} wants", "ingress", ["declare_subscriber"], _wanted(role, reads))
+    yield from _allowed(f"{name} asks", "ingress", ["query"], [*_advanced(reads), *own, *asked])
+    yield from _allowed(f"{name} looks", "ingress", LOOKING, [*_advanced(reads), *places, *looked])
+    yield from _allowed(f"{name} gets", "egress", ["put"], [*reads, *_advanced(reads)])
+    yield from _allowed(f"{name} is answered", "egress", ["reply"], [*reads, *_advanced(reads), *own, *asked])
+    yield from _allowed(f"{name} sees", "egress", ["liveliness_token"], [*tokens, *_advanced(reads), *looked])
+
+
+def link_rules(images_cross: bool) -> list[Rule]:
+    """Return the rules between routers: what any role may put, but images only where these may cross."""
+    crossing = [topic for topic in keys.TOPICS if images_cross or topic not in IMAGES]
+    content = [*_patterns(crossing, "*"), f"{BASE}/*/command/**"]
+    tokens = [f"{BASE}/*/{token.format('*')}" for token in TOKENS]
+    both: tuple[Literal["ingress", "egress"], ...] = ("ingress", "egress")
+    return [
+        *_allowed(f"{LINK} content", both, ["put", "reply"], [*content, *_advanced(content)]),
+        *_allowed(f"{LINK} who is there", both, ["liveliness_token"], [*tokens, *_advanced(content)]),
+        *_allowed(f"{LINK} wishes", both, WISHES, EVERYTHING),
+    ]
+
+
+def _told() -> Rule:
+    return {"id": TOLD, "permission": "allow", "flows": ["egress"], "messages": [*WISHES], "key_exprs": [*EVERYTHING]}
+
+
+def _allowed(
+    name: str, flows: str | Sequence[str], messages: Iterable[str], key_exprs: Iterable[str]
+) -> Iterator[Rule]:
+    """Yield a rule, or none where it would allow nothing."""
+    exprs = list(dict.fromkeys(key_exprs))
+    if exprs:
+        flows = [flows] if isinstance(flows, str) else [*flows]
+        yield {"id": name, "permission": "allow", "flows": flows, "messages": [*messages], "key_exprs": exprs}
+
+
+def _patterns(topics: Iterable[Topic], sensor: str) -> list[str]:
+    return [keys.pattern(topic, sensor) for topic in topics]
+
+
+def _advanced(patterns: Iterable[str]) -> list[str]:
+    return [f"{pattern}/{ADVANCED}" for pattern in patterns]
+
+
+def _wanted(role: Role, reads: Sequence[str]) -> list[str]:
+    """Return what a role subscribes to: one that watches may name all keys at once, and gets what it may read."""
+    return [*reads, *_advanced(reads), *(EVERYTHING if role.inspects else ())]
+
+
+def _asked(role: Role) -> list[str]:
+    """Return what a role asks of services of every sensor, and of its router."""
+    infos = [keys.pattern(keys.INFO), ROUTER_ITSELF] if role.inspects else []
+    return [*infos, f"{BASE}/*/command/**"] if role.commands else infos
+
+
+def _ids(own: Iterable[Mapping[str, Any]]) -> list[str]:
+    return [rule["id"] for rule in own]
+
+
+def _subject(name: str, passwords: bool) -> dict[str, Any]:
+    return {"id": name, "cert_common_names": [name], **({"usernames": [name]} if passwords else {})}

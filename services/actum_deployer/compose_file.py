@@ -1,0 +1,93 @@
+"""The compose file of a host: what runs there, as closed as containers can be."""
+
+from pathlib import PurePosixPath
+from typing import Any
+
+import yaml
+
+from actum_deployer.credential_folders import SERVICES_USER
+from actum_deployer.deployment import Deployment, Host
+from actum_deployer.programs import FILES, INSTALLED, SETTINGS, STATEFUL, Data, Program, environment, programs
+from actum_deployer.roles import CLASSIFIER, GATEWAY, ROUTER, TRACKER, TRAINER
+
+PIDS = 256
+"""Most processes and threads of a container: some tens are in use."""
+TEMPORARY = "/tmp:size=64m"
+"""The only place where a container may write besides its volumes: health file, caches of libraries."""
+DATA = Data(models="/models", state="/state")
+"""Where volumes are mounted: folders that the images make their users'."""
+PAGE_IN_CONTAINER = {"ACTUM_PAGE_HOST": "0.0.0.0", "ACTUM_PAGE_GUARDED": "1"}
+"""All interfaces are the container's own, and the host publishes the port to itself alone."""
+
+
+def compose_file(deployment: Deployment, host: Host) -> str:
+    """Return the text of the file."""
+    services = {program.name: _service(deployment, host, program) for program in programs(deployment, host)}
+    mounts = [mount for service in services.values() for mount in service["volumes"]]
+    volumes: dict[str, Any] = {mount.partition(":")[0]: {} for mount in mounts if not mount.startswith(".")}
+    content = {"name": f"actum-{host.name}", "services": services, **({"volumes": volumes} if volumes else {})}
+    about = f"# What runs on {host.name}, made by 'actum deploy init'. Settings of yours belong into {SETTINGS}.\n"
+    return about + yaml.safe_dump(content, sort_keys=False, width=120)
+
+
+def _service(deployment: Deployment, host: Host, program: Program) -> dict[str, Any]:
+    service = {
+        "image": program.image,
+        **_closed(program),
+        "environment": environment(deployment, host, program, ROUTER, DATA),
+        "volumes": [*_credentials(program), *_own(program)],
+    }
+    if program.role is None:
+        return {**service, **_router(host)}
+    service["env_file"] = [{"path": SETTINGS, "required": False}]
+    if program.role is TRAINER:
+        service["entrypoint"] = ["python", "-m", program.module]
+    if program.role is GATEWAY and not deployment.simulated:
+        service["devices"] = ["${ACTUM_CAMERA_DEVICE:-/dev/video0}:/dev/video0"]
+        service["group_add"] = ["video"]
+    if program.page_port:
+        service["environment"] |= PAGE_IN_CONTAINER
+        service["ports"] = [f"127.0.0.1:{program.page_port}:{program.page_port}"]
+    return service
+
+
+def _closed(program: Program) -> dict[str, Any]:
+    """Return what every container lacks: root, a disk to write on, capabilities, and more memory than it needs."""
+    return {
+        "init": True,
+        "restart": "unless-stopped",
+        "user": f"{SERVICES_USER}:{SERVICES_USER}",
+        "read_only": True,
+        "tmpfs": [TEMPORARY],
+        "cap_drop": ["ALL"],
+        "security_opt": ["no-new-privileges:true"],
+        "mem_limit": f"{program.memory_mb}m",
+        "pids_limit": PIDS,
+        "stop_grace_period": "10s",
+    }
+
+
+def _credentials(program: Program) -> list[str]:
+    """Return the mount of a program's own credentials: as a folder, so that renewed files are seen."""
+    if not program.credentials:
+        return []
+    return [f"./{PurePosixPath(program.credentials).relative_to(INSTALLED)}:{program.credentials}:ro"]
+
+
+def _own(program: Program) -> list[str]:
+    """Return the other mounts of a program."""
+    mounts = [f"./{FILES}:{INSTALLED}/{FILES}:ro"] if program.role in (GATEWAY, TRACKER) else []
+    if program.role is None:
+        mounts.append(f"./router.json5:{INSTALLED}/router.json5:ro")
+    if program.role in (CLASSIFIER, TRAINER):
+        mounts.append(f"models:{DATA.models}{':ro' if program.role is CLASSIFIER else ''}")
+    if program.role in STATEFUL:
+        mounts.append(f"state_{program.name}:{DATA.state}")
+    return mounts
+
+
+def _router(host: Host) -> dict[str, Any]:
+    return {
+        "command": ["router", "--config", f"{INSTALLED}/router.json5"],
+        "ports": [f"{host.port}:{host.port}"],
+    }

@@ -1,0 +1,148 @@
+"""A deployment: its hosts, what runs on each, and how strictly they are closed. Kept as a file without secrets."""
+
+import json
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Self
+
+from actum.keys import chunk
+from actum.settings import HIGHEST_PORT, SettingsError
+from actum_deployer.roles import CLASSIFIER, FUSION, GATEWAY, PAGE, PEOPLES, PREPROCESSOR, TRACKER, TRAINER, Role
+
+FILE = "deployment.json"
+"""The name of the file in the deployment's folder."""
+DEFAULT_PORT = 7447
+"""Zenoh's usual port."""
+KINDS = {
+    "camera": (GATEWAY, TRACKER),
+    "compute": (PREPROCESSOR, CLASSIFIER, FUSION, TRAINER, PAGE),
+}
+"""The roles of the services on each kind of host, by the beginning of the host's name."""
+
+
+@dataclass(frozen=True)
+class Host:
+    """A machine.
+
+    Attributes:
+        name: its folder's name; begins with its kind.
+        address: by which the others reach it.
+        port: on which its router listens.
+        sensors: the sensors that it has, or whose streams it computes with.
+    """
+
+    name: str
+    address: str
+    port: int
+    sensors: tuple[str, ...] = ()
+
+    @property
+    def kind(self) -> str:
+        """`camera` or `compute`."""
+        return next(kind for kind in KINDS if self.name.startswith(kind))
+
+    @property
+    def endpoint(self) -> str:
+        """Where others reach its router, without the transport."""
+        return f"[{self.address}]:{self.port}" if ":" in self.address else f"{self.address}:{self.port}"
+
+    @property
+    def roles(self) -> list[tuple[Role, str]]:
+        """The roles of its services, each with the sensor."""
+        return [(role, sensor) for sensor in self.sensors for role in KINDS[self.kind]]
+
+
+@dataclass(frozen=True)
+class Deployment:
+    """All hosts, and what holds for all of them.
+
+    Attributes:
+        hosts: the machines.
+        secured: whether routers ask for certificates; else whoever reaches one is trusted with everything.
+        passwords: whether they ask for user names and passwords too.
+        images_cross: whether images go from one host to another.
+        one_router: whether the first host's router serves all, instead of one on each host.
+        simulated: whether the simulated scene stands in the place of cameras.
+    """
+
+    hosts: tuple[Host, ...]
+    secured: bool = True
+    passwords: bool = False
+    images_cross: bool = False
+    one_router: bool = False
+    simulated: bool = False
+
+    @property
+    def routers(self) -> tuple[Host, ...]:
+        """The hosts with a router."""
+        return self.hosts[:1] if self.one_router else self.hosts
+
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """All sensors."""
+        return tuple(sensor for host in self.hosts if host.kind == "camera" for sensor in host.sensors)
+
+    @property
+    def subjects(self) -> list[tuple[Role, str]]:
+        """Every role with the sensor that it is for, all of people's included."""
+        return [*(each for host in self.hosts for each in host.roles), *((role, "") for role in PEOPLES)]
+
+    @property
+    def transport(self) -> str:
+        """The transport of every endpoint."""
+        return "tls" if self.secured else "tcp"
+
+    def save(self, folder: Path) -> None:
+        """Write the file."""
+        (folder / FILE).write_text(json.dumps(asdict(self), indent=2) + "\n", encoding="utf-8")
+
+    @classmethod
+    def load(cls, folder: Path) -> Self:
+        """Read the file.
+
+        Raises:
+            SettingsError: it is not there, or is none.
+        """
+        try:
+            fields = json.loads((folder / FILE).read_text(encoding="utf-8"))
+            hosts = [Host(**{**host, "sensors": tuple(host["sensors"])}) for host in fields.pop("hosts")]
+            return cls(tuple(hosts), **fields)
+        except (OSError, ValueError, TypeError, KeyError):
+            raise SettingsError(f"{folder} holds no {FILE}: make it with 'actum deploy init'") from None
+
+
+def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
+    """Parse `camera=ADDRESS,compute=ADDRESS:PORT`, and deal the sensors out.
+
+    The first camera's sensor is `kinect0`, the second's `kinect1`, unless they are named. Hosts that compute take the
+    sensors in turn.
+
+    Raises:
+        SettingsError: a name, an address or a port cannot be used, or these hosts and sensors do not go together.
+    """
+    hosts = [_host(part.strip()) for part in text.split(",")]
+    cameras = [host for host in hosts if host.kind == "camera"]
+    computing = [host for host in hosts if host.kind == "compute"]
+    named = sensors.split(",") if sensors else [f"kinect{number}" for number in range(len(cameras))]
+    if not cameras or not computing or len({host.name for host in hosts}) < len(hosts):
+        raise SettingsError(f"hosts: {text!r}: name at least one camera… and one compute…, each once")
+    if len(named) != len(cameras) or len(set(named)) < len(named):
+        raise SettingsError(f"sensors: {sensors!r}: name as many as there are cameras ({len(cameras)}), each once")
+    if len(computing) > len(named):
+        raise SettingsError(f"hosts: {len(computing)} to compute are more than there are cameras ({len(named)})")
+    its: dict[str, tuple[str, ...]] = {host.name: (chunk(sensor),) for host, sensor in zip(cameras, named, strict=True)}
+    its |= {host.name: tuple(named[i :: len(computing)]) for i, host in enumerate(computing)}
+    return tuple(replace(host, sensors=its[host.name]) for host in hosts)
+
+
+def _host(text: str) -> Host:
+    name, _, place = text.partition("=")
+    address, colon, own_port = place.rpartition(":")
+    if not colon or place.endswith("]") or (place.count(":") > 1 and "[" not in place):
+        address, own_port = place, str(DEFAULT_PORT)
+    chunk(name)
+    if not any(name.startswith(kind) for kind in KINDS):
+        raise SettingsError(f"hosts: {text!r}: names begin with {' or '.join(KINDS)}, as camera=192.168.1.5")
+    if not address or not own_port.isdecimal() or not 0 < int(own_port) <= HIGHEST_PORT:
+        raise SettingsError(f"hosts: {text!r}: use NAME=ADDRESS or NAME=ADDRESS:PORT")
+    return Host(name, address.strip("[]"), int(own_port))

@@ -1,0 +1,127 @@
+"""The README of a host's folder, and the file for the user's own settings: what to do there."""
+
+from datetime import date
+
+from actum_deployer.credential_folders import CREDENTIALS, SERVICES_USER
+from actum_deployer.deployment import Deployment, Host
+from actum_deployer.programs import FILES, INSTALLED, SETTINGS, Program, programs
+from actum_deployer.systemd_units import VENV
+
+UNITS = "systemd"
+"""The folder of the units, in that of a host."""
+
+README = """\
+# {name}, {address}
+
+Made by `actum deploy init`. Runs here:
+
+{table}
+
+{link}
+
+{secured}
+## With containers
+
+The images `actum/…` come from `docker compose build` in actum's repository, or by `docker save` and `docker load` from
+a machine that has them.
+
+```sh
+sudo chown -R {user}:{user} {credentials}    # the services' user, and nobody else, may read the private keys
+docker compose up --detach
+docker compose ps                            # all healthy after some seconds
+docker compose down
+```
+
+## Without containers
+
+```sh
+sudo useradd --system --uid {user} --user-group --no-create-home actum
+sudo cp -r . {installed} && sudo chown -R {user}:{user} {installed}/{credentials}
+sudo python3 -m venv {venv} && sudo {venv}/bin/pip install 'actum[all]'     # or the path of a wheel or repository
+sudo cp {units}/*.service /etc/systemd/system/ && sudo systemctl daemon-reload
+sudo systemctl enable --now {unit_names}
+```
+
+## Settings
+
+`{settings}` holds those of yours, for both ways; it is not written again. Files that it names, such as a pose model, a
+calibration or a scene file, lie in `{files}`, which is `{installed}/{files}` to the services.
+"""
+
+SECURED = """\
+Credentials are valid until {expiry}. Before that, renew them with `actum deploy rotate`, and copy `{credentials}` here
+again, to be read by user {user} as below. The router notices and listens anew, and services show the new ones as they
+connect to it again: nothing has to be stopped.
+
+"""
+OPEN = """\
+**Nobody is asked who they are**: whoever reaches this router is trusted with everything. Use a network you trust.
+
+"""
+SETTINGS_OF = {
+    "camera": """\
+ACTUM_SOURCE=camera
+ACTUM_CAMERA=/dev/video0
+# of `actum models fetch`
+ACTUM_POSE_MODEL=/etc/actum/files/pose.task
+# of `actum calibrate`
+#ACTUM_CALIBRATION=/etc/actum/files/camera.yaml
+# what carries which marker
+#ACTUM_SCENE=/etc/actum/files/objects.yaml
+""",
+    "compute": """\
+#ACTUM_FALSE_ALARMS_PER_MIN=1
+""",
+}
+"""What the file for settings holds at first, by kind of host."""
+SIMULATED_SETTINGS = """\
+ACTUM_EVERYDAY=all
+ACTUM_PAUSES=short
+ACTUM_OBJECTS='{"1": {"name": "cup"}, "2": {"name": "box"}, "3": {"name": "book"}}'
+"""
+"""The same where the simulated scene stands in the place of a camera."""
+
+
+def readme(deployment: Deployment, host: Host, expiry: date) -> str:
+    """Return the README of a host, whose credentials are valid until a day."""
+    running = list(programs(deployment, host))
+    return README.format(
+        name=host.name,
+        address=host.address,
+        table=_table(running),
+        link=_link(deployment, host),
+        secured=SECURED.format(expiry=expiry, credentials=CREDENTIALS, user=SERVICES_USER)
+        if deployment.secured
+        else OPEN,
+        user=SERVICES_USER,
+        credentials=CREDENTIALS if deployment.secured else "files",
+        installed=INSTALLED,
+        venv=VENV,
+        units=UNITS,
+        unit_names=" ".join(f"actum-{program.name}" for program in running),
+        settings=SETTINGS,
+        files=FILES,
+    )
+
+
+def settings_file(deployment: Deployment, host: Host) -> str:
+    """Return what the file for the user's settings holds at first."""
+    simulated = deployment.simulated and host.kind == "camera"
+    return SIMULATED_SETTINGS if simulated else SETTINGS_OF[host.kind]
+
+
+def _table(running: list[Program]) -> str:
+    rows = [f"| `{each.name}` | {each.about} | {each.sensor} |" for each in running]
+    return "\n".join(["| service | what it is | sensor |", "|---|---|---|", *rows])
+
+
+def _link(deployment: Deployment, host: Host) -> str:
+    """Say who has to reach whom on which port."""
+    if host not in deployment.routers:
+        return f"The services connect to the router at {deployment.routers[0].endpoint}; no port is open here."
+    earlier = deployment.routers[: deployment.routers.index(host)]
+    later = [each.name for each in deployment.hosts if each != host and each not in earlier]
+    reached = f"TCP port {host.port} has to be reachable from {', '.join(later)}." if later else ""
+    dialled = f"The router connects to {', '.join(f'{each.name} at {each.endpoint}' for each in earlier)}."
+    images = "Images go from host to host." if deployment.images_cross else "Images do not leave the camera's host."
+    return " ".join(filter(None, [reached, dialled if earlier else "", images]))

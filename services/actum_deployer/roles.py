@@ -1,0 +1,127 @@
+"""The one table of roles: who may put, read, be asked and ask what. Whatever it does not allow is denied.
+
+Access control, credentials, compose files and the page on security are made from it.
+"""
+
+from dataclasses import dataclass
+
+from actum import keys
+from actum.keys import Topic
+
+IMAGES = (keys.COLOR, keys.DEPTH)
+"""The topics that show people as a camera sees them."""
+WITHOUT_IMAGES = tuple(topic for topic in keys.TOPICS if topic not in (*IMAGES, keys.INFO))
+"""What may be read by whoever may watch; `info` is asked for, not read."""
+
+
+@dataclass(frozen=True)
+class Role:
+    """One row of the table.
+
+    Attributes:
+        name: the role's name; with a sensor's it is the common name of a certificate, `gateway.kinect0`.
+        about: who has it, for people.
+        services: the services that run with it, each for one sensor: it puts their status and answers for them. None
+            for a person's program, which may work with every sensor.
+        puts: the topics that it puts.
+        reads: the topics that it receives.
+        inspects: whether it may ask which services there are, and for their descriptions.
+        commands: whether it may ask services to do something.
+    """
+
+    name: str
+    about: str
+    services: tuple[str, ...] = ()
+    puts: tuple[Topic, ...] = ()
+    reads: tuple[Topic, ...] = ()
+    inspects: bool = False
+    commands: bool = False
+
+
+GATEWAY = Role(
+    "gateway",
+    "a sensor's gateway, or the simulated scene",
+    services=("sensor_gateway", "marker_camera"),
+    puts=(keys.SKELETON, keys.COLOR, keys.DEPTH, keys.TRUTH),
+)
+PREPROCESSOR = Role(
+    "preprocessor",
+    "the preprocessor",
+    services=("pose_preprocessor",),
+    puts=(keys.POSTURE,),
+    reads=(keys.SKELETON,),
+)
+CLASSIFIER = Role(
+    "classifier",
+    "the classifier, which also marks what it finds",
+    services=("som_classifier",),
+    puts=(keys.SEGMENT, keys.ACTION),
+    reads=(keys.POSTURE, keys.SEGMENT),
+)
+TRACKER = Role(
+    "tracker",
+    "the tracker of markers",
+    services=("marker_tracker",),
+    puts=(keys.OBJECTS,),
+    reads=(keys.COLOR,),
+)
+FUSION = Role(
+    "fusion",
+    "the fusion",
+    services=("action_fusion",),
+    puts=(keys.EVENT,),
+    reads=(keys.POSTURE, keys.OBJECTS, keys.ACTION),
+)
+TRAINER = Role(
+    "trainer",
+    "the service that teaches",
+    services=("model_trainer",),
+    puts=(keys.TRAINING,),
+    reads=(keys.SKELETON, keys.SEGMENT),
+)
+PAGE = Role(
+    "page",
+    "the web page, which is a switch to those whom it lets in",
+    services=("web_dashboard",),
+    puts=(keys.SEGMENT,),
+    reads=(*WITHOUT_IMAGES, keys.COLOR),
+    inspects=True,
+    commands=True,
+)
+SWITCH = Role(
+    "switch",
+    "who marks actions and asks services to do something",
+    puts=(keys.SEGMENT,),
+    reads=WITHOUT_IMAGES,
+    inspects=True,
+    commands=True,
+)
+VIEWER = Role(
+    "viewer",
+    "who watches, and sees no images",
+    reads=WITHOUT_IMAGES,
+    inspects=True,
+)
+RECORDER = Role(
+    "recorder",
+    "who watches and may see and record images",
+    reads=(*WITHOUT_IMAGES, *IMAGES),
+    inspects=True,
+)
+
+ROLES = (GATEWAY, PREPROCESSOR, CLASSIFIER, TRACKER, FUSION, TRAINER, PAGE, SWITCH, VIEWER, RECORDER)
+"""Every role but that of routers, which pass on what others may put."""
+PEOPLES = tuple(role for role in ROLES if not role.services)
+"""The roles of people's programs, such as `actum watch`."""
+ROUTER = "router"
+"""The name of a router's role; with its host's it is the common name of its certificate, `router.camera`."""
+
+
+def identity(role: Role, sensor: str) -> str:
+    """Return the common name of a role's certificate: a service's holds the sensor that it is for."""
+    return f"{role.name}.{sensor}" if role.services else role.name
+
+
+def router_identity(host: str) -> str:
+    """Return the common name of the certificate of a host's router."""
+    return f"{ROUTER}.{host}"

@@ -1,0 +1,66 @@
+"""What keeps a session from opening, in words: the name, the host, the port, TLS on either side, or the user."""
+
+import errno
+import json
+import socket
+
+from actum.runtime.credentials import LOGIN, login_values
+from actum.runtime.session import client_config
+from actum.runtime.tls_check import CONNECT_S, Tls, refusal, speaks_tls
+from actum.settings import ServiceSettings, host_and_port
+
+STREAMED = ("tcp/", "tls/")
+"""The beginnings of endpoints that are connected to by TCP, so that what goes wrong is told."""
+NO_ROUTE = (errno.EHOSTUNREACH, errno.ENETUNREACH, errno.EHOSTDOWN)
+"""The numbers of errors that say that no way leads to a host."""
+
+
+def obstacle(settings: ServiceSettings) -> str:
+    """Return why no router answers where the settings say, and what to do; "" where nothing is found.
+
+    Raises:
+        SettingsError: the settings themselves cannot be used.
+    """
+    there = host_and_port(settings.connect) if settings.connect.startswith(STREAMED) else None
+    if there is None:
+        return ""
+    try:
+        socket.create_connection(there, CONNECT_S).close()
+        return _between_sessions(settings, *there)
+    except OSError as error:
+        return _on_the_way(error, *there)
+
+
+def _on_the_way(error: OSError, host: str, port: int) -> str:
+    """Say what it means that a host cannot be connected to."""
+    if isinstance(error, socket.gaierror):
+        return f"the name {host} is not known here ({error.strerror}): correct it, or use the host's address"
+    if isinstance(error, TimeoutError):
+        return f"{host} does not answer: is it on, is the cable in, does a firewall let port {port} through?"
+    if isinstance(error, ConnectionRefusedError):
+        return f"nothing listens on port {port} of {host}: start one with 'actum router' or set ACTUM_CONNECT"
+    if error.errno in NO_ROUTE:
+        return f"no route leads to {host} ({error.strerror}): is this machine on its network?"
+    return f"{host} breaks off ({error.strerror or error}): is port {port} a router's?"
+
+
+def _between_sessions(settings: ServiceSettings, host: str, port: int) -> str:
+    """Say why a router opens no session although it can be connected to."""
+    if settings.connect.startswith("tls/"):
+        config = client_config(settings)
+        return refusal(host, port, Tls.of(config)) or _with_user(settings, json.loads(config.get_json(f"{LOGIN}/user")))
+    if speaks_tls(host, port):
+        address = settings.connect.removeprefix("tcp/")
+        return f"the router there wants TLS: set ACTUM_CONNECT=tls/{address}, and ACTUM_CREDENTIALS to a role's folder"
+    return (
+        f"something listens on port {port} and does not answer as a router: is it frozen, another program, or does it "
+        "ask for a user's name and password?"
+    )
+
+
+def _with_user(settings: ServiceSettings, user: str | None) -> str:
+    """Say why a router whose certificate fits opens no session."""
+    login = login_values(settings.credentials) if settings.credentials else {}
+    name = login.get(f"{LOGIN}/user", user)
+    who = f"refuses the user {name} or the password" if name else "asks for a user's name and password"
+    return f"certificates are accepted on both sides, so the router {who}, or is frozen"

@@ -1,0 +1,87 @@
+"""Lets a node go on where the process before it ended: tells it what was answered, and writes down its answers."""
+
+import logging
+import math
+
+from actum.codec import DecodeError, Frame, decode
+from actum.messages import Message
+from actum.node import Counters, Remembering
+from actum.runtime.inbox import HISTORY_S, RESUMED_FRAMES_S, RESUMED_S, Reach
+from actum.runtime.journal import Journal, WrittenAnswer
+from actum.runtime.outbox import Outbox
+from actum.settings import ServiceSettings, SettingsError
+
+log = logging.getLogger("actum")
+
+
+def check_state_folder(settings: ServiceSettings) -> None:
+    """Make the folder of `state`, where one is set.
+
+    Raises:
+        SettingsError: it cannot be made.
+    """
+    try:
+        if settings.state is not None:
+            settings.state.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise SettingsError(f"state: the folder {settings.state} cannot be made: {error.strerror}") from None
+
+
+class Resumption:
+    """The journal of a node that remembers its answers."""
+
+    def __init__(self, node: Remembering, journal: Journal, counters: Counters) -> None:
+        self._node, self._journal, self._counters = node, journal, counters
+
+    @classmethod
+    def of(cls, node: object, name: str, settings: ServiceSettings, counters: Counters) -> "Resumption | None":
+        """Open the journal in the folder that is set; None where there is none, or the node needs none."""
+        if settings.state is None or not isinstance(node, Remembering):
+            return None
+        path = settings.state / f"{settings.sensor}-{name}.journal"
+        try:
+            return cls(node, Journal(path), counters)
+        except OSError as error:
+            _report(counters, error)
+            return None
+
+    def resume(self, outbox: Outbox, vacant_s: float) -> Reach:
+        """Tell the node what was answered and offer it to late subscribers; write down what is put from now on.
+
+        Returns how far back messages are to be requested: where another instance has just run, its answers may stand
+        in no journal of ours.
+        """
+        outbox.keep_by(self._keep)
+        recent_s = min(vacant_s, HISTORY_S)
+        if self._journal.is_new:
+            return Reach(recent_s, RESUMED_S, depth=None)
+        known = [(answer, message) for answer in self._journal.answers if (message := _decoded(answer))]
+        self._node.remember([message for _, message in known])
+        outbox.recall(known)
+        if vacant_s < math.inf:
+            return Reach(recent_s, RESUMED_S, depth=None)
+        return Reach(min(self._journal.age_s + HISTORY_S, RESUMED_S), RESUMED_S, RESUMED_FRAMES_S, depth=None)
+
+    def close(self) -> None:
+        """Close the journal."""
+        self._journal.close()
+
+    def _keep(self, frame: Frame) -> None:
+        """Write down an answer; where that fails it is put all the same, and the failure is told."""
+        try:
+            self._journal.add(frame)
+        except OSError as error:
+            _report(self._counters, error)
+
+
+def _decoded(answer: WrittenAnswer) -> Message | None:
+    """Decode an answer; None for one of another version of actum."""
+    try:
+        return decode(answer.frame.key, answer.frame.payload, answer.frame.encoding)
+    except DecodeError:
+        return None
+
+
+def _report(counters: Counters, error: OSError) -> None:
+    counters.reject("unwritable_state", f"{error.filename or 'the journal'}: {error.strerror}")
+    log.warning("answers are not written down, so that a restart may give others: %s", error)

@@ -1,0 +1,87 @@
+"""What every running service does: holds its place, reports, describes itself, obeys commands."""
+
+import logging
+import threading
+from abc import ABC, abstractmethod
+
+import zenoh
+
+from actum import keys
+from actum.bridge import Bridge
+from actum.codec import encode
+from actum.commands import Commanded
+from actum.node import Node, Source
+from actum.runtime.commanding import Commander
+from actum.runtime.meter import Meter
+from actum.runtime.outbox import Outbox
+from actum.runtime.place import Place
+from actum.runtime.reporting import Reporter, StateLog
+from actum.settings import ServiceSettings
+
+log = logging.getLogger("actum")
+
+
+class Service(ABC):
+    """The part common to nodes and sources: start and end, the one instance per sensor, status and description."""
+
+    def __init__(self, what: Node | Source | Bridge, settings: ServiceSettings) -> None:
+        self.name, counters = what.name, what.counters
+        self.failed = False
+        self._commands = what.commands if isinstance(what, Commanded) else ()
+        self._settings = settings
+        self._counters = counters
+        self._state_log = StateLog(counters)
+        self._meter = Meter(self.name, counters, settings)
+        self._lock = threading.Lock()
+
+    def introduce(self) -> None:
+        """Log the source that is read, and any problem that there is already."""
+        if "source" in self._counters.details:
+            log.info("sensor %s: %s", self._settings.sensor, self._counters.details["source"])
+        self._state_log.log_change()
+
+    def serve(self, session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
+        """Run until stopped, once for `settling_s` no other instance is seen.
+
+        Raises:
+            PlaceTakenError: another instance runs and stays.
+        """
+        place = Place(session, self._settings, self.name)
+        if not place.take(stop, settling_s):
+            return
+        info = keys.key(keys.INFO, self._settings.sensor, self.name)
+        queryables = [session.declare_queryable(info, self._answer_info)]
+        if self._commands:
+            queryables.append(self._commander(stop).declare(session))
+        reporter = Reporter(self._meter, self._state_log, self._settings, self._lock)
+        reporting = threading.Thread(target=reporter.report, args=(session, place, stop, self._healthy), daemon=True)
+        reporting.start()
+        try:
+            self._work(session, Outbox(session), stop, place.vacant_s)
+        finally:
+            stop.set()
+            reporting.join(timeout=0.5)
+            for queryable in queryables:
+                queryable.undeclare()
+            place.leave()
+
+    @abstractmethod
+    def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
+        """Handle messages or put frames until stopped. No other instance has run for `vacant_s` seconds."""
+
+    def _healthy(self) -> bool:
+        return True
+
+    def _commander(self, stop: threading.Event) -> Commander:
+        def failed() -> None:
+            self.failed = True
+            stop.set()
+
+        return Commander(self._commands, self._settings, self.name, self._counters, self._lock, failed)
+
+    def _answer_info(self, query: zenoh.Query) -> None:
+        with query:
+            with self._lock:
+                commands = sorted(each.name for each in self._commands)
+                frame = encode(self._meter.info().model_copy(update={"commands": commands}))
+            query.reply(frame.key, frame.payload, encoding=frame.encoding)

@@ -1,0 +1,123 @@
+"""Runs a pure step: gives it the messages of its topics, and ticks."""
+
+import logging
+import threading
+import time
+from abc import abstractmethod
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import zenoh
+
+from actum.bridge import Bridge
+from actum.codec import DecodeError, decode, origin_of
+from actum.messages import Message
+from actum.node import TICK_NS, Node, Tick
+from actum.runtime.inbox import Inbox, Reach
+from actum.runtime.outbox import Outbox
+from actum.runtime.repetitions import Repetitions
+from actum.runtime.resuming import Resumption
+from actum.runtime.service import Service
+from actum.settings import ServiceSettings
+
+log = logging.getLogger("actum")
+
+LONGEST_TICK_NS = 2 * TICK_NS
+"""Most that time goes on from one tick to the next (ns): a process that was stopped first reads what has come
+meanwhile, before it gives up waiting for it."""
+
+
+class StepService(Service):
+    """Gives a pure step the messages of its topics, and ticks; what becomes of its answers a subclass says."""
+
+    def __init__(self, step: Node | Bridge, settings: ServiceSettings) -> None:
+        super().__init__(step, settings)
+        self._inputs = step.inputs
+        self._inbox: Inbox | None = None
+        self._repetitions = Repetitions()
+
+    def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
+        self._serve_inputs(session, outbox, stop, Reach.unknown(vacant_s))
+
+    def _serve_inputs(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, reach: Reach) -> None:
+        """Handle messages and ticks until stopped, and before them the messages that the inbox is to reach back to."""
+        self._meter.await_history()
+        self._inbox = Inbox(session, self._inputs, self._settings.sensor, reach)
+        self._inbox.start(lambda sample: self._receive(sample, outbox, stop))
+        tick_ns, before_ns = 0, time.monotonic_ns()
+        try:
+            while not stop.wait(TICK_NS / 1e9):
+                now_ns = time.monotonic_ns()
+                tick_ns += min(now_ns - before_ns, LONGEST_TICK_NS)
+                before_ns = now_ns
+                self._step(Tick(tick_ns), outbox)
+        finally:
+            self._inbox.close()
+
+    def _healthy(self) -> bool:
+        return self._inbox is not None and self._inbox.working
+
+    def _receive(self, sample: zenoh.Sample, outbox: Outbox, stop: threading.Event) -> None:
+        """Handle one sample; bad input is counted, a repetition left out, a bug ends the process."""
+        began_ns = time.perf_counter_ns()
+        key, payload = str(sample.key_expr), sample.payload.to_bytes()
+        try:
+            message = decode(key, payload, str(sample.encoding))
+        except DecodeError as error:
+            with self._lock:
+                self._meter.rejected(error.kind, str(error))
+            return
+        with self._ending_at_a_bug(key, stop):
+            with self._lock:
+                if self._repetitions.has(message, payload):
+                    return
+                self._meter.received(key, message, _origin(sample))
+            self._step(message, outbox)
+            with self._lock:
+                self._meter.took((time.perf_counter_ns() - began_ns) / 1e6)
+
+    @contextmanager
+    def _ending_at_a_bug(self, key: str, stop: threading.Event) -> Iterator[None]:
+        """Return a context in which to handle a sample: an exception is a bug, which is logged and ends the process."""
+        try:
+            yield
+        except Exception:
+            log.exception("a bug, met while handling a message on %s", key)
+            self.failed = True
+            stop.set()
+
+    @abstractmethod
+    def _step(self, message: Message | Tick, outbox: Outbox) -> None:
+        """Let the step handle one message or tick, and put its answers."""
+
+
+class NodeService(StepService):
+    """Runs a node: gives it messages and ticks, and puts the messages that it returns."""
+
+    def __init__(self, node: Node, settings: ServiceSettings) -> None:
+        super().__init__(node, settings)
+        self._node = node
+
+    def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
+        resumption = Resumption.of(self._node, self.name, self._settings, self._counters)
+        if resumption is None:
+            super()._work(session, outbox, stop, vacant_s)
+            return
+        try:
+            self._serve_inputs(session, outbox, stop, resumption.resume(outbox, vacant_s))
+        finally:
+            resumption.close()
+
+    def _step(self, message: Message | Tick, outbox: Outbox) -> None:
+        with self._lock:
+            for output in self._node.handle(message):
+                outbox.put(output)
+
+
+def _origin(sample: zenoh.Sample) -> str:
+    """Return the id of the session that put a sample: from its attachment, else from its Zenoh timestamp; else "".
+
+    The timestamp alone would not do: a router puts one of its own in place of that of a host whose clock is ahead.
+    """
+    origin = "" if sample.attachment is None else origin_of(sample.attachment.to_bytes())
+    return origin or (str(sample.timestamp.get_id()) if sample.timestamp else "")

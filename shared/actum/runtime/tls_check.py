@@ -1,0 +1,182 @@
+"""Why a TLS connection to a router fails: Zenoh only lets a session time out, TLS itself says who refuses whom."""
+
+import json
+import socket
+import ssl
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import zenoh
+
+CONNECT_S = 3.0
+"""How long (s) a host may take to answer: a router in the same building needs milliseconds."""
+ALERT_S = 2.0
+"""How long (s) to wait for a router's refusal, which comes after the handshake."""
+NO_CHECK_TIME = ssl.VerifyFlags(0x200000)
+"""OpenSSL's X509_V_FLAG_NO_CHECK_TIME: a certificate's dates are to be read, also where they are past."""
+TURNS = 4
+"""Turns of both sides in a handshake with oneself: more than TLS 1.3 takes."""
+
+_STRANGER = "the router knows another authority than that of {certificate}: use a folder of its deployment"
+_NO_TLS = "what listens there does not answer in TLS: use tcp/ in ACTUM_CONNECT, unless it is frozen"
+_REFUSED = {
+    "CERTIFICATE_REQUIRED": "the router wants a certificate and is shown none: set ACTUM_CREDENTIALS to a folder",
+    "UNKNOWN_CA": _STRANGER,
+    "DECRYPT_ERROR": _STRANGER,  # an authority of the same name, with another key
+    "CERTIFICATE_EXPIRED": "to the router {certificate} is not valid now: is the router's clock right?",
+}
+"""What it means that a router breaks off, by the end of OpenSSL's name for its alert."""
+_DISTRUSTED = {
+    9: "the router's certificate is not valid yet: set this machine's clock, or the router's host's",
+    10: "the router's certificate expired on {ends}: renew it with 'actum deploy rotate'",
+    62: "the router's certificate is for {names} and not for {host}: connect by one of these names",
+    64: "the router's certificate is for {names} and not for {host}: connect by one of these names",
+}
+"""What it means that OpenSSL does not trust a router, by its number of the reason."""
+
+
+@dataclass(frozen=True)
+class Tls:
+    """How a session makes itself known and knows its router: files, None where none is named."""
+
+    authority: str | None
+    certificate: str | None
+    key: str | None
+    by_name: bool
+    """Whether the router's certificate has to name the host."""
+
+    @classmethod
+    def of(cls, config: zenoh.Config) -> "Tls":
+        """Read it from a session's configuration."""
+
+        def value(name: str) -> Any:
+            return json.loads(config.get_json(f"transport/link/tls/{name}"))
+
+        return cls(
+            authority=value("root_ca_certificate"),
+            certificate=value("connect_certificate"),
+            key=value("connect_private_key"),
+            by_name=value("verify_name_on_connect") is not False,
+        )
+
+
+def refusal(host: str, port: int, tls: Tls) -> str | None:
+    """Return why the router's TLS and ours do not go together; None where they do.
+
+    Raises:
+        OSError: the router cannot be connected to, or one of the files cannot be read.
+    """
+    return _own_fault(tls) or _routers_fault(host, port, tls) or _refused(host, port, tls)
+
+
+def speaks_tls(host: str, port: int) -> bool:
+    """Tell whether what listens there speaks TLS, whether it lets us in or not."""
+    context = _context(None)
+    context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
+    try:
+        _connected(context, host, port).close()
+    except ssl.SSLError as error:
+        return "ALERT" in (error.reason or "")
+    except OSError:
+        return False
+    return True
+
+
+def _own_fault(tls: Tls) -> str | None:
+    """Return why nobody who knows our authority can accept our certificate; None where he can."""
+    if tls.certificate is None or tls.authority is None:
+        return None
+    try:
+        own = _own_certificate(tls)
+    except ssl.SSLError as error:
+        problem = getattr(error, "verify_message", None) or error.reason
+        return (
+            f"{tls.certificate} is not signed by the authority in {tls.authority} ({problem}): use files of one folder"
+        )
+    if time.time() > ssl.cert_time_to_seconds(own["notAfter"]):
+        return f"{tls.certificate} expired on {own['notAfter']}: renew it with 'actum deploy rotate'"
+    if time.time() < ssl.cert_time_to_seconds(own["notBefore"]):
+        return f"{tls.certificate} is not valid before {own['notBefore']}: set this machine's clock"
+    return None
+
+
+def _own_certificate(tls: Tls) -> dict[str, Any]:
+    """Return the fields of our certificate, which Python reads only where it comes in a handshake: one with ourselves.
+
+    Raises:
+        ssl.SSLError: our authority did not sign it.
+    """
+    accepting, showing = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    showing.check_hostname, showing.verify_mode = False, ssl.CERT_NONE
+    for context in (accepting, showing):
+        context.load_cert_chain(str(tls.certificate), tls.key)
+    accepting.load_verify_locations(tls.authority)
+    accepting.verify_mode, accepting.verify_flags = ssl.CERT_REQUIRED, accepting.verify_flags | NO_CHECK_TIME
+    to, back = ssl.MemoryBIO(), ssl.MemoryBIO()
+    sides = showing.wrap_bio(back, to), accepting.wrap_bio(to, back, server_side=True)
+    for side in sides * TURNS:
+        try:
+            side.do_handshake()
+        except ssl.SSLWantReadError:
+            continue
+    return sides[1].getpeercert() or {}
+
+
+def _routers_fault(host: str, port: int, tls: Tls) -> str | None:
+    """Return why we do not accept the router's certificate; None where we do."""
+    context = _context(tls)
+    try:
+        _connected(context, host, port).close()
+    except ssl.SSLCertVerificationError as error:
+        if error.verify_code not in _DISTRUSTED:
+            known = f"the authority in {tls.authority}" if tls.authority else "an authority that this machine knows"
+            problem = f"the router's certificate is not signed by {known} ({error.verify_message})"
+            return f"{problem}: use a folder of its deployment"
+        return _DISTRUSTED[error.verify_code].format(host=host, **_routers_certificate(host, port, tls))
+    except ssl.SSLError as error:
+        return None if "ALERT" in (error.reason or "") else _NO_TLS
+    except TimeoutError:
+        return _NO_TLS
+    return None
+
+
+def _routers_certificate(host: str, port: int, tls: Tls) -> dict[str, str]:
+    """Return when the router's certificate ends and the names that it is for."""
+    context = _context(tls)
+    context.check_hostname, context.verify_flags = False, context.verify_flags | NO_CHECK_TIME
+    with _connected(context, host, port) as connection:
+        shown: Any = connection.getpeercert() or {}
+    return {"ends": shown["notAfter"], "names": ", ".join(name for _, name in shown.get("subjectAltName", ()))}
+
+
+def _refused(host: str, port: int, tls: Tls) -> str | None:
+    """Return why the router breaks off after the handshake, which shows it our certificate; None if it goes on."""
+    try:
+        with _connected(_context(tls), host, port) as connection:
+            connection.settimeout(ALERT_S)
+            connection.recv(1)
+    except TimeoutError:
+        return None  # it waits for what Zenoh would say now
+    except ssl.SSLError as error:
+        alert = error.reason or str(error)
+        for end, meaning in _REFUSED.items():
+            if alert.endswith(end):
+                return meaning.format(certificate=tls.certificate)
+        return (
+            f"the router refuses {tls.certificate or 'to be shown no certificate'} ({alert.lower().replace('_', ' ')})"
+        )
+    return None
+
+
+def _context(tls: Tls | None) -> ssl.SSLContext:
+    context = ssl.create_default_context(cafile=tls.authority if tls else None)
+    if tls is not None:
+        context.check_hostname = tls.by_name
+    if tls is not None and tls.certificate is not None:
+        context.load_cert_chain(tls.certificate, tls.key)
+    return context
+
+
+def _connected(context: ssl.SSLContext, host: str, port: int) -> ssl.SSLSocket:
+    return context.wrap_socket(socket.create_connection((host, port), CONNECT_S), server_hostname=host)

@@ -1,0 +1,200 @@
+"""The service that keeps events: what is stored, when files are finished, what a killed process leaves."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import events
+from actum.messages import AUTO, MANUAL, Event, Message, Segment
+from actum.node import SECOND_NS, SETTLE_NS, Tick
+from actum.recording import Recording
+from actum_command.history.event_files import HOUR_NS, EventFiles
+from actum_command.history.event_recorder import MOST_ANSWERED, MOST_WAITING, EventRecorder
+from actum_command.history.settings import Settings
+from empty_messages import action, mark, skeleton
+
+START_NS = 1_795_417_800 * SECOND_NS
+
+
+def event(segment_id: str, start_ns: int, end_ns: int) -> Event:
+    stamps = {"stamp_ns": end_ns, "start_ns": start_ns, "end_ns": end_ns}
+    return events.event(segment_id, "pushed the cup").model_copy(update=stamps)
+
+
+class History:
+    """A recorder in a folder, whose clocks a test sets."""
+
+    def __init__(self, folder: Path, **settings: Any) -> None:
+        self.folder, self.now_ns = folder, 0
+        self._files = EventFiles(folder, "kinect0", Settings(**settings))
+        self.recorder = EventRecorder(self._files, lambda: START_NS + self.now_ns, lambda: self.now_ns)
+        self.tick()
+
+    def tick(self, passed_s: float = 0.0) -> None:
+        self.now_ns += round(passed_s * SECOND_NS)
+        self.recorder.handle(Tick(self.now_ns))
+
+    def take(self, *messages: Message) -> None:
+        for message in messages:
+            assert self.recorder.handle(message) == []
+
+    @property
+    def names(self) -> list[str]:
+        return [file.name for file in sorted(self.folder.iterdir())]
+
+    def stored(self) -> list[Message]:
+        return [message for name in self.names for message in Recording(self.folder / name).messages()]
+
+
+@pytest.fixture
+def history(tmp_path: Path) -> Iterator[History]:
+    made = History(tmp_path)
+    yield made
+    made.recorder.close()
+
+
+def marks(history: History) -> list[tuple[str, str, int | None]]:
+    return [(m.segment_id, m.kind, m.stamp_ns) for m in history.stored() if isinstance(m, Segment)]
+
+
+def test_events_final_actions_and_all_marks_are_kept_and_nothing_else(history: History) -> None:
+    kept = [mark("start", 7, origin=AUTO), mark("end", 9, origin=MANUAL), action(7, 9), event("one", 7, 9)]
+    history.take(*kept, action(7, None, final=False), skeleton(8))
+    history.recorder.close()
+    assert sorted(type(message).__name__ for message in history.stored()) == ["Action", "Event", "Segment", "Segment"]
+    assert history.names == ["events-kinect0-000001-20261123T071000Z.mcap"]
+
+
+def test_a_mark_without_a_stamp_has_that_of_its_answer_also_where_it_comes_later(history: History) -> None:
+    history.take(mark("start"), action(11, 31), mark("end"))
+    history.recorder.close()
+    assert marks(history) == [("one", "start", 11), ("one", "end", 31)]
+
+
+def test_a_mark_that_nothing_answers_is_counted(history: History) -> None:
+    history.take(mark("start"))
+    history.tick(SETTLE_NS / SECOND_NS + 1)
+    assert history.recorder.counters.rejects == {"mark_without_stamp": 1}
+
+
+def test_marks_without_end_do_not_fill_the_memory(history: History) -> None:
+    history.take(*(mark("start", segment_id=f"s{i}") for i in range(MOST_WAITING + 5)))
+    assert history.recorder.counters.rejects == {"mark_without_stamp": 5}
+    history.take(*(action(1, 2, f"a{i}") for i in range(MOST_ANSWERED + 5)))
+    assert len(history.recorder._bounds) == MOST_ANSWERED
+
+
+def test_where_nothing_happens_there_is_no_file(history: History) -> None:
+    history.tick(2 * 24 * 3600)
+    assert history.names == []
+
+
+def test_a_file_is_finished_by_age(history: History) -> None:
+    history.take(event("a", 1, 2))
+    history.tick(23.9 * 3600)
+    assert history.names == ["events-kinect0-000001-20261123T071000Z.mcap.part"]
+    history.tick(0.2 * 3600)
+    history.take(event("b", 3, 4))
+    history.tick(1.0)
+    assert [name.split("-")[2] for name in history.names] == ["000001", "000002"]
+    assert [name.endswith(".part") for name in history.names] == [False, True]
+    assert 24 * 3600 * SECOND_NS == 24 * HOUR_NS
+
+
+def test_files_are_finished_by_size_and_the_oldest_make_room(tmp_path: Path) -> None:
+    history = History(tmp_path, history_file_mb=0.05, history_keep_files=3)
+    for number in range(600):
+        history.take(event(f"s{number}", number, number + 1))
+    history.recorder.close()
+    history.tick()
+    finished = history.recorder.counters.counts["files"]
+    assert finished > 4
+    assert [name.split("-")[2] for name in history.names] == [f"{n:06d}" for n in range(finished - 2, finished + 1)]
+    assert history.recorder.counters.counts["deleted"] == finished - 3
+    assert all(file.stat().st_size < 100_000 for file in tmp_path.iterdir())
+    newest = [message.segment_id for message in history.stored()]  # type: ignore[attr-defined]
+    assert newest == [f"s{number}" for number in range(600 - len(newest), 600)], "in order, up to the last"
+
+
+def test_the_oldest_make_room_by_size(tmp_path: Path) -> None:
+    history = History(tmp_path, history_file_mb=0.05, history_keep_mb=0.3)
+    for number in range(900):
+        history.take(event(f"s{number}", number, number + 1))
+    history.recorder.close()
+    assert len(history.names) > 1 and sum(file.stat().st_size for file in tmp_path.iterdir()) <= 300_000
+
+
+def test_names_stay_in_order_where_the_clock_is_set_back(history: History) -> None:
+    history.take(event("a", 1, 2))
+    history.recorder.close()
+    history.recorder._received_ns = lambda: START_NS - HOUR_NS
+    history.take(event("b", 3, 4))
+    history.recorder.close()
+    assert [message.segment_id for message in history.stored()] == ["a", "b"]  # type: ignore[attr-defined]
+
+
+def test_what_a_killed_process_left_is_finished_by_the_next(tmp_path: Path) -> None:
+    killed = History(tmp_path)
+    killed.take(*(event(f"s{number}", number, number + 1) for number in range(20)))
+    killed.tick(1.0)  # what was written a second ago stands on the disk
+    [part] = tmp_path.iterdir()
+    whole = part.read_bytes()
+    part.write_bytes(whole[:-100])  # a power cut tears the last message
+    after = History(tmp_path)
+    assert [file.suffix for file in tmp_path.iterdir()] == [".mcap"]
+    assert [m.segment_id for m in after.stored()] == [f"s{number}" for number in range(19)]  # type: ignore[attr-defined]
+    after.take(event("later", 50, 51))
+    assert [name.split("-")[2] for name in after.names] == ["000001", "000002"]
+    after.recorder.close()
+    killed._files._abandon()
+
+
+def test_what_is_recovered_is_what_was_left_and_not_what_is_being_written(tmp_path: Path) -> None:
+    """Also where the first message comes before the first tick."""
+    files = EventFiles(tmp_path, "kinect0", Settings())
+    recorder = EventRecorder(files, lambda: START_NS, lambda: 0)
+    recorder.handle(event("a", 1, 2))
+    recorder.handle(Tick(0))
+    recorder.handle(event("b", 3, 4))
+    recorder.close()
+    [file] = tmp_path.iterdir()
+    assert [message.segment_id for message in Recording(file).messages()] == ["a", "b"]  # type: ignore[attr-defined]
+
+
+def test_what_cannot_be_read_is_left_and_counted(tmp_path: Path) -> None:
+    (tmp_path / "events-kinect0-000003-20261123T071000Z.mcap.part").write_bytes(b"no recording at all")
+    history = History(tmp_path)
+    assert history.recorder.counters.rejects == {"unreadable_history": 1}
+    history.take(event("a", 1, 2))
+    assert [name.split("-")[2] for name in history.names] == ["000003", "000004"]
+    history.recorder.close()
+
+
+def test_other_sensors_and_other_files_are_left_alone(tmp_path: Path) -> None:
+    others = ["events-kinect0-left-000009-20261123T071000Z.mcap.part", "mine.mcap", "events-kinect0-notes.txt"]
+    for name in others:
+        (tmp_path / name).write_bytes(b"x")
+    history = History(tmp_path, history_keep_files=1)
+    for name in ("a", "b"):
+        history.take(event(name, 1, 2))
+        history.recorder.close()
+    assert {*others} < {*history.names}
+    assert len(history.names) == len(others) + 1
+
+
+def test_a_full_disk_is_told_and_survived(history: History, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    history.take(event("a", 1, 2))
+    with monkeypatch.context() as there:
+        there.setattr("actum.recorder.Recorder.write", full)
+        history.take(event("lost", 3, 4))
+    assert history.recorder.counters.rejects == {"unwritable_history": 1}
+    assert history.recorder.counters.state.startswith("history not written: No space left on device")
+    history.take(event("b", 5, 6))
+    assert history.recorder.counters.state == "running"
+    history.recorder.close()
+    assert [message.segment_id for message in history.stored()] == ["a", "b"]  # type: ignore[attr-defined]

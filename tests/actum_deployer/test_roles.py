@@ -1,0 +1,101 @@
+"""The table of roles allows each service what it does, and nobody what is another's."""
+
+from collections.abc import Sequence
+
+import pytest
+
+from action_fusion.node import ActionFusion
+from actum import keys
+from actum.keys import Topic
+from actum.node import replay
+from actum_deployer.access_control import TOLD, access_control, link_rules, rules
+from actum_deployer.roles import GATEWAY, IMAGES, PEOPLES, ROLES, SWITCH, VIEWER, Role, identity
+from actum_model_trainer.teaching.trainer import ModelTrainer
+from marker_tracker.node import MarkerTracker
+from node_cases import CASES, Case
+from pose_preprocessor.node import PosePreprocessor
+from som_classifier.node import SomClassifier
+from web_dashboard.node import WebDashboard
+
+BY_SERVICE = {service: role for role in ROLES for service in role.services}
+NODES = (PosePreprocessor, SomClassifier, MarkerTracker, ActionFusion, ModelTrainer, WebDashboard)
+EVERYBODY = [(role, "kinect0") for role in ROLES]
+
+
+def allowed(role: Role, flow: str, message: str) -> set[str]:
+    """The key expressions on which a role may send (ingress) or receive (egress) a kind of message."""
+    own = [rule for rule in rules(role, "kinect0") if flow in rule["flows"] and message in rule["messages"]]
+    return {expression for rule in own for expression in rule["key_exprs"]}
+
+
+def patterns(topics: Sequence[Topic], sensor: str = "kinect0") -> set[str]:
+    return {keys.pattern(topic, sensor) for topic in topics}
+
+
+@pytest.mark.parametrize("node", NODES, ids=lambda node: node.name)
+def test_a_service_may_read_what_its_node_reads(node: type) -> None:
+    assert {*node.inputs} <= {*BY_SERVICE[node.name].reads}
+
+
+@pytest.mark.parametrize("case", CASES, ids=repr)
+def test_a_service_may_put_what_its_node_puts(case: Case) -> None:
+    node = case.build()
+    answers = replay(node, ((message.stamp_ns or 0, message) for message in case.messages()))
+    put = {keys.address_of(answer).topic for answer in answers}
+    assert put
+    assert put <= {*BY_SERVICE[node.name].puts}
+
+
+def test_only_gateways_put_what_is_seen_and_images_go_to_whom_they_concern() -> None:
+    assert {role.name for role in ROLES if {keys.SKELETON, *IMAGES} & {*role.puts}} == {"gateway"}
+    assert {role.name for role in ROLES if {*IMAGES} & {*role.reads}} == {"tracker", "page", "recorder"}
+
+
+def test_who_marks_is_who_may_switch_and_the_classifier_that_finds() -> None:
+    assert {role.name for role in ROLES if keys.SEGMENT in role.puts} == {"switch", "page", "classifier"}
+
+
+def test_a_service_speaks_for_its_own_sensor_alone() -> None:
+    said = set.union(*(allowed(GATEWAY, "ingress", kind) for kind in ("put", "reply", "liveliness_token")))
+    assert said
+    assert all(expression.startswith("actum/kinect0/") for expression in said)
+
+
+def test_a_viewer_says_nothing_and_asks_only_who_is_there() -> None:
+    for kind in ("put", "delete", "reply", "declare_queryable", "liveliness_token"):
+        assert allowed(VIEWER, "ingress", kind) == set()
+    assert not any("command" in expression for expression in allowed(VIEWER, "ingress", "query"))
+    assert any("command" in expression for expression in allowed(SWITCH, "ingress", "query"))
+
+
+@pytest.mark.parametrize("role", ROLES, ids=lambda role: role.name)
+def test_what_is_received_is_what_is_read(role: Role) -> None:
+    sensor = "kinect0" if role.services else "*"
+    got = {each for each in allowed(role, "egress", "put") if "@adv" not in each}
+    assert got == patterns(role.reads, sensor)
+
+
+def test_every_identity_has_a_policy_and_every_rule_is_somebodys() -> None:
+    section = access_control(EVERYBODY, ["router.camera"], images_cross=False, passwords=True)
+    assert section["default_permission"] == "deny"
+    assert {subject["id"] for subject in section["subjects"]} == {
+        *(identity(role, "kinect0") for role in ROLES), "router.camera",
+    }  # fmt: skip
+    used = [rule for policy in section["policies"] for rule in policy["rules"]]
+    assert {rule["id"] for rule in section["rules"]} == {*used}
+    assert used.count(TOLD) == len(ROLES)
+    assert {rule["permission"] for rule in section["rules"]} == {"allow"}
+
+
+def test_people_are_known_by_certificate_and_user_and_routers_by_certificate() -> None:
+    section = access_control(EVERYBODY, ["router.camera"], images_cross=False, passwords=True)
+    with_user = {subject["id"] for subject in section["subjects"] if "usernames" in subject}
+    assert with_user == {identity(role, "kinect0") for role in ROLES}
+    assert {role.name for role in PEOPLES} <= with_user
+
+
+@pytest.mark.parametrize("cross", [False, True])
+def test_images_pass_between_routers_only_where_they_may(cross: bool) -> None:
+    content = {each for rule in link_rules(cross) if "put" in rule["messages"] for each in rule["key_exprs"]}
+    assert any("image" in expression for expression in content) == cross
+    assert patterns([topic for topic in keys.TOPICS if topic not in IMAGES], "*") <= content

@@ -1,0 +1,143 @@
+"""The folders that are written: who may read them, what each host gets, and what Zenoh and Compose read."""
+
+import stat
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+import zenoh
+
+from actum.runtime.credentials import check
+from actum.runtime.router import router_config
+from actum.settings import SettingsError
+from actum_deployer.credential_folders import SERVICES_USER
+from actum_deployer.deployment import Deployment, hosts_of
+from actum_deployer.writing import write_deployment
+
+HOSTS = hosts_of("camera=192.168.1.5,compute=192.168.1.6")
+USUAL = Path(__file__).parents[2] / "deploy" / "zenoh" / "router.json5"
+SECRETS = {"key.pem", "user.json5", "users.txt"}
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Path:
+    write_deployment(Deployment(HOSTS, passwords=True), tmp_path, days=30)
+    return tmp_path
+
+
+def compose(root: Path, host: str) -> dict[str, Any]:
+    return yaml.safe_load((root / host / "compose.yml").read_text())["services"]
+
+
+def test_nobody_but_the_owner_reads_what_is_secret(written: Path) -> None:
+    found = [file for file in written.rglob("*") if file.name in SECRETS]
+    assert {file.name for file in found} == SECRETS
+    assert {stat.S_IMODE(file.stat().st_mode) for file in found} == {0o600}
+    assert {stat.S_IMODE(file.parent.stat().st_mode) for file in found} == {0o700}
+
+
+def test_each_host_has_the_credentials_of_its_services_and_no_others(written: Path) -> None:
+    assert {each.name for each in (written / "camera" / "credentials").iterdir()} == {
+        "router", "gateway.kinect0", "tracker.kinect0",
+    }  # fmt: skip
+    assert {each.name for each in (written / "compute" / "credentials").iterdir()} == {
+        "router", "preprocessor.kinect0", "classifier.kinect0", "fusion.kinect0", "trainer.kinect0", "page.kinect0",
+    }  # fmt: skip
+    assert {each.name for each in (written / "people").iterdir()} == {"switch", "viewer", "recorder"}
+
+
+@pytest.mark.parametrize("host", ["camera", "compute"])
+def test_a_container_has_its_own_credentials_and_no_rights(written: Path, host: str) -> None:
+    for name, service in compose(written, host).items():
+        assert service["read_only"], name
+        assert service["cap_drop"] == ["ALL"]
+        assert service["security_opt"] == ["no-new-privileges:true"]
+        assert service["user"] == f"{SERVICES_USER}:{SERVICES_USER}"
+        assert {"mem_limit", "pids_limit", "tmpfs"} <= service.keys()
+        [mounted] = [mount for mount in service["volumes"] if "credentials" in mount]
+        source, target, mode = mounted.split(":")
+        assert (mode, target) == ("ro", service["environment"]["ACTUM_CREDENTIALS"])
+        check(written / host / source)
+
+
+def test_only_the_router_is_reached_from_elsewhere(written: Path) -> None:
+    for host in ("camera", "compute"):
+        for name, service in compose(written, host).items():
+            for port in service.get("ports", []):
+                assert name == "router" or port.startswith("127.0.0.1:")
+
+
+def test_a_unit_for_each_container_starts_the_same(written: Path) -> None:
+    for host in ("camera", "compute"):
+        units = {file.stem.removeprefix("actum-"): file.read_text() for file in (written / host / "systemd").iterdir()}
+        services = compose(written, host)
+        assert units.keys() == services.keys()
+        for name, text in units.items():
+            assert f"ACTUM_CREDENTIALS={services[name]['environment']['ACTUM_CREDENTIALS']}" in text
+            assert "NoNewPrivileges=yes" in text
+            assert f"actum-{name}" in (written / host / "README.md").read_text()
+
+
+@pytest.mark.parametrize("options", [{}, {"passwords": True}, {"secured": False}, {"images_cross": True}], ids=str)
+def test_zenoh_reads_every_routers_file(options: dict[str, bool], tmp_path: Path) -> None:
+    deployment = Deployment(HOSTS, **options)
+    write_deployment(deployment, tmp_path, days=30)
+    for host in deployment.routers:
+        credentials = tmp_path / host.name / "credentials" / "router" if deployment.secured else None
+        config = router_config(None, tmp_path / host.name / "router.json5", credentials)
+        assert ("true" in config.get_json("access_control/enabled")) == deployment.secured
+        assert isinstance(config, zenoh.Config)
+
+
+def test_with_one_router_the_others_connect_to_it(tmp_path: Path) -> None:
+    write_deployment(Deployment(HOSTS, one_router=True), tmp_path, days=30)
+    assert "router" not in compose(tmp_path, "compute")
+    assert not (tmp_path / "compute" / "router.json5").exists()
+    assert compose(tmp_path, "compute")["som_classifier"]["environment"]["ACTUM_CONNECT"] == "tls/192.168.1.5:7447"
+
+
+def test_several_sensors_on_a_host_keep_apart(tmp_path: Path) -> None:
+    write_deployment(Deployment(hosts_of("camera1=a,camera2=b,compute=c")), tmp_path, days=30)
+    services = compose(tmp_path, "compute")
+    for setting in ("ACTUM_SENSOR", "ACTUM_MODEL", "ACTUM_CREDENTIALS"):
+        values = [services[f"som_classifier-kinect{n}"]["environment"][setting] for n in (0, 1)]
+        assert values[0] != values[1]
+    pages = [services[f"web_dashboard-kinect{n}"]["ports"] for n in (0, 1)]
+    assert pages == [["127.0.0.1:8080:8080"], ["127.0.0.1:8081:8081"]]
+
+
+def test_renewed_are_certificates_and_keys_and_nothing_else(written: Path) -> None:
+    def contents(*names: str) -> dict[Path, bytes]:
+        return {file: file.read_bytes() for file in written.rglob("*") if file.name in names}
+
+    (written / "camera" / "settings.env").write_text("ACTUM_CAMERA=1\n")
+    authority = [(written / "authority" / name).read_bytes() for name in ("ca.pem", "key.pem")]
+    kept = contents("user.json5", "users.txt", "ca.pem", "settings.env", "router.json5", "compose.yml")
+    renewed = contents("certificate.pem")
+    write_deployment(Deployment.load(written), written, days=30)
+    assert contents("user.json5", "users.txt", "ca.pem", "settings.env", "router.json5", "compose.yml") == kept
+    assert [(written / "authority" / name).read_bytes() for name in ("ca.pem", "key.pem")] == authority
+    assert all(file.read_bytes() != before for file, before in renewed.items())
+
+
+@pytest.mark.parametrize("damage", ["missing", "another's key", "no certificate"])
+def test_credentials_that_cannot_be_used_are_refused_by_name(damage: str, written: Path) -> None:
+    folder = written / "people" / "viewer"
+    if damage == "missing":
+        (folder / "key.pem").unlink()
+    elif damage == "another's key":
+        (folder / "key.pem").write_bytes((written / "people" / "switch" / "key.pem").read_bytes())
+    else:
+        (folder / "certificate.pem").write_text("nothing")
+    with pytest.raises(SettingsError, match=r"credentials: .*viewer"):
+        check(folder)
+
+
+@pytest.mark.parametrize("secured", [True, False])
+def test_but_for_security_a_router_is_the_usual_one(secured: bool, tmp_path: Path) -> None:
+    write_deployment(Deployment(HOSTS, secured=secured), tmp_path, days=30)
+    usual = zenoh.Config.from_file(USUAL)
+    made = zenoh.Config.from_file(tmp_path / "camera" / "router.json5")
+    for path in ("mode", "scouting", "transport/shared_memory", "transport/link/tx", "adminspace"):
+        assert made.get_json(path) == usual.get_json(path), path

@@ -1,0 +1,116 @@
+"""A deployment of two hosts on this machine: each with its own secured router, in processes, linked over one port."""
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from actum.runtime import Client
+from actum.settings import ServiceSettings, host_and_port
+from actum_command.processes import simulated_objects
+from actum_deployer.deployment import Deployment, hosts_of
+from actum_deployer.roles import PEOPLES, ROLES, Role
+from actum_deployer.writing import write_deployment
+from live import PATIENCE_S, Running, free_endpoint, started, wait_until
+
+PEOPLE = {role.name for role in PEOPLES}
+BY_SERVICE = {service: role for role in ROLES for service in role.services}
+"""The role of each service."""
+MODULES = {"scene_simulator": "sensor_gateway", "actum_model_trainer": "model_trainer"}
+"""The service's name of each program that has another."""
+
+
+@dataclass
+class Deployed:
+    """A deployment, its folder, and the processes that were started of it."""
+
+    deployment: Deployment
+    root: Path
+    running: list[Running] = field(default_factory=list)
+
+    def credentials(self, identity: str) -> Path:
+        """Find the folder of an identity: on the host that has it, or among people's."""
+        if identity in PEOPLE:
+            return self.root / "people" / identity
+        [found] = self.root.glob(f"*/credentials/{identity}")
+        return found
+
+    def endpoint(self, host: str) -> str:
+        [port] = [each.port for each in self.deployment.hosts if each.name == host]
+        return f"{self.deployment.transport}/127.0.0.1:{port}"
+
+    def settings(self, identity: str, host: str, sensor: str = "kinect0") -> ServiceSettings:
+        folder = self.credentials(identity) if self.deployment.secured else None
+        return ServiceSettings(connect=self.endpoint(host), sensor=sensor, credentials=folder)
+
+    def client(self, identity: str, host: str, sensor: str = "kinect0", wait_s: float = PATIENCE_S) -> Client:
+        return Client(self.settings(identity, host, sensor), wait_s=wait_s)
+
+    def start(self, module: str, host: str, *arguments: str, sensor: str = "kinect0") -> Running:
+        """Start a service with the credentials of its role."""
+        role: Role = BY_SERVICE[MODULES.get(module, module)]
+        return self._start(module, self.environment(f"{role.name}.{sensor}", host, sensor), "-m", module, *arguments)
+
+    def start_router(self, host: str) -> Running:
+        folder = self.root / host
+        credentials = ("--credentials", str(folder / "credentials" / "router")) if self.deployment.secured else ()
+        files = ("--config", str(folder / "router.json5"), *credentials)
+        running = self._start(f"router-{host}", {**os.environ}, "-m", "actum_command", "router", *files)
+        wait_until(lambda: "listens on" in running.said(), f"the router of {host} listens")
+        return running
+
+    def actum(self, identity: str, host: str, *arguments: str) -> Running:
+        """Start a command as somebody."""
+        return self._start(arguments[0], self.environment(identity, host), "-m", "actum_command", *arguments)
+
+    def environment(self, identity: str, host: str, sensor: str = "kinect0") -> dict[str, str]:
+        shown = {"ACTUM_CREDENTIALS": str(self.credentials(identity))} if self.deployment.secured else {}
+        return {
+            **os.environ,
+            **shown,
+            "ACTUM_CONNECT": self.endpoint(host),
+            "ACTUM_SENSOR": sensor,
+            "ACTUM_TRAINER_DATA": str(self.root / "teaching"),
+            "OPENBLAS_NUM_THREADS": "1",
+            **simulated_objects(),
+        }
+
+    def _start(self, name: str, environment: dict[str, str], *arguments: str) -> Running:
+        log = self.root / f"{name}-{len(self.running)}.log"
+        running = started([sys.executable, *arguments], environment, log)
+        self.running.append(running)
+        return running
+
+    def stop(self) -> None:
+        for running in self.running:
+            if running.process.poll() is None:
+                running.process.terminate()
+        for running in self.running:
+            running.process.wait(timeout=PATIENCE_S)
+
+
+def free_port() -> int:
+    address = host_and_port(free_endpoint())
+    assert address is not None
+    return address[1]
+
+
+def described(**options: bool) -> Deployment:
+    """A camera's host and one that computes, with ports of this machine that are free."""
+    hosts = f"camera=127.0.0.1:{free_port()},compute=127.0.0.1:{free_port()}"
+    return Deployment(hosts_of(hosts), simulated=True, **options)
+
+
+@contextmanager
+def deployed(root: Path, **options: bool) -> Iterator[Deployed]:
+    """Write a deployment and run its routers."""
+    made = Deployed(described(**options), root)
+    write_deployment(made.deployment, root, days=30)
+    try:
+        for host in made.deployment.routers:
+            made.start_router(host.name)
+        yield made
+    finally:
+        made.stop()

@@ -1,0 +1,1 @@
+"""Malformed and hostile messages by the hundred thousand, at every service (make fuzz)."""

@@ -1,0 +1,56 @@
+"""Behind routers that hold everybody to a role, doctor tells what is hidden from what is not there."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from actum.messages import Event
+from actum.recording import Recording
+from deployments import Deployed, deployed
+from events import event
+from live import PATIENCE_S, wait_until
+
+pytestmark = pytest.mark.system
+
+
+@pytest.fixture(scope="module")
+def deployment(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Deployed]:
+    with deployed(tmp_path_factory.mktemp("deployment")) as made:
+        yield made
+
+
+def said(deployment: Deployed, identity: str) -> str:
+    doctor = deployment.actum(identity, "compute", "doctor")
+    assert doctor.process.wait(timeout=PATIENCE_S) == 1
+    return " ".join(doctor.said().split())
+
+
+def test_who_may_look_is_told_that_nothing_runs(deployment: Deployed) -> None:
+    found = said(deployment, "viewer")
+    assert "pose_preprocessor is not running: start it" in found
+    assert "access control" not in found
+
+
+def test_who_may_not_look_is_told_that(deployment: Deployed) -> None:
+    preprocessor = deployment.start("pose_preprocessor", "compute")
+    with deployment.client("viewer", "compute") as client:
+        wait_until(lambda: len(client.infos()) == 1, "it runs")
+        found = said(deployment, "gateway.kinect0")
+    preprocessor.terminate()
+    assert found.startswith("services run, and the router's access control tells this program nothing of them")
+    assert "viewer, in ACTUM_CREDENTIALS" in found
+
+
+def test_a_viewer_may_keep_events(deployment: Deployed, tmp_path: Path) -> None:
+    history = deployment.actum("viewer", "compute", "record", str(tmp_path), "--events")
+    with deployment.client("fusion.kinect0", "compute") as client:
+        client.put(event("s1", "push object 1, the cup"))
+        wait_until(lambda: any(stored(tmp_path)), "it is stored")
+    history.terminate()
+    assert history.process.returncode == 0
+    assert [message.segment_id for message in stored(tmp_path) if isinstance(message, Event)] == ["s1"]
+
+
+def stored(folder: Path) -> list[object]:
+    return [message for file in sorted(folder.glob("*.mcap*")) for message in Recording(file).messages()]
