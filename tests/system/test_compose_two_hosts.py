@@ -1,4 +1,4 @@
-"""Two compose projects, each with a network and a router of its own, that share only the routers' link."""
+"""Two compose projects, each with networks and a router of its own, which share the routers' link through a proxy."""
 
 import json
 import os
@@ -126,7 +126,7 @@ def told(messages: Iterator[Message] | list[Message], prefix: str = "") -> Told:
 
 
 def play(hosts: Hosts, prefix: str, disturb: Callable[[TcpProxy, threading.Event], None]) -> Told:
-    """Run and mark the scene on the sensor's host while the link is disturbed; return what the other host tells."""
+    """Run the scene once, mark it on the sensor's host while the link is disturbed; return what the other tells."""
     over = threading.Event()
     with hosts.sensor.client() as switch, hosts.compute.client() as reader:
         events = reader.listen(keys.pattern(keys.EVENT, reader.sensor))
