@@ -32,7 +32,7 @@ up: $(STAMP)  ## router and all services, until Ctrl-C
 	$(BIN)/actum up
 
 test: check  ## static checks, then every test but the long ones
-	$(BIN)/pytest -n 3 --dist worksteal
+	$(BIN)/pytest -n 4 --dist worksteal
 
 test-data: $(STAMP)  ## only the tests on real recordings; fails without ACTUM_DATA
 	@test -d "$$ACTUM_DATA" || { echo "test-data needs ACTUM_DATA: the folder that holds msr_action3d/ and utkinect/" >&2; exit 1; }

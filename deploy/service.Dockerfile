@@ -6,7 +6,7 @@ ARG BASE=python:3.11-slim-bookworm
 
 FROM ${BASE} AS builder
 RUN apt-get update -qq && apt-get install --yes -qq --no-install-recommends binutils > /dev/null
-ENV PIP_NO_CACHE_DIR=1 PIP_NO_COMPILE=1 PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_ROOT_USER_ACTION=ignore
+ENV PIP_NO_CACHE_DIR=1 PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_ROOT_USER_ACTION=ignore
 
 # Third-party packages. Wheels bring symbols for debuggers, 20 MB in zstandard alone, and what compilers and type
 # checkers read. The libraries in folders *.libs are laid out by auditwheel, which strip would undo.
@@ -14,7 +14,7 @@ ENV PIP_NO_CACHE_DIR=1 PIP_NO_COMPILE=1 PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_ROOT
 FROM builder AS packages
 ARG LOCK=service
 COPY deploy/requirements/${LOCK}.txt /build/
-RUN pip install --quiet --no-deps --require-hashes -r /build/${LOCK}.txt --target /packages \
+RUN pip install --quiet --no-compile --no-deps --require-hashes -r /build/${LOCK}.txt --target /packages \
     && find /packages -depth \( -name tests -o -name '*.pyi' -o -name '*.a' -o -name '*.h' \) -exec rm -r {} + \
     && find /packages -name '*.so' -not -path '*.libs/*' -exec strip --strip-unneeded {} + \
     && python -m compileall -q --invalidation-mode unchecked-hash /packages
@@ -22,8 +22,8 @@ RUN pip install --quiet --no-deps --require-hashes -r /build/${LOCK}.txt --targe
 # This package, with all services.
 FROM builder AS actum
 COPY . /build
-RUN pip install --quiet --require-hashes -r /build/deploy/requirements/build.txt \
-    && pip install --quiet --no-deps --no-build-isolation /build --target /actum \
+RUN pip install --quiet --no-compile --require-hashes -r /build/deploy/requirements/build.txt \
+    && pip install --quiet --no-compile --no-deps --no-build-isolation /build --target /actum \
     && python -m compileall -q --invalidation-mode unchecked-hash /actum
 
 # What runs: Python, without what installs software, and without what nobody reads there.

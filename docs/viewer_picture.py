@@ -18,7 +18,7 @@ from PIL import Image
 from playwright.sync_api import Route, sync_playwright
 
 from actum.messages import Truth
-from actum.recording import Recorder
+from actum.recorder import Recorder
 from actum_command.scene_marks import mark_of
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from actum.messages import Segment, Skeleton
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train_to_spot
 from people import FRAME_NS, STANDING, skeleton

@@ -5,7 +5,8 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum.skeletons import PARTS
 from actum_model_trainer.samples import SegmentSample, samples_from
 from actum_model_trainer.training import train

@@ -7,7 +7,7 @@ import numpy as np
 from actum import geometry
 from actum.calibration import Calibration
 from actum.messages import Message
-from actum.recording import Recorder
+from actum.recorder import Recorder
 from camera_videos import write_video
 
 SIZE = (64, 48)

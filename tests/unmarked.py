@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.messages import Posture, Segment, Skeleton
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_model_trainer.samples import Samples, samples_from
 from actum_model_trainer.training import train_to_spot
 from people import FRAME_NS, STANDING, skeleton

@@ -22,7 +22,8 @@ import zenoh
 from actum import codec, keys
 from actum.messages import Action, Skeleton
 from actum.node import SECOND_NS
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum.runtime import Client
 from actum.settings import ServiceSettings
 from actum_command import processes

@@ -13,7 +13,8 @@ from benchmarks.recognition.scores import table
 
 from actum import keys
 from actum.messages import Segment
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_dataset_importer.importing import SENSOR, import_takes
 from actum_dataset_importer.msrc12 import GESTURES, NAME, stream_names_by_file
 from actum_dataset_importer.msrc12_composed import composed

@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from scene_simulator.everyday import Everyday
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator, labelled_stream

@@ -11,7 +11,8 @@ from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
 from actum.messages import Action, Event, Message, Posture
 from actum.node import replay
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train_to_spot
 from scene_simulator.conditions import PLAIN, Conditions

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from actum import keys
 from actum.messages import SIMULATOR, Segment, Truth
-from actum.recording import Recorder
+from actum.recorder import Recorder
 from actum.runtime import Client
 from scene_simulator.everyday import Choice, Pauses, chosen
 from scene_simulator.programme import balanced_programme

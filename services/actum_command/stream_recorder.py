@@ -9,7 +9,7 @@ from actum.codec import DecodeError
 from actum.limits import MAX_SKEW_NS
 from actum.messages import MANUAL, Action, Message, Posture, Segment, Skeleton
 from actum.node import Counters
-from actum.recording import Recorder
+from actum.recorder import Recorder
 
 STREAMS = frozenset(
     {keys.SKELETON, keys.POSTURE, keys.OBJECTS, keys.SEGMENT, keys.ACTION, keys.EVENT, keys.TRUTH},

@@ -6,7 +6,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from actum.recording import Recorder
+from actum.recorder import Recorder
 from actum_dataset_importer import bimacs, msr_action3d, msrc12, utkinect
 from actum_dataset_importer.bimacs import HandsTake
 from actum_dataset_importer.clips import Naming, check_names, clip_files, read_clip

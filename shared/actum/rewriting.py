@@ -12,7 +12,7 @@ from mcap.writer import Writer
 from actum import codec, messages
 from actum.atomic_file import replaced
 from actum.mcap_file import McapFile, StoredMessage, encoding_of
-from actum.recording import CHUNK_BYTES, MESSAGE_ENCODING, METADATA, SCHEMA_ENCODING, json_schema
+from actum.recorder import CHUNK_BYTES, MESSAGE_ENCODING, METADATA, SCHEMA_ENCODING, json_schema
 
 Change = Callable[[StoredMessage], StoredMessage | None]
 """Returns the message to write in place of the given one (only payload and stamp count), or None to leave it out."""

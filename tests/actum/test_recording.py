@@ -12,7 +12,8 @@ from mcap.writer import Writer
 
 from actum import codec, keys
 from actum.messages import Agent, Image, Message, Objects, Segment, Skeleton
-from actum.recording import CHUNK_BYTES, Recorder, Recording, RecordingError
+from actum.recorder import CHUNK_BYTES, Recorder
+from actum.recording import Recording, RecordingError
 
 EYE = [1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0]
 

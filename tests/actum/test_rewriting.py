@@ -10,7 +10,8 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 
 from actum.mcap_file import RecordingError, StoredMessage
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum.rewriting import rewrite
 from empty_messages import image, mark, skeleton
 

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from actum.calibration import Calibration
-from actum.recording import Recorder
+from actum.recorder import Recorder
 from actum_calibrator.board import Board
 from actum_command.__main__ import app
 from actum_command.commands import calibrate_up_command

@@ -14,7 +14,8 @@ from typer.testing import CliRunner
 
 from actum import __version__
 from actum.messages import Segment
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum.runtime import RouterUnreachableError
 from actum.settings import ServiceSettings
 from actum_command import processes

@@ -6,7 +6,7 @@ import pytest
 from matplotlib.image import imread
 from typer.testing import CliRunner, Result
 
-from actum.recording import Recorder
+from actum.recorder import Recorder
 from actum_command.__main__ import app
 from actum_model_inspector.folder import LIST
 from people import FRAME_NS

@@ -7,7 +7,8 @@ import pytest
 from typer.testing import CliRunner
 
 from actum.messages import AUTO, MANUAL, Message, Segment
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_command.__main__ import app
 from empty_messages import action
 from people import FRAME_NS

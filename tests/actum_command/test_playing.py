@@ -8,7 +8,8 @@ import pytest
 from actum import keys
 from actum.joining import PAUSE_NS
 from actum.messages import AUTO, REPLAY, Image, Message, Objects, Posture, Segment, Skeleton
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_command.playing import playable_topics, schedule
 from empty_messages import action, image, mark, skeleton
 

@@ -12,7 +12,8 @@ from typer.testing import CliRunner
 
 from actum import codec, keys
 from actum.messages import CUT, MANUAL, SIMULATOR, Message, Segment
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum.runtime import Received
 from actum_command import streaming
 from actum_command.__main__ import app

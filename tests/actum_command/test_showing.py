@@ -5,7 +5,8 @@ from pathlib import Path
 
 from actum.codec import DecodeError
 from actum.messages import Message
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_command.viewers.in_words import log_line
 from actum_command.viewers.presence import Presence
 from actum_command.viewers.showing import RecordedStreams, Showing

@@ -9,7 +9,8 @@ from actum import keys
 from actum.limits import MAX_SKEW_NS
 from actum.messages import AUTO, MANUAL, REPLAY, SIMULATOR, Image, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS, Counters
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_command.commands import segment_commands
 from actum_command.scene_marks import mark_of
 from actum_command.stream_recorder import IMAGES, STREAMS, StreamRecorder

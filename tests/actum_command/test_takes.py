@@ -7,7 +7,8 @@ import pytest
 from typer.testing import CliRunner
 
 from actum.messages import AUTO, MANUAL, Message, Segment, Skeleton
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_command.__main__ import app
 from actum_model_trainer.samples import samples_from
 from empty_messages import action

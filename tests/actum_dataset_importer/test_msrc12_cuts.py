@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_dataset_importer.msrc12 import stored_stream
 from actum_dataset_importer.msrc12_cuts import Cut, cuts_of, resting_pose, trimmed
 from actum_dataset_importer.takes import Take

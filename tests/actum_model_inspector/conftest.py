@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from actum.messages import Segment, Skeleton
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_model_inspector.answered import AnsweredSegment, answered_segments
 from performers import HAND_PATHS, TINY_OF_EACH_KIND, performance
 from recognisers import tiny_model

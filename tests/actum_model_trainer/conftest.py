@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from actum.messages import Segment, Skeleton
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_model_trainer.samples import SegmentSample, samples_from
 from performers import HAND_PATHS, performance
 

@@ -7,7 +7,8 @@ import numpy as np
 
 from actum.messages import Posture, Segment, Skeleton
 from actum.node import SECOND_NS
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_model_trainer.samples import samples_from, select
 from people import FRAME_NS, skeleton
 from performers import FRAMES, PAUSE_FRAMES, mark, performance

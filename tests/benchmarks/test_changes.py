@@ -17,7 +17,8 @@ from benchmarks.recognition.changes import (
 
 from actum import keys
 from actum.messages import Agent, Message, Segment, Skeleton
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum.skeletons import INDEX, JOINTS
 from actum.standard_body import BONES
 

@@ -16,7 +16,8 @@ from benchmarks.continuous.rocket_windows import INSTANTS, Scored, decoded, resa
 from benchmarks.continuous.streams import Fold, Stream, folds, stream_of
 from benchmarks.continuous.windows import NONE, durations_s, overlap_share, sliding, training_windows
 
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_dataset_importer.importing import import_msrc12_composed
 from actum_dataset_importer.msrc12 import GESTURES
 from actum_model_trainer.continuous.detections import Detection, Truth

@@ -3,7 +3,7 @@ from pathlib import Path
 from benchmarks.recognition.videos import PIECE_NS, Pieces
 
 from actum.messages import Agent, Segment, Skeleton
-from actum.recording import Recorder
+from actum.recorder import Recorder
 
 FRAMES = 7
 EVERY_NS = PIECE_NS // 3

@@ -17,7 +17,8 @@ from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC, Writer
 
 from actum import keys
-from actum.recording import Recorder, Recording, RecordingError
+from actum.recorder import Recorder
+from actum.recording import Recording, RecordingError
 from actum.som import Som
 from actum.som.storage import SomError
 from node_cases import CASES, NOON_NS, photograph

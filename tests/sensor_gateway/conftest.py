@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from actum.recording import Recorder
+from actum.recorder import Recorder
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator
 

@@ -6,7 +6,7 @@ import pytest
 from pydantic import ValidationError
 
 from actum.messages import Image, Message, Posture, Skeleton
-from actum.recording import Recorder
+from actum.recorder import Recorder
 from people import reaches
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings

@@ -9,7 +9,8 @@ from mcap.writer import Writer
 
 from actum.joining import PAUSE_NS
 from actum.messages import Message, Objects, Segment
-from actum.recording import Recorder, RecordingError
+from actum.recorder import Recorder
+from actum.recording import RecordingError
 from empty_messages import image, skeleton
 from sensor_gateway.recording_source import LoopedSource, RecordingSource
 

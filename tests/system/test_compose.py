@@ -4,6 +4,7 @@ import json
 import signal
 import subprocess
 import time
+from datetime import datetime
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ import zenoh
 from actum.health import FRESH_S, is_healthy
 from actum_command.processes import PAGE, SERVICES, simulated_objects
 from compose_files import DEPLOY, MAIN, ROOT, services_of
-from live import System, wait_until
+from live import System, free_endpoint, wait_until
 
 ROUTER_CONFIG = DEPLOY / "zenoh" / "router.json5"
 SIX = {"scene_simulator", PAGE, *SERVICES}
@@ -23,6 +24,9 @@ UNCHECKED = {"trainer", "watch"}
 TRAINER = "model_trainer"
 ACTIONS = {"push", "pull", "put", "lift", "point"}
 STOPPED_WITHIN_S = 10.0
+HEALTHY_WITHIN_S = 5.0
+LARGEST_IMAGE_MB = 350
+"""Of any image but the camera's, as `docker image ls` counts."""
 COMPOSE_FILES = (MAIN, *sorted(DEPLOY.glob("compose.*.yml")))
 OVERLAYS = {"zenohd", "realsense", "openni2", "one-router"}
 """Files that are laid over another, whose services they change."""
@@ -199,18 +203,18 @@ def containers() -> list[str]:
     return compose("ps", "--all", "--quiet").split()
 
 
-def plain_client() -> zenoh.Session:
+def plain_client(port: int) -> zenoh.Session:
     """What any program outside the containers does, with nothing of ours."""
     config = zenoh.Config()
     config.insert_json5("mode", '"client"')
-    config.insert_json5("connect/endpoints", '["tcp/127.0.0.1:7447"]')
+    config.insert_json5("connect/endpoints", f'["tcp/127.0.0.1:{port}"]')
     return zenoh.open(config)
 
 
-def recognitions(n: int) -> list[dict[str, Any]]:
+def recognitions(n: int, port: int) -> list[dict[str, Any]]:
     """The next n events that are no rejections."""
     found: list[dict[str, Any]] = []
-    with plain_client() as session:
+    with plain_client(port) as session:
         events = session.declare_subscriber("actum/*/event/**", zenoh.handlers.FifoChannel(64))
 
         def enough() -> bool:
@@ -253,11 +257,30 @@ def test_compose_accepts(files, environment, monkeypatch):
     assert ("build" in router) is (router.get("image") == "actum/actum_command")
 
 
+def image_sizes_mb() -> dict[str, float]:
+    images = {service["image"] for service in services_of(MAIN).values()}
+    return {image: int(engine("image", "inspect", "--format", "{{.Size}}", image)) / 1e6 for image in images}
+
+
+def healthy_after_s(service: str) -> float:
+    """How long a service that was just started takes to be healthy, at the ends of its health checks."""
+    health = ["inspect", "--format", "{{json .State}}", compose("ps", "--quiet", service).strip()]
+    wait_until(lambda: json.loads(engine(*health))["Health"]["Status"] == "healthy", f"{service} is healthy")
+    state = json.loads(engine(*health))
+    began = datetime.fromisoformat(state["StartedAt"])
+    ends = [datetime.fromisoformat(check["End"]) for check in state["Health"]["Log"] if check["ExitCode"] == 0]
+    return min((end - began).total_seconds() for end in ends if end > began)
+
+
 @pytest.fixture
-def project():
+def project(monkeypatch):
+    """Everything up, on ports of this machine that nobody has; the router's port."""
+    router, page = (free_endpoint().rpartition(":")[2] for _ in range(2))
+    monkeypatch.setenv("ACTUM_ROUTER_PORT", router)
+    monkeypatch.setenv("ACTUM_PAGE_PORT", page)
     try:
         compose("up", "--build", "--detach")
-        yield
+        yield int(router)
     finally:
         compose("down", "--volumes")
 
@@ -269,9 +292,18 @@ def test_up_recognises_and_down_leaves_nothing(project):
     print(compose("ps", "--format", "table {{.Service}}\t{{.Status}}"))
     assert engine("wait", *compose("ps", "--all", "--quiet", "trainer").split()) == "0\n"
     users = {name: compose("exec", "-T", name, "id", "-u").strip() for name in ("router", *SIX)}
-    assert "0" not in users.values()
+    assert set(users.values()) == {"10001"}
+    for image, size_mb in image_sizes_mb().items():
+        print(f"{image}: {size_mb:.0f} MB")
+        assert size_mb < LARGEST_IMAGE_MB
 
-    events = recognitions(3)
+    for name in ("router", *sorted(SIX)):
+        compose("restart", name)
+        took_s = healthy_after_s(name)
+        print(f"{name}: healthy after {took_s:.1f} s")
+        assert took_s < HEALTHY_WITHIN_S
+
+    events = recognitions(3, port=project)
     for event in events:
         print(event["sentence"])
         assert event["action"] in ACTIONS
@@ -282,7 +314,7 @@ def test_up_recognises_and_down_leaves_nothing(project):
     compose("down")
     print(f"docker compose down: {time.time() - began_s:.1f} s")
     ended = deaths(began_s)
-    assert len(ended) == len({"router", "watch", *SIX})
+    assert len(ended) == len({"router", "watch", TRAINER, *SIX})
     assert {end["Actor"]["Attributes"]["exitCode"] for end in ended} == {"0"}
     assert max(end["timeNano"] for end in ended) / 1e9 - began_s < STOPPED_WITHIN_S
     assert containers() == []

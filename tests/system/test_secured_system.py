@@ -66,6 +66,7 @@ def told_without_security(scene_model: Path, tmp_path_factory: pytest.TempPathFa
             return as_told(events_of_the_scene(running, viewer))
 
 
+@pytest.mark.long
 def test_the_events_are_the_same_and_whoever_may_sees_them(
     scene_model: Path, told_without_security: list[tuple[object, ...]], tmp_path: Path
 ) -> None:

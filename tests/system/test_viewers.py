@@ -21,7 +21,7 @@ import psutil
 import pytest
 
 from actum.messages import Truth
-from actum.recording import Recorder
+from actum.recorder import Recorder
 from actum_command.scene_marks import mark_of
 from live import PATIENCE_S, Running, System, wait_until
 from scene_simulator.programme import balanced_programme

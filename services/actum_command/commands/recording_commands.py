@@ -10,7 +10,8 @@ import typer
 
 from actum import keys
 from actum.messages import CUT, MANUAL
-from actum.recording import Recorder, RecordingError
+from actum.recorder import Recorder
+from actum.recording import RecordingError
 from actum.runtime import stop_on_signals
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
 from actum_command.commands.service_flags import with_history_flags

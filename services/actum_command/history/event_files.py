@@ -7,7 +7,8 @@ from pathlib import Path
 
 from actum.messages import Message
 from actum.node import SECOND_NS
-from actum.recording import Recording, RecordingError, StoredRecorder
+from actum.recorder import StoredRecorder
+from actum.recording import Recording, RecordingError
 from actum.rewriting import rewrite, unchanged
 from actum_command.history.settings import Settings
 

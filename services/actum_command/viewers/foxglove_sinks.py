@@ -13,7 +13,7 @@ from foxglove.websocket import ServerListener
 from pydantic_core import to_json
 
 from actum.messages import Message
-from actum.recording import METADATA
+from actum.recorder import METADATA
 from actum_command.viewers.foxglove_messages import CONTENTS, TRANSFORMS, FoxgloveMessages, below
 from actum_command.viewers.foxglove_schemas import foxglove_schema
 

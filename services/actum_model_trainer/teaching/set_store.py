@@ -10,7 +10,8 @@ from pathlib import Path
 
 from actum.atomic_file import UNFINISHED, store_names, write_whole
 from actum.commands import Refusal
-from actum.recording import Recorder, RecordingError
+from actum.recorder import Recorder
+from actum.recording import RecordingError
 from actum_model_trainer.teaching.take_files import CREATED, KIND, Example, Take, read_take
 
 Clock = Callable[[], int]

@@ -12,7 +12,8 @@ from pydantic import TypeAdapter, ValidationError
 from actum import keys
 from actum.messages import CUT, MANUAL, Segment
 from actum.node import SECOND_NS
-from actum.recording import Recorder, Recording
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum.rewriting import rewrite, unchanged
 from actum_model_trainer.cutting.marks import free_names, marks_of
 from actum_model_trainer.cutting.repetitions import Cuts

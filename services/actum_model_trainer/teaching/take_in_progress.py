@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from actum.commands import Refusal
 from actum.messages import MANUAL, Segment, Skeleton, TakeState, segment_marks
 from actum.node import SECOND_NS
-from actum.recording import Recorder
+from actum.recorder import Recorder
 from actum_model_trainer.cutting.counting import LAST_REST_S, RepetitionCounter
 from actum_model_trainer.teaching.take_files import OF_THE_TAKE, cut_marks
 

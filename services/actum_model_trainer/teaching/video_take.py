@@ -6,7 +6,7 @@ from pathlib import Path
 from actum.commands import Refusal
 from actum.messages import CUT, Segment, Skeleton, segment_marks
 from actum.node import Counters
-from actum.recording import Recorder
+from actum.recorder import Recorder
 from actum_model_trainer.cutting.courses import PersonTracks
 from actum_model_trainer.cutting.repetitions import cut
 from actum_model_trainer.progress import Progress

@@ -30,7 +30,7 @@ ROOM_BYTES = 8_000_000
 
 
 @dataclass(frozen=True)
-class Answer:
+class WrittenAnswer:
     """An encoded answer, and when it was given: the machine's clock, ns since 1970."""
 
     given_ns: int
@@ -56,7 +56,7 @@ class Journal:
         self.is_new = not path.exists()
         found = [] if self.is_new else list(_records(path.read_bytes()))
         self._begun_ns = next((body for body in found if isinstance(body, int)), time.time_ns())
-        self.answers = _kept(body for body in found if isinstance(body, Answer))
+        self.answers = _kept(body for body in found if isinstance(body, WrittenAnswer))
         self._file = self._rewritten(self.answers)
 
     @property
@@ -70,7 +70,7 @@ class Journal:
         Raises:
             OSError: it cannot be written.
         """
-        self._file.write(_record(Answer(time.time_ns(), frame)))
+        self._file.write(_record(WrittenAnswer(time.time_ns(), frame)))
         if self._file.tell() > self._full_bytes:
             self._file.close()
             self._file = self._rewritten(_kept(_answers(self._path.read_bytes())))
@@ -79,7 +79,7 @@ class Journal:
         """Close the file."""
         self._file.close()
 
-    def _rewritten(self, answers: list[Answer]) -> BinaryIO:
+    def _rewritten(self, answers: list[WrittenAnswer]) -> BinaryIO:
         """Write the file anew with these answers, and open it to add others."""
         write_whole(self._path, b"".join([_record(self._begun_ns), *map(_record, answers)]))
         file = self._path.open("ab", buffering=0)
@@ -87,10 +87,10 @@ class Journal:
         return file
 
 
-def _kept(answers: Iterator[Answer]) -> list[Answer]:
+def _kept(answers: Iterator[WrittenAnswer]) -> list[WrittenAnswer]:
     """Return those that are young enough, the newest that have room, in their order."""
     now_ns = time.time_ns()
-    kept: list[Answer] = []
+    kept: list[WrittenAnswer] = []
     size = 0
     for answer in reversed(list(answers)):
         size += len(answer.frame.payload)
@@ -101,9 +101,9 @@ def _kept(answers: Iterator[Answer]) -> list[Answer]:
     return kept[::-1]
 
 
-def _record(content: Answer | int) -> bytes:
+def _record(content: WrittenAnswer | int) -> bytes:
     """Pack an answer, or the time at which the journal was begun."""
-    if isinstance(content, Answer):
+    if isinstance(content, WrittenAnswer):
         frame = content.frame
         body = msgpack.packb([content.given_ns, frame.key, frame.payload, frame.encoding, frame.attachment])
     else:
@@ -111,11 +111,11 @@ def _record(content: Answer | int) -> bytes:
     return HEAD.pack(MAGIC, len(body), zlib.crc32(body)) + bytes(body)
 
 
-def _answers(content: bytes) -> Iterator[Answer]:
-    return (body for body in _records(content) if isinstance(body, Answer))
+def _answers(content: bytes) -> Iterator[WrittenAnswer]:
+    return (body for body in _records(content) if isinstance(body, WrittenAnswer))
 
 
-def _records(content: bytes) -> Iterator[Answer | int]:
+def _records(content: bytes) -> Iterator[WrittenAnswer | int]:
     """Yield what the sound records of a file hold; after a damaged one go on at the next magic."""
     at = content.find(MAGIC)
     while at >= 0:
@@ -127,7 +127,7 @@ def _records(content: bytes) -> Iterator[Answer | int]:
         at = content.find(MAGIC, record[1])
 
 
-def _read(content: bytes, at: int) -> tuple[Answer | int, int] | None:
+def _read(content: bytes, at: int) -> tuple[WrittenAnswer | int, int] | None:
     """Return what the record at an offset holds, and the offset behind it; None where it is damaged."""
     begin = at + HEAD.size
     if begin > len(content):
@@ -138,6 +138,6 @@ def _read(content: bytes, at: int) -> tuple[Answer | int, int] | None:
         return None
     try:
         given_ns, *frame = msgpack.unpackb(body)
-        return (Answer(given_ns, Frame(*frame)) if frame else given_ns), begin + length
+        return (WrittenAnswer(given_ns, Frame(*frame)) if frame else given_ns), begin + length
     except UNPACK_ERRORS:
         return None

@@ -13,7 +13,7 @@ from actum import keys
 from actum.codec import Frame, encode
 from actum.messages import Action, Message
 from actum.node import Numbering
-from actum.runtime.journal import Answer
+from actum.runtime.journal import WrittenAnswer
 
 HEARTBEAT_S = 0.5
 """How long (s) after a message its publisher repeats the number, so that a loss of the last one is noticed.
@@ -62,7 +62,7 @@ class Outbox:
         """Have `keep` called with each message that late subscribers recover, before it is put."""
         self._keep = keep
 
-    def recall(self, answers: Iterable[tuple[Answer, Message]]) -> None:
+    def recall(self, answers: Iterable[tuple[WrittenAnswer, Message]]) -> None:
         """Offer what was put before this process to late subscribers, unchanged; others are not sent it once more.
 
         The numbers on each key go on behind it.

@@ -7,7 +7,7 @@ from actum.codec import DecodeError, Frame, decode
 from actum.messages import Message
 from actum.node import Counters, Remembering
 from actum.runtime.inbox import HISTORY_S, RESUMED_FRAMES_S, RESUMED_S, Reach
-from actum.runtime.journal import Answer, Journal
+from actum.runtime.journal import Journal, WrittenAnswer
 from actum.runtime.outbox import Outbox
 from actum.settings import ServiceSettings, SettingsError
 
@@ -74,7 +74,7 @@ class Resumption:
             _report(self._counters, error)
 
 
-def _decoded(answer: Answer) -> Message | None:
+def _decoded(answer: WrittenAnswer) -> Message | None:
     """Decode an answer; None for one of another version of actum."""
     try:
         return decode(answer.frame.key, answer.frame.payload, answer.frame.encoding)

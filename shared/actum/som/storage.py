@@ -25,7 +25,9 @@ UNREADABLE = (
 MOST_INFLATION = 20
 """How many times its size the arrays of a file may take: npz files of ours are not compressed, those of others a few
 times smaller. Files made to fill memory grow a thousand times."""
-HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+NPY: Any = np.lib.format
+"""NumPy's file format, which has types in some of its versions only."""
+HEADERS = {(1, 0): NPY.read_array_header_1_0, (2, 0): NPY.read_array_header_2_0}
 """NumPy's readers of an array's header, by the version of its format; later ones are for named columns."""
 LEAST_BYTES = 16_000_000
 """What they may take (bytes) however small the file is."""
@@ -78,10 +80,10 @@ def refuse_bomb(stored: IO[bytes]) -> None:
 def _array_bytes(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> int:
     """Return how many bytes NumPy would allocate for an array, as its header says."""
     with archive.open(member) as array:
-        read_header = HEADERS.get(np.lib.format.read_magic(array))  # type: ignore[no-untyped-call]
+        read_header = HEADERS.get(NPY.read_magic(array))
         if read_header is None:
             raise ValueError(f"{member.filename} is of a format that NumPy did not write for it")
-        shape, _, dtype = read_header(array)  # type: ignore[no-untyped-call]
+        shape, _, dtype = read_header(array)
     return int(math.prod(shape) * dtype.itemsize)
 
 

@@ -190,7 +190,7 @@ def test_a_full_disk_is_told_and_survived(history: History, monkeypatch: pytest.
 
     history.take(event("a", 1, 2))
     with monkeypatch.context() as there:
-        there.setattr("actum.recording.Recorder.write", full)
+        there.setattr("actum.recorder.Recorder.write", full)
         history.take(event("lost", 3, 4))
     assert history.recorder.counters.rejects == {"unwritable_history": 1}
     assert history.recorder.counters.state.startswith("history not written: No space left on device")
