@@ -67,7 +67,7 @@ class EventRecorder:
     def _take(self, message: Message | Tick) -> None:
         match message:
             case Tick():
-                self._tick(self._now_ns())  # a clock with receipts: that of ticks is another
+                self._tick(message.monotonic_ns)
             case Segment(stamp_ns=None):
                 self._take_unstamped(message)
             case Action(final=True):

@@ -34,7 +34,7 @@ class History:
 
     def tick(self, passed_s: float = 0.0) -> None:
         self.now_ns += round(passed_s * SECOND_NS)
-        self.recorder.handle(Tick(0))
+        self.recorder.handle(Tick(self.now_ns))
 
     def take(self, *messages: Message) -> None:
         for message in messages:
