@@ -15,7 +15,7 @@ FROM builder AS packages
 ARG LOCK=service
 COPY deploy/requirements/${LOCK}.txt /build/
 RUN pip install --quiet --no-compile --no-deps --require-hashes -r /build/${LOCK}.txt --target /packages \
-    && find /packages -depth \( -name tests -o -name '*.pyi' -o -name '*.a' -o -name '*.h' \) -exec rm -r {} + \
+    && find /packages -depth \( -name test -o -name tests -o -name '*.pyi' -o -name '*.a' -o -name '*.h' \) -exec rm -r {} + \
     && find /packages -name '*.so' -not -path '*.libs/*' -exec strip --strip-unneeded {} + \
     && python -m compileall -q --invalidation-mode unchecked-hash /packages
 

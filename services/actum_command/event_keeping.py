@@ -1,6 +1,5 @@
 """Runs the service that keeps events, as this process."""
 
-import time
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -20,7 +19,7 @@ def keep_events(folder: Path, given: Given) -> None:
             if folder.suffix == ".mcap" or folder.is_file():
                 raise ValueError(f"{folder} is a file's name: with --events name a folder, which will hold several")
             files = EventFiles(folder, settings.sensor, settings)
-            recorder = EventRecorder(files, steady_clock.now_ns, time.monotonic_ns)
+            recorder = EventRecorder(files, steady_clock.now_ns)
             ending.callback(recorder.close)
             return recorder
 

@@ -16,17 +16,15 @@ from actum.stamps import Order
 from som_classifier.answered_segments import AnsweredSegments
 from som_classifier.beginning import Beginning
 from som_classifier.frames import Frame
-from som_classifier.losses import why_incomplete, why_no_end
-from som_classifier.segments import ClosedSegment, OpenSegment, why_no_recognition, with_cause
+from som_classifier.losses import NO_END, UNPLACED, why_incomplete, why_no_end
+from som_classifier.segments import ClosedSegment, OpenSegment, with_cause
 from som_classifier.spotting.search import NO_SEARCH, Search, SearchPlan
-from som_classifier.streams import FAR_FUTURE_NS, Encode, Stream, Streams
+from som_classifier.streams import FAR_FUTURE_NS, Encode, Streams
 
 LATE_FOR = 16
 """Segments remembered of those that closed before all their frames had come; their postures are counted as late."""
 MARKED = 256
 """Closed marked segments remembered, more than anybody marks in minutes: they win over found ones."""
-NO_END = "start without end: no end within 60 s"
-UNPLACED = "the classifier had only just started: it cannot tell when a mark without a stamp was put"
 
 
 class Segmenter:
@@ -129,7 +127,7 @@ class Segmenter:
         """Close a segment that nobody marked, of a known agent whose frames have come up to its end."""
         assert found.known_agent is not None
         stream = self._streams.of(found.known_agent)
-        return found.rejected("no person") if stream is None else _cut(found, stream)
+        return found.rejected("no person") if stream is None else stream.cut(found)
 
     def frames_between(self, agent: int, start_ns: int, end_ns: int) -> list[Frame]:
         """List an agent's frames with start <= stamp <= end."""
@@ -223,7 +221,7 @@ class Segmenter:
             self._late.append((agent, range(start_ns, segment.end_ns + 1)))
         segment.nearest = agent
         self._forget(segment)
-        return _cut(segment, stream)
+        return stream.cut(segment)
 
     def _reject(self, segment: OpenSegment, reason: str) -> ClosedSegment:
         self._forget(segment)
@@ -254,11 +252,3 @@ class Segmenter:
             self._close(segment) if segment.end_ns is not None else self._reject(segment, reason)
             for segment in list(self._open.values())
         ]
-
-
-def _cut(segment: OpenSegment, stream: Stream) -> ClosedSegment:
-    """Return a segment that has an end, closed, with the frames of its agent's stream that have come."""
-    assert segment.end_ns is not None
-    frames = stream.between(segment.start_ns or 0, segment.end_ns)
-    missed = sum(frame.missed for frame in frames) + stream.missed_after(segment.end_ns)
-    return segment.closed(frames, missed, why_no_recognition(frames))

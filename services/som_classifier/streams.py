@@ -11,6 +11,7 @@ from actum.node import Counters
 from actum.stamps import LostFrames, Order, StampGuard
 from som_classifier.frames import Frame, frame_of
 from som_classifier.kinematics import KinematicsFilter
+from som_classifier.segments import ClosedSegment, OpenSegment, why_no_recognition
 from som_classifier.spotting.search import NO_SEARCH, Search, SearchPlan
 
 Encode = Callable[[Frame], Any]
@@ -100,6 +101,13 @@ class Stream:
 
     def __iter__(self) -> Iterator[Frame]:
         return iter(self._frames)
+
+    def cut(self, segment: OpenSegment) -> ClosedSegment:
+        """Close a segment that has an end, with those of its frames that have come."""
+        assert segment.end_ns is not None
+        frames = self.between(segment.start_ns or 0, segment.end_ns)
+        missed = sum(frame.missed for frame in frames) + self.missed_after(segment.end_ns)
+        return segment.closed(frames, missed, why_no_recognition(frames))
 
 
 class Streams:

@@ -2,7 +2,8 @@
 
 import asyncio
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
@@ -139,10 +140,16 @@ def _dashboard(_: Path) -> Target:
     node = WebDashboard(PageSettings(page_port=0), hub, orders, _Server())  # type: ignore[arg-type]
 
     def ordered(payload: bytes) -> Iterable[Message]:
-        asyncio.run(orders.carry_out(payload.decode("utf-8", "replace")))
+        _finished(orders.carry_out(payload.decode("utf-8", "replace")))
         return ()
 
     return Target(node.name, _everything, node.handle, node.counters, foreign=ordered, sample=ORDER)
+
+
+def _finished(order: Coroutine[Any, Any, Any]) -> None:
+    """Carry out an order in a thread of its own: where a browser was tested before, this one's event loop is taken."""
+    with ThreadPoolExecutor(1) as thread:
+        thread.submit(asyncio.run, order).result()
 
 
 def _bridge(_: Path) -> Target:

@@ -45,7 +45,7 @@ class EventFiles:
         Args:
             message: the message.
             received_ns: the time of day at which it came (ns).
-            now_ns: the monotonic clock (ns).
+            now_ns: the newest tick (ns).
 
         Raises:
             OSError: it cannot be written; the next message begins another file.
@@ -60,7 +60,7 @@ class EventFiles:
             self.finish()
 
     def tick(self, now_ns: int) -> None:
-        """Have stored what was written, and finish a file that is old enough (monotonic clock, ns).
+        """Have stored what was written, and finish a file that is old enough, by a tick (ns).
 
         Raises:
             OSError: the disk does not take it.

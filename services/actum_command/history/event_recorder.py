@@ -27,15 +27,14 @@ class EventRecorder:
     Args:
         files: where to.
         received_ns: the clock of receipts, ns since 1970.
-        now_ns: the monotonic clock, ns.
     """
 
     name = "event_recorder"
     inputs = (keys.SEGMENT, keys.ACTION, keys.EVENT)
 
-    def __init__(self, files: EventFiles, received_ns: Callable[[], int], now_ns: Callable[[], int]) -> None:
+    def __init__(self, files: EventFiles, received_ns: Callable[[], int]) -> None:
         self.counters = Counters()
-        self._files, self._received_ns, self._now_ns = files, received_ns, now_ns
+        self._files, self._received_ns, self._now_ns = files, received_ns, 0
         self._waiting: deque[_Waiting] = deque()
         self._bounds: OrderedDict[str, tuple[int, int]] = OrderedDict()
         self._recovered = False
@@ -78,6 +77,7 @@ class EventRecorder:
                 self._write(message)
 
     def _tick(self, now_ns: int) -> None:
+        self._now_ns = now_ns
         self._files.tick(now_ns)
         while self._waiting and now_ns - self._waiting[0].since_ns > SETTLE_NS:
             self._forget(self._waiting.popleft().mark)
@@ -86,14 +86,14 @@ class EventRecorder:
         )
 
     def _write(self, message: Message) -> None:
-        self._files.write(message, self._received_ns(), self._now_ns())
+        self._files.write(message, self._received_ns(), self._now_ns)
         self.counters.state = "running"
 
     def _take_unstamped(self, mark: Segment) -> None:
         if mark.segment_id in self._bounds:
             self._write(_stamped(mark, self._bounds[mark.segment_id]))
             return
-        self._waiting.append(_Waiting(mark, self._now_ns()))
+        self._waiting.append(_Waiting(mark, self._now_ns))
         if len(self._waiting) > MOST_WAITING:
             self._forget(self._waiting.popleft().mark)
 

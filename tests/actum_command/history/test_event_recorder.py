@@ -29,7 +29,7 @@ class History:
     def __init__(self, folder: Path, **settings: Any) -> None:
         self.folder, self.now_ns = folder, 0
         self._files = EventFiles(folder, "kinect0", Settings(**settings))
-        self.recorder = EventRecorder(self._files, lambda: START_NS + self.now_ns, lambda: self.now_ns)
+        self.recorder = EventRecorder(self._files, lambda: START_NS + self.now_ns)
         self.tick()
 
     def tick(self, passed_s: float = 0.0) -> None:
@@ -154,7 +154,7 @@ def test_what_a_killed_process_left_is_finished_by_the_next(tmp_path: Path) -> N
 def test_what_is_recovered_is_what_was_left_and_not_what_is_being_written(tmp_path: Path) -> None:
     """Also where the first message comes before the first tick."""
     files = EventFiles(tmp_path, "kinect0", Settings())
-    recorder = EventRecorder(files, lambda: START_NS, lambda: 0)
+    recorder = EventRecorder(files, lambda: START_NS)
     recorder.handle(event("a", 1, 2))
     recorder.handle(Tick(0))
     recorder.handle(event("b", 3, 4))
