@@ -21,7 +21,9 @@ def started(running: System, folder: Path, *arguments: str) -> Running:
 
 
 def stored(folder: Path) -> list[Message]:
-    return [message for file in sorted(folder.glob("*.mcap*")) for message in Recording(file).messages()]
+    """What stands in the files; one that has just been opened for writing holds nothing yet."""
+    files = [file for file in sorted(folder.glob("*.mcap*")) if file.stat().st_size]
+    return [message for file in files for message in Recording(file).messages()]
 
 
 def events_in(folder: Path) -> list[str]:
