@@ -59,7 +59,7 @@ def _print(received: Received, as_json: bool) -> None:
 
 def _show_recorded(named: list[Path], wanted: list[keys.Topic], as_json: bool) -> None:
     """Print the messages of recordings on the wanted topics, one recording after another by name."""
-    files = [file for path in named for file in (sorted(path.glob("*.mcap*")) if path.is_dir() else [path])]
+    files = [file for path in named for file in (_begun_in(path) if path.is_dir() else [path])]
     if not files:
         fail(f"no recordings in {', '.join(map(str, named))}: name files or folders of *.mcap")
     try:
@@ -68,6 +68,11 @@ def _show_recorded(named: list[Path], wanted: list[keys.Topic], as_json: bool) -
                 _print(Received(keys.key_of(message), message, None, 0), as_json)
     except RecordingError as error:
         fail(str(error))
+
+
+def _begun_in(folder: Path) -> list[Path]:
+    """List a folder's recordings; one that has just been opened for writing holds nothing yet."""
+    return [file for file in sorted(folder.glob("*.mcap*")) if file.stat().st_size]
 
 
 def _show_above_what_goes_on(client: Client, wanted: list[keys.Topic]) -> None:
