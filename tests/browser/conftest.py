@@ -9,7 +9,6 @@ import chromium as installed
 from dashboards import Colleague, served
 from page_scenes import Scene, maps
 
-
 PATIENCE_MS = 60_000
 """Where a browser draws in software, beside other tests."""
 
