@@ -9,6 +9,9 @@ import chromium as installed
 from dashboards import Colleague, served
 from page_scenes import Scene, maps
 
+PATIENCE_MS = 60_000
+"""Where a browser draws in software, beside other tests."""
+
 
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Any]:
@@ -28,6 +31,7 @@ def open_page(chromium: Any) -> Iterator[Callable[..., Any]]:
     def opened(address: str, **options: Any) -> Any:
         contexts.append(chromium.new_context(**options))
         page = contexts[-1].new_page()
+        page.set_default_timeout(PATIENCE_MS)
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.on("console", lambda said: errors.append(said.text) if "Content Security" in said.text else None)
         page.goto(address)
