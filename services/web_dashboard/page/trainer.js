@@ -7,7 +7,7 @@ const SILENT_MS = 3500;   // it tells its state each second
 class Trainer {
   constructor() {
     // now: its newest `training` message; all: its newest list of sets and models; both null before the first.
-    Object.assign(this, { now: null, all: null, chosen: null, callbacks: new Set(), listing: false });
+    Object.assign(this, { now: null, all: null, chosen: null, callbacks: new Set(), listing: null });
     link.on("training", (training) => this.take(training));
   }
 
@@ -42,17 +42,22 @@ class Trainer {
     this.tell();
   }
 
-  // Lists sets and models anew.
-  async list() {
-    if (this.listing) return;
-    this.listing = true;
-    try {
-      this.all = await this.ask("list");
-      this.tell();
-    } catch {
-      this.all ??= null;  // the next message has it asked again
-    }
-    this.listing = false;
+  // Chooses a set that has just been made or renamed, once it is listed.
+  async chooseNew(name) {
+    await this.listing;  // which may have been asked for before
+    await this.list();
+    this.choose(name);
+  }
+
+  // Lists sets and models anew; where that fails, the next message has it asked again.
+  list() {
+    this.listing ??= this.ask("list")
+      .then((all) => (this.all = all), () => {})
+      .then(() => {
+        this.listing = null;
+        this.tell();
+      });
+    return this.listing;
   }
 
   tell() {

@@ -44,14 +44,16 @@ function described({ actions, people, background_s: background, unreadable }) {
 async function made(event, name, line) {
   event.preventDefault();
   const set = name.value;
-  if (await attempt(line, () => trainer.ask("create_set", { set }), "made")) trainer.choose(set.normalize("NFC"));
+  const make = () => trainer.ask("create_set", { set }).then(() => trainer.chooseNew(set.normalize("NFC")));
+  await attempt(line, make, "made");
 }
 
 async function renamed(line) {
   const set = trainer.set.name;
   const name = await typed(`Rename ${set}`, "New name", set, [], "Rename");
   if (name === null) return;
-  if (await attempt(line, () => trainer.ask("rename_set", { set, name }), "renamed")) trainer.choose(name.normalize("NFC"));
+  const rename = () => trainer.ask("rename_set", { set, name }).then(() => trainer.chooseNew(name.normalize("NFC")));
+  await attempt(line, rename, "renamed");
 }
 
 async function deleted(line) {
