@@ -1,6 +1,5 @@
 """`actum watch`: what happens on a sensor's keys, one line per message."""
 
-import threading
 from pathlib import Path
 from typing import Annotated
 
@@ -78,12 +77,7 @@ def _begun_in(folder: Path) -> list[Path]:
 def _show_above_what_goes_on(client: Client, wanted: list[keys.Topic]) -> None:
     """Print a line for each wanted message but the partial actions; of these show the newest of each person below."""
     ongoing = OngoingLines()
-
-    def follow() -> None:
-        for received in received_on(client, [keys.ACTION]):
-            ongoing.take(received.message)
-
-    threading.Thread(target=follow, daemon=True).start()
+    client.follow(keys.pattern(keys.ACTION, client.sensor), lambda received: ongoing.take(received.message))
     with Live(ongoing, console=console, transient=True):
         for received in received_on(client, wanted):
             if not isinstance(received.message, Action) or received.message.final:

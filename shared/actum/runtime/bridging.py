@@ -10,7 +10,7 @@ from zenoh import ext
 from actum.bridge import Bridge, Foreign, ForeignNode, ForeignTopic
 from actum.messages import Message
 from actum.node import Tick
-from actum.runtime.inbox import Subscriber, subscribe
+from actum.runtime.inbox import ENDING_S, Subscriber, subscribe
 from actum.runtime.outbox import Outbox, Publisher
 from actum.runtime.serving import S, configured, live
 from actum.runtime.step_service import StepService
@@ -38,15 +38,20 @@ class BridgeService(StepService):
         node = self._bridge.foreign_node(str(session.zid()))
         self._publishers = {topic.name: ForeignPublisher(session, topic) for topic in node.publishes}
         subscribers = [subscribe(session, topic.key, RING) for topic in node.subscribes]
-        for topic, subscriber in zip(node.subscribes, subscribers, strict=True):
-            reading = (topic, subscriber, outbox, stop)
-            threading.Thread(target=self._read, args=reading, daemon=True).start()
+        threads = [
+            threading.Thread(target=self._read, args=(topic, subscriber, outbox, stop), daemon=True)
+            for topic, subscriber in zip(node.subscribes, subscribers, strict=True)
+        ]
+        for thread in threads:
+            thread.start()
         tokens = [session.liveliness().declare_token(token) for token in _tokens(node)]
         try:
             super()._work(session, outbox, stop, vacant_s)
         finally:
             for declared in (*tokens, *subscribers):
                 declared.undeclare()
+            for thread in threads:
+                thread.join(timeout=ENDING_S)
 
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
         with self._lock:

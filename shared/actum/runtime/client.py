@@ -15,7 +15,7 @@ from actum import keys
 from actum.codec import DecodeError, decode
 from actum.commands import MSGPACK, Refusal, packed, unpacked
 from actum.messages import Info, Message
-from actum.runtime.inbox import Subscriber, subscribe, subscribe_recovering
+from actum.runtime.inbox import ENDING_S, Subscriber, subscribe, subscribe_recovering
 from actum.runtime.outbox import Outbox
 from actum.runtime.session import RouterUnreachableError, connected, secret_config
 from actum.settings import ServiceSettings
@@ -75,6 +75,11 @@ class Listening:
         for sample in self._subscriber:
             yield _received(sample)
 
+    def each(self, take: Callable[[Received], None]) -> None:
+        """Call `take` with each message until closed."""
+        for received in self:
+            take(received)
+
     def drain(self, take: Callable[[zenoh.Sample], None]) -> None:
         """Call `take` with each sample until closed."""
         for sample in self._subscriber:
@@ -103,6 +108,7 @@ class Client:
         self._session = session or _open(settings, wait_s)
         self._outbox = Outbox(self._session)
         self._listening: list[Listening] = []
+        self._threads: list[threading.Thread] = []
 
     def __enter__(self) -> Self:
         return self
@@ -110,6 +116,8 @@ class Client:
     def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
         for listening in self._listening:
             listening.close()
+        for thread in self._threads:
+            thread.join(timeout=ENDING_S)
         self._session.close()
 
     def put(self, message: Message) -> None:
@@ -129,9 +137,12 @@ class Client:
         )
 
     def tap(self, key_expr: str, take: Callable[[zenoh.Sample], None]) -> None:
-        """Call `take` with each sample as it arrives, from a thread of its own."""
-        listening = self.listen(key_expr)
-        threading.Thread(target=listening.drain, args=(take,), daemon=True).start()
+        """Call `take` with each sample as it arrives, from a thread of its own, until this client is left."""
+        self._start(self.listen(key_expr).drain, take)
+
+    def follow(self, key_expr: str, take: Callable[[Received], None]) -> None:
+        """Call `take` with each message as it arrives, from a thread of its own, until this client is left."""
+        self._start(self.listen(key_expr).each, take)
 
     def listen(self, key_expr: str, ring: int = DEEP_RING) -> Listening:
         """Subscribe to what is put from now on on keys."""
@@ -145,6 +156,11 @@ class Client:
         history = ext.HistoryConfig(detect_late_publishers=True, max_age=history_s)
         return self._listening_to(subscribe_recovering(self._session, key_expr, ring, history))
 
+    def _start(self, target: Callable[..., None], *args: Any) -> None:
+        thread = threading.Thread(target=target, args=args, daemon=True)
+        thread.start()
+        self._threads.append(thread)
+
     def _listening_to(self, subscriber: Subscriber) -> Listening:
         listening = Listening(subscriber)
         self._listening.append(listening)
@@ -154,12 +170,7 @@ class Client:
         """Wait until somebody subscribes to this sensor's key of the topic; False if nobody does in time."""
         publisher = self._session.declare_publisher(keys.key(topic, self.sensor))
         self._outbox.declare(keys.key(topic, self.sensor))
-        deadline = time.monotonic() + timeout_s
-        while not publisher.matching_status.matching:  # type: ignore[attr-defined]
-            if time.monotonic() > deadline:
-                return False
-            threading.Event().wait(POLL_S)
-        return True
+        return _matches(publisher, timeout_s)
 
     def alive(self) -> list[str]:
         """List the liveliness tokens of this sensor's services."""
@@ -188,13 +199,8 @@ class Client:
     def offers(self, service: str, timeout_s: float = OFFER_S) -> bool:
         """Tell whether the router knows of such a service that would answer, also where it lets no question through."""
         querier = self._session.declare_querier(keys.key(keys.INFO, self.sensor, service))
-        deadline_s = time.monotonic() + timeout_s
         try:
-            while not querier.matching_status.matching:  # type: ignore[attr-defined]
-                if time.monotonic() > deadline_s:
-                    return False
-                threading.Event().wait(POLL_S)
-            return True
+            return _matches(querier, timeout_s)
         finally:
             querier.undeclare()
 
@@ -220,6 +226,16 @@ class Client:
     def connected(self) -> bool:
         """Tell whether there is a router now."""
         return connected(self._session)
+
+
+def _matches(declared: zenoh.Publisher | zenoh.Querier, timeout_s: float) -> bool:
+    """Wait until somebody listens to a publisher or answers a querier; False if nobody does in time."""
+    deadline_s = time.monotonic() + timeout_s
+    while not declared.matching_status.matching:  # type: ignore[attr-defined]
+        if time.monotonic() > deadline_s:
+            return False
+        threading.Event().wait(POLL_S)
+    return True
 
 
 def _open(settings: ServiceSettings, wait_s: float) -> zenoh.Session:

@@ -24,6 +24,9 @@ RESUMED_S = 90.0
 A link that was cut for longer loses what was put meanwhile."""
 RESUMED_FRAMES_S = 10.0
 """Oldest frame requested then (s): as long as publishers keep them."""
+ENDING_S = 1.0
+"""How long a thread may take to end once its subscriber is gone (s). It is waited for: one that comes back from Zenoh
+into an interpreter that is ending aborts the process."""
 ANSWER_S = 1.0
 """How long publishers may take to say what they keep (s)."""
 
@@ -99,7 +102,7 @@ class Inbox:
         for subscriber in self._subscribers:
             subscriber.undeclare()
         for thread in self._threads:
-            thread.join(timeout=1.0)
+            thread.join(timeout=ENDING_S)
 
     @property
     def working(self) -> bool:
