@@ -1,17 +1,10 @@
-"""A TCP proxy that puts delay, jitter, stalls and cuts on a link; it stands alone, so that containers can run it.
+"""A TCP proxy that puts delay, jitter, stalls and cuts on a link."""
 
-As a program, `python tcp_proxy.py 0.0.0.0:7450 router:7447 --delay-s 0.05 --jitter-s 0.02`, it is cut by SIGUSR1 and
-mended by SIGUSR2.
-"""
-
-import argparse
 import collections
 import contextlib
 import random
-import signal
 import socket
 import struct
-import sys
 import threading
 import time
 from types import TracebackType
@@ -215,30 +208,3 @@ def _reset(connection: socket.socket) -> None:
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, RESET)
         connection.shutdown(socket.SHUT_RDWR)
     connection.close()
-
-
-def main() -> None:
-    """Run until SIGTERM or SIGINT."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("listen", help="HOST:PORT that it listens on; port 0 takes a free one")
-    parser.add_argument("target", help="HOST:PORT that connections lead to")
-    parser.add_argument("--delay-s", type=float, default=0.0)
-    parser.add_argument("--jitter-s", type=float, default=0.0)
-    parser.add_argument("--seed", type=int, default=0, help="of the jitter")
-    given = parser.parse_args()
-    (host, port), (target_host, target_port) = (text.rsplit(":", 1) for text in (given.listen, given.target))
-    ended = threading.Event()
-    proxy = TcpProxy(int(target_port), target_host=target_host, port=int(port), host=host, seed=given.seed)
-    proxy.delay(given.delay_s, given.jitter_s)
-    for number in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, lambda *_: ended.set())
-    if sys.platform != "win32":
-        signal.signal(signal.SIGUSR1, lambda *_: threading.Thread(target=proxy.cut).start())
-        signal.signal(signal.SIGUSR2, lambda *_: threading.Thread(target=proxy.mend).start())
-    with proxy:
-        print(f"listens on {host}:{proxy.port}", flush=True)
-        ended.wait()
-
-
-if __name__ == "__main__":
-    main()

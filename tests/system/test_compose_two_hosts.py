@@ -10,30 +10,20 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from benchmarks.chain import Chain
 
 from actum import keys
-from actum.messages import Event, Message, Truth
-from actum.runtime import Client, Listening
+from actum.messages import Event
+from actum.runtime import Client
 from actum.settings import ServiceSettings
-from actum_command.scene_marks import mark_of
 from compose_files import DEPLOY
 from live import collect, free_endpoint, wait_until
-from scene_simulator.endless_simulator import simulator_of
-from scene_simulator.settings import Settings
-from som_classifier.model_loading import load_model
+from marked_scene import ACTIONS, SCENE, SCENE_S, Told, mark, on_one_host, told
 from tcp_proxy import TcpProxy
 
-SCENE = {"repetitions": 1, "everyday": "none", "seed": 3}
-ACTIONS = 5
-SCENE_S = 120.0
-"""A scene of five actions takes some 25 s, and its answers some more where the link is bad."""
 HEALTHY_S = 120
 IMAGES = "actum/*/image/**"
 COMPUTE = ("router", "pose_preprocessor", "som_classifier", "action_fusion", "web_dashboard")
 pytestmark = pytest.mark.containers
-Told = dict[str, tuple[str | None, str | None]]
-"""The action and the object's name of each segment."""
 
 
 def docker(*arguments: str) -> str:
@@ -103,28 +93,6 @@ def hosts(tmp_path_factory: pytest.TempPathFactory, scene_model: Path) -> Iterat
                 host.compose("down", "--volumes")
 
 
-def on_one_host(model: Path) -> Told:
-    """What is told of the scene where nothing lies between the services."""
-    chain = Chain(load_model(model))
-    simulator = simulator_of(Settings.model_validate(SCENE), start_ns=1)
-    messages = [marked for frame in simulator.frames() for message in frame for marked in with_mark(message, "")]
-    return told(output for message in messages for output in chain.feed(message))
-
-
-def with_mark(message: Message, prefix: str) -> list[Message]:
-    """A message, and before it the mark of a truth, whose segments are named with the prefix."""
-    if not isinstance(message, Truth):
-        return [message]
-    return [mark_of(message).model_copy(update={"segment_id": prefix + message.segment_id}), message]
-
-
-def told(messages: Iterator[Message] | list[Message], prefix: str = "") -> Told:
-    events = [message for message in messages if isinstance(message, Event) and message.segment_id.startswith(prefix)]
-    return {
-        event.segment_id.removeprefix(prefix): (event.action, event.object and event.object.name) for event in events
-    }
-
-
 def play(hosts: Hosts, prefix: str, disturb: Callable[[TcpProxy, threading.Event], None]) -> Told:
     """Run the scene once, mark it on the sensor's host while the link is disturbed; return what the other tells."""
     over = threading.Event()
@@ -148,13 +116,6 @@ def play(hosts: Hosts, prefix: str, disturb: Callable[[TcpProxy, threading.Event
             hosts.link.delay(0.0)
             hosts.link.mend()
             hosts.sensor.compose("stop", "scene_simulator")
-
-
-def mark(switch: Client, truths: Listening, prefix: str, over: threading.Event) -> None:
-    while not over.wait(0.005):
-        while (received := truths.take()) is not None:
-            if isinstance(received.message, Truth):
-                switch.put(with_mark(received.message, prefix)[0])
 
 
 def undisturbed(link: TcpProxy, over: threading.Event) -> None:

@@ -1,14 +1,10 @@
 """The proxy does to a link what the tests of links say that it does."""
 
 import contextlib
-import signal
 import socket
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -187,27 +183,3 @@ def test_its_port_is_free_afterwards(echoing: int) -> None:
         pass
     with TcpProxy(echoing, port=proxy.port) as again, connected(again.port) as connection:
         assert round_trip(connection, b"ping") == b"ping"
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="SIGUSR1 is POSIX")
-def test_as_a_program_signals_cut_and_mend_it(echoing: int) -> None:
-    command = [sys.executable, str(Path(tcp_proxy.__file__)), "127.0.0.1:0", f"127.0.0.1:{echoing}"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout
-        port = int(process.stdout.readline().rpartition(":")[2])
-        with connected(port) as connection:
-            assert round_trip(connection, b"before") == b"before"
-            process.send_signal(signal.SIGUSR1)
-            assert ended(connection)
-        process.send_signal(signal.SIGUSR2)
-        wait_until(lambda: carries(port), "it is mended")
-        process.terminate()
-        assert process.wait(10.0) == 0
-
-
-def carries(port: int) -> bool:
-    try:
-        with connected(port) as connection:
-            return round_trip(connection, b"after") == b"after"
-    except ConnectionError:
-        return False

@@ -1,0 +1,131 @@
+"""What `actum deploy init` writes, taken up by Compose as it is: a camera's host and one that computes, both locked."""
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from actum import keys
+from actum.messages import Event
+from actum.runtime import Client
+from actum.settings import ServiceSettings
+from compose_files import MAIN
+from live import collect, free_endpoint, wait_until
+from marked_scene import ACTIONS, SCENE, SCENE_S, mark, on_one_host, told
+
+HEALTHY_S = 120
+pytestmark = [
+    pytest.mark.containers,
+    pytest.mark.timeout(900),
+    pytest.mark.skipif(os.geteuid() != 0, reason="keys are handed to the containers' user by root alone"),
+]
+
+
+def docker(*arguments: str) -> str:
+    return subprocess.run(["docker", *arguments], check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
+def actum(*arguments: str) -> None:
+    subprocess.run([sys.executable, "-m", "actum_command", *arguments], check=True)
+
+
+@dataclass
+class Taken:
+    """The deployment's folder, the address of both hosts, and each host's port."""
+
+    folder: Path
+    address: str
+    ports: dict[str, int]
+
+    def compose(self, host: str, *arguments: str) -> str:
+        return docker("compose", "--project-directory", str(self.folder / host), *arguments)
+
+    def up(self, host: str) -> None:
+        self.compose(host, "up", "--detach", "--wait", "--wait-timeout", str(HEALTHY_S))
+
+    def client(self, role: str, host: str) -> Client:
+        connect, credentials = f"tls/{self.address}:{self.ports[host]}", self.folder / "people" / role
+        return Client(ServiceSettings(connect=connect, credentials=credentials), wait_s=HEALTHY_S)
+
+
+@pytest.fixture(scope="module")
+def taken(tmp_path_factory: pytest.TempPathFactory, scene_model: Path) -> Iterator[Taken]:
+    """Both hosts on this machine, up, with a model; gone afterwards."""
+    docker("compose", "--file", str(MAIN), "build", "--quiet")
+    address = docker("network", "inspect", "bridge", "--format", "{{(index .IPAM.Config 0).Gateway}}").strip()
+    ports = {host: int(free_endpoint().rpartition(":")[2]) for host in ("camera", "compute")}
+    made = Taken(tmp_path_factory.mktemp("deployment"), address, ports)
+    hosts = ",".join(f"{host}={address}:{port}" for host, port in ports.items())
+    actum("deploy", "init", str(made.folder), "--hosts", hosts, "--passwords", "--simulate")
+    scene = "".join(f"ACTUM_{name.upper()}={value}\n" for name, value in SCENE.items())
+    settings = made.folder / "camera" / "settings.env"
+    settings.write_text(settings.read_text() + scene)
+    try:
+        for host in ports:
+            made.up(host)
+        put_model(made, scene_model)
+        yield made
+    finally:
+        for host in ports:
+            made.compose(host, "down", "--volumes")
+
+
+def put_model(taken: Taken, model: Path) -> None:
+    """Put a model where the classifier waits for one."""
+    [trainer] = taken.compose("compute", "ps", "--quiet", "model_trainer").split()
+    with model.open("rb") as content:
+        command = [
+            "docker",
+            "exec",
+            "--interactive",
+            trainer,
+            "sh",
+            "-c",
+            "cat > /models/new && mv /models/new $ACTUM_MODEL",
+        ]
+        subprocess.run(command, stdin=content, check=True)
+
+
+def test_the_other_host_tells_what_one_host_tells(taken, scene_model):
+    expected, over = on_one_host(scene_model), threading.Event()
+    with taken.client("switch", "camera") as switch, taken.client("viewer", "compute") as viewer:
+        events = viewer.listen(keys.pattern(keys.EVENT, viewer.sensor))
+        truths = switch.listen(keys.key(keys.TRUTH, switch.sensor))
+        assert switch.wait_for_subscriber(keys.SEGMENT, SCENE_S)
+        marking = threading.Thread(target=mark, args=(switch, truths, "deployed-", over))
+        marking.start()
+        try:
+            taken.compose("camera", "up", "--detach", "--force-recreate", "scene_simulator")
+            heard = collect(events, Event, lambda found: len(told(found, "deployed-")) >= ACTIONS, SCENE_S)
+        finally:
+            over.set()
+            marking.join()
+    assert told(heard, "deployed-") == expected
+
+
+def test_a_viewer_sees_no_images_of_a_camera_that_makes_some(taken):
+    with taken.client("viewer", "camera") as viewer, taken.client("recorder", "camera") as recorder:
+        unseen, seen = (client.listen(f"actum/{client.sensor}/image/**") for client in (viewer, recorder))
+        wait_until(lambda: seen.take() is not None, "an image for who may see them", HEALTHY_S)
+        assert unseen.take() is None
+
+
+def test_everything_stays_up_while_its_certificates_are_renewed(taken):
+    before = running(taken)
+    actum("deploy", "rotate", str(taken.folder))
+    for host in taken.ports:
+        with taken.client("viewer", host) as viewer:
+            wait_until(lambda: viewer.alive() != [], f"the services of {host} are seen with the new ones", HEALTHY_S)
+    assert running(taken) == before
+
+
+def running(taken: Taken) -> dict[str, str]:
+    """When each container was started that runs now."""
+    ids = [one for host in taken.ports for one in taken.compose(host, "ps", "--quiet").split()]
+    return {one["Name"]: one["State"]["StartedAt"] for one in json.loads(docker("inspect", *ids))}
