@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
 LOCKS := deploy/requirements
 
-.PHONY: install demo up test fuzz soak test-browser test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
+.PHONY: install demo up test fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -36,7 +36,7 @@ test: check  ## static checks, then every test but the long ones
 
 test-data: $(STAMP)  ## only the tests on real recordings; fails without ACTUM_DATA
 	@test -d "$$ACTUM_DATA" || { echo "test-data needs ACTUM_DATA: the folder that holds msr_action3d/ and utkinect/" >&2; exit 1; }
-	$(BIN)/pytest -m data
+	$(BIN)/pytest -m "data or data and long"
 
 test-live: $(STAMP)  ## all MSR test recordings through live processes
 	@test -d "$$ACTUM_DATA" || { echo "test-live needs ACTUM_DATA: the folder that holds msr_action3d/" >&2; exit 1; }
@@ -45,8 +45,11 @@ test-live: $(STAMP)  ## all MSR test recordings through live processes
 test-containers: $(STAMP)  ## build and run the compose file; needs a container engine
 	$(BIN)/pytest -m containers -s
 
+test-long: $(STAMP)  ## the tests that take minutes: whole sets, the demo, an installed wheel, teaching in a browser
+	$(BIN)/pytest -m long
+
 test-browser: $(STAMP)  ## all tests of the web page in Chromium, which has to be installed
-	$(BIN)/pytest -m "browser or long"
+	$(BIN)/pytest -m "browser or browser and long"
 
 test-chaos: $(STAMP)  ## a few services and routers killed, paused and cut off; `make chaos` does it to all
 	$(BIN)/pytest -m chaos -s

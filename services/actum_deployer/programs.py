@@ -19,9 +19,9 @@ COMMAND_IMAGE = "actum/actum_command"
 """The image with all programs, in which router and trainer run."""
 PAGE_PORT = 8080
 """The port of the first sensor's page; of another the next one."""
-MEMORY_MB = {GATEWAY.name: 2048, TRAINER.name: 4096}
+MEMORY_MB = {GATEWAY.name: 3072, TRAINER.name: 4096}
 """Memory that a program may use (MB): pose estimation takes more than others, and so does training."""
-USUAL_MEMORY_MB = 768
+USUAL_MEMORY_MB = 512
 """The same of all others, which take a fifth of it."""
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 """One BLAS thread a process: the processes share the cores."""

@@ -86,6 +86,7 @@ def test_a_damaged_file_stops_the_import_and_is_named(tmp_path: Path) -> None:
 
 @pytest.mark.data
 @pytest.mark.timeout(300)  # it writes 600 recordings
+@pytest.mark.long
 def test_the_real_sets_are_imported_whole(tmp_path: Path, data: Path) -> None:
     msr = import_msr_action3d(data / "msr_action3d", tmp_path / "msr", lambda done, total: None)
     assert (msr.files, msr.frames, msr.invalid_frames, msr.excluded) == (567, 23478, 1113, 10)

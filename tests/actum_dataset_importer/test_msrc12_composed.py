@@ -78,6 +78,7 @@ def test_one_gesture_alone_cannot_be_mixed(tmp_path: Path) -> None:
 
 
 @pytest.mark.data
+@pytest.mark.long
 def test_the_real_set_makes_two_streams_of_each_person(data: Path, tmp_path: Path) -> None:
     report = import_msrc12_composed(data / "msrc12", tmp_path, lambda done, total: None)
     assert (report.files, report.segments, len(report.persons), len(report.actions)) == (30, 720, 15, 12)

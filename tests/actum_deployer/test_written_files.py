@@ -14,8 +14,10 @@ from actum.settings import SettingsError
 from actum_deployer.credential_folders import SERVICES_USER
 from actum_deployer.deployment import Deployment, hosts_of
 from actum_deployer.writing import write_deployment
+from compose_files import DEPLOY, MAIN, services_of
 
 HOSTS = hosts_of("camera=192.168.1.5,compute=192.168.1.6")
+CAMERA = DEPLOY / "compose.camera-host.yml"
 USUAL = Path(__file__).parents[2] / "deploy" / "zenoh" / "router.json5"
 SECRETS = {"key.pem", "user.json5", "users.txt"}
 
@@ -59,6 +61,18 @@ def test_a_container_has_its_own_credentials_and_no_rights(written: Path, host: 
         source, target, mode = mounted.split(":")
         assert (mode, target) == ("ro", service["environment"]["ACTUM_CREDENTIALS"])
         check(written / host / source)
+
+
+def test_a_container_may_use_as_much_as_in_the_compose_files_of_the_repository(written: Path) -> None:
+    usual = {name: _megabytes(service["mem_limit"]) for name, service in services_of(MAIN).items()}
+    usual |= {"sensor_gateway": _megabytes(services_of(CAMERA)["sensor_gateway"]["mem_limit"])}
+    for host in ("camera", "compute"):
+        for name, service in compose(written, host).items():
+            assert _megabytes(service["mem_limit"]) == usual[name], name
+
+
+def _megabytes(limit: str) -> int:
+    return int(limit[:-1]) * {"m": 1, "g": 1024}[limit[-1]]
 
 
 def test_only_the_router_is_reached_from_elsewhere(written: Path) -> None:

@@ -157,6 +157,7 @@ def test_an_unlabelled_action_is_still_done(own: Stream, tmp_path: Path) -> None
     assert without.person == own.person
 
 
+@pytest.mark.long
 def test_an_absent_gesture_is_not_even_done(tmp_path: Path) -> None:
     """Streams are composed anew of the training people's other gestures."""
     for person in (1, 3):

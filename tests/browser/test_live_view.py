@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 from PIL import Image as Picture
 
-import chromium as installed
 from actum.messages import Segment
 from live import wait_until
 from page_scenes import Scene
@@ -41,8 +40,8 @@ def wait_for_state(page: Any, text: str) -> None:
     )
 
 
-def test_a_skeleton_moves(scene: Scene, open_page: Open) -> None:
-    page = open_page(scene.page.address)
+def test_a_skeleton_moves(scene: Scene, open_in_3d: Open) -> None:
+    page = open_in_3d(scene.page.address)
     wait_for_state(page, "live")
     page.wait_for_timeout(500)
     assert colours(page, ".scene") > COLOURS
@@ -52,8 +51,8 @@ def test_a_skeleton_moves(scene: Scene, open_page: Open) -> None:
     assert page.locator(".counts").text_content() == "1 person · 1 of 1 objects in sight"
 
 
-def test_the_view_turns_zooms_and_changes_its_frame_by_keys(scene: Scene, open_page: Open) -> None:
-    page = open_page(scene.page.address)
+def test_the_view_turns_zooms_and_changes_its_frame_by_keys(scene: Scene, open_in_3d: Open) -> None:
+    page = open_in_3d(scene.page.address)
     wait_for_state(page, "live")
     scene.still = True
     view = page.get_by_role("group", name="3-D view")
@@ -191,8 +190,8 @@ def test_a_dropped_connection_is_opened_again(scene: Scene, chromium: Any) -> No
     context.close()
 
 
-def test_a_stalled_tab_costs_the_others_nothing_and_shows_the_newest_afterwards(scene: Scene, open_page: Open) -> None:
-    stalled, other = open_page(scene.page.address), open_page(scene.page.address)
+def test_a_stalled_tab_costs_the_others_nothing_and_shows_the_newest_afterwards(scene: Scene, open_in_3d: Open) -> None:
+    stalled, other = open_in_3d(scene.page.address), open_in_3d(scene.page.address)
     for page in (stalled, other):
         wait_for_state(page, "live")
     debugger = stalled.context.new_cdp_session(stalled)
@@ -223,8 +222,8 @@ def test_it_has_no_serious_fault_of_accessibility(scene: Scene, open_page: Open,
     assert page.evaluate("() => document.documentElement.scrollWidth <= innerWidth"), "nothing to scroll sideways"
 
 
-def test_every_control_is_reached_by_the_tabulator_and_has_a_name(scene: Scene, open_page: Open) -> None:
-    page = open_page(scene.page.address)
+def test_every_control_is_reached_by_the_tabulator_and_has_a_name(scene: Scene, open_in_3d: Open) -> None:
+    page = open_in_3d(scene.page.address)
     wait_for_state(page, "live")
     scene.answer("one", "push object 1 cup")
     page.get_by_role("button", name="push object 1 cup, ").wait_for()
@@ -242,13 +241,8 @@ def test_every_control_is_reached_by_the_tabulator_and_has_a_name(scene: Scene, 
     assert wanted <= reached
 
 
-def test_without_3d_it_says_so_and_shows_the_rest(scene: Scene, chromium: Any) -> None:
-    flat = chromium.browser_type.launch(
-        executable_path=installed.path(), args=["--disable-software-rasterizer", "--disable-gpu"]
-    )
-    page = flat.new_page()
-    page.goto(scene.page.address)
+def test_without_3d_it_says_so_and_shows_the_rest(scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
     wait_for_state(page, "live")
     assert "draws no 3-D" in page.locator("#scene").text_content()
     assert colours(page, "#picture canvas") > 2
-    flat.close()

@@ -132,7 +132,7 @@ class Scene:
             {
                 (
                     event.segment_id.rpartition("-")[2],
-                    event.valid,
+                    event.reason,
                     event.action,
                     event.object.id if event.object else None,
                     event.hand,
@@ -163,6 +163,7 @@ def scene(folder: Path, camera: dict[str, str], compute: dict[str, str]) -> Iter
 
 
 @pytest.mark.timeout(300)
+@pytest.mark.long  # two whole systems at once
 def test_hosts_ten_seconds_apart_whose_clocks_are_set_meanwhile_tell_the_same_events(
     tmp_path: Path, scene_model: Path
 ) -> None:

@@ -100,6 +100,7 @@ def test_it_holds_every_file_of_the_packages_and_no_other(wheel: Path) -> None:
     assert "actum/py.typed" in packed
 
 
+@pytest.mark.long
 def test_a_stranger_installs_it_learns_and_recognises(programs: Path, tmp_path: Path) -> None:
     actum, python = programs / "actum", programs / "python"
     assert run(tmp_path, actum, "--version") == f"actum {VERSION}\n"
