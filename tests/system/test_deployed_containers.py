@@ -101,7 +101,7 @@ def test_the_other_host_tells_what_one_host_tells(taken, scene_model):
         marking = threading.Thread(target=mark, args=(switch, truths, "deployed-", over))
         marking.start()
         try:
-            taken.compose("camera", "up", "--detach", "--force-recreate", "scene_simulator")
+            taken.compose("camera", "up", "--detach", "--force-recreate", "sensor_gateway")
             heard = collect(events, Event, lambda found: len(told(found, "deployed-")) >= ACTIONS, SCENE_S)
         finally:
             over.set()
