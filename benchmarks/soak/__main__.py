@@ -3,7 +3,6 @@ one camera at 30 frames a second. Print memory of each process, losses and laten
 """
 
 import argparse
-import math
 import os
 import sys
 import tempfile
@@ -59,7 +58,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name, running(Path(name)) as (client, memory, watch):
         soak(memory, watch, given.minutes)
         infos = {info.service for info in client.infos()}
-    console.print(memory_table(memory))
+    console.print(memory_table(memory, given.minutes))
     console.print(latency_table(watch))
     problems = [*verdict(memory, watch), *(f"{name} does not answer" for name in SERVICES if name not in infos)]
     rejects = {s.service: s.rejects for s in watch.statuses.values() if s.rejects}
@@ -149,15 +148,17 @@ def _halves(p99_ms: Sequence[float]) -> tuple[float, float]:
     return float(np.median(p99_ms[: max(middle, 1)])), float(np.median(p99_ms[middle:]))
 
 
-def memory_table(memory: Memory) -> Table:
-    """Lay out resident memory: after the first minute, at the end, the most, and the growth."""
+def memory_table(memory: Memory, minutes: int) -> Table:
+    """Lay out resident memory: after the first minute and at three later times, the most, and the growth."""
+    shown = sorted({1, *(round(minutes * share) for share in (0.25, 0.5, 0.75))} - {0})
     table = Table("process", title="resident memory, MB")
-    for heading in ("at 1 min", "end", "most", "growth"):
+    for heading in (*(f"at {minute} min" for minute in shown), "end", "most", "growth"):
         table.add_column(heading, justify="right")
     for name, samples_mb in memory.mb.items():
         values = [mb for _, mb in samples_mb]
-        at_one = next((mb for at_s, mb in samples_mb if at_s >= 60), math.nan)
-        table.add_row(name, f"{at_one:.1f}", f"{values[-1]:.1f}", f"{max(values):.1f}", f"{growth(samples_mb):+.1%}")
+        then = [values[60 * minute] for minute in shown]
+        columns = (f"{mb:.1f}" for mb in (*then, values[-1], max(values)))
+        table.add_row(name, *columns, f"{growth(samples_mb):+.1%}")
     return table
 
 

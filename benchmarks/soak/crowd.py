@@ -13,6 +13,8 @@ from scene_simulator.simulator import GATEWAY
 
 REPETITIONS = 4
 """Of each action in one scene; the next one follows."""
+SEEN = MOST_PEOPLE // 2
+"""The person whom images show with their objects: does each action once more than others, who else were without."""
 
 
 class Crowd:
@@ -30,7 +32,8 @@ class Crowd:
         start_ns, seed = time.time_ns(), self._settings.seed
         session = f"crowd-{start_ns}"
         while True:
-            programmes = [balanced_programme(REPETITIONS, seed, actor) for actor in range(MOST_PEOPLE)]
+            counts = [REPETITIONS + (actor == SEEN) for actor in range(MOST_PEOPLE)]
+            programmes = [balanced_programme(count, seed, actor) for actor, count in enumerate(counts)]
             sensor, hz = self._settings.sensor, self._settings.image_hz
             group = Group(programmes, 0, seed, sensor=sensor, start_ns=start_ns, session_id=session, image_hz=hz)
             for messages in group.frames():
