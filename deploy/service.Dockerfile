@@ -55,6 +55,7 @@ ENV PATH=/actum/bin:/usr/local/bin:/usr/bin:/bin \
     PYTHONDONTWRITEBYTECODE=1 \
     LANG=C.UTF-8 \
     OPENBLAS_NUM_THREADS=1 \
+    MALLOC_ARENA_MAX=1 \
     MPLCONFIGDIR=/tmp/matplotlib \
     ACTUM_HEALTH_FILE=/tmp/actum.health \
     SERVICE=${SERVICE}

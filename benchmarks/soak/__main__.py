@@ -98,7 +98,6 @@ def programs(folder: Path) -> list[Program]:
         processes.router(SETTINGS),
         *processes.with_page(SETTINGS, services, given),
         Program("ros2_bridge", "ros2_bridge", [], common),
-        processes.scene(SETTINGS),
         Program("crowd", "benchmarks.soak.crowd", [], common),
     ]
 

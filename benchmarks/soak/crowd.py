@@ -1,11 +1,12 @@
-"""`python -m benchmarks.soak.crowd`: the sensor of the soak, four people at 30 frames a second with images."""
+"""`python -m benchmarks.soak.crowd`: the sensor of the soak, four people at 30 frames a second, with images and marks."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
-from actum.messages import Message
+from actum.messages import Message, Segment, Truth
 from actum.node import SECOND_NS, Counters
 from actum.runtime import run_source
+from actum_command.scene_marks import mark_of
 from scene_simulator.group import MOST_PEOPLE, Group
 from scene_simulator.programme import balanced_programme
 from scene_simulator.settings import Settings
@@ -37,9 +38,15 @@ class Crowd:
             sensor, hz = self._settings.sensor, self._settings.image_hz
             group = Group(programmes, 0, seed, sensor=sensor, start_ns=start_ns, session_id=session, image_hz=hz)
             for messages in group.frames():
-                yield messages
+                yield [*messages, *marks(messages)]
                 newest_ns = messages[0].stamp_ns
             start_ns, seed = newest_ns + SECOND_NS, seed + 1
+
+
+def marks(messages: Iterable[Message]) -> list[Segment]:
+    """Return the marks of a frame, which say who acts: four people act at once."""
+    truths = [message for message in messages if isinstance(message, Truth)]
+    return [mark_of(truth).model_copy(update={"agent": truth.agent}) for truth in truths]
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
 
-from actum.settings import ServiceSettings
+from actum.settings import OF_A_PROCESS, ServiceSettings
 from actum_command.service_settings import TRAINER, Given, arguments_of
 from actum_command.supervising import Program
 from actum_model_trainer.settings import Settings
@@ -19,9 +19,6 @@ SERVICES = ("pose_preprocessor", "som_classifier", "marker_tracker", "action_fus
 
 PAGE = "web_dashboard"
 """The service that shows all of it to browsers."""
-
-ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-"""One BLAS thread a process: the processes share the cores, and products as small as theirs gain nothing from more."""
 
 
 def system(
@@ -69,7 +66,7 @@ def with_page(
 
 def common(settings: ServiceSettings) -> dict[str, str]:
     """Return the environment that every process of one system shares."""
-    return {"ACTUM_CONNECT": settings.connect, "ACTUM_SENSOR": settings.sensor, **ONE_THREAD}
+    return {"ACTUM_CONNECT": settings.connect, "ACTUM_SENSOR": settings.sensor, **OF_A_PROCESS}
 
 
 def router(settings: ServiceSettings) -> Program:

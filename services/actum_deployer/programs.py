@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+from actum.settings import OF_A_PROCESS
 from actum_deployer.credential_folders import CREDENTIALS
 from actum_deployer.deployment import Deployment, Host
 from actum_deployer.roles import CLASSIFIER, FUSION, GATEWAY, PAGE, ROUTER, TRAINER, Role, identity
@@ -23,8 +24,6 @@ MEMORY_MB = {GATEWAY.name: 3072, TRAINER.name: 4096}
 """Memory that a program may use (MB): pose estimation takes more than others, and so does training."""
 USUAL_MEMORY_MB = 512
 """The same of all others, which take a fifth of it."""
-ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-"""One BLAS thread a process: the processes share the cores."""
 
 
 STATEFUL = (CLASSIFIER, FUSION)
@@ -123,5 +122,5 @@ def _program(deployment: Deployment, host: Host, role: Role, sensor: str) -> Pro
         credentials=f"{INSTALLED}/{CREDENTIALS}/{identity(role, sensor)}" if deployment.secured else "",
         memory_mb=MEMORY_MB.get(role.name, USUAL_MEMORY_MB),
         page_port=PAGE_PORT + host.sensors.index(sensor) if role is PAGE else 0,
-        environment={"ACTUM_SENSOR": sensor, **ONE_THREAD},
+        environment={"ACTUM_SENSOR": sensor, **OF_A_PROCESS},
     )

@@ -23,11 +23,14 @@ in_one_folder = settings(suppress_health_check=[HealthCheck.function_scoped_fixt
 
 def written(path: Path, answers: list[Frame]) -> bytes:
     path.unlink(missing_ok=True)
-    journal = Journal(path)
-    for frame in answers:
-        journal.add(frame)
-    journal.close()
+    add(path, answers)
     return path.read_bytes()
+
+
+def add(path: Path, answers: list[Frame]) -> None:
+    with closing(Journal(path)) as journal:
+        for frame in answers:
+            journal.add(frame)
 
 
 def read(path: Path) -> list[Frame]:
@@ -58,6 +61,19 @@ def test_a_file_torn_anywhere_gives_a_beginning_of_what_was_added(
     assert found == answers[: len(found)]
     whole = [len(written(path, answers[:n])) for n in range(len(answers) + 1)]
     assert len(found) == max((n for n, size in enumerate(whole) if size <= cut), default=0)
+
+
+@in_one_folder
+@given(answers=st.lists(frames, min_size=1, max_size=4), later=st.lists(frames, max_size=4), data=st.data())
+def test_what_is_added_behind_a_torn_end_is_read(
+    answers: list[Frame], later: list[Frame], data: st.DataObject, tmp_path: Path
+) -> None:
+    path = tmp_path / "a.journal"
+    content = written(path, answers)
+    path.write_bytes(content[: data.draw(st.integers(0, len(content)))])
+    before = read(path)
+    add(path, later)
+    assert read(path) == before + later
 
 
 @in_one_folder
@@ -100,18 +116,41 @@ def test_how_long_all_answers_are_known_outlives_the_process(tmp_path: Path, mon
         assert new.age_s == 0.0
 
 
-def test_the_file_stays_bounded_and_keeps_the_newest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(journals, "MOST_BYTES", 2000)
-    monkeypatch.setattr(journals, "ROOM_BYTES", 4000)
+def test_the_files_stay_bounded_and_keep_the_newest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(journals, "FULL_BYTES", 4000)
     path = tmp_path / "a.journal"
-    journal = Journal(path)
-    for number in range(500):
-        journal.add(frame(number))
-        assert path.stat().st_size < 2 * (2000 + 4000)
-    journal.close()
+    with closing(Journal(path)) as journal:
+        for number in range(500):
+            journal.add(frame(number))
+            assert sum(file.stat().st_size for file in tmp_path.iterdir()) < 2 * (4000 + 300)
     found = read(path)
-    assert found[-1] == frame(499)
-    assert [f.attachment for f in found] == [frame(n).attachment for n in range(500 - len(found), 500)]
+    assert found == [frame(n) for n in range(500 - len(found), 500)]
+    assert sum(len(f.payload) for f in found) > 2000
+
+
+def test_a_process_that_is_killed_while_a_full_file_is_set_aside_loses_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "a.journal"
+    written(path, [frame(1)])
+    path.rename(tmp_path / "a.journal.before")
+    with closing(Journal(path)) as journal:
+        assert not journal.is_new
+        journal.add(frame(2))
+    assert read(path) == [frame(1), frame(2)]
+
+
+def test_where_a_full_file_cannot_be_set_aside_answers_are_added_to_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.journal"
+    with closing(Journal(path)) as journal:
+        (tmp_path / "a.journal.before").mkdir()
+        with monkeypatch.context() as patch:
+            patch.setattr(journals, "FULL_BYTES", 0)
+            with pytest.raises(OSError, match="a.journal"):
+                journal.add(frame(1))
+        journal.add(frame(2))
+    (tmp_path / "a.journal.before").rmdir()
+    assert read(path) == [frame(1), frame(2)]
 
 
 def frame(number: int) -> Frame:

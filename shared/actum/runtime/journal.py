@@ -1,7 +1,8 @@
 """The last answers of a service in a small file, so that a process started in its place gives no others.
 
 The file is records one after the other: magic, length and checksum, then a body in msgpack. The first record says when
-the journal was begun. A record is written before its answer is put: an answer that anybody has seen stands here.
+the journal was begun. A record is written before its answer is put: an answer that anybody has seen stands here. A full
+file is set aside, in place of the one before: nothing is read or written anew while a service runs.
 """
 
 import struct
@@ -14,7 +15,6 @@ from typing import BinaryIO
 
 import msgpack
 
-from actum.atomic_file import write_whole
 from actum.codec import UNPACK_ERRORS, Frame
 
 MAGIC = b"act\x01"
@@ -22,11 +22,9 @@ MAGIC = b"act\x01"
 HEAD = struct.Struct("<4sII")
 """What stands before a body: magic, the body's length (bytes), its CRC-32."""
 KEPT_S = 600.0
-"""How old an answer may be to be kept when the file is written anew (s): older marks are asked for by nobody."""
-MOST_BYTES = 8_000_000
-"""Most bytes kept then, the newest: some hundred answers with maps, many thousands without."""
-ROOM_BYTES = 8_000_000
-"""The file is written anew once it has grown by this much."""
+"""How old an answer that is read may be (s): older marks are asked for by nobody."""
+FULL_BYTES = 8_000_000
+"""A file of this size is set aside: some hundred answers with maps, many thousands without."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +33,11 @@ class WrittenAnswer:
 
     given_ns: int
     frame: Frame
+
+    @property
+    def age_s(self) -> float:
+        """How long ago it was given (s); where the clock was set back, how far that is ahead."""
+        return abs(time.time_ns() - self.given_ns) / 1e9
 
 
 class Journal:
@@ -51,13 +54,14 @@ class Journal:
     """
 
     def __init__(self, path: Path) -> None:
-        self._path = path
+        self._path, self._set_aside = path, path.with_name(f"{path.name}.before")
         path.parent.mkdir(parents=True, exist_ok=True)
-        self.is_new = not path.exists()
-        found = [] if self.is_new else list(_records(path.read_bytes()))
+        files = [file for file in (self._set_aside, path) if file.exists()]
+        found = [body for file in files for body in _records(file.read_bytes())]
+        self.is_new = not files
         self._begun_ns = next((body for body in found if isinstance(body, int)), time.time_ns())
-        self.answers = _kept(body for body in found if isinstance(body, WrittenAnswer))
-        self._file = self._rewritten(self.answers)
+        self.answers = [body for body in found if isinstance(body, WrittenAnswer) and body.age_s <= KEPT_S]
+        self._file = self._opened()
 
     @property
     def age_s(self) -> float:
@@ -71,34 +75,23 @@ class Journal:
             OSError: it cannot be written.
         """
         self._file.write(_record(WrittenAnswer(time.time_ns(), frame)))
-        if self._file.tell() > self._full_bytes:
+        if self._file.tell() > FULL_BYTES:
             self._file.close()
-            self._file = self._rewritten(_kept(_answers(self._path.read_bytes())))
+            try:
+                self._path.replace(self._set_aside)
+            finally:
+                self._file = self._opened()
 
     def close(self) -> None:
         """Close the file."""
         self._file.close()
 
-    def _rewritten(self, answers: list[WrittenAnswer]) -> BinaryIO:
-        """Write the file anew with these answers, and open it to add others."""
-        write_whole(self._path, b"".join([_record(self._begun_ns), *map(_record, answers)]))
+    def _opened(self) -> BinaryIO:
+        """Open the file to add to it; a new one says first since when all answers are known."""
         file = self._path.open("ab", buffering=0)
-        self._full_bytes = file.tell() + ROOM_BYTES
+        if file.tell() == 0:
+            file.write(_record(self._begun_ns))
         return file
-
-
-def _kept(answers: Iterator[WrittenAnswer]) -> list[WrittenAnswer]:
-    """Return those that are young enough, the newest that have room, in their order."""
-    now_ns = time.time_ns()
-    kept: list[WrittenAnswer] = []
-    size = 0
-    for answer in reversed(list(answers)):
-        size += len(answer.frame.payload)
-        if size > MOST_BYTES:
-            break
-        if abs(now_ns - answer.given_ns) <= KEPT_S * 1e9:
-            kept.append(answer)
-    return kept[::-1]
 
 
 def _record(content: WrittenAnswer | int) -> bytes:
@@ -109,10 +102,6 @@ def _record(content: WrittenAnswer | int) -> bytes:
     else:
         body = msgpack.packb([content])
     return HEAD.pack(MAGIC, len(body), zlib.crc32(body)) + bytes(body)
-
-
-def _answers(content: bytes) -> Iterator[WrittenAnswer]:
-    return (body for body in _records(content) if isinstance(body, WrittenAnswer))
 
 
 def _records(content: bytes) -> Iterator[WrittenAnswer | int]:
