@@ -1,4 +1,4 @@
-"""`python -m benchmarks.soak.crowd`: the sensor of the soak, four people at 30 frames a second, with images and marks."""
+"""`python -m benchmarks.soak.crowd`: the sensor of the soak, four people at 30 frames a second, images and marks."""
 
 import time
 from collections.abc import Iterable, Iterator
