@@ -10,6 +10,7 @@ import pytest
 from hypothesis import settings
 
 import chromium
+from actum.som.sequential import fastest_kernel
 
 settings.register_profile("patient", deadline=None)
 settings.register_profile("ci", settings.get_profile("patient"), derandomize=True)
@@ -51,6 +52,12 @@ def pose_model_missing() -> str | None:
 def data_folder() -> Path | None:
     folder = os.environ.get("ACTUM_DATA")
     return Path(folder) if folder and Path(folder).is_dir() else None
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Compile the kernel of training before several workers and their processes would, each for itself."""
+    if session.config.getoption("numprocesses", None):
+        fastest_kernel()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -65,6 +65,7 @@ def test_settings_change_what_is_evaluated_and_are_named(desk: Desk) -> None:
     assert "0 of 6 actions found" in told
 
 
+@pytest.mark.long
 def test_several_recordings_are_also_held_against_settings_picked_on_the_others(desk: Desk) -> None:
     told = run("tune", desk.model, *(recording.path for recording in desk.recordings))
     assert "picked on all other recordings in turn:" in told

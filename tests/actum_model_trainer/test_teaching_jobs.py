@@ -112,6 +112,7 @@ def test_a_set_of_two_people_is_tested_by_people(
     assert any("background" in sentence for sentence in result["advice"])
 
 
+@pytest.mark.long
 def test_a_set_of_one_person_is_tested_by_examples(
     teacher: Teacher, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

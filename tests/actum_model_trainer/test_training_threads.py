@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 PROGRAM = """
 from dataclasses import replace
 from actum_model_trainer.answering import answer, encoded
@@ -33,6 +35,7 @@ def output(threads: int) -> list[str]:
     return done.stdout.splitlines()
 
 
+@pytest.mark.long
 def test_one_and_two_threads_give_the_same_models_and_answers() -> None:
     with_one = output(1)
     assert len(with_one) == 1 + 2 * (1 + 6 * 3)

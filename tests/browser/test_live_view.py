@@ -51,6 +51,7 @@ def test_a_skeleton_moves(scene: Scene, open_in_3d: Open) -> None:
     assert page.locator(".counts").text_content() == "1 person · 1 of 1 objects in sight"
 
 
+@pytest.mark.long
 def test_the_view_turns_zooms_and_changes_its_frame_by_keys(scene: Scene, open_in_3d: Open) -> None:
     page = open_in_3d(scene.page.address)
     wait_for_state(page, "live")

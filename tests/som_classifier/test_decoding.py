@@ -140,6 +140,7 @@ def test_after_forgetting_nothing_from_before_is_decided() -> None:
     assert of.step(100 + LAG, []) == []
 
 
+@pytest.mark.long
 def test_however_long_a_stream_few_candidates_are_kept() -> None:
     """No more than can end within the time that a window lasts and its decision waits."""
     of, before, most = decoder(), kept(), 0

@@ -223,6 +223,7 @@ def test_another_model_in_the_middle_of_an_action_knows_nothing_of_what_was_befo
     assert len(ids) == len(set(ids))
 
 
+@pytest.mark.long
 def test_an_hour_keeps_no_more_than_its_first_minutes() -> None:
     """Of every kind of object: frames, candidates, names, marks. Three frames a second are enough to find actions."""
     node, of, rate_hz = SomClassifier(spotting_model()), stream()[::10], 3

@@ -72,6 +72,7 @@ def mark(client: Client, kind: str, stamp_ns: int) -> None:
     client.put(Segment(stamp_ns=stamp_ns, sensor=client.sensor, kind=kind, segment_id="played"))
 
 
+@pytest.mark.long
 def test_a_strangers_action_in_a_clip_is_recognised(running: System, data: Path, model: Path) -> None:
     running.start_router()
     with running.client() as client:

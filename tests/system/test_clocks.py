@@ -183,6 +183,7 @@ def test_hosts_ten_seconds_apart_whose_clocks_are_set_meanwhile_tell_the_same_ev
         assert (marks, frames < FEW) == (0, True), "who put a message is known whatever the clocks say"
 
 
+@pytest.mark.long
 def test_a_camera_goes_on_at_its_pace_while_the_clock_is_set(running: System, tmp_path: Path) -> None:
     clock = WallClock(tmp_path / "clock", 0.0)
     running.start_router()

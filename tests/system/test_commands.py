@@ -194,6 +194,7 @@ def test_what_is_done_five_times_in_the_scene_is_recorded_until_the_last_and_lab
     assert not killed.exists()
 
 
+@pytest.mark.long
 @pytest.mark.timeout(240)
 def test_the_marked_demo_runs_to_its_table_and_leaves_nothing(
     running: System, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -226,7 +227,8 @@ def test_the_demo_finds_actions_that_nobody_marks_and_leaves_nothing(
     wait_until(lambda: pids_of(running) == set(), "no process is left")
 
 
-@pytest.mark.parametrize("way", [pytest.param((), marks=pytest.mark.long), ("--marked",)])
+@pytest.mark.long
+@pytest.mark.parametrize("way", [(), ("--marked",)])
 def test_a_demo_that_is_terminated_takes_its_processes_along(running: System, way: tuple[str, ...]) -> None:
     demo = running.start_script(QUICK_DEMO, "demo", "--people", "1", *way)
     wait_until(lambda: "run as processes of their own" in demo.said(), "the processes run", patience_s=90)

@@ -36,6 +36,7 @@ def colour_tracker(running: System) -> Iterator[subprocess.Popen[bytes]]:
         process.wait()
 
 
+@pytest.mark.long
 def test_coloured_things_do_as_well_as_marked_ones(
     running: System, colour_tracker: subprocess.Popen[bytes], scene_model: Path
 ) -> None:

@@ -28,6 +28,7 @@ TRAINING_PEOPLE = ("1", "3", "5", "7", "9")
 TEST_PEOPLE = ("2", "4", "6", "8", "10")
 SPEED = 8.0
 LIVE_MINUTES = 3.0
+TRAINED = (QUICK, pytest.param(QUICK_PAPER, marks=pytest.mark.long))
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +55,7 @@ def few_of_msr(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-@pytest.fixture(scope="module", params=[QUICK, QUICK_PAPER], ids=lambda preset: preset.name)
+@pytest.fixture(scope="module", params=TRAINED, ids=lambda preset: preset.name)
 def quick_model(request: pytest.FixtureRequest, few_of_msr: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("model") / "quick.npz"
     train(samples_from(select([few_of_msr], TRAINING_PEOPLE)).usable, request.param).save(path)

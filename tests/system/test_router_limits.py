@@ -49,8 +49,8 @@ def test_a_flood_of_images_is_thinned_and_the_frames_beside_it_are_all_there(
         for number in range(500):
             gateway.put(image(number))
             gateway.put(skeleton(number))
-        lasted_s = time.monotonic() - began_s
         frames = collect(third.heard[0], Message, lambda found: len(of(found, "actum.skeleton")) >= 500)
+        lasted_s = time.monotonic() - began_s
     assert 0 < len(of(frames, "actum.image")) <= 2 + lasted_s * IMAGES_HZ
 
 

@@ -126,10 +126,11 @@ def cut_for_long(link: TcpProxy, over: threading.Event) -> None:
     link.mend()
 
 
-DISTURBANCES = (undisturbed, delayed, stalling, cut_now_and_then, cut_for_long)
+OFTEN = (undisturbed, cut_now_and_then, cut_for_long)
+SELDOM = (pytest.param(delayed, marks=pytest.mark.long), pytest.param(stalling, marks=pytest.mark.long))
 
 
-@pytest.mark.parametrize("disturb", DISTURBANCES, ids=lambda each: each.__name__)
+@pytest.mark.parametrize("disturb", (*OFTEN, *SELDOM), ids=lambda each: each.__name__)
 def test_events_are_those_of_one_host(
     hosts: LinkedSystems, scene_model: Path, disturb: Callable[[TcpProxy, threading.Event], None]
 ) -> None:

@@ -4,6 +4,8 @@ import os
 import subprocess
 import sys
 
+import pytest
+
 PROGRAM = """
 import hashlib
 import numpy as np
@@ -35,6 +37,7 @@ def output(threads: int) -> list[str]:
     return done.stdout.splitlines()
 
 
+@pytest.mark.long
 def test_one_and_two_threads_give_the_same_maps_and_distances() -> None:
     with_one = output(1)
     assert len(with_one) == 64

@@ -81,6 +81,7 @@ def as_installed() -> str:
     return run(TRAINING)
 
 
+@pytest.mark.long
 @needs_numba
 def test_without_a_place_for_compiled_code_it_is_compiled_anew(as_installed: str) -> None:
     """Numba tries each place for its cache with a temporary file."""
