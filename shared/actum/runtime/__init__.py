@@ -1,9 +1,10 @@
 """The one runtime: everything that knows Zenoh, clocks, signals and threads."""
 
 from actum.runtime.bridging import run_bridge
-from actum.runtime.client import Answer, Client, Listening, NotAnsweredError, Received
+from actum.runtime.client import Answer, Client, NotAnsweredError
 from actum.runtime.extras import needs_extra
 from actum.runtime.fronting import Front, run_front
+from actum.runtime.listening import Listening, Received
 from actum.runtime.obstacles import obstacle
 from actum.runtime.parent import end_with_parent
 from actum.runtime.router import serve_router

@@ -3,7 +3,7 @@
 import secrets
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Self
@@ -12,10 +12,10 @@ import zenoh
 from zenoh import ext
 
 from actum import keys
-from actum.codec import DecodeError, decode
 from actum.commands import MSGPACK, Refusal, packed, unpacked
 from actum.messages import Info, Message
 from actum.runtime.inbox import ENDING_S, Subscriber, subscribe, subscribe_recovering
+from actum.runtime.listening import Listening, Received, received
 from actum.runtime.outbox import Outbox
 from actum.runtime.session import RouterUnreachableError, connected, secret_config
 from actum.settings import ServiceSettings
@@ -32,16 +32,6 @@ POLL_S = 0.05
 """Interval (s) at which a program looks for a subscriber."""
 DEEP_RING = 8192
 """Depth of a program's ring: half a minute of all streams, for one that reads late."""
-
-
-@dataclass(frozen=True)
-class Received:
-    """A sample that was received: its message or the error of decoding it, and the payload's size (bytes)."""
-
-    key: str
-    message: Message | None
-    error: DecodeError | None
-    size: int
 
 
 @dataclass(frozen=True)
@@ -63,36 +53,6 @@ class Answer:
 
 class NotAnsweredError(RuntimeError):
     """Nobody answered a command in time."""
-
-
-class Listening:
-    """An open subscription: iterate it; `close` ends the iteration from another thread."""
-
-    def __init__(self, subscriber: Subscriber) -> None:
-        self._subscriber = subscriber
-
-    def __iter__(self) -> Iterator[Received]:
-        for sample in self._subscriber:
-            yield _received(sample)
-
-    def each(self, take: Callable[[Received], None]) -> None:
-        """Call `take` with each message until closed."""
-        for received in self:
-            take(received)
-
-    def drain(self, take: Callable[[zenoh.Sample], None]) -> None:
-        """Call `take` with each sample until closed."""
-        for sample in self._subscriber:
-            take(sample)
-
-    def take(self) -> Received | None:
-        """Return the next sample if there is one."""
-        sample = self._subscriber.try_recv()
-        return None if sample is None else _received(sample)
-
-    def close(self) -> None:
-        """End the subscription."""
-        self._subscriber.undeclare()
 
 
 class Client:
@@ -187,7 +147,7 @@ class Client:
         asked_ns, answers = time.monotonic_ns(), []
         for reply in self._session.get(keys.pattern(keys.INFO, self.sensor), timeout=1.0, consolidation=every):
             answered_ns, came_ns = time.monotonic_ns(), time.time_ns()
-            info = None if reply.ok is None else _received(reply.ok).message
+            info = None if reply.ok is None else received(reply.ok).message
             if isinstance(info, Info):
                 answers.append(Answer(info, asked_ns, answered_ns, came_ns))
         return answers
@@ -246,11 +206,3 @@ def _open(settings: ServiceSettings, wait_s: float) -> zenoh.Session:
         except zenoh.ZError:
             if time.monotonic() > deadline:
                 raise RouterUnreachableError(settings.connect) from None
-
-
-def _received(sample: zenoh.Sample) -> Received:
-    key, payload = str(sample.key_expr), sample.payload.to_bytes()
-    try:
-        return Received(key, decode(key, payload, str(sample.encoding)), None, len(payload))
-    except DecodeError as error:
-        return Received(key, None, error, len(payload))
