@@ -38,6 +38,8 @@ class Ros2Bridge:
         """Turn a message into one for each of its topics that is chosen; the first tick says how the camera lies."""
         if isinstance(message, Tick):
             return self._camera()
+        if not isinstance(message, Skeleton | Objects | Event):
+            return []
         if isinstance(message, Skeleton | Objects) and not message.valid:
             self.counters.counts["not valid, left out"] += 1
         elif _latest_ns(message) >= frames.LATEST_NS:
@@ -56,7 +58,7 @@ class Ros2Bridge:
         self.counters.counts["marks"] += 1
         return [mark]
 
-    def _converted(self, message: Message) -> list[Foreign]:
+    def _converted(self, message: Skeleton | Objects | Event) -> list[Foreign]:
         match message:
             case Skeleton():
                 people = [(agent.agent, self._usable(agent, message.stamp_ns)) for agent in message.agents]
@@ -67,7 +69,6 @@ class Ros2Bridge:
             case Event():
                 typed = self._on(topics.EVENT, conversion.action_event, message)
                 return typed + self._on(topics.EVENT_JSON, conversion.event_json, message)
-        return []
 
     def _on(self, topic: RosTopic, convert: Callable[..., Any], *given: Any) -> list[Foreign]:
         """Return what is converted for a topic; nothing where that is not chosen."""
@@ -92,6 +93,6 @@ class Ros2Bridge:
         return joints
 
 
-def _latest_ns(message: Message) -> int:
+def _latest_ns(message: Skeleton | Objects | Event) -> int:
     """Return the latest of the stamps that a message's conversion writes (ns)."""
     return max(message.stamp_ns, message.start_ns, message.end_ns) if isinstance(message, Event) else message.stamp_ns

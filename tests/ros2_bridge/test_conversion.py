@@ -11,7 +11,7 @@ from conftest import NEEDS_ROS2_EXTRA
 pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
 from actum.bridge import Foreign
-from actum.messages import Event, Message, Motion, ObjectPose, Objects, Skeleton, TrackedObject
+from actum.messages import Event, Message, Motion, ObjectPose, Objects, Segment, Skeleton, TrackedObject
 from actum.node import SECOND_NS, Tick
 from actum.skeletons import INDEX, JOINTS
 from actum.standard_body import BONES
@@ -229,3 +229,6 @@ def test_what_is_put_can_be_put_by_any_sender_of_ours() -> None:
 
 def test_messages_of_other_kinds_are_nothing_to_it() -> None:
     assert {topic.message for topic in Ros2Bridge.inputs} == {Skeleton, Objects, Event}
+    start = Segment(sensor="kinect0", kind="start", segment_id="a")
+    assert start.stamp_ns is None
+    assert put(start) == {}
