@@ -4,6 +4,8 @@ import os
 import sys
 from ctypes.util import find_library
 from importlib.util import find_spec
+from itertools import accumulate, groupby
+from operator import itemgetter
 from pathlib import Path
 
 import pytest
@@ -61,7 +63,6 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    items.sort(key=lambda item: item.get_closest_marker("system") is None)  # one worker waits while the other computes
     chosen = config.getoption("-m") or ""
     for marker in ("live", "containers", "long", "chaos"):
         if marker not in chosen:
@@ -69,6 +70,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             if skipped:
                 config.hook.pytest_deselected(items=skipped)
                 items[:] = [item for item in items if item not in skipped]
+    items[:] = spread(items)
     if data_folder() is None:
         for item in items:
             if item.get_closest_marker("data"):
@@ -77,6 +79,17 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for item in items if missing else ():
             if item.get_closest_marker(marker):
                 item.add_marker(pytest.mark.skip(reason=missing))
+
+
+def spread(items: list[pytest.Item]) -> list[pytest.Item]:
+    """Spread modules that wait for processes evenly among those that compute: each worker begins with an equal share."""
+    modules = [list(tests) for _, tests in groupby(items, key=lambda item: item.path)]
+    placed = []
+    for waits in (True, False):
+        alike = [tests for tests in modules if (tests[0].get_closest_marker("system") is not None) is waits]
+        ends = list(accumulate(map(len, alike)))
+        placed += [(end / ends[-1], tests) for end, tests in zip(ends, alike, strict=True)]
+    return [test for _, tests in sorted(placed, key=itemgetter(0)) for test in tests]
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

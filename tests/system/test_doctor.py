@@ -1,6 +1,7 @@
 """What `actum doctor` finds of real processes that have the very fault."""
 
 import json
+import re
 import socket
 from pathlib import Path
 
@@ -33,7 +34,7 @@ def said(running: System) -> str:
 @pytest.mark.parametrize(
     ("fault", "words"),
     [
-        ("slow", "sensor_gateway puts 12 frames a second, and its source is set to 30"),
+        ("slow", r"sensor_gateway puts \d+ frames a second, and its source is set to 30"),
         ("frozen", "skeletons repeat, bit for bit: the camera is frozen"),
         ("frozen", "images repeat, bit for bit: the camera is frozen"),
         ("still", "stamps of skeletons stand still"),
@@ -45,7 +46,7 @@ def test_a_gateway_with_a_fault(running: System, fault: str, words: str) -> None
     running.start_script(TESTS / "faulty_gateway.py", fault)
     with running.client() as client:
         running.wait_for_services(client, "sensor_gateway")
-        assert words in said(running).replace("puts 11 ", "puts 12 ")
+        assert re.search(words, said(running))
 
 
 def test_a_gateway_without_a_fault(running: System) -> None:
