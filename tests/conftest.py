@@ -82,7 +82,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def spread(items: list[pytest.Item]) -> list[pytest.Item]:
-    """Spread modules that wait for processes evenly among those that compute: each worker begins with an equal share."""
+    """Spread modules that wait for processes evenly among those that compute: each worker gets an equal share."""
     modules = [list(tests) for _, tests in groupby(items, key=lambda item: item.path)]
     placed = []
     for waits in (True, False):
