@@ -15,7 +15,8 @@ from scene_simulator.simulator import GATEWAY
 REPETITIONS = 4
 """Of each action in one scene; the next one follows."""
 SEEN = MOST_PEOPLE // 2
-"""The person whom images show with their objects: does each action once more than others, who else were without."""
+"""Index of the person whom the images show. They do each action once more than the others, so that no scene goes on
+without images: a segment without objects would be rejected."""
 
 
 class Crowd:

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
 
-from actum.settings import OF_A_PROCESS, ServiceSettings
+from actum.settings import PROCESS_ENVIRONMENT, ServiceSettings
 from actum_command.service_settings import TRAINER, Given, arguments_of
 from actum_command.supervising import Program
 from actum_model_trainer.settings import Settings
@@ -66,7 +66,7 @@ def with_page(
 
 def common(settings: ServiceSettings) -> dict[str, str]:
     """Return the environment that every process of one system shares."""
-    return {"ACTUM_CONNECT": settings.connect, "ACTUM_SENSOR": settings.sensor, **OF_A_PROCESS}
+    return {"ACTUM_CONNECT": settings.connect, "ACTUM_SENSOR": settings.sensor, **PROCESS_ENVIRONMENT}
 
 
 def router(settings: ServiceSettings) -> Program:

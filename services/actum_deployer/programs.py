@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from actum.settings import OF_A_PROCESS
+from actum.settings import PROCESS_ENVIRONMENT
 from actum_deployer.credential_folders import CREDENTIALS
 from actum_deployer.deployment import Deployment, Host
 from actum_deployer.roles import CLASSIFIER, FUSION, GATEWAY, PAGE, ROUTER, TRAINER, Role, identity
@@ -122,5 +122,5 @@ def _program(deployment: Deployment, host: Host, role: Role, sensor: str) -> Pro
         credentials=f"{INSTALLED}/{CREDENTIALS}/{identity(role, sensor)}" if deployment.secured else "",
         memory_mb=MEMORY_MB.get(role.name, USUAL_MEMORY_MB),
         page_port=PAGE_PORT + host.sensors.index(sensor) if role is PAGE else 0,
-        environment={"ACTUM_SENSOR": sensor, **OF_A_PROCESS},
+        environment={"ACTUM_SENSOR": sensor, **PROCESS_ENVIRONMENT},
     )

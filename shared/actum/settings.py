@@ -19,10 +19,10 @@ WITH_PORT = ("tcp", "udp", "tls", "quic", "ws")
 """Zenoh's transports whose addresses are host:port."""
 OTHER_TRANSPORTS = ("unixsock-stream", "unixpipe", "serial", "vsock")
 """Zenoh's transports with other addresses."""
-OF_A_PROCESS = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
-"""What every process of a system has in its environment. The processes share the cores, and products as small as theirs
-gain nothing from more BLAS threads. With one arena of glibc's allocator memory stays flat: with one for each of a dozen
-threads it is left in pieces, of which more are taken for twenty minutes and longer."""
+PROCESS_ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
+"""The environment of every process of a system. One BLAS thread, as the processes share the cores and their matrix
+products are too small to gain from more. One malloc arena (glibc): a dozen threads with arenas of their own fragment
+the heap, and resident memory creeps up for tens of minutes."""
 HIGHEST_PORT = 65535
 """Ports have 16 bits."""
 LONGEST_HOST = 48

@@ -72,7 +72,9 @@ def test_a_sensitivity_is_named_by_the_plainest_number(least: float, below: floa
     "others",
     [
         SpottingOptions(),
-        SpottingOptions(shortest_pause_s=0.3, cooldown_s={"push": 1.0}, disabled=frozenset({"lift"})),
+        SpottingOptions(shortest_pause_s=0.3),
+        SpottingOptions(cooldown_s={"lift": 3.0, "push": 1.0}),
+        SpottingOptions(disabled=frozenset({"lift"})),
     ],
 )
 def test_all_sensitivities_at_once_find_what_the_classifier_finds_with_each(
