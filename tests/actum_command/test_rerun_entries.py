@@ -34,7 +34,9 @@ def shown(folder: Path, *messages: Message) -> dict[str, list[Row]]:
         batch = chunk.to_record_batch()
         if "capture" in batch.schema.names:
             stamps = [stamp.value for stamp in batch.column("capture")]
-            for stamp, row in zip(stamps, batch.to_pylist(), strict=True):
+            # as Python objects, stamps to the nanosecond would need pandas
+            timeless = [field.name for field in batch.schema if not str(field.type).startswith("timestamp")]
+            for stamp, row in zip(stamps, batch.select(timeless).to_pylist(), strict=True):
                 rows.setdefault(chunk.entity_path, []).append({**row, "capture": stamp})
     return {path: sorted(each, key=lambda row: row["capture"]) for path, each in rows.items()}
 
