@@ -116,7 +116,7 @@ def _draw_speeds(axes: Axes, speeds: Sequence[SpeedLine], tallest: float) -> Non
 def _draw_marked(axes: Axes, marked: Sequence[Span], colours: dict[str, Array], tallest: float) -> None:
     """Draw each segment as a band in its label's colour, with its number and as much of its label as there is room."""
     for span in marked:
-        colour = colours[span.label] if span.label is not None else to_rgba(FAINT)[:3]
+        colour = colours[span.label] if span.label else to_rgba(FAINT)[:3]
         axes.axvspan(span.start_s, span.end_s, color=colour, alpha=0.3, linewidth=0)
         axes.vlines([span.start_s, span.end_s], 0, tallest, color=colour, linewidth=1.0)
         room = _room(axes, span)
@@ -127,9 +127,9 @@ def _draw_marked(axes: Axes, marked: Sequence[Span], colours: dict[str, Array], 
 def _draw_answers(axes: Axes, lane: Lane, colours: dict[str, Array]) -> None:
     """Draw each answer as a strip in its action's colour; what was rejected is an empty strip."""
     for span in lane.answers:
-        colour = colours[span.label] if span.label is not None else np.ones(3)
+        colour = colours[span.label] if span.label else np.ones(3)
         axes.barh(0.5, span.end_s - span.start_s, 1.0, span.start_s, color=colour, edgecolor=FAINT, linewidth=0.6)
-        name = f"{span.label} {span.note}".strip() if span.label is not None else span.note
+        name = f"{span.label} {span.note}".strip() if span.label else span.note
         room = _room(axes, span)
         if room >= LEAST_ROOM:
             _write(axes, span, 0.5, name if columns(name) <= room else shortened(span.label or name, room), "center")

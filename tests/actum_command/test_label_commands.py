@@ -134,6 +134,16 @@ def test_the_stream_is_drawn_with_and_without_answers(path: Path, tmp_path: Path
     assert (tmp_path / f"stream.{ending}").stat().st_size > 1000
 
 
+def test_an_empty_label_is_none(path: Path, waves: Stream, tmp_path: Path) -> None:
+    nameless = tmp_path / "nameless.mcap"
+    with Recorder(nameless, person="", source="test") as recorder:
+        answer = action(*(FIRST_NS + frame * FRAME_NS for frame in waves.truths[0]), "one")
+        for message in [*Recording(path).messages(), answer.model_copy(update={"action": ""})]:
+            recorder.write(message.model_copy(update={"label": ""}) if isinstance(message, Segment) else message)
+    assert [row.count("(no label)") for row in rows(nameless)] == [1, 1]
+    assert "2 segments drawn" in label("picture", nameless, "-o", tmp_path / "stream.png")
+
+
 def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) -> None:
     path = tmp_path / "bare.mcap"
     with Recorder(path, person="", source="test") as recorder:

@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 import typer
 from rich.console import Console, RenderableType
+from rich.markup import escape
+from rich.panel import Panel
 
 import events
 from actum import keys
@@ -90,6 +92,16 @@ def test_failing_and_saying_print_the_words_as_they_are(text: str, capsys: pytes
     told = capsys.readouterr()
     assert f"{text} :cat:\n" in told.out
     assert told.err == f"actum: {text} :cat:\n"
+
+
+@pytest.mark.parametrize("text", ["\x1b]0;title\x07", "\x1b[2J", "\x9b31m", "over\rwritten", "\x7f\b"])
+def test_no_text_commands_the_terminal(text: str, capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.say(text)
+    terminal.console.print(Panel(f"[bold]{escape(text)}[/bold]"))
+    with pytest.raises(typer.Exit):
+        terminal.fail(text)
+    told = capsys.readouterr()
+    assert not set(told.out + told.err) & {*map(chr, range(10)), *map(chr, range(11, 32)), *map(chr, range(127, 160))}
 
 
 def received(message: Message) -> Received:

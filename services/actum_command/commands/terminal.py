@@ -1,21 +1,38 @@
 """Functions that all commands share: the console, the settings, a session with the router, and a clear way to fail."""
 
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import NoReturn
 
 import typer
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
 from rich.markup import escape
+from rich.segment import Segment
 
 from actum.runtime import Client, RouterUnreachableError, obstacle
 from actum.settings import ServiceSettings, SettingsError, complaint
 
 UNATTENDED_WIDTH = 110  # characters, where the output goes to no terminal: enough for every table
 
-console = Console(highlight=False, emoji=False, width=None if sys.stdout.isatty() else UNATTENDED_WIDTH)
-errors = Console(stderr=True, highlight=False, emoji=False)
+CONTROLS = dict.fromkeys(
+    [*range(ord("\n")), *range(ord("\n") + 1, 0x20), *range(0x7F, 0xA0)], "\N{REPLACEMENT CHARACTER}"
+)
+"""Replaces the characters by which a text could move the cursor, clear the screen or set the window's title."""
+
+
+class LiteralConsole(Console):
+    """A console that never obeys the text that it prints: labels and reasons come from files and from the network."""
+
+    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
+        """Yield the segments of a renderable, with each control character in its texts replaced."""
+        for segment in super().render(renderable, options):
+            yield segment if segment.control else segment._replace(text=segment.text.translate(CONTROLS))
+
+
+console = LiteralConsole(highlight=False, emoji=False, width=None if sys.stdout.isatty() else UNATTENDED_WIDTH)
+errors = LiteralConsole(stderr=True, highlight=False, emoji=False)
 
 
 def settings() -> ServiceSettings:

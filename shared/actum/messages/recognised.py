@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, FiniteFloat
+from pydantic import AfterValidator, Field, FiniteFloat
 
 from actum.messages.base import (
     MOST_ACTIONS,
@@ -59,8 +59,8 @@ class Segment(Message):
     """Who acts; null where the classifier is to find out."""
     hand: Hand | None = None
     """Which hand acts; null where it is not known."""
-    label: Name | None = None
-    """What is done, in recordings to learn from; it is never used to recognise."""
+    label: Annotated[Name | None, AfterValidator(lambda text: text or None)] = None
+    """What is done, in recordings to learn from; it is never used to recognise. An empty label is none."""
     origin: Name | None = None
     """Who put it: manual, a person at a switch; simulator, the scene; replay, a recording; auto, the
     classifier itself, which answers it, and no other does; cut, `actum record --times` or `actum label cut`; null, a
