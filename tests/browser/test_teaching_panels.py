@@ -70,6 +70,19 @@ def says(page: Any, card: str, text: str) -> None:
     page.locator(f"#{card}").get_by_text(text).first.wait_for()
 
 
+def go_to(page: Any, panel: str) -> None:
+    page.evaluate("panel => { location.hash = panel; document.activeElement.blur() }", panel)
+    page.locator(f"#{panel}").wait_for()
+
+
+def mark_by_keys(room: Lesson, page: Any) -> None:
+    """Mark a start and its end by the switch that is in sight."""
+    for _ in range(2):
+        before = len(room.put_messages)
+        page.keyboard.press(" ")
+        wait_until(lambda before=before: len(room.put_messages) == before + 1, "a mark is put")
+
+
 def fill_in(page: Any, label: str, person: str, count: int) -> None:
     page.get_by_role("combobox", name="Action").locator("visible=true").fill(label)
     page.get_by_role("combobox", name="Person").fill(person)
@@ -122,6 +135,29 @@ def test_the_space_bar_marks_examples_during_a_take(room: Lesson, teach: Any) ->
     wait_until(lambda: len(room.put_messages) == 2, "the end is marked")
     room.see(frames[80:])
     assert "marked by hand" in examples_of(teach, "swing", 1).first.text_content()
+
+
+def test_no_two_marks_of_the_page_share_a_name_whichever_switch_makes_them(room: Lesson, teach: Any) -> None:
+    fill_in(teach, "swing", "carla", 5)
+    press(teach, "Record")
+    says(teach, "record", "0 of 5")
+    mark_by_keys(room, teach)
+    go_to(teach, "live")
+    mark_by_keys(room, teach)
+    teach.reload()
+    teach.locator("#sensor", has_text="kinect0").wait_for()
+    mark_by_keys(room, teach)
+    names = [mark.segment_id for mark in room.put_messages]
+    assert names[::2] == names[1::2], "an end has the name of its start"
+    assert len(set(names)) == 3
+
+
+def test_a_mark_ends_when_its_switch_is_left(room: Lesson, teach: Any) -> None:
+    go_to(teach, "live")
+    teach.keyboard.press(" ")
+    wait_until(lambda: len(room.put_messages) == 1, "the start is marked")
+    go_to(teach, "teach")
+    wait_until(lambda: [mark.kind for mark in room.put_messages] == ["start", "end"], "the end is marked")
 
 
 def test_each_example_is_a_film_that_moves_unless_halted(teach: Any) -> None:
