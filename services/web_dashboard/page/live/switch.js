@@ -2,11 +2,10 @@
 
 import { card, element, seconds } from "../elements.js";
 import { link } from "../link.js";
+import { newName } from "../names.js";
 import { people } from "./people.js";
 
 const TAP_MS = 350;   // a shorter press switches on, and the next one off
-const RUN = crypto.getRandomValues(new BigUint64Array(1))[0].toString(36); // no time: clocks are set back
-let marked = 0;       // segments of this page, whichever switch marked them
 
 export function markSwitch(id = "switch", title = "Switch") {
   const button = element("button", { type: "button", class: "switch", "aria-pressed": "false" }, "Hold to mark");
@@ -63,7 +62,7 @@ class Switch {
   }
 
   begin() {
-    this.segment = { segment_id: `page-${RUN}-${++marked}`, agent: Number(this.who.value) || null };
+    this.segment = { segment_id: `page-${newName()}`, agent: Number(this.who.value) || null };
     this.button.setAttribute("aria-pressed", "true");
     this.button.textContent = "Marking …";
     this.put("start");
