@@ -6,8 +6,10 @@ from pathlib import Path
 
 from docs.generate import fields, reasons, rejects, roles, settings
 
+from actum.installing import pip_install
+
 DOCS = Path(__file__).parents[1]
-PAGES = (DOCS / "messages.md", DOCS / "operating.md", DOCS.parent / "SECURITY.md")
+PAGES = (*sorted(DOCS.glob("*.md")), *(DOCS.parent / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md")))
 PARTS: Mapping[str, Callable[[], str]] = {
     "fields": fields.sections,
     "rejects": rejects.rejects_table,
@@ -16,9 +18,12 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "settings": settings.sections,
     "roles": roles.roles_table,
 }
+INSTALLING = re.compile(r"pip install (-e )?(['\"])[\w./-]+\[([\w,-]+)\]\2")
+"""How this package is installed, as a page says it: the flag, and the extras."""
 PART = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end -->)", re.S)
 
 
 def renewed(text: str) -> str:
-    """Return a page with its generated parts made anew."""
+    """Return a page with its generated parts made anew, and how this package is installed."""
+    text = INSTALLING.sub(lambda found: pip_install(found[3], flag=found[1] or ""), text)
     return PART.sub(lambda part: f"{part[1]}\n{PARTS[part[2]]()}\n{part[3]}", text)

@@ -25,7 +25,7 @@ UNITS = {
 }
 VALUES = {"INTEGER": "integer", "NUMBER": "number", "TEXT": "text", "PATH": "path"}
 OF_THIS_PROCESS = {
-    "instance": "host and process id",
+    "instance": "host, process id and four digits",
     "pose_model": "`~/.local/share/actum/` and its name",
     "trainer_data": "`~/.local/share/actum/teaching`",
 }

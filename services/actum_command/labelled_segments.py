@@ -165,6 +165,7 @@ def _segment(number: int, pair: dict[str, Segment]) -> LabelledSegment:
 
 def _answer_to(segment: LabelledSegment, answers: Sequence[Action | Event]) -> str | None:
     """Return the last answer to a segment, or, where none names it, the answer that shares most of its time."""
+    answers = [answer for answer in answers if answer.sensor == segment.sensor]
     own = [answer for answer in answers if answer.segment_id == segment.segment_id]
     if own or segment.start_ns is None or segment.end_ns is None:
         return _in_words(own[-1]) if own else None

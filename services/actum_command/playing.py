@@ -64,14 +64,14 @@ class _Names:
         self._sensor = sensor
         self._taken = taken
         self._sessions: dict[str, str] = {}
-        self._segments: dict[str, str] = {}
+        self._segments: dict[tuple[str, str], str] = {}
 
     def renamed(self, message: Message) -> Message:
         """Return a message under its new names."""
         update: dict[str, Any] = {} if self._sensor is None else {"sensor": self._sensor}
         if isinstance(message, Segment):
             update |= {
-                "segment_id": self._segment(message.segment_id), "label": None, "origin": REPLAY, "seq": None,
+                "segment_id": self._segment(message), "label": None, "origin": REPLAY, "seq": None,
             }  # fmt: skip
         elif hasattr(message, "session_id"):
             update["session_id"] = self._session(message.session_id)
@@ -83,12 +83,13 @@ class _Names:
             self._sessions[recorded] = self._session_id if count == 1 else f"{self._session_id}.{count}"
         return self._sessions[recorded]
 
-    def _segment(self, recorded: str) -> str:
+    def _segment(self, mark: Segment) -> str:
+        recorded = mark.sensor, mark.segment_id
         if recorded not in self._segments:
-            unique, count = recorded, 1
+            unique, count = mark.segment_id, 1
             while unique in self._taken:
                 count += 1
-                unique = f"{recorded}#{count}"
+                unique = f"{mark.segment_id}#{count}"
             self._taken.add(unique)
             self._segments[recorded] = unique
         return self._segments[recorded]

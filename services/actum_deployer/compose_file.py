@@ -33,6 +33,7 @@ def compose_file(deployment: Deployment, host: Host) -> str:
 def _service(deployment: Deployment, host: Host, program: Program) -> dict[str, Any]:
     service = {
         "image": program.image,
+        "pull_policy": "never",
         **_closed(program),
         "environment": environment(deployment, host, program, ROUTER, DATA),
         "volumes": [*_credentials(program), *_own(program)],

@@ -2,6 +2,7 @@
 
 from datetime import date
 
+from actum.installing import WHEEL, pip_install
 from actum_deployer.credential_folders import CREDENTIALS, SERVICES_USER
 from actum_deployer.deployment import Deployment, Host
 from actum_deployer.programs import FILES, INSTALLED, SETTINGS, Program, programs
@@ -37,7 +38,7 @@ docker compose down
 ```sh
 sudo useradd --system --uid {user} --user-group --no-create-home actum
 sudo cp -r . {installed} && sudo chown -R {user}:{user} {installed}/{credentials}
-sudo python3 -m venv {venv} && sudo {venv}/bin/pip install 'actum[all]'     # or the path of a wheel or repository
+sudo python3 -m venv {venv} && sudo {venv}/bin/{install}     # a wheel of `make wheel`, copied here
 sudo cp {units}/*.service /etc/systemd/system/ && sudo systemctl daemon-reload
 sudo systemctl enable --now {unit_names}
 ```
@@ -97,6 +98,7 @@ def readme(deployment: Deployment, host: Host, expiry: date) -> str:
         credentials=CREDENTIALS if deployment.secured else "files",
         installed=INSTALLED,
         venv=VENV,
+        install=pip_install("all", WHEEL),
         units=UNITS,
         unit_names=" ".join(f"actum-{program.name}" for program in running),
         settings=SETTINGS,

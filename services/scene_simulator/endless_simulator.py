@@ -25,7 +25,7 @@ def simulator_of(settings: Settings, start_ns: int) -> Source:
     elif settings.repetitions == 0:
         source = EndlessSimulator(settings, start_ns)
     else:
-        source = _simulator(settings, start_ns)
+        source = _simulator(settings, start_ns, _session_of(start_ns))
     source.counters.details["source"] = DESCRIPTION
     source.counters.details["rate_hz"] = f"{load_parameters().camera.frame_rate_hz:g}"
     return source
@@ -47,13 +47,18 @@ class EndlessSimulator:
         start_ns, seed = self._start_ns, self._settings.seed
         while True:
             settings = self._settings.model_copy(update={"repetitions": REPETITIONS, "seed": seed})
-            for messages in _simulator(settings, start_ns, session_id=f"simulator-{self._start_ns}").frames():
+            for messages in _simulator(settings, start_ns, _session_of(self._start_ns)).frames():
                 yield messages
                 newest_ns = messages[0].stamp_ns
             start_ns, seed = newest_ns + SECOND_NS, seed + 1
 
 
-def _simulator(settings: Settings, start_ns: int, session_id: str | None = None) -> Source:
+def _session_of(start_ns: int) -> str:
+    """Return the session of a service that is started then: the same scene, started anew, is another one."""
+    return f"simulator-{start_ns}"
+
+
+def _simulator(settings: Settings, start_ns: int, session_id: str) -> Source:
     repetitions = 0 if settings.everyday == "only" else settings.repetitions
     actors = range(settings.actor, settings.actor + settings.actors)
     programmes = [balanced_programme(repetitions, settings.seed, actor) for actor in actors]

@@ -2,6 +2,7 @@
 
 import os
 import re
+import secrets
 import socket
 import sys
 import tomllib
@@ -26,7 +27,9 @@ the heap, and resident memory creeps up for tens of minutes."""
 HIGHEST_PORT = 65535
 """Ports have 16 bits."""
 LONGEST_HOST = 48
-"""Characters of the host's name in an instance's, so that the process id fits behind it."""
+"""Characters of the host's name in an instance's, so that the rest fits behind it."""
+START = secrets.token_hex(2)
+"""Tells this process from others of one host name and process id: hosts are copied, and a container's process is 1."""
 
 
 class SettingsError(ValueError):
@@ -70,9 +73,9 @@ def _endpoint(text: str) -> str:
 
 
 def default_instance() -> str:
-    """Return an instance name for this process: host and process id, as a valid chunk of a key."""
+    """Return an instance name for this process: host, process id and its start, as a valid chunk of a key."""
     host = "".join(c if CHUNK.fullmatch(c) else "-" for c in socket.gethostname().lower())
-    return f"{host[:LONGEST_HOST]}-{os.getpid()}"
+    return f"{host[:LONGEST_HOST]}-{os.getpid()}-{START}"
 
 
 def data_folder() -> Path:

@@ -2,6 +2,8 @@
 
 import importlib
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -93,3 +95,25 @@ def test_flags_come_before_the_environment(monkeypatch: pytest.MonkeyPatch) -> N
     assert from_command_line(ServiceSettings, "service").sensor == "door"
     monkeypatch.setattr("sys.argv", ["service", "--sensor", "window"])
     assert from_command_line(ServiceSettings, "service").sensor == "window"
+
+
+AS_IN_A_CONTAINER = """
+import os, socket
+os.getpid, socket.gethostname = lambda: 1, lambda: "raspberrypi"
+from actum.settings import ServiceSettings
+print(ServiceSettings().instance, ServiceSettings().instance)
+"""
+"""Two hosts that were installed alike have one name, and each container's process is the first."""
+
+
+def test_two_processes_have_two_instance_names_also_where_host_and_process_id_are_the_same() -> None:
+    names = [
+        set(
+            subprocess.run(
+                [sys.executable, "-c", AS_IN_A_CONTAINER], capture_output=True, text=True, check=True
+            ).stdout.split()
+        )
+        for _ in range(2)
+    ]
+    assert [len(each) for each in names] == [1, 1]
+    assert names[0] != names[1]

@@ -6,6 +6,7 @@ import pytest
 from matplotlib.image import imread
 from typer.testing import CliRunner, Result
 
+from actum.installing import adding
 from actum.recorder import Recorder
 from actum_command.__main__ import app
 from actum_model_inspector.folder import LIST
@@ -165,4 +166,4 @@ def test_segments_without_labels_are_shown_by_their_answers(tmp_path: Path) -> N
 def test_without_matplotlib_the_remedy_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     tiny_model().save(tmp_path / "m.npz")
     monkeypatch.setattr("actum_command.commands.inspect_command.find_spec", lambda name: None)
-    assert "actum[model-inspector]" in refusal(tmp_path / "m.npz", "-o", tmp_path / "out")
+    assert adding("model-inspector") in refusal(tmp_path / "m.npz", "-o", tmp_path / "out")

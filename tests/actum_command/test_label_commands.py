@@ -10,6 +10,7 @@ from actum.messages import AUTO, MANUAL, Message, Segment
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum_command.__main__ import app
+from actum_command.labelled_segments import labelled_segments
 from empty_messages import action
 from people import FRAME_NS
 from performers import mark
@@ -72,6 +73,16 @@ def test_segments_are_numbered_in_order_of_time_with_their_answers(path: Path) -
         "2 3.80 s 5.17 s (1.37 s) (no label) - nearest",
     ]
     assert label("list", path) == label(path)
+
+
+def test_the_answer_to_a_segment_is_that_of_its_sensor(tmp_path: Path) -> None:
+    of_one = [mark("start", 1, "a"), mark("end", 2, "a")]
+    of_other = [each.model_copy(update={"sensor": "kinect1"}) for each in (*of_one, action(1, 2, "a"))]
+    with Recorder(tmp_path / "both.mcap", person="anna", source="test") as recorder:
+        for message in [*of_one, *of_other]:
+            recorder.write(message)
+    listed = labelled_segments(Recording(tmp_path / "both.mcap"))
+    assert {each.sensor: each.answer for each in listed} == {"kinect0": None, "kinect1": "push 1.00"}
 
 
 def test_bounds_are_moved_to_a_time_or_by_a_difference(path: Path) -> None:

@@ -102,6 +102,12 @@ def test_segment_ids_stay_unless_an_earlier_recording_used_them(record: Record) 
     assert ids == ["one", "one", "own0", "one#2", "one#2", "own1", "one#3", "one#3", "own2", "one#2#2"]
 
 
+def test_segments_of_two_sensors_stay_two_where_both_are_played_as_one(record: Record) -> None:
+    marks = [mark("start", 1), mark("start", 1).model_copy(update={"sensor": "kinect1"})]
+    played = schedule([record("both", *marks)], "play", start_ns=0, sensor="kinect2")
+    assert [message.segment_id for message in played if isinstance(message, Segment)] == ["one", "one#2"]
+
+
 def test_a_repeated_mark_inside_a_recording_stays_a_repetition(record: Record) -> None:
     played = schedule([record("first", mark("start", 1), mark("start", 1), mark("end", 2))], "play", start_ns=0)
     assert {message.segment_id for message in played if isinstance(message, Segment)} == {"one"}

@@ -8,6 +8,7 @@ import pytest
 import yaml
 import zenoh
 
+from actum.installing import WHEEL
 from actum.runtime.credentials import check
 from actum.runtime.router import router_config
 from actum.settings import SettingsError
@@ -73,6 +74,23 @@ def test_a_container_may_use_as_much_as_in_the_compose_files_of_the_repository(w
 
 def _megabytes(limit: str) -> int:
     return int(limit[:-1]) * {"m": 1, "g": 1024}[limit[-1]]
+
+
+def test_no_image_is_pulled_by_a_name_that_is_not_ours_on_docker_hub(written: Path) -> None:
+    files = [MAIN, *DEPLOY.glob("compose.*.yml"), *written.glob("*/compose.yml")]
+    policies = {
+        f"{file.relative_to(file.parents[1])}: {name}": service.get("pull_policy")
+        for file in files
+        for name, service in services_of(file).items()
+        if service.get("image", "").startswith("actum/")
+    }
+    assert len(policies) > 20
+    assert {place for place, policy in policies.items() if policy != "never"} == set()
+
+
+def test_root_installs_a_wheel_that_was_copied_and_nothing_by_name(written: Path) -> None:
+    for host in ("camera", "compute"):
+        assert f"pip install '{WHEEL}[all]'" in (written / host / "README.md").read_text()
 
 
 def test_only_the_router_is_reached_from_elsewhere(written: Path) -> None:

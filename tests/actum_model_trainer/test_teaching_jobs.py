@@ -14,6 +14,7 @@ from actum.commands import Refusal
 from actum.node import Counters
 from actum_model_trainer.teaching import job
 from actum_model_trainer.teaching.job_process import Ended, JobProcess, JobRequest, Progressing
+from actum_model_trainer.teaching.job_store import JobStore
 from live import wait_until
 from models import QUICK
 from recognisers import tiny_model
@@ -148,6 +149,12 @@ def test_one_job_runs_at_a_time_and_tells_how_far_it_is(teacher: Teacher) -> Non
     with pytest.raises(Refusal, match="does not run: it is cancelled"):
         teacher.ask("cancel", job=begun["id"])
     assert not list((teacher.folder / "jobs").glob("*.work"))
+
+
+def test_a_new_job_never_has_the_id_of_one_whose_file_cannot_be_read(tmp_path: Path) -> None:
+    damaged = tmp_path / "job-7.json"
+    damaged.write_bytes(b"")
+    assert JobStore(tmp_path).new_id() == "job-8"
 
 
 def test_a_job_that_the_service_did_not_outlive_counts_as_cancelled(teacher: Teacher) -> None:

@@ -8,8 +8,9 @@ import pytest
 from PIL import Image as Picture
 
 from actum.messages import Segment
+from actum.node import SECOND_NS
 from live import wait_until
-from page_scenes import Scene
+from page_scenes import Scene, action
 
 pytestmark = pytest.mark.browser
 Open = Callable[..., Any]
@@ -136,6 +137,19 @@ def test_the_switch_marks_start_and_end(scene: Scene, open_page: Open, way: str)
     assert len({mark.segment_id for mark in marks}) == 1
     scene.answer(marks[0].segment_id, "push object 1 cup")
     page.locator("#switch .caption", has_text="Answer: push object 1 cup").wait_for()
+
+
+def test_a_name_that_a_source_uses_again_once_it_is_started_anew_is_of_another_segment(
+    scene: Scene, open_page: Open
+) -> None:
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    scene.answer("one", "push object 1 cup")
+    page.locator("#now .object", has_text="cup 1").wait_for()
+    times = {"stamp_ns": scene.stamp_ns, "start_ns": scene.stamp_ns - SECOND_NS // 2, "end_ns": None}
+    early = action("one", times, final=False).model_copy(update={"session_id": "anew", "action": "wave"})
+    scene.page.give(early)
+    page.locator("#now .kicker", has_text="It seems").wait_for()
 
 
 def test_a_mark_that_is_refused_is_told(scene: Scene, open_page: Open) -> None:

@@ -1,5 +1,6 @@
 """The panels on which people teach: recording, mending, training, testing, models, parameters; and hostile input."""
 
+import re
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -70,6 +71,19 @@ def says(page: Any, card: str, text: str) -> None:
     page.locator(f"#{card}").get_by_text(text).first.wait_for()
 
 
+def go_to(page: Any, panel: str) -> None:
+    page.evaluate("panel => { location.hash = panel; document.activeElement.blur() }", panel)
+    page.locator(f"#{panel}").wait_for()
+
+
+def mark_by_keys(room: Lesson, page: Any) -> None:
+    """Mark a start and its end by the switch that is in sight."""
+    for _ in range(2):
+        before = len(room.put_messages)
+        page.keyboard.press(" ")
+        wait_until(lambda before=before: len(room.put_messages) == before + 1, "a mark is put")
+
+
 def fill_in(page: Any, label: str, person: str, count: int) -> None:
     page.get_by_role("combobox", name="Action").locator("visible=true").fill(label)
     page.get_by_role("combobox", name="Person").fill(person)
@@ -122,6 +136,29 @@ def test_the_space_bar_marks_examples_during_a_take(room: Lesson, teach: Any) ->
     wait_until(lambda: len(room.put_messages) == 2, "the end is marked")
     room.see(frames[80:])
     assert "marked by hand" in examples_of(teach, "swing", 1).first.text_content()
+
+
+def test_no_two_marks_of_the_page_share_a_name_whichever_switch_makes_them(room: Lesson, teach: Any) -> None:
+    fill_in(teach, "swing", "carla", 5)
+    press(teach, "Record")
+    says(teach, "record", "0 of 5")
+    mark_by_keys(room, teach)
+    go_to(teach, "live")
+    mark_by_keys(room, teach)
+    teach.reload()
+    teach.locator("#sensor", has_text="kinect0").wait_for()
+    mark_by_keys(room, teach)
+    names = [mark.segment_id for mark in room.put_messages]
+    assert names[::2] == names[1::2], "an end has the name of its start"
+    assert len(set(names)) == 3
+
+
+def test_a_mark_ends_when_its_switch_is_left(room: Lesson, teach: Any) -> None:
+    go_to(teach, "live")
+    teach.keyboard.press(" ")
+    wait_until(lambda: len(room.put_messages) == 1, "the start is marked")
+    go_to(teach, "teach")
+    wait_until(lambda: [mark.kind for mark in room.put_messages] == ["start", "end"], "the end is marked")
 
 
 def test_each_example_is_a_film_that_moves_unless_halted(teach: Any) -> None:
@@ -236,6 +273,16 @@ DROP = """([name, rounds]) => {
 }"""
 
 
+def test_two_tabs_send_files_of_one_name_beside_each_other(room: Lesson, teach: Any, tmp_path: Path) -> None:
+    other = teach.context.new_page()
+    other.goto(teach.url)
+    for page, content in ((teach, b"one"), (other, b"another")):
+        (tmp_path / "wave.mp4").write_bytes(content)
+        page.get_by_label("Drop a video anywhere").set_input_files(tmp_path / "wave.mp4")
+        says(page, "video", "wave.mp4 sent")
+    assert {file.read_bytes() for file in sent(room)} == {b"one", b"another"}
+
+
 def drop(page: Any, name: str, rounds: int) -> None:
     """Drop a file with the bytes 0 to 255, so many times, on the page."""
     page.evaluate(DROP, [name, rounds])
@@ -347,7 +394,8 @@ def test_names_that_are_none_are_refused_and_that_is_shown(room: Lesson, teach: 
 def test_what_is_no_name_in_a_file_dropped_is_replaced(room: Lesson, teach: Any) -> None:
     drop(teach, f"../{MARKUP}.mp4", 1)
     wait_until(lambda: (room.teacher.folder / "uploads").exists() and any(sent(room)), "it is sent")
-    assert [path.name for path in sent(room)] == ["img src_x onerror_alert_1__.mp4"]
+    (name,) = [path.name for path in sent(room)]
+    assert re.fullmatch(r"\w+-img src_x onerror_alert_1__\.mp4", name)
     says(teach, "video", "import_video: label")
 
 

@@ -1,5 +1,6 @@
 """The settings of the simulated scene, given as flags or by the environment."""
 
+from collections.abc import Iterator
 from itertools import islice, pairwise
 
 import pytest
@@ -40,6 +41,20 @@ def test_doings_and_people_of_a_scene_are_chosen_by_settings(chosen: dict, agent
     assert len(skeletons[0].agents) == agents
     assert any(isinstance(message, Truth) for message in messages) == has_truth
     assert len(skeletons) >= 60 * 30 or not chosen
+
+
+@pytest.mark.parametrize("repetitions", [0, 1])
+@pytest.mark.parametrize("actors", [1, 2])
+@pytest.mark.parametrize("driven", [False, True])
+def test_a_scene_that_is_started_anew_is_another_session(repetitions: int, actors: int, driven: bool) -> None:
+    settings = Settings(image_hz=0, repetitions=repetitions, actors=actors, driven=driven and actors == 1)
+    sessions = {next(_skeletons(settings, start_ns)).session_id for start_ns in (10**18, 2 * 10**18)}
+    assert len(sessions) == 2
+
+
+def _skeletons(settings: Settings, start_ns: int) -> Iterator[Skeleton]:
+    frames = simulator_of(settings, start_ns).frames()
+    return (message for frame in frames for message in frame if isinstance(message, Skeleton))
 
 
 def test_everyday_doings_without_an_end_go_on_in_one_stream_of_rising_stamps() -> None:

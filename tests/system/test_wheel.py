@@ -101,12 +101,14 @@ def test_it_holds_every_file_of_the_packages_and_no_other(wheel: Path) -> None:
 
 
 @pytest.mark.long
-def test_a_stranger_installs_it_learns_and_recognises(programs: Path, tmp_path: Path) -> None:
+def test_a_stranger_installs_it_learns_and_recognises(programs: Path, wheel: Path, tmp_path: Path) -> None:
     actum, python = programs / "actum", programs / "python"
     assert run(tmp_path, actum, "--version") == f"actum {VERSION}\n"
     place = run(tmp_path, python, "-c", "import actum; print(actum.__file__)")
     assert Path(place).is_relative_to(programs.parent), place
     assert set(run(tmp_path, python, "-c", IMPORT_EVERYTHING).split()) <= NOT_IN_ALL
+
+    assert str(wheel) in run(tmp_path, python, "-c", "from actum.installing import adding; print(adding('view'))")
 
     run(tmp_path, actum, "simulate", "examples.mcap", "--repetitions", "2")
     run(tmp_path, actum, "train", "examples.mcap", "-o", "model.npz")

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from actum.installing import adding
 from actum.recording import RecordingError
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
@@ -42,7 +43,7 @@ def inspect(
     if output.exists() and not output.is_dir():
         fail(f"{output} is no folder: name the one to write pictures to")
     if find_spec("matplotlib") is None:
-        fail("matplotlib draws the pictures and is not installed: pip install 'actum[model-inspector]'")
+        fail(f"matplotlib draws the pictures and is not installed: {adding('model-inspector')}")
     try:
         model = load_model(model_file)
         output.mkdir(parents=True, exist_ok=True)

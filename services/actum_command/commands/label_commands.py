@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from actum.installing import adding
 from actum.messages import CUT, MANUAL, segment_marks
 from actum.node import SECOND_NS
 from actum.recording import Recording, RecordingError
@@ -161,7 +162,7 @@ def picture(
 ) -> None:
     """Draw the stream: how fast people move, the segments with their labels, and what was answered."""
     if find_spec("matplotlib") is None:
-        fail("matplotlib draws the picture and is not installed: pip install 'actum[model-inspector]'")
+        fail(f"matplotlib draws the picture and is not installed: {adding('model-inspector')}")
     from actum_command.recording_picture import write_picture
 
     refuse_unwritable(output)

@@ -7,6 +7,7 @@ from typing import Annotated, get_args
 
 import typer
 
+from actum.installing import adding
 from actum.runtime import serve_router, stop_on_signals
 from actum.settings import DEFAULT_ENDPOINT, SettingsError, host_and_port
 from actum_command import processes
@@ -24,8 +25,6 @@ NO_MARKS = (
     "nobody marks actions here, so those are told that the model finds by itself; to mark: 'actum segment toggle', "
     "or 'actum play' beside --source none"
 )
-
-NO_PAGE = "no web page: pip install 'actum[web-dashboard]'"
 
 
 def router(
@@ -82,7 +81,7 @@ def up(
         if page:
             programs = processes.with_page(here, programs, given)
             if programs[-1].name != processes.PAGE:
-                say(NO_PAGE, style="yellow")
+                say(f"no web page: {adding('web-dashboard')}", style="yellow")
         taught = processes.taught_model(given)
         if (lack := lack_of_model(taught if model is None and taught.exists() else model)) is not None:
             say(lack, style="yellow")

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from actum.installing import adding
 from actum.recording import Recording, RecordingError
 from actum.runtime import Pace
 from actum_command.commands.recording_options import tell_unread
@@ -22,7 +23,7 @@ RecordingArgument = Annotated[
 def refuse_without(module: str, package: str, extra: str) -> None:
     """Fail where a viewer's library is not installed."""
     if find_spec(module) is None:
-        fail(f"{package} is not installed: pip install 'actum[{extra}]'")
+        fail(f"{package} is not installed: {adding(extra)}")
 
 
 @contextmanager

@@ -72,8 +72,8 @@ class JobStore:
         raise Refusal(f"there is no job {job_id!r}; the newest {MOST_JOBS} are remembered")
 
     def new_id(self) -> str:
-        """Return the id of the next job."""
-        return f"job-{max((number_of(job.id) for job in self.all()), default=0) + 1}"
+        """Return the id of the next job: no file has it, also none that cannot be read."""
+        return f"job-{max((number_of(path.stem) for path in self._folder.glob('job-*.json')), default=0) + 1}"
 
     def keep(self, job: Job) -> None:
         """Write a job, and forget the oldest where there are many."""

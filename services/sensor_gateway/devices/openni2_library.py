@@ -3,7 +3,8 @@
 import os
 from typing import Any
 
-INSTALL = 'the source openni2 needs OpenNI 2: pip install "actum[openni2]", and on Debian apt install libopenni2-0'
+from actum.installing import adding
+
 LIBRARIES = "libOpenNI2.so.0", "libOpenNI2.so", "libOpenNI2.dylib", "OpenNI2.dll"
 """File names of the library on Debian, other Linux, macOS and Windows, in the order in which they are tried."""
 FOLDERS = "OPENNI2_REDIST64", "OPENNI2_REDIST"
@@ -11,7 +12,11 @@ FOLDERS = "OPENNI2_REDIST64", "OPENNI2_REDIST"
 
 
 class OpenNiError(ValueError):
-    """The library is not installed; the message tells what is missing and what to do."""
+    """The library is not installed; the message names the remedy and `problem`."""
+
+    def __init__(self, problem: str) -> None:
+        remedy = f"{adding('openni2')}; on Debian also apt install libopenni2-0"
+        super().__init__(f"the source openni2 needs OpenNI 2: {remedy} ({problem})")
 
 
 def library() -> Any:
@@ -23,7 +28,7 @@ def library() -> Any:
     try:
         from openni import openni2
     except ImportError as error:
-        raise OpenNiError(f"{INSTALL} ({error})") from None
+        raise OpenNiError(str(error)) from None
     if not openni2.is_initialized():
         _start(openni2)
     return openni2
@@ -57,7 +62,7 @@ def _start(openni2: Any) -> None:
             openni2.loaded_dll_directory = _load(openni2.c_api)
         openni2.initialize(folders)
     except (InitializationError, OpenNIError) as error:
-        raise OpenNiError(f"{INSTALL} ({error_text(error)})") from None
+        raise OpenNiError(error_text(error)) from None
 
 
 def _load(c_api: Any) -> str:
@@ -70,4 +75,4 @@ def _load(c_api: Any) -> str:
             problems.append(str(error))
         else:
             return name
-    raise OpenNiError(f"{INSTALL} ({problems[0]})")
+    raise OpenNiError(problems[0])

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from actum import steady_clock
 from actum.arrays import Array
+from actum.installing import adding
 from sensor_gateway.captured_picture import DepthPicture, Picture
 from sensor_gateway.devices.capture import CameraLostError
 from sensor_gateway.devices.device_clock import DeviceClock
@@ -17,9 +18,6 @@ from sensor_gateway.devices.silence import Silence
 from sensor_gateway.devices.video import VideoError
 from sensor_gateway.lens import Lens
 
-INSTALL = (
-    'the source realsense needs pyrealsense2: pip install "actum[realsense]"; on Debian also apt install libusb-1.0-0'
-)
 SIZE = 640, 480
 """Width and height (px) of the depth image, and by default of the colour image."""
 RATE_HZ = 30
@@ -53,7 +51,10 @@ def library() -> Any:
     try:
         import pyrealsense2
     except ImportError as error:
-        raise RealSenseError(f"{INSTALL} ({error})") from None
+        raise RealSenseError(
+            f"the source realsense needs pyrealsense2: {adding('realsense')}; on Debian also apt install libusb-1.0-0 "
+            f"({error})"
+        ) from None
     return pyrealsense2
 
 

@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.installing import adding
 from actum.node import SECOND_NS
 from sensor_gateway.people.landmarks import Landmarks
 
@@ -26,7 +27,6 @@ SEARCH_NS = SECOND_NS
 """Interval of searches for further people while there is one: a search costs three times as much as tracking one."""
 TOGETHER_NS = 2 * SECOND_NS
 """Time after several people were detected in which each image is searched for several: one may be hidden briefly."""
-INSTALL = 'the camera needs MediaPipe: pip install "actum[camera]"'
 LIBRARIES = "on Debian and Ubuntu, 'apt install libegl1 libgles2' gets what it needs"
 FETCH = "fetch it with 'actum models fetch', or name a file in ACTUM_POSE_MODEL"
 
@@ -175,7 +175,7 @@ def _mediapipe() -> Any:
     try:
         import mediapipe
     except ImportError as error:
-        raise PoseModelError(f"{INSTALL} ({error})") from None
+        raise PoseModelError(f"the camera needs MediaPipe: {adding('camera')} ({error})") from None
     return mediapipe
 
 

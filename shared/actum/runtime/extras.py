@@ -4,6 +4,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from actum.installing import adding
 from actum.runtime.serving import UNUSABLE
 
 
@@ -19,5 +20,5 @@ def needs_extra(name: str) -> Iterator[None]:
     except ModuleNotFoundError as error:
         if "." in (error.name or "."):
             raise
-        print(f"{error.name} is not installed: pip install 'actum[{name}]'", file=sys.stderr)
+        print(f"{error.name} is not installed: {adding(name)}", file=sys.stderr)
         sys.exit(UNUSABLE)

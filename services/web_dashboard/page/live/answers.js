@@ -8,6 +8,8 @@ const segments = new Map();
 const callbacks = new Set();
 
 link.on("segment", ({ segment_id: id, kind, stamp_ns: stamp, agent, origin }) => {
+  const known = segments.get(id);
+  if (kind === "start" && known?.event && stamp !== null && stamp !== known.start) segments.delete(id);
   const segment = of(id);
   segment.marked = origin !== "auto";
   segment.origin = origin;
@@ -16,7 +18,7 @@ link.on("segment", ({ segment_id: id, kind, stamp_ns: stamp, agent, origin }) =>
   tell(segment);
 });
 link.on("action", (action) => {
-  const segment = of(action.segment_id);
+  const segment = of(action.segment_id, action.session_id);
   segment.agent = action.agent;
   segment.start = action.start_ns;
   if (action.final) {
@@ -29,17 +31,21 @@ link.on("action", (action) => {
   tell(segment);
 });
 link.on("event", (event) => {
-  const segment = of(event.segment_id);
+  const segment = of(event.segment_id, event.session_id);
   Object.assign(segment, { event, agent: event.agent, start: event.start_ns, end: event.end_ns });
   tell(segment);
 });
 
-function of(id) {
+// The segment of a name: another one once its source has been started anew, which may use its names again.
+function of(id, session = "") {
+  if (session && (segments.get(id)?.session || session) !== session) segments.delete(id);
   if (!segments.has(id)) {
-    segments.set(id, { id, agent: null, start: null, end: null, early: [], action: null, event: null });
+    segments.set(id, { id, session, agent: null, start: null, end: null, early: [], action: null, event: null });
     if (segments.size > MOST) segments.delete(segments.keys().next().value);
   }
-  return segments.get(id);
+  const segment = segments.get(id);
+  segment.session ||= session;
+  return segment;
 }
 
 function tell(segment) {

@@ -28,20 +28,20 @@ class Now {
     this.over = new Set();
     link.on("event", (event) => {
       this.event = event;
-      this.over.add(event.segment_id);
+      this.over.add(nameOf(event));
       this.parts.spoken.textContent = `Person ${event.agent}: ${event.sentence}`;
       this.show();
     });
     link.on("action", (action) => {
-      if (action.final) this.over.add(action.segment_id);
-      else if (!this.over.has(action.segment_id)) this.early = { ...action, at: performance.now() };
+      if (action.final) this.over.add(nameOf(action));
+      else if (!this.over.has(nameOf(action))) this.early = { ...action, at: performance.now() };
       this.show();
     });
     setInterval(() => this.show(), 300);
   }
 
   show() {
-    const early = this.early && performance.now() - this.early.at < GOING_ON_MS && !this.over.has(this.early.segment_id);
+    const early = this.early && performance.now() - this.early.at < GOING_ON_MS && !this.over.has(nameOf(this.early));
     if (early && this.early.action) this.showEarly(this.early);
     else if (this.event) this.showEvent(this.event);
     else this.tell("Recognised", "–", "Nothing yet", null, null);
@@ -71,6 +71,11 @@ class Now {
     parts.done.setAttribute("aria-valuenow", String(Math.round(100 * (completeness ?? 0))));
     parts.done.firstChild.style.width = `${100 * Math.min(completeness ?? 0, 1)}%`;
   }
+}
+
+// Tells segments apart: a source that is started anew may use its names again.
+function nameOf({ session_id: session, segment_id: id }) {
+  return `${session}/${id}`;
 }
 
 // What was acted on and what became of it, in words: `box 2 · 0.18 m up`.

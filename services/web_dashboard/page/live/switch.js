@@ -2,10 +2,10 @@
 
 import { card, element, seconds } from "../elements.js";
 import { link } from "../link.js";
+import { newName } from "../names.js";
 import { people } from "./people.js";
 
 const TAP_MS = 350;   // a shorter press switches on, and the next one off
-const RUN = Math.random().toString(36).slice(2); // no time: clocks are set back
 
 export function markSwitch(id = "switch", title = "Switch") {
   const button = element("button", { type: "button", class: "switch", "aria-pressed": "false" }, "Hold to mark");
@@ -17,7 +17,7 @@ export function markSwitch(id = "switch", title = "Switch") {
 
 class Switch {
   constructor(button, who, told) {
-    Object.assign(this, { button, who, told, number: 0, segment: null, pressedAt: 0, offered: null });
+    Object.assign(this, { button, who, told, segment: null, pressedAt: 0, offered: null });
     button.addEventListener("pointerdown", (event) => this.press(event));
     addEventListener("pointerup", () => this.release());
     addEventListener("pointercancel", () => this.release());
@@ -26,7 +26,7 @@ class Switch {
     addEventListener("blur", () => this.segment && this.end());
     link.on("event", (event) => this.answered(event));
     link.on("skeleton", () => this.offer());
-    setInterval(() => this.segment && this.tell(), 100);
+    setInterval(() => this.segment && (this.button.offsetParent ? this.tell() : this.end()), 100); // unseen, nobody ends it
     this.offer();
   }
 
@@ -62,7 +62,7 @@ class Switch {
   }
 
   begin() {
-    this.segment = { segment_id: `page-${RUN}-${++this.number}`, agent: Number(this.who.value) || null };
+    this.segment = { segment_id: `page-${newName()}`, agent: Number(this.who.value) || null };
     this.button.setAttribute("aria-pressed", "true");
     this.button.textContent = "Marking …";
     this.put("start");
@@ -87,8 +87,8 @@ class Switch {
       await link.mark({ ...this.segment, kind });
       if (told && this.waiting === id) this.told.textContent = told;
     } catch (error) {
-      this.waiting = null;
-      this.off();
+      if (this.waiting === id) this.waiting = null;
+      if (this.segment?.segment_id === id) this.off();
       this.told.textContent = `Not marked: ${error.message}`;
     }
   }

@@ -3,9 +3,11 @@
 import { attempt, outcome, say } from "../asking.js";
 import { card, element, percent } from "../elements.js";
 import { JobView } from "../jobs.js";
+import { PAGE } from "../names.js";
 import { trainer } from "../trainer.js";
 
 const PIECE = 500_000;    // bytes: as base64 it fits a message to the page's service
+const LONGEST = 45;       // characters of its name: the page's own stands before it, and the trainer takes 64
 const UNUSUAL = /[^\p{L}\p{N} _.-]/gu;
 const NUMBERED = /[\s_.-]*\d*\.[^.]*$/u;   // how the name of one of several clips ends: ` 2.mp4`
 
@@ -63,7 +65,7 @@ class Videos {
   async send(file) {
     const { set, label, person, count } = this.form.fields;
     if (!set) return say(this.line, "Make a set first, above.", true);
-    const upload = nameOf(file);
+    const upload = `${PAGE}-${nameOf(file)}`;  // another tab may send a file of that name
     if (!(await attempt(this.line, () => this.upload(file, upload), `${file.name} sent`))) return null;
     return this.job.start("import_video", { set, upload, label: label || file.name.replace(NUMBERED, ""), person, count });
   }
@@ -92,7 +94,7 @@ class Videos {
 
 // What the file is called where it is sent to: letters, digits and few signs.
 function nameOf(file) {
-  return file.name.replaceAll(UNUSUAL, "_").replace(/^[^\p{L}\p{N}]+/u, "").slice(-60).replace(/^[^\p{L}\p{N}]+|[ .]+$/gu, "") || "video";
+  return file.name.replaceAll(UNUSUAL, "_").replace(/^[^\p{L}\p{N}]+/u, "").slice(-LONGEST).replace(/^[^\p{L}\p{N}]+|[ .]+$/gu, "") || "video";
 }
 
 function base64(blob) {

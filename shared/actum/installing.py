@@ -1,0 +1,43 @@
+"""How this package is installed: from its repository's folder or from a wheel, for no package index has it."""
+
+import json
+import shlex
+from importlib.metadata import distribution
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
+
+from actum import __version__
+
+INDEX_NAME: str | None = None
+"""The name of this package on PyPI, None while it is not there: whoever registers `actum` has their code run.
+
+Once it is set, error texts name it, and `make pages` writes it on the pages."""
+FOLDER = "."
+"""The repository's folder, for a shell that is in it."""
+WHEEL = f"./actum-{__version__}-py3-none-any.whl"
+"""The wheel that `make wheel` writes, for a shell that is in its folder."""
+
+
+def pip_install(extras: str, origin: str = FOLDER, flag: str = "") -> str:
+    """Return the command that installs this package with extras, from an index that has it or else from an origin."""
+    if INDEX_NAME is not None:
+        return f"pip install '{INDEX_NAME}[{extras}]'"
+    return f"pip install {flag}{shlex.quote(f'{origin}[{extras}]')}"
+
+
+def adding(extras: str) -> str:
+    """Return the command that adds extras to this installation, from the folder or the wheel that it came from."""
+    told = _told_by_pip()
+    url = urlsplit(told.get("url", ""))
+    origin = Path(url2pathname(url.path))
+    if url.scheme == "file" and origin.exists():
+        return pip_install(extras, str(origin), "-e " if told.get("dir_info", {}).get("editable") else "")
+    return pip_install(extras) if INDEX_NAME else f"{pip_install(extras)} in the folder of actum's repository"
+
+
+def _told_by_pip() -> dict[str, Any]:
+    """Return what pip wrote down of the place that it took this package from; empty where it wrote nothing."""
+    text = distribution("actum").read_text("direct_url.json")
+    return dict(json.loads(text)) if text else {}

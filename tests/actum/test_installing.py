@@ -1,0 +1,113 @@
+"""What installs this package works wherever it came from, and fetches nothing by a name that is not ours."""
+
+import re
+import shlex
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from actum import installing
+
+Tell = Callable[..., None]
+ROOT = Path(__file__).parents[2]
+FROM_AN_INDEX = re.compile(
+    r"""\bactum\[[^\]\n]*\](?!\ @)                              # a requirement, but for one that says where it lies
+    |\b(?:pip3?|pipx|uv|uvx)\ (?:[\w-]+\ )*?(?:install|add|run|download)\ (?:-\S+\ )*['"]?actum\b(?![/_])
+    |\b(?:npx|npm\ install|brew\ install|conda\ install|cargo\ install|uvx)\ (?:-\S+\ )*actum
+    |\b(?:docker|podman)\ (?:run|pull|create)\ (?!.*--pull[ =]never).*\bactum/\w
+    """,
+    re.VERBOSE,
+)
+"""What fetches from a public registry by the name of this project."""
+OF_ITSELF = {"pyproject.toml"}
+"""Files in which extras name each other, which pip looks up in what it installs already."""
+
+
+@pytest.fixture
+def came_from(monkeypatch: pytest.MonkeyPatch) -> Tell:
+    """Let pip have written down where the package came from."""
+    return lambda **told: monkeypatch.setattr(installing, "_told_by_pip", lambda: told)
+
+
+def tracked() -> list[Path]:
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
+    return [ROOT / name for name in listed.stdout.splitlines() if "vendored/" not in name]
+
+
+@pytest.mark.skipif(not (ROOT / ".git").exists(), reason="git tells which files are the project's")
+def test_no_page_help_script_or_file_has_the_project_fetched_by_its_name() -> None:
+    found = []
+    for file in tracked():
+        if file.name in OF_ITSELF or file == Path(__file__):
+            continue
+        try:
+            lines = file.read_text(encoding="utf-8").splitlines()
+        except (UnicodeDecodeError, FileNotFoundError):
+            continue
+        found += [
+            f"{file.relative_to(ROOT)}:{n}: {line}" for n, line in enumerate(lines, 1) if FROM_AN_INDEX.search(line)
+        ]
+    assert found == []
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "pip install 'actum[view]'",
+        "pip install --upgrade actum",
+        "needs `actum[camera]`",
+        "sudo /opt/actum/bin/pip install actum==0.1.0",
+        "uv pip install actum",
+        "pipx install actum",
+        "uvx actum up",
+        "docker run --rm actum/som_classifier",
+    ],
+)
+def test_the_search_finds(line: str) -> None:
+    assert FROM_AN_INDEX.search(line)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "pip install '.[view]'",
+        "pip install 'dist/actum-0.1.0-py3-none-any.whl[all]'",
+        'f"actum[all] @ {wheel.as_uri()}"',
+        "pip install eclipse-zenoh msgpack and nothing of actum",
+        "docker build -t actum/som_classifier .",
+        "docker run --pull never actum/som_classifier",
+    ],
+)
+def test_the_search_leaves(line: str) -> None:
+    assert not FROM_AN_INDEX.search(line)
+
+
+def test_what_came_from_a_wheel_is_completed_from_it(came_from: Tell, tmp_path: Path) -> None:
+    wheel = tmp_path / "a folder" / "actum-0.1.0-py3-none-any.whl"
+    wheel.parent.mkdir()
+    wheel.touch()
+    came_from(url=wheel.as_uri(), archive_info={})
+    assert shlex.split(installing.adding("view")) == ["pip", "install", f"{wheel}[view]"]
+
+
+def test_what_came_from_a_folder_is_completed_from_it(came_from: Tell, tmp_path: Path) -> None:
+    came_from(url=tmp_path.as_uri(), dir_info={"editable": True})
+    assert shlex.split(installing.adding("view")) == ["pip", "install", "-e", f"{tmp_path}[view]"]
+    came_from(url=tmp_path.as_uri(), dir_info={})
+    assert shlex.split(installing.adding("view")) == ["pip", "install", f"{tmp_path}[view]"]
+
+
+@pytest.mark.parametrize("told", [{}, {"url": "https://example.org/actum.git"}, {"url": "file:///build"}])
+def test_where_the_origin_is_gone_the_repository_is_named(came_from: Tell, told: dict[str, str]) -> None:
+    came_from(**told)
+    assert installing.adding("view") == "pip install '.[view]' in the folder of actum's repository"
+
+
+def test_one_line_publishes_it(came_from: Tell, monkeypatch: pytest.MonkeyPatch) -> None:
+    came_from()
+    monkeypatch.setattr(installing, "INDEX_NAME", "an-actum")
+    assert (
+        installing.adding("view") == installing.pip_install("view", installing.WHEEL) == "pip install 'an-actum[view]'"
+    )
