@@ -6,7 +6,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from actum.recorder import Recorder
+from actum.recorder import write_recording
 from actum_dataset_importer import bimacs, msr_action3d, msrc12, utkinect
 from actum_dataset_importer.bimacs import HandsTake
 from actum_dataset_importer.clips import Naming, check_names, clip_files, read_clip
@@ -157,9 +157,7 @@ def import_bimacs(src: Path, out: Path, progress: Progress) -> ImportReport:
     report = ImportReport()
     for file in files:
         take = bimacs.read_take(file, SENSOR)
-        with Recorder(out / f"{take.name}.mcap", person=take.person, source="bimacs") as recorder:
-            for message in take.messages():
-                recorder.write(message)
+        write_recording(out / f"{take.name}.mcap", take.messages(), person=take.person, source="bimacs")
         report.add_hands(take)
         progress(report.files, len(files))
     return report
@@ -188,12 +186,15 @@ def import_video(
 
 
 def import_takes(source: str, takes: Iterable[Take], total: int, out: Path, progress: Progress) -> ImportReport:
-    """Write one recording per take, `out/NAME.mcap`, with `source` in its metadata."""
+    """Write one recording per take, `out/NAME.mcap`, with `source` in its metadata.
+
+    Raises:
+        OSError: one cannot be written, or lies there already.
+    """
     report = ImportReport()
     for take in takes:
-        with Recorder(out / f"{take.name}.mcap", person=take.person, source=source, **take.metadata) as recorder:
-            for message in (*take.frames, *take.marks):
-                recorder.write(message)
+        file = out / f"{take.name}.mcap"
+        write_recording(file, (*take.frames, *take.marks), person=take.person, source=source, **take.metadata)
         report.add(take)
         progress(report.files, total)
     return report

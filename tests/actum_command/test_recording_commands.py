@@ -155,6 +155,51 @@ def test_a_kill_before_the_end_leaves_no_recording_of_that_name(live: Live, tmp_
     assert list(Recording(tmp_path / "a.mcap.part").messages())
 
 
+def test_what_a_crash_left_is_not_recorded_over_but_finished(live: Live, tmp_path: Path) -> None:
+    path = tmp_path / "a.mcap"
+    with pytest.raises(KeyError), Recorder(path, person="anna", source="kinect0") as recorder:
+        recorder.write(skeleton(1))
+        raise KeyError("a crash")
+    left = (tmp_path / "a.mcap.part").read_bytes()
+    live.comes(skeleton(2))
+    told = refused("record", path)
+    assert "a.mcap.part is there, an unfinished recording (0.0 MB, last written 2" in told
+    assert f"actum record {path} --finish" in told
+    assert (tmp_path / "a.mcap.part").read_bytes() == left
+    assert live.take() is not None, "nobody has listened"
+    assert f"1 messages, up to where it breaks off, written to {path}" in actum("record", path, "--finish").stdout
+    assert [message.stamp_ns for message in Recording(path).messages()] == [1]
+    assert "is there already" in refused("record", path)
+    assert "nothing to finish: there is no" in refused("record", path, "--finish")
+
+
+@pytest.mark.parametrize("named", ["a.mcap", "a.mcap.part"])
+def test_what_is_finished_may_be_named_as_it_lies_there(tmp_path: Path, named: str) -> None:
+    written(tmp_path / "a.mcap", skeleton(1)).rename(tmp_path / "a.mcap.part")
+    assert "1 messages" in actum("record", tmp_path / named, "--finish").stdout
+    assert [path.name for path in tmp_path.iterdir()] == ["a.mcap"]
+
+
+def test_a_full_disk_is_told_with_what_to_do(live: Live, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    live.comes(skeleton(1))
+    monkeypatch.setattr("mcap.writer.Writer.add_message", full)
+    told = refused("record", tmp_path / "a.mcap")
+    assert "cannot be written (No space left on device); what was stored lies in" in told
+    assert f"actum record {tmp_path / 'a.mcap'} --finish" in told
+
+
+@pytest.mark.parametrize("named", ["a.mcap", "a.mcap.part"])
+def test_no_command_writes_over_a_recording_or_what_is_left_of_one(tmp_path: Path, named: str) -> None:
+    source = written(tmp_path / "source.mcap", skeleton(1))
+    (tmp_path / named).write_bytes(b"mine")
+    for command in (["simulate", tmp_path / "a.mcap"], ["export", source, tmp_path / "a.mcap", "--foxglove"]):
+        assert f"{named} is there" in refused(*command)
+    assert (tmp_path / named).read_bytes() == b"mine"
+
+
 def test_what_came_before_the_stop_is_stored(live: Live, tmp_path: Path) -> None:
     live.comes(skeleton(1), skeleton(2), mark("end", 2))
     live.stop_at_once()

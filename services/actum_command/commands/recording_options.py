@@ -7,9 +7,10 @@ from typing import Annotated
 import typer
 
 from actum.messages import Message
+from actum.recorder import TakenError, refuse_taken
 from actum.recording import Recording, RecordingError
 from actum.rewriting import Change, rewrite
-from actum_command.commands.terminal import fail, say
+from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
 from actum_model_trainer.samples import select
 
 PersonOption = Annotated[str | None, typer.Option(help="only these persons, e.g. 1,3,5")]
@@ -29,6 +30,16 @@ def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[R
     if not recordings:
         fail(f"no recordings of person {person or '(any)'} in {', '.join(map(str, files)) or 'nothing'}")
     return recordings
+
+
+def refuse_output(output: Path) -> None:
+    """Fail before long work where no recording can be written, or one lies already, finished or not."""
+    refuse_unwritable(output)
+    refuse_ending(output, ".mcap")
+    try:
+        refuse_taken(output)
+    except TakenError as error:
+        fail(str(error))
 
 
 def tell_unread(recordings: Iterable[Recording]) -> None:

@@ -9,6 +9,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from actum.atomic_file import write_whole
 from actum.runtime import Client, RouterUnreachableError, obstacle
 from actum.settings import ServiceSettings, SettingsError, complaint
 
@@ -69,10 +70,10 @@ def refuse_ending(file: Path, *endings: str) -> None:
 
 
 def write_text(file: Path, text: str) -> None:
-    """Write a text file and the folders it lies in, or fail."""
+    """Write a text file and the folders it lies in, or fail and leave the one that is there."""
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
+        write_whole(file.resolve(), text.encode())
     except OSError as error:
         fail(f"{file} cannot be written ({error.strerror})")
 

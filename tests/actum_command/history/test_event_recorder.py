@@ -139,6 +139,7 @@ def test_what_a_killed_process_left_is_finished_by_the_next(tmp_path: Path) -> N
     killed = History(tmp_path)
     killed.take(*(event(f"s{number}", number, number + 1) for number in range(20)))
     killed.tick(1.0)  # what was written a second ago stands on the disk
+    killed._files._abandon()
     [part] = tmp_path.iterdir()
     whole = part.read_bytes()
     part.write_bytes(whole[:-100])  # a power cut tears the last message
@@ -148,7 +149,18 @@ def test_what_a_killed_process_left_is_finished_by_the_next(tmp_path: Path) -> N
     after.take(event("later", 50, 51))
     assert [name.split("-")[2] for name in after.names] == ["000001", "000002"]
     after.recorder.close()
-    killed._files._abandon()
+
+
+def test_what_another_process_is_writing_is_left_to_it(tmp_path: Path) -> None:
+    other = History(tmp_path)
+    other.take(event("its", 1, 2))
+    after = History(tmp_path)
+    assert after.recorder.counters.rejects == {"unreadable_history": 1}
+    after.take(event("ours", 3, 4))
+    other.take(event("its too", 5, 6))
+    for each in (other, after):
+        each.recorder.close()
+    assert [m.segment_id for m in after.stored()] == ["its", "its too", "ours"]  # type: ignore[attr-defined]
 
 
 def test_what_is_recovered_is_what_was_left_and_not_what_is_being_written(tmp_path: Path) -> None:
