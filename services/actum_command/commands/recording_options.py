@@ -1,6 +1,7 @@
 """Options that choose recordings, warnings about those that were read, and how one is changed."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -21,10 +22,10 @@ LONGEST_LABEL = 200  # characters allowed in the field of a mark
 
 
 def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[Recording]:
-    """Open the chosen recordings; fail where there is none."""
+    """Open the chosen recordings, and say which of a folder's are not finished; fail where there is none."""
     people = None if person is None else [name.strip() for name in person.split(",")]
     try:
-        recordings = select(files, people, with_excluded)
+        recordings = select(files, people, with_excluded, partial(say, style="yellow"))
     except RecordingError as error:
         fail(str(error))
     if not recordings:
@@ -44,12 +45,18 @@ def refuse_output(output: Path) -> None:
 
 def tell_unread(recordings: Iterable[Recording]) -> None:
     """Warn of the recordings that break off, and of messages that were skipped, after recordings have been read."""
+    for line in unread(recordings):
+        say(line, style="yellow")
+
+
+def unread(recordings: Iterable[Recording]) -> Iterator[str]:
+    """Yield a line for each recording that breaks off, or of which messages were skipped."""
     for recording in recordings:
         if recording.truncated:
-            say(f"{recording.path} breaks off: only what lies before the break was read", style="yellow")
+            yield f"{recording.path} breaks off: only what lies before the break was read"
         if recording.skipped:
             kinds = ", ".join(f"{kind} {count}" for kind, count in sorted(recording.skipped.items()))
-            say(f"{recording.path}: skipped {kinds}", style="yellow")
+            yield f"{recording.path}: skipped {kinds}"
 
 
 def refuse_length(label: str) -> None:
