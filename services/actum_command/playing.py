@@ -64,15 +64,14 @@ class _Names:
         self._sensor = sensor
         self._taken = taken
         self._sessions: dict[str, str] = {}
-        self._segments: dict[str, str] = {}
+        self._segments: dict[tuple[str, str], str] = {}
 
     def renamed(self, message: Message) -> Message:
         """Return a message under its new names."""
         update: dict[str, Any] = {} if self._sensor is None else {"sensor": self._sensor}
         if isinstance(message, Segment):
-            update |= {
-                "segment_id": self._segment(message.segment_id), "label": None, "origin": REPLAY, "seq": None,
-            }  # fmt: skip
+            name = self._segment(message.sensor, message.segment_id)
+            update |= {"segment_id": name, "label": None, "origin": REPLAY, "seq": None}
         elif hasattr(message, "session_id"):
             update["session_id"] = self._session(message.session_id)
         return message.model_copy(update=update)
@@ -83,12 +82,12 @@ class _Names:
             self._sessions[recorded] = self._session_id if count == 1 else f"{self._session_id}.{count}"
         return self._sessions[recorded]
 
-    def _segment(self, recorded: str) -> str:
-        if recorded not in self._segments:
+    def _segment(self, sensor: str, recorded: str) -> str:
+        if (sensor, recorded) not in self._segments:
             unique, count = recorded, 1
             while unique in self._taken:
                 count += 1
                 unique = f"{recorded}#{count}"
             self._taken.add(unique)
-            self._segments[recorded] = unique
-        return self._segments[recorded]
+            self._segments[sensor, recorded] = unique
+        return self._segments[sensor, recorded]

@@ -137,3 +137,10 @@ def test_what_a_classifier_has_found_is_left_to_be_found_again(record: Record) -
     recording = record("first", skeleton(1), mark("start", 1), *found, skeleton(2), mark("end", 2))
     played = schedule([recording], "play", start_ns=0)
     assert [m.segment_id for m in played if isinstance(m, Segment)] == ["one", "one"]
+
+
+def test_segments_of_two_sensors_stay_two_where_both_are_played_as_one(record: Record) -> None:
+    other = [each.model_copy(update={"sensor": "kinect1"}) for each in (mark("start", 5), mark("end", 6))]
+    recording = record("both", mark("start", 1), mark("end", 2), *other)
+    played = [m for m in schedule([recording], "play", start_ns=0, sensor="door") if isinstance(m, Segment)]
+    assert [m.segment_id for m in played] == ["one", "one", "one#2", "one#2"]
