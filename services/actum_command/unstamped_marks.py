@@ -52,8 +52,8 @@ class UnstampedMarks:
 
     A segment's name is used again after a sensor has begun anew, or by another sensor. So an answer is that of the
     newest start and end mark of its name, each answer places each of the two once, and one that is told again none. A
-    mark that comes up to `MAX_SKEW_NS` after an answer that still lacks it is that segment's, unless an answer of its
-    own follows within that time.
+    mark that comes up to `MAX_SKEW_NS` after an answer that still lacks it is that segment's, unless another answer
+    follows within that time and before the next start mark.
     """
 
     def __init__(self) -> None:
@@ -67,8 +67,10 @@ class UnstampedMarks:
         if mark.stamp_ns is not None and late_for is not None:
             late_for.lacks.discard(mark.kind)
             return
-        name = mark.sensor, mark.segment_id, mark.kind
+        name, end = (mark.sensor, mark.segment_id, mark.kind), (mark.sensor, mark.segment_id, "end")
         yield from self._settled(name)
+        if end in self._newest and self._newest[end].late_for is not None:
+            yield from self._settled(end)
         pending = self._newest[name] = Pending(mark, now_ns, newest_ns, late_for)
         self._due_ns = min(self._due_ns, pending.due_ns)
         if len(self._newest) > MOST_MARKS:
