@@ -6,10 +6,10 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from actum.recorder import write_recording
+from actum.recorder import refuse_taken, write_recording
 from actum_dataset_importer import bimacs, msr_action3d, msrc12, utkinect
 from actum_dataset_importer.bimacs import HandsTake
-from actum_dataset_importer.clips import Naming, check_names, clip_files, read_clip
+from actum_dataset_importer.clips import Naming, check_names, clip_files, read_clip, recording_name
 from actum_dataset_importer.msrc12_composed import STREAMS, composed
 from actum_dataset_importer.msrc12_cuts import trimmed
 from actum_dataset_importer.takes import Take
@@ -176,11 +176,13 @@ def import_video(
 
     Raises:
         DatasetError: there is no clip, one's name or content is not of that form, or two have the same name.
+        OSError: a recording cannot be written, or lies there already.
     """
     files = clip_files(src)
     check_names(files)
     for file in files:
         naming.read(file)
+        refuse_taken(out / f"{recording_name(file)}.mcap")
     takes = (read_clip(file, naming, SENSOR, optics, opened) for file in files)
     return import_takes("video", takes, len(files), out, progress)
 
