@@ -177,6 +177,13 @@ def test_what_a_crash_left_is_not_recorded_over_but_finished(live: Live, tmp_pat
     assert "nothing to finish: there is no" in refused("record", path, "--finish")
 
 
+def test_what_cannot_be_finished_is_told_and_left(tmp_path: Path) -> None:
+    (tmp_path / "a.mcap.part").write_bytes(b"torn")
+    told = refused("record", tmp_path / "a.mcap", "--finish")
+    assert "a.mcap.part cannot be finished (no MCAP file): it is as it was; move it away or remove it" in told
+    assert (tmp_path / "a.mcap.part").read_bytes() == b"torn"
+
+
 @pytest.mark.parametrize("named", ["a.mcap", "a.mcap.part"])
 def test_what_is_finished_may_be_named_as_it_lies_there(tmp_path: Path, named: str) -> None:
     written(tmp_path / "a.mcap", skeleton(1)).rename(tmp_path / "a.mcap.part")

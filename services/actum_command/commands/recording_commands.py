@@ -105,7 +105,9 @@ def _finish(output: Path) -> None:
         count = finished(output)
     except FileNotFoundError:
         fail(f"nothing to finish: there is no {unfinished(output)}")
-    except (RecordingError, TakenError) as error:
+    except RecordingError as error:
+        fail(f"{error.path} cannot be finished ({error.problem}): it is as it was; move it away or remove it")
+    except TakenError as error:
         fail(str(error))
     except OSError as error:
         fail(f"{output} cannot be written ({error.strerror}); {unfinished(output)} is as it was")
