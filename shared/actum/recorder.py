@@ -72,7 +72,7 @@ def refuse_taken(path: Path) -> None:
 def is_being_written(part: Path) -> bool:
     """Tell whether a process, on this machine or another that can lock files here, is writing an unfinished file."""
     try:
-        with part.open("rb") as file:
+        with part.open("r+b") as file:
             return not claim(file)
     except OSError:
         return False

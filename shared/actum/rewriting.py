@@ -61,7 +61,7 @@ def finish(path: Path) -> int:
         OSError: the recording cannot be written. In either case what is there is left as it was.
     """
     part = unfinished(path)
-    with part.open("rb") as claimed:
+    with part.open("r+b") as claimed:  # to write, or a network file system gives no lock
         if not claim(claimed) or not os.path.samestat(os.fstat(claimed.fileno()), part.stat()):
             raise TakenError(part, f"{part} is being written by another process: end that, or wait for its end")
         if os.path.lexists(path):
