@@ -241,11 +241,13 @@ OF_HISTORY: Mapping[str, Problem] = {
         "Make room on the disk, or let its user write the folder that `actum record --events` was given.",
     ),
     "unreadable_history": Problem(
-        "A file that a killed process has left is no recording; it is left as it is.",
-        "Copy it away if it matters; nothing else is lost.",
+        "A file that a killed process has left is no recording, or another process is still writing it; it stays as it "
+        "is.",
+        "The latest error says which. Copy a damaged one away if it matters; nothing else is lost.",
     ),
     "mark_without_stamp": Problem(
-        "A mark without a stamp had no answer within 70 s, so nobody knows when it was; it is not stored.",
+        "A mark without a stamp had no answer within 70 s, or before its segment's name was used again, so nobody "
+        "knows when it was; it is not stored.",
         "Does the classifier run? `actum doctor` tells.",
     ),
 }

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from actum import __version__, keys
 from actum.codec import schema_name
 from actum.messages import MESSAGES, Info, Status
+from actum.node import SOURCE_ENDED
 from actum.runtime import Client
 from actum_command import clock_offsets, stream_checks
 from actum_command.denials import everything_denied, partly_denied
@@ -19,8 +20,6 @@ EXPECTED = ("sensor_gateway", *SERVICES)
 
 STATUS_S = 2.5  # a little more than two of the reports that every service sends each second
 
-ENDED = "source ended"
-"""The state of a sensor whose files or scene have ended."""
 
 NO_MODEL = "no model"
 """The prefix of the state of a classifier that has had no model yet."""
@@ -156,7 +155,7 @@ def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
     """Yield the problems that a service's own state names; `source` is the source that it reads, in brackets."""
     if status.state.startswith("camera lost"):
         yield f"{name}: {status.state}{source}; it tries again by itself"
-    elif status.state == ENDED:
+    elif status.state == SOURCE_ENDED:
         endless = "--repetitions 0" if DESCRIPTION in source else "--loop"
         yield f"{name}: {status.state}{source}; start it again for more, with {endless} for more and more"
     elif status.state.startswith(NO_MODEL):

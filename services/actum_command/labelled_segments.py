@@ -1,10 +1,12 @@
 """The segments of one recording, numbered in order of time, and what `actum label` may add beside them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import inf
 
 from actum import keys
-from actum.messages import CUT, Action, Event, Segment
+from actum.messages import CUT, Action, Event, Segment, Truth
 from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum_model_trainer.cutting.courses import recorded_courses
@@ -32,6 +34,7 @@ class LabelledSegment:
         origin: who marked it; None where the marks do not say.
         agent: who acts; None where the classifier is to find out.
         answer: the recorded answer in words; None where there is none.
+        span_ns: within which stamps its name means this segment: one name is used again after a sensor's restart.
     """
 
     number: int
@@ -43,10 +46,18 @@ class LabelledSegment:
     origin: str | None
     agent: int | None
     answer: str | None = None
+    span_ns: tuple[float, float] = (-inf, inf)
 
-    def overlaps(self, start_ns: int, end_ns: int, agent: int | None) -> bool:
-        """Tell whether a segment of that agent within these stamps would share time with this one."""
-        if self.start_ns is None or self.end_ns is None:
+    def has(self, message: Segment | Action | Event | Truth) -> bool:
+        """Tell whether a message with a stamp is a mark of this segment, an answer to it or its ground truth."""
+        if (message.sensor, message.segment_id) != (self.sensor, self.segment_id):
+            return False
+        at_ns = message.start_ns if isinstance(message, Action | Event) else message.stamp_ns
+        return at_ns is not None and self.span_ns[0] <= at_ns < self.span_ns[1]
+
+    def overlaps(self, start_ns: int, end_ns: int, sensor: str, agent: int | None) -> bool:
+        """Tell whether a segment of that sensor and agent within these stamps would share time with this one."""
+        if self.start_ns is None or self.end_ns is None or sensor != self.sensor:
             return False
         same_person = agent is None or self.agent is None or agent == self.agent
         return same_person and self.start_ns < end_ns and start_ns < self.end_ns
@@ -72,15 +83,19 @@ def labelled_segments(recording: Recording) -> list[LabelledSegment]:
     Raises:
         RecordingError: the file is damaged.
     """
-    marks: dict[tuple[str, str], dict[str, Segment]] = {}
+    marks: dict[tuple[str, str], list[dict[str, Segment]]] = {}
     answers: list[Action | Event] = []
     for message in recording.messages((keys.SEGMENT, keys.ACTION, keys.EVENT)):
         if isinstance(message, Segment):
-            marks.setdefault((message.sensor, message.segment_id), {}).setdefault(message.kind, message)
+            uses = marks.setdefault((message.sensor, message.segment_id), [{}])
+            if message.kind == "start" and "end" in uses[-1]:
+                uses.append({})
+            uses[-1].setdefault(message.kind, message)
         elif isinstance(message, Event) or (isinstance(message, Action) and message.final):
             answers.append(message)
-    ordered = sorted(marks.values(), key=lambda pair: min(mark.stamp_ns or 0 for mark in pair.values()))
-    listed = [_segment(number, pair) for number, pair in enumerate(ordered, start=1)]
+    spans = [each for uses in marks.values() for each in zip(uses, _spans_ns(uses), strict=True)]
+    ordered = sorted(spans, key=lambda each: _first_ns(each[0]))
+    listed = [_segment(number, pair, span_ns) for number, (pair, span_ns) in enumerate(ordered, start=1)]
     return [replace(segment, answer=_answer_to(segment, answers)) for segment in listed]
 
 
@@ -97,7 +112,7 @@ def segment_of(segments: Sequence[LabelledSegment], number: int) -> LabelledSegm
 
 
 def check_span(
-    segments: Sequence[LabelledSegment], start_ns: int, end_ns: int, agent: int | None, first_ns: int
+    segments: Sequence[LabelledSegment], start_ns: int, end_ns: int, sensor: str, agent: int | None, first_ns: int
 ) -> None:
     """Refuse a span that a segment cannot have beside these others.
 
@@ -110,7 +125,7 @@ def check_span(
     if start_ns < first_ns:
         raise LabellingError(f"it would start at {start_s:.2f} s, before the recording does")
     for other in segments:
-        if other.overlaps(start_ns, end_ns, agent):
+        if other.overlaps(start_ns, end_ns, sensor, agent):
             assert other.start_ns is not None and other.end_ns is not None
             span = f"{(other.start_ns - first_ns) / SECOND_NS:.2f} to {(other.end_ns - first_ns) / SECOND_NS:.2f} s"
             raise LabellingError(
@@ -144,11 +159,21 @@ def cut_anew(recording: Recording, segments: Sequence[LabelledSegment], asked: i
         raise LabellingError(f"{recording.path}: nobody is seen moving in it, so nothing can be cut")
     kept = [segment for segment in segments if segment.origin != CUT]
     for repetition in cuts.repetitions:
-        check_span(kept, repetition.start_ns, repetition.end_ns, cuts.course.agent, first_ns)
+        check_span(kept, repetition.start_ns, repetition.end_ns, sensor, cuts.course.agent, first_ns)
     return cuts
 
 
-def _segment(number: int, pair: dict[str, Segment]) -> LabelledSegment:
+def _first_ns(marks: dict[str, Segment]) -> int:
+    return min(mark.stamp_ns or 0 for mark in marks.values())
+
+
+def _spans_ns(uses: Sequence[dict[str, Segment]]) -> Iterator[tuple[float, float]]:
+    """Yield for each use of one name from which stamp to which it means that use: to half-way to the next one."""
+    between = [((before["end"].stamp_ns or 0) + _first_ns(after)) // 2 for before, after in pairwise(uses)]
+    yield from zip([-inf, *between], [*between, inf], strict=True)
+
+
+def _segment(number: int, pair: dict[str, Segment], span_ns: tuple[float, float]) -> LabelledSegment:
     start, end = pair.get("start"), pair.get("end")
     either = start or pair["end"]
     return LabelledSegment(
@@ -160,15 +185,16 @@ def _segment(number: int, pair: dict[str, Segment]) -> LabelledSegment:
         either.label,
         either.origin,
         either.agent,
+        span_ns=span_ns,
     )
 
 
 def _answer_to(segment: LabelledSegment, answers: Sequence[Action | Event]) -> str | None:
     """Return the last answer to a segment, or, where none names it, the answer that shares most of its time."""
-    answers = [answer for answer in answers if answer.sensor == segment.sensor]
-    own = [answer for answer in answers if answer.segment_id == segment.segment_id]
+    own = [answer for answer in answers if segment.has(answer)]
     if own or segment.start_ns is None or segment.end_ns is None:
         return _in_words(own[-1]) if own else None
+    answers = [answer for answer in answers if answer.sensor == segment.sensor]
     shared_ns = [
         min(answer.end_ns or answer.start_ns, segment.end_ns) - max(answer.start_ns, segment.start_ns)
         for answer in answers

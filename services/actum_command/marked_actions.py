@@ -13,6 +13,7 @@ from som_classifier.segments import ClosedSegment
 class MarkedAction:
     """One marked action: its number of valid frames, and why it cannot be trained on, None where it can."""
 
+    sensor: str
     segment_id: str
     label: str | None
     duration_s: float
@@ -29,6 +30,7 @@ def marked_actions(recording: Recording) -> Iterator[MarkedAction]:
     for sensor in sensors(recording):
         for closed in closed_segments(classifier_input(recording, sensor)):
             yield MarkedAction(
+                sensor,
                 closed.segment_id,
                 closed.label,
                 (closed.end_ns - closed.start_ns) / SECOND_NS,

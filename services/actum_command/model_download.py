@@ -7,6 +7,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from http.client import HTTPException
 from pathlib import Path
+from typing import BinaryIO
+
+from actum.atomic_file import replaced
 
 CHUNK_BYTES = 64 * 1024  # small enough that progress moves on a slow line, large enough that it costs nothing
 TIMEOUT_S = 30.0  # a server that sends nothing for so long is given up
@@ -48,25 +51,20 @@ def fetch(published: Published, path: Path, progress: Progress) -> None:
         OSError: it cannot be written.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(path.name + ".part")
-    try:
-        _check(published, *_received(published, part, progress))
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+    with replaced(path) as file:
+        _check(published, *_received(published, file, progress))
 
 
-def _received(published: Published, part: Path, progress: Progress) -> tuple[int, str]:
-    """Download the file to `part`, and return its size and SHA-256."""
+def _received(published: Published, file: BinaryIO, progress: Progress) -> tuple[int, str]:
+    """Download to a file, and return its size and SHA-256."""
     digest, size = hashlib.sha256(), 0
-    with part.open("wb") as file:
-        for chunk in _chunks(published.url):
-            file.write(chunk)
-            digest.update(chunk)
-            size += len(chunk)
-            if size > published.size:
-                break
-            progress(size, published.size)
+    for chunk in _chunks(published.url):
+        file.write(chunk)
+        digest.update(chunk)
+        size += len(chunk)
+        if size > published.size:
+            break
+        progress(size, published.size)
     return size, digest.hexdigest()
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from actum import keys
 from actum.messages import SIMULATOR, Segment, Truth
-from actum.recorder import Recorder
+from actum.recorder import write_recording
 from actum.runtime import Client
 from scene_simulator.everyday import Choice, Pauses, chosen
 from scene_simulator.programme import balanced_programme
@@ -29,13 +29,11 @@ def write_examples(
     Everyday doings between the actions fill the scene up to a number of minutes; with `only` it has no actions.
 
     Raises:
-        OSError: the file cannot be written.
+        OSError: the file cannot be written, or a recording lies there.
     """
     programme = [] if everyday == "only" else balanced_programme(repetitions, seed, actor)
     simulator = Simulator(programme, actor, seed, image_hz=0, everyday=chosen(everyday, minutes, pauses))
-    with Recorder(output, person=f"simulated {actor}", source="simulator", seed=str(seed)) as recorder:
-        for message in labelled_stream(simulator):
-            recorder.write(message)
+    write_recording(output, labelled_stream(simulator), person=f"simulated {actor}", source="simulator", seed=str(seed))
 
 
 def mark_truth(client: Client, stop: threading.Event) -> None:

@@ -8,12 +8,13 @@ from actum import codec, keys
 from actum.mcap_file import StoredMessage
 from actum.messages import AUTO, MANUAL, Action, Event, Message, Segment, Truth
 from actum.rewriting import Change
+from actum_command.labelled_segments import LabelledSegment
 
 Edit = Callable[[Segment | Action | Event | Truth], Message | None]
 """Returns the message to store in place of one that names the segment, or None to leave it out."""
 
 
-def relabelled(segment_id: str, label: str) -> Change:
+def relabelled(segment: LabelledSegment, label: str) -> Change:
     """Return the change that gives a segment another label; one that a classifier found is then the user's."""
 
     def edit(message: Message) -> Message:
@@ -22,10 +23,10 @@ def relabelled(segment_id: str, label: str) -> Change:
         named = {"label": label} if message.kind == "start" else {}
         return _mended(message, named)
 
-    return _of_segments([segment_id], edit)
+    return _of_segments([segment], edit)
 
 
-def moved(segment_id: str, later_start_ns: int, later_end_ns: int) -> Change:
+def moved(segment: LabelledSegment, later_start_ns: int, later_end_ns: int) -> Change:
     """Return the change that shifts a segment's start and end mark (ns, positive is later); recorded answers stay."""
 
     def edit(message: Message) -> Message:
@@ -35,12 +36,12 @@ def moved(segment_id: str, later_start_ns: int, later_end_ns: int) -> Change:
         later_ns = later_start_ns if message.kind == "start" else later_end_ns
         return _mended(message, {"stamp_ns": message.stamp_ns + later_ns})
 
-    return _of_segments([segment_id], edit)
+    return _of_segments([segment], edit)
 
 
-def dropped(segment_ids: Collection[str]) -> Change:
+def dropped(segments: Collection[LabelledSegment]) -> Change:
     """Return the change that leaves out segments: their marks, their answers and their ground truth."""
-    return _of_segments(segment_ids, lambda _: None)
+    return _of_segments(segments, lambda _: None)
 
 
 def _mended(mark: Segment, update: dict[str, Any]) -> Segment:
@@ -50,12 +51,14 @@ def _mended(mark: Segment, update: dict[str, Any]) -> Segment:
     return mark.model_copy(update=changed) if changed else mark
 
 
-def _of_segments(segment_ids: Collection[str], edit: Edit) -> Change:
+def _of_segments(segments: Collection[LabelledSegment], edit: Edit) -> Change:
     """Return the change that edits the messages that name one of these segments, and no others."""
 
     def change(stored: StoredMessage) -> StoredMessage | None:
         message = _message(stored)
-        if not isinstance(message, Segment | Action | Event | Truth) or message.segment_id not in segment_ids:
+        if not isinstance(message, Segment | Action | Event | Truth):
+            return stored
+        if not any(segment.has(message) for segment in segments):
             return stored
         edited = edit(message)
         if edited is None or edited is message:

@@ -1,15 +1,14 @@
 """Stores messages for `actum record`; a mark without a stamp gets the one that the classifier resolved it to."""
 
 from collections import Counter
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable
 
 from actum import keys
 from actum.codec import DecodeError
-from actum.limits import MAX_SKEW_NS
 from actum.messages import MANUAL, Action, Message, Posture, Segment, Skeleton
 from actum.node import Counters
 from actum.recorder import Recorder
+from actum_command.unstamped_marks import Placed, UnstampedMarks
 
 STREAMS = frozenset(
     {keys.SKELETON, keys.POSTURE, keys.OBJECTS, keys.SEGMENT, keys.ACTION, keys.EVENT, keys.TRUTH},
@@ -25,30 +24,12 @@ def origin_of(mark: Segment) -> str:
     return mark.origin or MANUAL
 
 
-@dataclass(frozen=True)
-class _PendingMark:
-    """A mark without a stamp, with the newest frame's stamp and the time when it came."""
-
-    mark: Segment
-    newest_ns: int | None
-    received_ns: int
-
-
-@dataclass(frozen=True)
-class _SegmentBounds:
-    """A segment's bounds from its final action, and the time when that was received."""
-
-    start_ns: int
-    end_ns: int | None
-    received_ns: int
-
-
 class StreamRecorder:
     """Stores the messages of the given topics, of the marks only those of the given origins.
 
-    A mark without a stamp waits for its segment's final action, which has the bounds that the classifier used. Marks
-    that still wait at the end get the stamp of the frame that was newest when they came. Start marks without a label
-    get `label`.
+    A mark without a stamp waits for its segment's final action, which has the bounds that the classifier used. Those
+    that wait in vain get the stamp of the frame that was newest when they came. Start marks without a label get
+    `label`.
 
     Attributes:
         stored: number of messages in the file.
@@ -77,15 +58,15 @@ class StreamRecorder:
         self._label = label
         self._origins = origins
         self._newest_ns: int | None = None
-        self._pending: list[_PendingMark] = []
-        self._bounds: dict[str, _SegmentBounds] = {}
+        self._marks = UnstampedMarks()
 
     def take(self, message: Message, received_ns: int) -> None:
         """Take one message and the time it was received at (ns)."""
         if isinstance(message, Skeleton | Posture):
             self._newest_ns = message.stamp_ns
+        self._place(self._marks.tick(received_ns))
         if isinstance(message, Action) and message.final:
-            self._note_bounds(message, received_ns)
+            self._place(self._marks.answer(message, received_ns))
         if keys.address_of(message).topic not in self._topics:
             return
         if isinstance(message, Segment):
@@ -99,9 +80,7 @@ class StreamRecorder:
 
     def close(self) -> None:
         """Store the marks that no final action has resolved; one that came before any frame is counted and dropped."""
-        for pending in self._pending:
-            self._store_at(pending, pending.newest_ns)
-        self._pending = []
+        self._place(self._marks.close())
 
     def _take_mark(self, mark: Segment, received_ns: int) -> None:
         origin = origin_of(mark)
@@ -112,38 +91,16 @@ class StreamRecorder:
             mark = mark.model_copy(update={"label": self._label})
         if mark.stamp_ns is not None:
             self._store(mark, received_ns)
-            return
-        self._pending.append(_PendingMark(mark, self._newest_ns, received_ns))
-        self._forget(received_ns)
-        self._resolve(mark.segment_id)
+        self._place(self._marks.take(mark, received_ns, self._newest_ns))
 
-    def _note_bounds(self, final: Action, received_ns: int) -> None:
-        self._forget(received_ns)
-        self._bounds[final.segment_id] = _SegmentBounds(final.start_ns, final.end_ns, received_ns)
-        self._resolve(final.segment_id)
-
-    def _forget(self, now_ns: int) -> None:
-        """Drop the bounds that no mark can be waiting for any more: a recording may have segments without end."""
-        self._bounds = {
-            name: bounds for name, bounds in self._bounds.items() if now_ns - bounds.received_ns <= MAX_SKEW_NS
-        }
-
-    def _resolve(self, segment_id: str) -> None:
-        """Store the pending marks of a segment if its bounds are known."""
-        bounds = self._bounds.get(segment_id)
-        if bounds is None:
-            return
-        resolved = [pending for pending in self._pending if pending.mark.segment_id == segment_id]
-        self._pending = [pending for pending in self._pending if pending.mark.segment_id != segment_id]
-        for pending in resolved:
-            stamp_ns = bounds.start_ns if pending.mark.kind == "start" else bounds.end_ns
-            self._store_at(pending, pending.newest_ns if stamp_ns is None else stamp_ns)
-
-    def _store_at(self, pending: _PendingMark, stamp_ns: int | None) -> None:
-        if stamp_ns is None:
-            self.counters.reject("mark_without_stamp", f"{pending.mark.segment_id}: it came before any frame")
-            return
-        self._store(pending.mark.model_copy(update={"stamp_ns": stamp_ns}), pending.received_ns)
+    def _place(self, marks: Iterable[Placed]) -> None:
+        for pending, bounds in marks:
+            stamp_ns = None if bounds is None else bounds.stamp_ns(pending.mark)
+            stamp_ns = pending.newest_ns if stamp_ns is None else stamp_ns
+            if stamp_ns is None:
+                self.counters.reject("mark_without_stamp", f"{pending.mark.segment_id}: it came before any frame")
+            else:
+                self._store(pending.mark.model_copy(update={"stamp_ns": stamp_ns}), pending.since_ns)
 
     def _store(self, message: Message, received_ns: int) -> None:
         self._recorder.write(message, received_ns)

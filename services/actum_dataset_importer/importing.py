@@ -6,10 +6,10 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from actum.recorder import Recorder
+from actum.recorder import refuse_taken, write_recording
 from actum_dataset_importer import bimacs, msr_action3d, msrc12, utkinect
 from actum_dataset_importer.bimacs import HandsTake
-from actum_dataset_importer.clips import Naming, check_names, clip_files, read_clip
+from actum_dataset_importer.clips import Naming, check_names, clip_files, read_clip, recording_name
 from actum_dataset_importer.msrc12_composed import STREAMS, composed
 from actum_dataset_importer.msrc12_cuts import trimmed
 from actum_dataset_importer.takes import Take
@@ -157,9 +157,7 @@ def import_bimacs(src: Path, out: Path, progress: Progress) -> ImportReport:
     report = ImportReport()
     for file in files:
         take = bimacs.read_take(file, SENSOR)
-        with Recorder(out / f"{take.name}.mcap", person=take.person, source="bimacs") as recorder:
-            for message in take.messages():
-                recorder.write(message)
+        write_recording(out / f"{take.name}.mcap", take.messages(), person=take.person, source="bimacs")
         report.add_hands(take)
         progress(report.files, len(files))
     return report
@@ -178,22 +176,27 @@ def import_video(
 
     Raises:
         DatasetError: there is no clip, one's name or content is not of that form, or two have the same name.
+        OSError: a recording cannot be written, or lies there already.
     """
     files = clip_files(src)
     check_names(files)
     for file in files:
         naming.read(file)
+        refuse_taken(out / f"{recording_name(file)}.mcap")
     takes = (read_clip(file, naming, SENSOR, optics, opened) for file in files)
     return import_takes("video", takes, len(files), out, progress)
 
 
 def import_takes(source: str, takes: Iterable[Take], total: int, out: Path, progress: Progress) -> ImportReport:
-    """Write one recording per take, `out/NAME.mcap`, with `source` in its metadata."""
+    """Write one recording per take, `out/NAME.mcap`, with `source` in its metadata.
+
+    Raises:
+        OSError: one cannot be written, or lies there already.
+    """
     report = ImportReport()
     for take in takes:
-        with Recorder(out / f"{take.name}.mcap", person=take.person, source=source, **take.metadata) as recorder:
-            for message in (*take.frames, *take.marks):
-                recorder.write(message)
+        file = out / f"{take.name}.mcap"
+        write_recording(file, (*take.frames, *take.marks), person=take.person, source=source, **take.metadata)
         report.add(take)
         progress(report.files, total)
     return report

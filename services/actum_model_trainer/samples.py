@@ -1,6 +1,7 @@
 """Training samples: the labelled segments of recordings, and the streams in which they lie."""
 
-from collections.abc import Collection, Iterable, Sequence
+import logging
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,6 +14,7 @@ from actum.arrays import Array
 from actum.messages import Hand
 from actum.node import replay
 from actum.recording import Recording
+from actum.recording_files import recording_files
 from actum_model_trainer.continuous.detections import Found, Stretch, Truth
 from actum_model_trainer.continuous.presence import LONGEST_BREAK_NS
 from actum_model_trainer.progress import Progress, silent
@@ -20,6 +22,8 @@ from actum_model_trainer.recorded_segments import FrameCollector, classifier_inp
 from som_classifier.frames import Frame
 from som_classifier.handedness import LimbSpreads, limb_moments
 from som_classifier.segments import ClosedSegment
+
+log = logging.getLogger("actum")
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,20 +139,25 @@ class Samples:
 
 
 def select(
-    paths: Iterable[Path], people: Collection[str] | None = None, with_excluded: bool = False
+    paths: Iterable[Path],
+    people: Collection[str] | None = None,
+    with_excluded: bool = False,
+    remark: Callable[[str], object] = log.warning,
 ) -> list[Recording]:
-    """Open the recordings of some people, or of all (None), each once; folders are searched for `*.mcap`.
+    """Open the recordings of some people, or of all (None), each once, as `recording_files` finds them.
 
-    Recordings whose metadata say `excluded: true` are left out, unless `with_excluded`.
+    Recordings whose metadata say `excluded: true` are left out, unless `with_excluded`. `remark` is called with a line
+    for each unfinished file in a folder.
 
     Raises:
         RecordingError: a file is no recording.
     """
-    files = (file for path in paths for file in (sorted(path.rglob("*.mcap")) if path.is_dir() else [path]))
-    recordings = [Recording(file) for file in {file.resolve(): file for file in files}.values()]
+    found = recording_files(paths)
+    for line in found.remarks:
+        remark(line)
     return [
         recording
-        for recording in recordings
+        for recording in map(Recording, found.paths)
         if (people is None or recording.person in people)
         and (with_excluded or recording.metadata.get("excluded") != "true")
     ]

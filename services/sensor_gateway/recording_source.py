@@ -10,12 +10,13 @@ from actum.joining import joined
 from actum.messages import Message
 from actum.node import Counters, Source
 from actum.recording import Recording, RecordingError
+from actum.recording_files import recording_files
 
 TOPICS = (keys.SKELETON, keys.COLOR, keys.DEPTH)
 
 
 class RecordingSource:
-    """Plays the skeletons and images of one recording, or of a folder's recordings by name, as those of a sensor.
+    """Plays the skeletons and images of one recording, or of those below a folder by name, as those of a sensor.
 
     Stamps, numbers and session ids are the recorded ones; from a folder's second recording on, stamps and numbers are
     shifted so that they continue to rise. A damaged recording is played up to the damage.
@@ -30,7 +31,12 @@ class RecordingSource:
     def __init__(self, path: Path, sensor: str) -> None:
         self.counters = Counters()
         self._sensor = sensor
-        self._recordings = [Recording(file) for file in _files(path)]
+        found = recording_files([path])
+        if not found.paths:
+            raise RecordingError(path, "no *.mcap there", "name such a file or the folder that holds them")
+        for problem in found.left_out:
+            self.counters.reject("damaged_recording", problem)
+        self._recordings = [Recording(file) for file in found.paths]
 
     def frames(self) -> Iterator[list[Message]]:
         """Yield lists of messages with the same stamp, in order."""
@@ -61,13 +67,6 @@ class LoopedSource:
     def _rounds(self) -> Iterator[Iterable[Message]]:
         while (first := next(frames := self._source.frames(), None)) is not None:
             yield chain(first, chain.from_iterable(frames))
-
-
-def _files(path: Path) -> list[Path]:
-    files = [path] if path.is_file() else sorted(path.glob("*.mcap"))
-    if not files:
-        raise RecordingError(path, "no *.mcap there", "name such a file or the folder that holds them")
-    return files
 
 
 def _by_stamp(messages: Iterable[Message]) -> Iterator[list[Message]]:

@@ -1,14 +1,19 @@
-"""Files that are replaced as a whole or not at all, however the process or the machine ends."""
+"""Files that are written as a whole or not at all, however the process or the machine ends; and who writes one."""
 
+import errno
 import os
 import secrets
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
+if sys.platform != "win32":
+    import fcntl
+
 UNFINISHED = ".part"
-"""Ending of files that are still being written; one that a killed process has left may be deleted."""
+"""Ending of files that are still being written. A recording that a killed process has left is readable up to there."""
 LONGEST_STEM = 40
 """Characters of a file's name in that of its unfinished one, whose name may not get too long for the file system."""
 
@@ -22,17 +27,77 @@ def replaced(path: Path) -> Iterator[BinaryIO]:
     Raises:
         OSError: the file cannot be written.
     """
+    with _temporary(path) as file:
+        yield file
+        _stored(file).replace(path)
+    store_names(path.parent)
+
+
+@contextmanager
+def created(path: Path) -> Iterator[BinaryIO]:
+    """Yield a file to write; once the block ends, it stands on the disk under a name that nobody had.
+
+    Raises:
+        FileExistsError: somebody has the name, or takes it meanwhile.
+        OSError: the file cannot be written.
+    """
+    with _temporary(path) as file:
+        yield file
+        give_name(_stored(file), path)
+
+
+@contextmanager
+def _temporary(path: Path) -> Iterator[BinaryIO]:
+    """Yield a file beside another one; it is gone after the block unless it has got another name."""
     unfinished = path.with_name(f".{path.name[:LONGEST_STEM]}.{secrets.token_hex(4)}{UNFINISHED}")
     try:
         with unfinished.open("xb") as file:
             yield file
-            file.flush()
-            os.fsync(file.fileno())
-        unfinished.replace(path)
-    except BaseException:
+    finally:
         unfinished.unlink(missing_ok=True)
+
+
+def _stored(file: BinaryIO) -> Path:
+    """Have a file stored on the disk and close it; return its path."""
+    file.flush()
+    os.fsync(file.fileno())
+    file.close()
+    return Path(file.name)
+
+
+def give_name(unfinished: Path, path: Path) -> None:
+    """Give a finished file a name that no file has.
+
+    Raises:
+        FileExistsError: one has it.
+        OSError: the name cannot be given.
+    """
+    try:
+        path.hardlink_to(unfinished)
+    except FileExistsError:
         raise
+    except OSError:  # a file system without hard links
+        if os.path.lexists(path):
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path)) from None
+        unfinished.rename(path)
+    unfinished.unlink(missing_ok=True)
     store_names(path.parent)
+
+
+def claim(file: BinaryIO) -> bool:
+    """Claim an open file until it is closed or the process ends, however it ends; return False where another has it.
+
+    Where the file system or the operating system has no such locks, every file can be claimed.
+    """
+    if sys.platform == "win32":  # there no other process can rename or remove an open file
+        return True
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return True
+    return True
 
 
 def write_whole(path: Path, content: bytes) -> None:

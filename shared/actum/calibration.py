@@ -16,6 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError,
 
 from actum import geometry
 from actum.arrays import Array
+from actum.atomic_file import write_whole
 from actum.messages import Intrinsics, Transform
 
 FORMAT: Literal["actum.calibration/1"] = "actum.calibration/1"
@@ -144,7 +145,7 @@ class Calibration(_Part):
 
     def save(self, path: Path) -> None:
         """Write the calibration file, replacing an existing one."""
-        path.write_text(HEADER + _yaml(self.model_dump(exclude_none=True)), encoding="utf-8")
+        write_whole(path.resolve(), (HEADER + _yaml(self.model_dump(exclude_none=True))).encode())
 
 
 def _content(path: Path) -> object:

@@ -34,6 +34,7 @@ class RecordingError(ValueError):
     def __init__(self, path: Path, problem: str, remedy: str) -> None:
         super().__init__(f"{path}: {problem}; {remedy}")
         self.path = path
+        self.problem = problem
 
 
 @dataclass(frozen=True)

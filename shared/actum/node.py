@@ -16,6 +16,8 @@ SETTLE_NS = 70 * SECOND_NS
 """How long ticks go on after a replay (ns): longer than any service waits (a segment of 60 s and 2 s of skew)."""
 MOST_KEYS = 4096
 """Keys whose numbers are remembered: agents come and go with new ones, and the key silent for longest begins anew."""
+SOURCE_ENDED = "source ended"
+"""The state of a source whose files or scene are over."""
 LONGEST_COMPLAINT = 500
 """Characters kept of an error text: it may quote a megabyte of input."""
 

@@ -18,39 +18,12 @@ __all__ = ["Recording", "RecordingError"]
 
 ACTION_POINTS = "action_points_ns"
 """The metadata field of annotated action points: a JSON object with a stamp (ns) for each segment's id."""
-MESSAGE_ENCODING = "msgpack"
-"""MCAP's name for the encoding of the messages."""
-SCHEMA_ENCODING = "jsonschema"
-"""MCAP's name for the encoding of the schemas."""
-CHUNK_BYTES = 256 * 1024
-"""Size of an MCAP chunk: a crash loses at most one, about three seconds of a skeleton stream."""
-
 MOST_HELD = 50
 """How many times its file's size the messages in memory may take: they are a few times as large as they are stored."""
 LEAST_HELD_BYTES = 64_000_000
 """What they may take (bytes) however small the file is."""
 MESSAGE_BYTES = 250
 """What a message in memory takes beside its payload (bytes)."""
-SEQUENCE_MODULUS = 2**32
-"""MCAP's message numbers have 32 bits."""
-MOST_HELD = 50
-"""How many times its file's size the messages in memory may take: they are a few times as large as they are stored."""
-LEAST_HELD_BYTES = 64_000_000
-"""What they may take (bytes) however small the file is."""
-MESSAGE_BYTES = 250
-"""What a message in memory takes beside its payload (bytes)."""
-SEQUENCE_MODULUS = 2**32
-"""MCAP's message numbers have 32 bits."""
-LEAST_HELD_BYTES = 64_000_000
-"""What they may take (bytes) however small the file is."""
-MESSAGE_BYTES = 250
-"""What a message in memory takes beside its payload (bytes)."""
-SEQUENCE_MODULUS = 2**32
-"""MCAP's message numbers have 32 bits."""
-MESSAGE_BYTES = 250
-"""What a message in memory takes beside its payload (bytes)."""
-SEQUENCE_MODULUS = 2**32
-"""MCAP's message numbers have 32 bits."""
 
 
 class Recording:

@@ -1,5 +1,6 @@
 """Rewrites a recording with some messages changed, left out or added; all other records are copied unchanged."""
 
+import os
 import shutil
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
@@ -10,9 +11,9 @@ from mcap.records import Attachment, Channel, Header, McapRecord, Message, Metad
 from mcap.writer import Writer
 
 from actum import codec, messages
-from actum.atomic_file import replaced
-from actum.mcap_file import McapFile, StoredMessage, encoding_of
-from actum.recorder import CHUNK_BYTES, MESSAGE_ENCODING, METADATA, SCHEMA_ENCODING, json_schema
+from actum.atomic_file import UNFINISHED, claim, created, replaced
+from actum.mcap_file import McapFile, RecordingError, StoredMessage, encoding_of
+from actum.recorder import CHUNK_BYTES, MESSAGE_ENCODING, METADATA, SCHEMA_ENCODING, TakenError, json_schema, unfinished
 
 Change = Callable[[StoredMessage], StoredMessage | None]
 """Returns the message to write in place of the given one (only payload and stamp count), or None to leave it out."""
@@ -38,18 +39,44 @@ def rewrite(
         metadata: fields of the recording's metadata that get another value.
 
     Raises:
-        RecordingError: the file is no recording, or damaged.
+        RecordingError: the file is no recording, damaged, or not finished: whoever writes it would go on in vain.
         OSError: the temporary file cannot be written. In either case the recording is left as it was.
     """
     target = path.resolve()
+    if target.suffix == UNFINISHED:
+        finished = path.with_suffix("")
+        raise RecordingError(path, "an unfinished recording", f"finish it: actum record {finished} --finish")
     with replaced(target) as file:
         _copy(McapFile(path), file, change, added, metadata or {})
         shutil.copymode(target, file.name)
 
 
+def finish(path: Path) -> int:
+    """Make a recording of what a process that has ended left unfinished; return how many messages it holds.
+
+    Raises:
+        FileNotFoundError: nothing unfinished is there.
+        TakenError: it is still being written, or another recording has the name.
+        RecordingError: nothing can be read from it, or it is damaged.
+        OSError: the recording cannot be written. In either case what is there is left as it was.
+    """
+    part = unfinished(path)
+    with part.open("r+b") as claimed:  # to write, or a network file system gives no lock
+        if not claim(claimed) or not os.path.samestat(os.fstat(claimed.fileno()), part.stat()):
+            raise TakenError(part, f"{part} is being written by another process: end that, or wait for its end")
+        if os.path.lexists(path):
+            raise TakenError(path, f"{path} is there already, so {part} cannot get that name: rename one of them")
+        with created(path) as file:
+            count = _copy(McapFile(part), file, unchanged, (), {})
+            shutil.copymode(part, file.name)
+        part.unlink()
+    return count
+
+
 def _copy(
     source: McapFile, file: BinaryIO, change: Change, added: Iterable[messages.Message], metadata: Mapping[str, str]
-) -> None:
+) -> int:
+    """Write the changed recording to a file; return how many messages of it are kept."""
     writer = Writer(file, chunk_size=CHUNK_BYTES)
     copying = _Copying(writer, change, metadata)
     for record in source.records():
@@ -57,6 +84,7 @@ def _copy(
     for message in added:
         copying.add(message)
     writer.finish()  # type: ignore[no-untyped-call]
+    return copying.kept
 
 
 class _Copying:
@@ -72,6 +100,7 @@ class _Copying:
         self._channel_records: dict[int, Channel] = {}
         self._numbers: Counter[str] = Counter()
         self._new_channels: dict[str, int] = {}
+        self.kept = 0
 
     def take(self, record: McapRecord) -> None:
         match record:
@@ -126,6 +155,7 @@ class _Copying:
         encoding = encoding_of(channel, self._schema_names.get(channel.schema_id, ""))
         changed = self._change(StoredMessage(record.publish_time, channel.topic, record.data, encoding))
         if changed is not None:
+            self.kept += 1
             self._writer.add_message(
                 channel_id=self._channels[record.channel_id],
                 log_time=record.log_time,

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from actum.messages import AUTO, MANUAL, Message, Segment
+from actum.messages import AUTO, MANUAL, Action, Message, Segment
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum_command.__main__ import app
@@ -199,3 +199,24 @@ def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
 def test_a_picture_of_another_kind_is_refused(path: Path, tmp_path: Path) -> None:
     assert "does not end in .png or .svg" in refused("picture", path, "-o", tmp_path / "a.gif")
     assert "no such file" in refused("picture", path, "-o", tmp_path / "a.png", "--model", tmp_path / "m.npz").lower()
+
+
+def test_segments_of_several_sensors_are_listed_and_changed_one_by_one(path: Path, waves: Stream) -> None:
+    """Also where they share their name and their time, for two sensors may see one action."""
+    first, last = (FIRST_NS + frame * FRAME_NS for frame in waves.truths[0])
+    both = path.with_name("both.mcap")
+    with Recorder(both, person="anna", source="test") as recorder:
+        for message in waves.skeletons(first_ns=FIRST_NS):
+            recorder.write(message)
+        for sensor, answered in (("kinect0", "push"), ("kinect1", "pull")):
+            own = [mark("start", first, "one", "wave"), mark("end", last, "one"), action(first, last, "one")]
+            for message in own:
+                update = {"sensor": sensor} | ({"action": answered} if isinstance(message, Action) else {})
+                recorder.write(message.model_copy(update=update))
+    kinect0, kinect1 = rows(both)
+    assert kinect0.endswith("answered push 1.00 kinect0") and kinect1.endswith("answered pull 1.00 kinect1")
+    label("move", both, 2, "--end", "+0.1")
+    label("rename", both, 2, "other")
+    assert rows(both)[0] == kinect0
+    label("delete", both, 2)
+    assert rows(both) == [kinect0.removesuffix(" kinect0")]

@@ -1,7 +1,9 @@
 """`actum record` and `actum play` tell what they did, and what they could not."""
 
+import json
 import sys
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 import msgpack
@@ -12,16 +14,18 @@ from typer.testing import CliRunner
 
 from actum import codec, keys
 from actum.messages import CUT, MANUAL, SIMULATOR, Message, Segment
-from actum.recorder import Recorder
+from actum.recorder import Recorder, StoredRecorder
 from actum.recording import Recording
 from actum.runtime import Received
 from actum_command import streaming
 from actum_command.__main__ import app
 from actum_command.commands import recording_commands
 from actum_model_trainer.cutting import counting
+from actum_model_trainer.samples import select
 from empty_messages import image, mark, skeleton, status
 from people import FRAME_NS
 from repeating import five_waves, rest
+from sensor_gateway.recording_source import RecordingSource
 
 
 class Live:
@@ -155,6 +159,58 @@ def test_a_kill_before_the_end_leaves_no_recording_of_that_name(live: Live, tmp_
     assert list(Recording(tmp_path / "a.mcap.part").messages())
 
 
+def test_what_a_crash_left_is_not_recorded_over_but_finished(live: Live, tmp_path: Path) -> None:
+    path = tmp_path / "a.mcap"
+    with pytest.raises(KeyError), Recorder(path, person="anna", source="kinect0") as recorder:
+        recorder.write(skeleton(1))
+        raise KeyError("a crash")
+    left = (tmp_path / "a.mcap.part").read_bytes()
+    live.comes(skeleton(2))
+    told = refused("record", path)
+    assert "a.mcap.part is there, an unfinished recording (0.0 MB, last written 2" in told
+    assert f"actum record {path} --finish" in told
+    assert (tmp_path / "a.mcap.part").read_bytes() == left
+    assert live.take() is not None, "nobody has listened"
+    assert f"1 messages, up to where it breaks off, written to {path}" in actum("record", path, "--finish").stdout
+    assert [message.stamp_ns for message in Recording(path).messages()] == [1]
+    assert "is there already" in refused("record", path)
+    assert "nothing to finish: there is no" in refused("record", path, "--finish")
+
+
+def test_what_cannot_be_finished_is_told_and_left(tmp_path: Path) -> None:
+    (tmp_path / "a.mcap.part").write_bytes(b"torn")
+    told = refused("record", tmp_path / "a.mcap", "--finish")
+    assert "a.mcap.part cannot be finished (no MCAP file): it is as it was; move it away or remove it" in told
+    assert (tmp_path / "a.mcap.part").read_bytes() == b"torn"
+
+
+@pytest.mark.parametrize("named", ["a.mcap", "a.mcap.part"])
+def test_what_is_finished_may_be_named_as_it_lies_there(tmp_path: Path, named: str) -> None:
+    written(tmp_path / "a.mcap", skeleton(1)).rename(tmp_path / "a.mcap.part")
+    assert "1 messages" in actum("record", tmp_path / named, "--finish").stdout
+    assert [path.name for path in tmp_path.iterdir()] == ["a.mcap"]
+
+
+def test_a_full_disk_is_told_with_what_to_do(live: Live, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    live.comes(skeleton(1))
+    monkeypatch.setattr("mcap.writer.Writer.add_message", full)
+    told = refused("record", tmp_path / "a.mcap")
+    assert "cannot be written (No space left on device); what was stored lies in" in told
+    assert f"actum record {tmp_path / 'a.mcap'} --finish" in told
+
+
+@pytest.mark.parametrize("named", ["a.mcap", "a.mcap.part"])
+def test_no_command_writes_over_a_recording_or_what_is_left_of_one(tmp_path: Path, named: str) -> None:
+    source = written(tmp_path / "source.mcap", skeleton(1))
+    (tmp_path / named).write_bytes(b"mine")
+    for command in (["simulate", tmp_path / "a.mcap"], ["export", source, tmp_path / "a.mcap", "--foxglove"]):
+        assert f"{named} is there" in refused(*command)
+    assert (tmp_path / named).read_bytes() == b"mine"
+
+
 def test_what_came_before_the_stop_is_stored(live: Live, tmp_path: Path) -> None:
     live.comes(skeleton(1), skeleton(2), mark("end", 2))
     live.stop_at_once()
@@ -247,3 +303,50 @@ def test_what_a_play_passes_over_is_counted(live: Live, tmp_path: Path) -> None:
             writer.add_message(writer.register_channel(key, "msgpack", 0), log_time=9, data=payload, publish_time=5)
         writer.finish()
     assert f"{path}: skipped not_a_map 1, unknown_key 1" in actum("play", path).stdout
+
+
+class TestUnfinishedInAFolder:
+    """A folder holds a finished recording, one that is being written, and what cannot be read."""
+
+    @pytest.fixture
+    def folder(self, tmp_path: Path) -> Iterator[Path]:
+        written(tmp_path / "a.mcap", mark("start", 1, "done"), mark("end", 2, "done"))
+        recorder = StoredRecorder(tmp_path / "b.mcap", person="anna", source="test")
+        for message in (mark("start", 3, "newest"), mark("end", 4, "newest")):
+            recorder.write(message)
+        recorder.store()
+        (tmp_path / "c.mcap.part").write_bytes(b"")
+        (tmp_path / "a.mcap.part").write_bytes((tmp_path / "a.mcap").read_bytes())
+        (tmp_path / ".making").mkdir()
+        written(tmp_path / ".making" / "d.mcap", mark("start", 5, "hidden"))
+        yield tmp_path
+        recorder.close()
+
+    def told_of(self, text: str, folder: Path) -> None:
+        assert f"{folder / 'b.mcap.part'} is not finished: what has been stored so far is read" in text
+        assert f"left out: {folder / 'c.mcap.part'}: no MCAP file" in text
+        assert f"{folder / 'a.mcap.part'} is left out: {folder / 'a.mcap'} is read" in text
+
+    def test_commands_read_them_and_say_so(self, folder: Path) -> None:
+        listed = actum("takes", folder).stdout
+        assert "done" in listed and "newest" in listed and "hidden" not in listed
+        self.told_of(listed, folder)
+
+    def test_watch_reads_them_and_says_so_beside_its_lines(self, folder: Path) -> None:
+        watched = actum("watch", "segment", "--json", "--from", folder)
+        assert [json.loads(line)["segment_id"] for line in watched.stdout.splitlines()] == ["done"] * 2 + ["newest"] * 2
+        self.told_of(watched.stderr, folder)
+        assert f"{folder / 'b.mcap.part'} breaks off" in watched.stderr
+
+    def test_a_file_that_is_named_is_read_or_refused(self, folder: Path) -> None:
+        assert "newest" in actum("watch", "segment", "--from", folder / "b.mcap.part").stdout
+        assert "no MCAP file" in refused("watch", "segment", "--from", folder / "c.mcap.part")
+
+    def test_what_takes_folders_by_itself_logs_it(self, folder: Path, caplog: pytest.LogCaptureFixture) -> None:
+        assert [recording.path.name for recording in select([folder])] == ["a.mcap", "b.mcap.part"]
+        self.told_of(caplog.text, folder)
+
+    def test_the_gateway_plays_them_and_counts_what_it_cannot(self, folder: Path) -> None:
+        source = RecordingSource(folder, "kinect0")
+        assert list(source.frames()) == []
+        assert source.counters.rejects == {"damaged_recording": 2, "truncated_recording": 1}

@@ -6,9 +6,8 @@ import pytest
 from mcap.reader import make_reader
 
 from actum import keys
-from actum.limits import MAX_SKEW_NS
 from actum.messages import AUTO, MANUAL, REPLAY, SIMULATOR, Image, Message, Segment, Skeleton, Truth
-from actum.node import SECOND_NS, Counters
+from actum.node import SECOND_NS, SETTLE_NS, Counters
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum_command.commands import segment_commands
@@ -27,6 +26,7 @@ class Take:
         self.counters = Counters()
 
     def record(self, *messages: Message, apart_ns: int = 1_000_000, **options: object) -> list[Message]:
+        self.path.unlink(missing_ok=True)
         with Recorder(self.path, person="1", source="live") as recorder:
             stream = StreamRecorder(recorder, **options)  # type: ignore[arg-type]
             for i, message in enumerate(messages):
@@ -120,13 +120,23 @@ def test_what_services_say_about_themselves_is_not_stored(take: Take) -> None:
     assert take.record(status()) == []
 
 
-def test_answers_are_kept_only_as_long_as_a_mark_may_be_late(tmp_path: Path) -> None:
+def test_a_name_that_is_used_again_after_a_restart_gets_the_stamps_of_its_own_answer(take: Take) -> None:
+    before = [mark("start"), mark("end"), action(11, 31, session_id="a")]
+    after = [mark("start"), mark("end"), action(5, 25, session_id="b")]
+    assert take.marks(skeleton(40), *before, *after) == [("start", 5), ("start", 11), ("end", 25), ("end", 31)]
+
+
+def test_of_a_restart_before_the_answer_the_marks_of_before_keep_the_frames_stamp(take: Take) -> None:
+    stream = [skeleton(10), mark("start"), skeleton(90), mark("start"), mark("end"), action(95, 99, session_id="b")]
+    assert take.marks(*stream) == [("start", 10), ("start", 95), ("end", 99)]
+
+
+def test_a_mark_that_nothing_answers_is_stored_before_the_end_so_that_a_crash_does_not_cost_it(tmp_path: Path) -> None:
     with Recorder(tmp_path / "a.mcap", person="1", source="live") as recorder:
         stream = StreamRecorder(recorder)
-        for i in range(100):
-            stream.take(action(i, i + 1, f"segment{i}"), received_ns=i * SECOND_NS)
-        assert len(stream._bounds) == 1 + MAX_SKEW_NS // SECOND_NS
-    assert stream.stored == 100
+        for message, received_ns in ((skeleton(10), 0), (mark("start"), 1), (skeleton(20), SETTLE_NS + 2)):
+            stream.take(message, received_ns)
+        assert stream.stored == 3
 
 
 def test_the_time_of_receipt_is_kept(tmp_path: Path) -> None:

@@ -152,3 +152,53 @@ def test_what_a_classifier_has_found_is_listed_and_becomes_the_users_once_mended
     assert {m.origin for m in Recording(path).messages() if isinstance(m, Segment)} == {MANUAL}
     (sample,) = samples_from([Recording(path)]).usable
     assert (sample.segment_id, sample.label) == ("auto-1", "wave")
+
+
+@pytest.fixture
+def two_sensors(tmp_path: Path) -> Path:
+    """Two sensors that see one person; each has a segment "one", at different times, and an answer to it."""
+    path = tmp_path / "two.mcap"
+    with Recorder(path, person="anna", source="test") as recorder:
+        for sensor, first in (("kinect0", 0), ("kinect1", 10)):
+            at = first * FRAME_NS, (first + 19) * FRAME_NS
+            own = [mark("start", at[0], "one", "push"), mark("end", at[1], "one"), action(*at, "one")]
+            for message in [*reaches(FRAMES), *own]:
+                recorder.write(message.model_copy(update={"sensor": sensor}))
+    return path
+
+
+def test_actions_of_several_sensors_are_listed_with_their_sensor(two_sensors: Path) -> None:
+    lines = [" ".join(line.split()) for line in takes(two_sensors).splitlines() if line.startswith("  ")]
+    assert lines == [f"one push 0.63 s 20 frames usable, {sensor}" for sensor in ("kinect0", "kinect1")]
+
+
+def test_an_action_that_several_sensors_name_alike_is_changed_at_one_of_them_alone(two_sensors: Path) -> None:
+    told = refused("drop", two_sensors, "one")
+    assert "2 segments are named 'one'" in told
+    assert "kinect0 from 0.00 to 0.63 s, kinect1 from 0.33 to 0.97 s: name one by --sensor" in told
+    takes("relabel", two_sensors, "one", "pull", "--sensor", "kinect1")
+    takes("trim", two_sensors, "one", "--end", "0.5", "--sensor", "kinect1")
+    of_other = [m for m in of_segment(two_sensors, "one") if m.sensor == "kinect0"]
+    assert [getattr(m, "label", None) for m in of_other] == ["push", None, None]
+    assert [m.label for m in of_segment(two_sensors, "one") if isinstance(m, Segment)] == ["push", "pull", None, None]
+    takes("drop", two_sensors, "one", "--sensor", "kinect1")
+    assert of_segment(two_sensors, "one") == of_other
+    assert "no 'one' of kinect1 in" in refused("drop", two_sensors, "one", "--sensor", "kinect1")
+
+
+def test_a_name_that_is_used_again_after_a_restart_is_several_segments(tmp_path: Path) -> None:
+    path = tmp_path / "again.mcap"
+    uses = [(0, 14), (20, 34), (40, 54)]
+    with Recorder(path, person="anna", source="test") as recorder:
+        for message in reaches(FRAMES):
+            recorder.write(message)
+        for first, last in uses:
+            at = first * FRAME_NS, last * FRAME_NS
+            for message in (mark("start", at[0], "one", "push"), mark("end", at[1], "one"), action(*at, "one")):
+                recorder.write(message)
+    assert "3 segments are named 'one'" in refused("drop", path, "one")
+    assert "change one by actum label" in refused("drop", path, "one")
+    invoked = CliRunner().invoke(app, ["label", "delete", str(path), "2"])
+    assert invoked.exit_code == 0, invoked.output
+    assert marks_of(path, "one") == [("start", 0, "push"), ("end", 14, None), ("start", 40, "push"), ("end", 54, None)]
+    assert len(of_segment(path, "one")) == 6

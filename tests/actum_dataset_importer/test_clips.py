@@ -115,6 +115,15 @@ def test_a_name_that_does_not_tell_is_refused_before_anything_is_written(tmp_pat
     assert not (tmp_path / "out").exists()
 
 
+def test_a_clip_that_was_imported_is_refused_before_any_is_read(tmp_path: Path) -> None:
+    write_video(tmp_path / "clips" / "wave_anna.avi")
+    imported(tmp_path / "clips", tmp_path / "out")
+    write_video(tmp_path / "clips" / "clap_ben.avi")
+    with pytest.raises(FileExistsError, match=r"wave_anna\.mcap is there already"):
+        imported(tmp_path / "clips", tmp_path / "out")
+    assert [file.name for file in (tmp_path / "out").iterdir()] == ["wave_anna.mcap"]
+
+
 def test_a_broken_clip_and_an_empty_folder_are_named(tmp_path: Path) -> None:
     with pytest.raises(DatasetError, match="no video there"):
         imported(tmp_path, tmp_path / "out")

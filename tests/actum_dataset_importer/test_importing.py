@@ -40,6 +40,27 @@ def test_msr_sequences_become_one_recording_each(tmp_path: Path) -> None:
     assert Recording(tmp_path / "out" / "a13_s09_e02.mcap").metadata["excluded"] == "true"
 
 
+def test_what_was_imported_and_mended_since_is_not_imported_over(tmp_path: Path) -> None:
+    msr_sequence(tmp_path, "a01_s02_e03", "x0x")
+    import_msr_action3d(tmp_path, tmp_path / "out", lambda done, total: None)
+    (tmp_path / "out" / "a01_s02_e03.mcap").write_bytes(b"mended")
+    with pytest.raises(FileExistsError, match="is there already: name another file, or remove it"):
+        import_msr_action3d(tmp_path, tmp_path / "out", lambda done, total: None)
+    assert (tmp_path / "out" / "a01_s02_e03.mcap").read_bytes() == b"mended"
+
+
+def test_an_import_that_is_broken_off_leaves_no_half_recording(tmp_path: Path) -> None:
+    msr_sequence(tmp_path, "a01_s02_e03", "x0x")
+
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.MonkeyPatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr("actum.recorder.Recorder.write", stop)
+        import_msr_action3d(tmp_path, tmp_path / "out", lambda done, total: None)
+    assert list((tmp_path / "out").iterdir()) == []
+
+
 def test_an_imported_set_is_played_in_order_with_a_pause_between_sequences(tmp_path: Path) -> None:
     msr_sequence(tmp_path, "a01_s01_e01", "x0")
     msr_sequence(tmp_path, "a02_s01_e01", "xx")

@@ -13,8 +13,8 @@ from marker_tracker.settings import Settings
 
 SIZE_M, FOCAL_PX, MIDDLE_PX = 0.08, 525.0, np.array([319.5, 239.5])
 REST = np.array([0.05, 0.1, 1.5])
-HAND = cv2.GaussianBlur(np.random.default_rng(1).normal(0.0, 60.0, (96, 96)), (0, 0), 4)
-HAND = np.clip(150 + 40 * HAND / HAND.std(), 40, 250).astype(np.uint8)
+NOISE = cv2.GaussianBlur(np.random.default_rng(1).normal(0.0, 60.0, (96, 96)), (0, 0), 4)
+HAND = np.clip(150 + 40 * NOISE / NOISE.std(), 40, 250).astype(np.uint8)
 COVERED_S = 0.4
 ASIDE = np.array([0.4, 0.0, 0.0])
 

@@ -10,8 +10,8 @@ from marker_tracker.occlusion.crop import blurred
 from marker_tracker.occlusion.registration import Similarity, Template
 
 SIZE = 96
-FINE = cv2.GaussianBlur(np.random.default_rng(0).normal(0.0, 1.0, (4 * SIZE, 4 * SIZE)), (0, 0), 10)
-FINE = np.clip(128 + 40 * FINE / FINE.std(), 0, 255)
+NOISE = cv2.GaussianBlur(np.random.default_rng(0).normal(0.0, 1.0, (4 * SIZE, 4 * SIZE)), (0, 0), 10)
+FINE = np.clip(128 + 40 * NOISE / NOISE.std(), 0, 255)
 MIDDLE = 47.5 + 47.5j
 
 

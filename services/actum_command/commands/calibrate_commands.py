@@ -7,6 +7,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from actum.atomic_file import write_whole
 from actum.calibration import Calibration, CalibrationError
 from actum.keys import CHUNK
 from actum.runtime import stop_on_signals
@@ -58,7 +59,7 @@ def intrinsics(
     calibration = calibration_of(fit, _today())
     try:
         calibration.save(output)
-        picture.write_bytes(coverage_picture(fit, views))
+        write_whole(picture, coverage_picture(fit, views))
     except OSError as error:
         fail(str(error))
     _report_intrinsics(fit)

@@ -9,7 +9,8 @@ import typer
 from actum.recording import Recording
 from actum.runtime import Pace, stop_on_signals
 from actum.runtime.waiting import wait_for
-from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
+from actum_command.commands.recording_options import refuse_output
+from actum_command.commands.terminal import fail, say
 from actum_command.commands.viewed_streams import RecordingArgument, refuse_without, streams_of, tell_shown
 from actum_command.viewers.showing import Showing
 
@@ -64,13 +65,13 @@ def export(
     if not for_foxglove:
         fail("say for which program: --foxglove")
     refuse_without("foxglove", "foxglove-sdk", "foxglove")
-    refuse_unwritable(output)
-    refuse_ending(output, ".mcap")
-    if output.exists():
-        fail(f"{output} is there already: name another file, or remove it")
+    refuse_output(output)
     from actum_command.viewers.foxglove_sinks import written
 
-    with streams_of(file) as streams, written(output, Recording(file).metadata) as stream:
-        showing = Showing(stream.show)
-        streams.give(showing, stop_on_signals())
+    try:
+        with streams_of(file) as streams, written(output, Recording(file).metadata) as stream:
+            showing = Showing(stream.show)
+            streams.give(showing, stop_on_signals())
+    except OSError as error:
+        fail(f"{output} cannot be written ({error.strerror or error})")
     tell_shown(showing, f"written to {output}")

@@ -29,7 +29,7 @@ from actum_command.segment_changes import dropped, moved, relabelled
 from actum_model_trainer.cutting.marks import free_names, marks_of
 from som_classifier.model_loading import ModelError, load_model
 
-RIGHT_ALIGNED = (True, True, True, True, False, False, False, False)
+RIGHT_ALIGNED = (True, True, True, True, False, False, False, False, False)
 """Which columns of the list hold numbers."""
 
 app = PlainTyper(
@@ -45,10 +45,14 @@ Agent = Annotated[int | None, typer.Option(min=1, help="who acts; default: who i
 
 @app.command(LISTS)
 def list_command(file: RecordingFile) -> None:
-    """List the segments: number, start, end, label, who marked it, who acts, and the recorded answer."""
+    """List the segments: number, start, end, label, who marked it, who acts, the recorded answer.
+
+    In a recording of several sensors each line ends in the sensor.
+    """
     recording, segments, first_ns = _opened(file)
     say(f"{file}, person {recording.person or '(unknown)'}")
-    rows = [_row(segment, first_ns) for segment in segments]
+    several = len({segment.sensor for segment in segments}) > 1
+    rows = [(*_row(segment, first_ns), segment.sensor if several else "") for segment in segments]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         cells = (
@@ -78,8 +82,8 @@ def move(
         )
     start_ns, end_ns = _moved_to(start, segment.start_ns, first_ns), _moved_to(end, segment.end_ns, first_ns)
     others = [other for other in segments if other.number != number]
-    _checked(others, start_ns, end_ns, segment.agent, first_ns)
-    change_recording(file, moved(segment.segment_id, start_ns - segment.start_ns, end_ns - segment.end_ns))
+    _checked(others, start_ns, end_ns, segment.sensor, segment.agent, first_ns)
+    change_recording(file, moved(segment, start_ns - segment.start_ns, end_ns - segment.end_ns))
     say(f"segment {number} lasts from {_seconds(start_ns, first_ns)} to {_seconds(end_ns, first_ns)} in {file}")
 
 
@@ -88,7 +92,7 @@ def delete(file: RecordingFile, number: Number) -> None:
     """Take a segment out: its marks and what was answered; the frames stay."""
     _, segments, _ = _opened(file)
     segment = _of_number(segments, number)
-    change_recording(file, dropped([segment.segment_id]))
+    change_recording(file, dropped([segment]))
     say(f"segment {number} ({segment.label or 'no label'}) is no longer in {file}; later ones have one number less")
 
 
@@ -100,7 +104,7 @@ def rename(file: RecordingFile, number: Number, label: Label) -> None:
     refuse_length(label)
     if segment.start_ns is None:
         fail(f"segment {number} has no start mark, which a label belongs to: delete it")
-    change_recording(file, relabelled(segment.segment_id, label))
+    change_recording(file, relabelled(segment, label))
     say(f"segment {number} is labelled {label!r} in {file}")
 
 
@@ -116,11 +120,11 @@ def add(
     recording, segments, first_ns = _opened(file)
     refuse_length(label)
     start_ns, end_ns = (first_ns + round(seconds * SECOND_NS) for seconds in (start, end))
-    _checked(segments, start_ns, end_ns, agent, first_ns)
     try:
         sensor = only_sensor(recording)
     except LabellingError as error:
         fail(str(error))
+    _checked(segments, start_ns, end_ns, sensor, agent, first_ns)
     name = next(free_names([segment.segment_id for segment in segments], "added"))
     change_recording(file, unchanged, segment_marks(start_ns, end_ns, sensor, name, label, agent, origin=MANUAL))
     say(f"{label!r} from {start:.2f} s to {end:.2f} s is in {file}")
@@ -141,7 +145,7 @@ def cut(
         fail(str(error))
     kept = [segment.segment_id for segment in segments if segment.origin != CUT]
     marks = marks_of(cuts, free_names(kept, CUT), label, sensor)
-    change_recording(file, dropped({segment.segment_id for segment in segments if segment.origin == CUT}), marks)
+    change_recording(file, dropped([segment for segment in segments if segment.origin == CUT]), marks)
     for line in cut_lines(cuts, first_ns):
         say(line)
     for doubt in cuts.doubts:
@@ -225,8 +229,10 @@ def _of_number(segments: list[LabelledSegment], number: int) -> LabelledSegment:
         fail(str(error))
 
 
-def _checked(segments: list[LabelledSegment], start_ns: int, end_ns: int, agent: int | None, first_ns: int) -> None:
+def _checked(
+    segments: list[LabelledSegment], start_ns: int, end_ns: int, sensor: str, agent: int | None, first_ns: int
+) -> None:
     try:
-        check_span(segments, start_ns, end_ns, agent, first_ns)
+        check_span(segments, start_ns, end_ns, sensor, agent, first_ns)
     except LabellingError as error:
         fail(str(error))

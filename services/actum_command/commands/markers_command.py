@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from actum.atomic_file import write_whole
 from actum_calibrator.board import Board, PatternError
 from actum_calibrator.sheet_sizes import SheetSize
 from actum_command.commands.terminal import fail, refuse_ending, say
@@ -27,7 +28,7 @@ def markers(
     refuse_ending(output, ".pdf")
     try:
         pdf = board_sheet(Board(), paper) if board else marker_sheet(family, _numbers(ids), size_mm, paper)
-        output.write_bytes(pdf)
+        write_whole(output, pdf)
     except (PatternError, OSError) as error:
         fail(str(error))
     say(f"written to {output}: print it at 100 % ('actual size'), then measure the ruler: 100 mm")

@@ -4,18 +4,20 @@ import threading
 import time
 from collections import Counter
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
 from actum import keys
+from actum.atomic_file import UNFINISHED
 from actum.messages import CUT, MANUAL
-from actum.recorder import Recorder
+from actum.recorder import Recorder, TakenError, unfinished
 from actum.recording import RecordingError
+from actum.rewriting import finish as finished
 from actum.runtime import stop_on_signals
-from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
+from actum_command.commands.recording_options import AllOption, PersonOption, chosen, refuse_output, tell_unread
 from actum_command.commands.service_flags import with_history_flags
-from actum_command.commands.terminal import connect, fail, refuse_ending, refuse_unwritable, say
+from actum_command.commands.terminal import connect, fail, say
 from actum_command.cut_lines import cut_lines
 from actum_command.event_keeping import keep_events
 from actum_command.repetition_recorder import RepetitionRecorder
@@ -29,7 +31,7 @@ ALL = "all"
 
 
 @with_history_flags
-def record(  # noqa: PLR0913 - one parameter is one option
+def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     output: Annotated[Path, typer.Argument(help="the file to write; with --events a folder")],
     person: Annotated[str, typer.Option(help="who acts; kept in the file, used to split training from test")] = "",
     label: Annotated[str | None, typer.Option(help="what is done in the segments marked while recording")] = None,
@@ -46,6 +48,9 @@ def record(  # noqa: PLR0913 - one parameter is one option
     ] = None,
     images: Annotated[bool, typer.Option(help="also store images (faces are personal data)")] = False,
     seconds: Annotated[float | None, typer.Option(min=0, help="stop by itself; default: at Ctrl-C")] = None,
+    finish: Annotated[
+        bool, typer.Option("--finish", help="record nothing: finish the file that a killed process or full disk left")
+    ] = False,
     events: Annotated[
         bool, typer.Option("--events", help="keep events, final actions and all marks for months: files in a folder")
     ] = False,
@@ -54,16 +59,18 @@ def record(  # noqa: PLR0913 - one parameter is one option
 ) -> None:
     """Record a sensor's streams and your marks to a file; with --times, mark the repetitions of one action.
 
+    No file is ever overwritten: after a crash --finish makes a recording of what had been stored, OUTPUT.part.
+
     With --events it is a service that waits for the router, reports its status, and keeps files of events in the folder
     that OUTPUT names.
     """
     if events:
         keep_events(output, given)
         return
-    refuse_unwritable(output)
-    refuse_ending(output, ".mcap")
-    if output.exists():
-        fail(f"{output} is there already: name another file, or remove it")
+    if finish:
+        _finish(output)
+        return
+    refuse_output(output)
     if times is not None and label is None:
         fail("--times needs --label: what is done so many times?")
     stop = stop_on_signals()
@@ -76,11 +83,35 @@ def record(  # noqa: PLR0913 - one parameter is one option
             say(f"recording actum/{client.sensor}/** to {output}; Ctrl-C ends")
             storing = stream if times is None or label is None else _repeating(stream, label, times, stop)
             store_all(listening, storing, stop, deadline_s)
+    except TakenError as error:
+        fail(str(error))
     except OSError as error:
-        fail(f"{output} cannot be written ({error.strerror}); what there is lies in {output}.part")
+        _fail_unfinished(output, error)
     _report(stream, output, label)
     if isinstance(storing, RepetitionRecorder):
         _report_cuts(storing, output)
+
+
+def _fail_unfinished(output: Path, error: OSError) -> NoReturn:
+    """Fail, naming what was stored before the error and what to do with it."""
+    left = f"; what was stored lies in {unfinished(output)}: make a recording of it by actum record {output} --finish"
+    fail(f"{output} cannot be written ({error.strerror})" + (left if unfinished(output).exists() else ""))
+
+
+def _finish(output: Path) -> None:
+    """Make a recording of what was left unfinished under a name, which may be given with or without its suffix."""
+    output = output.with_suffix("") if output.suffix == UNFINISHED else output
+    try:
+        count = finished(output)
+    except FileNotFoundError:
+        fail(f"nothing to finish: there is no {unfinished(output)}")
+    except RecordingError as error:
+        fail(f"{error.path} cannot be finished ({error.problem}): it is as it was; move it away or remove it")
+    except TakenError as error:
+        fail(str(error))
+    except OSError as error:
+        fail(f"{output} cannot be written ({error.strerror}); {unfinished(output)} is as it was")
+    say(f"{count} messages, up to where it breaks off, written to {output}")
 
 
 def _origins(marks: str | None, times: int | None) -> list[str] | None:

@@ -1,15 +1,17 @@
 """Options that choose recordings, warnings about those that were read, and how one is changed."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from actum.messages import Message
+from actum.recorder import TakenError, refuse_taken
 from actum.recording import Recording, RecordingError
 from actum.rewriting import Change, rewrite
-from actum_command.commands.terminal import fail, say
+from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
 from actum_model_trainer.samples import select
 
 PersonOption = Annotated[str | None, typer.Option(help="only these persons, e.g. 1,3,5")]
@@ -20,10 +22,10 @@ LONGEST_LABEL = 200  # characters allowed in the field of a mark
 
 
 def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[Recording]:
-    """Open the chosen recordings; fail where there is none."""
+    """Open the chosen recordings, and say which of a folder's are not finished; fail where there is none."""
     people = None if person is None else [name.strip() for name in person.split(",")]
     try:
-        recordings = select(files, people, with_excluded)
+        recordings = select(files, people, with_excluded, partial(say, style="yellow"))
     except RecordingError as error:
         fail(str(error))
     if not recordings:
@@ -31,14 +33,30 @@ def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[R
     return recordings
 
 
+def refuse_output(output: Path) -> None:
+    """Fail before long work where no recording can be written, or one lies already, finished or not."""
+    refuse_unwritable(output)
+    refuse_ending(output, ".mcap")
+    try:
+        refuse_taken(output)
+    except TakenError as error:
+        fail(str(error))
+
+
 def tell_unread(recordings: Iterable[Recording]) -> None:
     """Warn of the recordings that break off, and of messages that were skipped, after recordings have been read."""
+    for line in unread(recordings):
+        say(line, style="yellow")
+
+
+def unread(recordings: Iterable[Recording]) -> Iterator[str]:
+    """Yield a line for each recording that breaks off, or of which messages were skipped."""
     for recording in recordings:
         if recording.truncated:
-            say(f"{recording.path} breaks off: only what lies before the break was read", style="yellow")
+            yield f"{recording.path} breaks off: only what lies before the break was read"
         if recording.skipped:
             kinds = ", ".join(f"{kind} {count}" for kind, count in sorted(recording.skipped.items()))
-            say(f"{recording.path}: skipped {kinds}", style="yellow")
+            yield f"{recording.path}: skipped {kinds}"
 
 
 def refuse_length(label: str) -> None:

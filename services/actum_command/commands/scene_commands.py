@@ -6,7 +6,8 @@ from typing import Annotated
 import typer
 
 from actum.runtime import stop_on_signals
-from actum_command.commands.terminal import connect_whenever, fail, refuse_ending, refuse_unwritable, say
+from actum_command.commands.recording_options import refuse_output
+from actum_command.commands.terminal import connect_whenever, fail, say
 from actum_command.scene_marks import mark_truth, write_examples
 from scene_simulator.everyday import Choice, Pauses
 
@@ -28,8 +29,7 @@ def simulate(
     all without marks: what a model has to answer with nothing. Train with "familiar", which leaves some kinds of doings
     out, and test with "all"; "only" has no actions.
     """
-    refuse_unwritable(output)
-    refuse_ending(output, ".mcap")
+    refuse_output(output)
     try:
         write_examples(output, repetitions, actor, seed, everyday, minutes, pauses)
     except OSError as error:

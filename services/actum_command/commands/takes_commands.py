@@ -20,7 +20,7 @@ from actum_command.commands.recording_options import (
     tell_unread,
 )
 from actum_command.commands.terminal import fail, say
-from actum_command.labelled_segments import LabelledSegment, labelled_segments
+from actum_command.labelled_segments import LabelledSegment, LabellingError, first_stamp_ns, labelled_segments
 from actum_command.marked_actions import MarkedAction, marked_actions
 from actum_command.segment_changes import dropped, moved, relabelled
 
@@ -31,6 +31,7 @@ app = PlainTyper(
 )
 
 SegmentId = Annotated[str, typer.Argument(metavar="SEGMENT", help="the action, as the list names it")]
+SensorOption = Annotated[str | None, typer.Option(help="whose action, where several sensors have one of that name")]
 
 
 @app.command(LISTS)
@@ -58,12 +59,14 @@ def relabel(
     file: RecordingFile,
     segment_id: SegmentId,
     label: Annotated[str, typer.Argument(metavar="LABEL", help="what it is")],
+    sensor: SensorOption = None,
 ) -> None:
     """Give an action another label."""
     refuse_length(label)
-    if _marked(file, segment_id).start_ns is None:
+    segment = _marked(file, segment_id, sensor)
+    if segment.start_ns is None:
         fail(f"{segment_id} has no start mark in {file}, which a label belongs to: drop it")
-    change_recording(file, relabelled(segment_id, label))
+    change_recording(file, relabelled(segment, label))
     say(f"{segment_id} is labelled {label!r} in {file}")
 
 
@@ -77,9 +80,10 @@ def trim(
     end: Annotated[
         float | None, typer.Option(help="where it is to end, in seconds from its present start; default: where it does")
     ] = None,
+    sensor: SensorOption = None,
 ) -> None:
     """Move the start and the end of an action; times count from its present start."""
-    segment = _marked(file, segment_id)
+    segment = _marked(file, segment_id, sensor)
     start_ns, end_ns = segment.start_ns, segment.end_ns
     if start_ns is None or end_ns is None:
         fail(f"{segment_id} has no {'start' if start_ns is None else 'end'} mark in {file}: drop it")
@@ -89,15 +93,15 @@ def trim(
         fail(f"{segment_id} would start at {start:g} s and end at {until_s:g} s of its {duration_s:g} s")
     if start_ns + start * SECOND_NS < 0:
         fail(f"{segment_id} would start before its sensor's clock does: at the most {start_ns / SECOND_NS:g} s earlier")
-    change_recording(file, moved(segment_id, round(start * SECOND_NS), round((until_s - duration_s) * SECOND_NS)))
+    change_recording(file, moved(segment, round(start * SECOND_NS), round((until_s - duration_s) * SECOND_NS)))
     say(f"{segment_id} lasts {until_s - start:.2f} s, and lasted {duration_s:.2f} s before, in {file}")
 
 
 @app.command("drop")
-def drop(file: RecordingFile, segment_id: SegmentId) -> None:
+def drop(file: RecordingFile, segment_id: SegmentId, sensor: SensorOption = None) -> None:
     """Take an action out: its marks and what was answered; the frames stay."""
-    segment = _marked(file, segment_id)
-    change_recording(file, dropped([segment.segment_id]))
+    segment = _marked(file, segment_id, sensor)
+    change_recording(file, dropped([segment]))
     say(f"{segment_id} is no longer in {file}")
 
 
@@ -111,22 +115,44 @@ def _show(recording: Recording, actions: Sequence[MarkedAction]) -> None:
         lambda action: action.label or "(no label)",
     )
     widths = [max((len(cell(action)) for action in actions), default=0) for cell in columns]
+    several = len({action.sensor for action in actions}) > 1
     for action in actions:
         words = "  ".join(cell(action).ljust(width) for cell, width in zip(columns, widths, strict=True))
         usable = "usable" if action.problem is None else f"not usable: {action.problem}"
+        usable += f", {action.sensor}" if several else ""
         line = f"  {words}  {action.duration_s:6.2f} s  {action.frames:4} frames  {usable}"
         say(line, style=None if action.problem is None else "yellow")
 
 
-def _marked(file: Path, segment_id: str) -> LabelledSegment:
-    """Return a marked segment of a recording; fail, naming similar ones, where it has none of that name."""
+def _marked(file: Path, segment_id: str, sensor: str | None) -> LabelledSegment:
+    """Return the only segment of that name, at that sensor if one is named; else fail, naming those that there are."""
     try:
-        segments = labelled_segments(Recording(file))
-    except RecordingError as error:
+        recording = Recording(file)
+        segments = labelled_segments(recording)
+        named = [each for each in segments if each.segment_id == segment_id and sensor in (None, each.sensor)]
+        if len(named) > 1:
+            fail(_several(named, first_stamp_ns(recording)))
+    except (RecordingError, LabellingError) as error:
         fail(str(error))
-    found = next((segment for segment in segments if segment.segment_id == segment_id), None)
-    if found is None:
-        names = [segment.segment_id for segment in segments]
+    if not named:
+        names = [each.segment_id for each in segments if sensor in (None, each.sensor)]
         near = get_close_matches(segment_id, names, n=1) or names[:5]
-        fail(f"no {segment_id!r} in {file}" + (f": is {' or '.join(near)} meant?" if near else ": nothing is marked"))
-    return found
+        where = f"{segment_id!r} of {sensor}" if sensor is not None else repr(segment_id)
+        fail(f"no {where} in {file}" + (f": is {' or '.join(near)} meant?" if near else ": nothing is marked"))
+    return named[0]
+
+
+def _several(named: Sequence[LabelledSegment], first_ns: int) -> str:
+    """Say which segments have one name, and how to name one of them."""
+    spans = [
+        [
+            f"{(stamp_ns - first_ns) / SECOND_NS:.2f}"
+            for stamp_ns in (each.start_ns, each.end_ns)
+            if stamp_ns is not None
+        ]
+        for each in named
+    ]
+    there = ", ".join(f"{each.sensor} from {' to '.join(span)} s" for each, span in zip(named, spans, strict=True))
+    sensors = {each.sensor for each in named}
+    todo = "name one by --sensor" if len(sensors) == len(named) else "change one by actum label, which numbers them"
+    return f"{len(named)} segments are named {named[0].segment_id!r}: {there}: {todo}"

@@ -11,6 +11,7 @@ from rich.console import Console, ConsoleOptions, RenderableType
 from rich.markup import escape
 from rich.segment import Segment
 
+from actum.atomic_file import write_whole
 from actum.runtime import Client, RouterUnreachableError, obstacle
 from actum.settings import ServiceSettings, SettingsError, complaint
 
@@ -86,10 +87,10 @@ def refuse_ending(file: Path, *endings: str) -> None:
 
 
 def write_text(file: Path, text: str) -> None:
-    """Write a text file and the folders it lies in, or fail."""
+    """Write a text file and the folders it lies in, or fail and leave the one that is there."""
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
+        write_whole(file.resolve(), text.encode())
     except OSError as error:
         fail(f"{file} cannot be written ({error.strerror})")
 

@@ -9,8 +9,10 @@ from rich.live import Live
 from actum import keys
 from actum.messages import Action
 from actum.recording import Recording, RecordingError
+from actum.recording_files import recording_files
 from actum.runtime import Client, Received
-from actum_command.commands.terminal import connect, console, fail
+from actum_command.commands.recording_options import unread
+from actum_command.commands.terminal import connect, console, errors, fail
 from actum_command.message_lines import WATCHABLE, json_line, line, received_on
 from actum_command.ongoing_lines import OngoingLines
 
@@ -58,20 +60,24 @@ def _print(received: Received, as_json: bool) -> None:
 
 def _show_recorded(named: list[Path], wanted: list[keys.Topic], as_json: bool) -> None:
     """Print the messages of recordings on the wanted topics, one recording after another by name."""
-    files = [file for path in named for file in (_begun_in(path) if path.is_dir() else [path])]
-    if not files:
+    found = recording_files(named)
+    for remark in found.remarks:
+        _remark(remark)
+    if not found.paths:
         fail(f"no recordings in {', '.join(map(str, named))}: name files or folders of *.mcap")
     try:
-        for recording in map(Recording, files):
+        for recording in map(Recording, found.paths):
             for message in recording.messages(wanted):
                 _print(Received(keys.key_of(message), message, None, 0), as_json)
+            for line_ in unread([recording]):
+                _remark(line_)
     except RecordingError as error:
         fail(str(error))
 
 
-def _begun_in(folder: Path) -> list[Path]:
-    """List a folder's recordings; one that has just been opened for writing holds nothing yet."""
-    return [file for file in sorted(folder.glob("*.mcap*")) if file.stat().st_size]
+def _remark(text: str) -> None:
+    """Print a line about the recordings where it does not get among their messages."""
+    errors.print(text, markup=False, soft_wrap=True, style="yellow")
 
 
 def _show_above_what_goes_on(client: Client, wanted: list[keys.Topic]) -> None:

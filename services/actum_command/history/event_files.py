@@ -8,8 +8,8 @@ from pathlib import Path
 from actum.messages import Message
 from actum.node import SECOND_NS
 from actum.recorder import StoredRecorder
-from actum.recording import Recording, RecordingError
-from actum.rewriting import rewrite, unchanged
+from actum.recording import RecordingError
+from actum.rewriting import finish
 from actum_command.history.settings import Settings
 
 SUFFIX = ".mcap"
@@ -86,21 +86,20 @@ class EventFiles:
             self._make_room()
 
     def recover(self) -> Iterator[str]:
-        """Finish what a killed process has left; yield what is wrong with files that cannot be read.
+        """Finish what a killed process has left; yield what is wrong with files that cannot be finished.
 
         Raises:
             OSError: the folder cannot be read or written.
         """
         self._folder.mkdir(parents=True, exist_ok=True)
         for part in self._files(finished=False):
+            file = part.with_suffix("")
             try:
-                if not Recording(part).topics:
-                    part.unlink()
-                    continue
-                rewrite(part, unchanged)
-                part.replace(part.with_suffix(""))
-                self.finished += 1
-            except RecordingError as error:
+                if finish(file):
+                    self.finished += 1
+                else:
+                    file.unlink()
+            except (RecordingError, FileExistsError) as error:
                 yield str(error)
 
     def _store(self, recorder: StoredRecorder) -> None:
@@ -122,7 +121,6 @@ class EventFiles:
         time = datetime.fromtimestamp(received_ns // SECOND_NS, UTC).strftime("%Y%m%dT%H%M%SZ")
         file = self._folder / f"events-{self._sensor}-{number:06d}-{time}{SUFFIX}"
         self._open = StoredRecorder(file, person="", source=self._sensor)
-        self._open.store()  # who reads it meanwhile finds a file of ours, if without messages
         self._began_ns = self._stored_ns = now_ns
         return self._open
 

@@ -12,6 +12,7 @@ from foxglove.messages import FrameTransforms
 from foxglove.websocket import ServerListener
 from pydantic_core import to_json
 
+from actum.atomic_file import created
 from actum.messages import Message
 from actum.recorder import METADATA
 from actum_command.viewers.foxglove_messages import CONTENTS, TRANSFORMS, FoxgloveMessages, below
@@ -97,11 +98,14 @@ def served(
 def written(path: Path, metadata: dict[str, str]) -> Iterator[FoxgloveStream]:
     """Return a context in which messages are written to an MCAP file that Foxglove opens.
 
-    The file carries the suffix `.part` until it is complete.
+    The file appears once it is complete.
+
+    Raises:
+        FileExistsError: there is a file of that name.
+        OSError: it cannot be written.
     """
-    context, part = foxglove.Context(), path.with_name(path.name + ".part")
+    context = foxglove.Context()
     path.parent.mkdir(parents=True, exist_ok=True)
-    with foxglove.open_mcap(part, allow_overwrite=True, context=context) as writer:
+    with created(path) as file, foxglove.open_mcap(file, context=context) as writer:
         writer.write_metadata(METADATA, metadata)
         yield FoxgloveStream(context)
-    part.replace(path)

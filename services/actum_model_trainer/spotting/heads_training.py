@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
+from actum_model_trainer.discriminants import SMALLEST_LENGTH2
 from som_classifier.spotting.completeness import CompletenessHeads
-
-SMALLEST_LENGTH2 = 1e-9  # squared length of pooled vectors: the penalty must not be 0 where all are the same
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,14 +3,15 @@
 import json
 import shutil
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import count
 from pathlib import Path
 
-from actum.atomic_file import UNFINISHED, store_names, write_whole
+from actum.atomic_file import UNFINISHED, give_name, store_names, write_whole
 from actum.commands import Refusal
-from actum.recorder import Recorder
+from actum.recorder import Recorder, is_being_written
 from actum.recording import RecordingError
 from actum_model_trainer.teaching.take_files import CREATED, KIND, Example, Take, read_take
 
@@ -49,8 +50,13 @@ class SetStore:
         self._now_ns = now_ns
         self._read: dict[Path, tuple[tuple[int, int], Take]] = {}
         folder.mkdir(parents=True, exist_ok=True)
-        for left in (folder / MAKING, *folder.glob(f"{LEAVING}*")):
+        for left in folder.glob(f"{LEAVING}*"):
             shutil.rmtree(left, ignore_errors=True)
+        for take in (folder / MAKING).glob("*"):
+            if not is_being_written(take):  # by another trainer, of another sensor, in the same folder
+                take.unlink()
+        with suppress(OSError):  # it is not there, or not empty
+            (folder / MAKING).rmdir()
         for unfinished in folder.glob(f"*/.*{UNFINISHED}"):
             unfinished.unlink(missing_ok=True)
 
@@ -134,10 +140,10 @@ class SetStore:
             Refusal: there is no set of that name.
         """
         folder = self.folder(name)
-        paths = (folder / f"take-{number:04}{SUFFIX}" for number in count(1))
-        target = next(path for path in paths if not path.exists())
-        path.replace(target)
-        store_names(folder)
+        for target in (folder / f"take-{number:04}{SUFFIX}" for number in count(1)):
+            with suppress(FileExistsError):
+                give_name(path, target)
+                break
         return self._take(target)
 
     def _created(self, name: str) -> str:

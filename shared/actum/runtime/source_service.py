@@ -5,7 +5,7 @@ import threading
 import zenoh
 
 from actum import keys
-from actum.node import Source
+from actum.node import SOURCE_ENDED, Source
 from actum.runtime.outbox import Outbox
 from actum.runtime.service import Service
 from actum.runtime.waiting import Pace, wait_for
@@ -31,6 +31,6 @@ class SourceService(Service):
             if stop.is_set():
                 return
         with self._lock:
-            self._source.counters.state = "source ended"
+            self._source.counters.state = SOURCE_ENDED
             self._state_log.log_change()
         wait_for(stop)

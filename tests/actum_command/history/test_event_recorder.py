@@ -7,12 +7,14 @@ from typing import Any
 import pytest
 
 import events
+from actum.limits import MAX_SKEW_NS
 from actum.messages import AUTO, MANUAL, Event, Message, Segment
 from actum.node import SECOND_NS, SETTLE_NS, Tick
 from actum.recording import Recording
 from actum_command.history.event_files import HOUR_NS, EventFiles
-from actum_command.history.event_recorder import MOST_ANSWERED, MOST_WAITING, EventRecorder
+from actum_command.history.event_recorder import EventRecorder
 from actum_command.history.settings import Settings
+from actum_command.unstamped_marks import MOST_ANSWERED, MOST_MARKS
 from empty_messages import action, mark, skeleton
 
 START_NS = 1_795_417_800 * SECOND_NS
@@ -79,11 +81,67 @@ def test_a_mark_that_nothing_answers_is_counted(history: History) -> None:
     assert history.recorder.counters.rejects == {"mark_without_stamp": 1}
 
 
+def test_a_name_that_is_used_again_after_a_restart_gets_the_stamps_of_its_own_answer(history: History) -> None:
+    """At once, without its first marks, while marks of before wait, and where the answer of before comes again."""
+    before, after = action(11, 31, session_id="a"), action(5, 25, session_id="b")
+    history.take(mark("start"), before, mark("end"), mark("start"), mark("end"), before, after)
+    history.take(action(1, 2, "two", session_id="a"), mark("start", segment_id="two"))
+    history.take(action(8, 9, "two", session_id="b"), mark("end", segment_id="two"))
+    history.take(mark("start", segment_id="lost"), mark("start", segment_id="lost"), mark("end", segment_id="lost"))
+    history.take(action(6, 7, "lost", session_id="b"))
+    history.take(mark("start", 40, "stamped"), mark("end", 50, "stamped"), action(40, 50, "stamped", session_id="a"))
+    history.take(mark("start", segment_id="stamped"), action(60, 70, "stamped", session_id="b"))
+    history.recorder.close()
+    assert sorted(marks(history)) == sorted(
+        [
+            *[("one", "start", 11), ("one", "end", 31), ("one", "start", 5), ("one", "end", 25)],
+            *[("two", "start", 8), ("two", "end", 9)],
+            *[("lost", "start", 6), ("lost", "end", 7)],
+            *[("stamped", "start", 40), ("stamped", "end", 50), ("stamped", "start", 60)],
+        ]
+    )
+    assert history.recorder.counters.rejects == {"mark_without_stamp": 1}, "of the one that was lost"
+
+
+def test_a_name_that_is_used_again_later_is_not_that_of_the_answer_before(history: History) -> None:
+    history.take(action(11, 31))
+    history.tick(MAX_SKEW_NS / SECOND_NS + 1)
+    history.take(mark("start"))
+    history.tick(SETTLE_NS / SECOND_NS + 1)
+    assert history.recorder.counters.rejects == {"mark_without_stamp": 1}
+    assert marks(history) == []
+
+
+def test_a_late_mark_is_stored_once_no_other_answer_follows(history: History) -> None:
+    history.take(mark("start"), action(11, 31), mark("end"))
+    history.tick(MAX_SKEW_NS / SECOND_NS + 1)
+    history.tick(1.0)
+    assert marks(history) == [("one", "start", 11), ("one", "end", 31)]
+
+
+def test_two_sensors_may_have_segments_of_one_name(history: History) -> None:
+    other = mark("start").model_copy(update={"sensor": "kinect1"})
+    history.take(mark("start"), other, action(11, 31).model_copy(update={"sensor": "kinect1"}), action(1, 2))
+    history.recorder.close()
+    stored = [(m.sensor, m.stamp_ns) for m in history.stored() if isinstance(m, Segment)]
+    assert sorted(stored) == [("kinect0", 1), ("kinect1", 11)]
+
+
+def test_marks_that_cannot_be_stored_are_counted_one_by_one(history: History, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    history.take(mark("start"), mark("end"))
+    monkeypatch.setattr("actum.recorder.Recorder.write", full)
+    history.take(action(11, 31))
+    assert history.recorder.counters.rejects == {"unwritable_history": 3}
+
+
 def test_marks_without_end_do_not_fill_the_memory(history: History) -> None:
-    history.take(*(mark("start", segment_id=f"s{i}") for i in range(MOST_WAITING + 5)))
+    history.take(*(mark("start", segment_id=f"s{i}") for i in range(MOST_MARKS + 5)))
     assert history.recorder.counters.rejects == {"mark_without_stamp": 5}
     history.take(*(action(1, 2, f"a{i}") for i in range(MOST_ANSWERED + 5)))
-    assert len(history.recorder._bounds) == MOST_ANSWERED
+    assert len(history.recorder._marks._answered) == MOST_ANSWERED
 
 
 def test_where_nothing_happens_there_is_no_file(history: History) -> None:
@@ -139,6 +197,7 @@ def test_what_a_killed_process_left_is_finished_by_the_next(tmp_path: Path) -> N
     killed = History(tmp_path)
     killed.take(*(event(f"s{number}", number, number + 1) for number in range(20)))
     killed.tick(1.0)  # what was written a second ago stands on the disk
+    killed._files._abandon()
     [part] = tmp_path.iterdir()
     whole = part.read_bytes()
     part.write_bytes(whole[:-100])  # a power cut tears the last message
@@ -148,7 +207,18 @@ def test_what_a_killed_process_left_is_finished_by_the_next(tmp_path: Path) -> N
     after.take(event("later", 50, 51))
     assert [name.split("-")[2] for name in after.names] == ["000001", "000002"]
     after.recorder.close()
-    killed._files._abandon()
+
+
+def test_what_another_process_is_writing_is_left_to_it(tmp_path: Path) -> None:
+    other = History(tmp_path)
+    other.take(event("its", 1, 2))
+    after = History(tmp_path)
+    assert after.recorder.counters.rejects == {"unreadable_history": 1}
+    after.take(event("ours", 3, 4))
+    other.take(event("its too", 5, 6))
+    for each in (other, after):
+        each.recorder.close()
+    assert [m.segment_id for m in after.stored()] == ["its", "its too", "ours"]  # type: ignore[attr-defined]
 
 
 def test_what_is_recovered_is_what_was_left_and_not_what_is_being_written(tmp_path: Path) -> None:
