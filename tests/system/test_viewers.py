@@ -15,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
-from urllib.request import urlopen
+from urllib.request import Request, urlopen
 
 import psutil
 import pytest
@@ -69,6 +69,14 @@ def listening_on(port: int) -> set[str]:
     """Return the addresses on which a port is listened on."""
     sockets = [each.laddr for each in psutil.net_connections("tcp") if each.status == psutil.CONN_LISTEN]
     return {address.ip for address in sockets if address.port == port}
+
+
+def may_read(address: str, port: int, origin: str) -> bool:
+    """Tell whether Rerun's server lets scripts of an origin read what it answers."""
+    asked = {"Origin": origin, "Access-Control-Request-Method": "POST", "Access-Control-Request-Headers": "x-grpc-web"}
+    method = "/rerun.sdk_comms.v1alpha1.MessageProxyService/ReadMessages"
+    with urlopen(Request(f"http://{address}:{port}{method}", headers=asked, method="OPTIONS")) as answer:
+        return answer.headers["access-control-allow-origin"] in (origin, "*")
 
 
 async def heard(address: str, enough: Callable[[dict[str, list[Any]]], bool]) -> dict[str, list[Any]]:
@@ -186,7 +194,7 @@ def test_rerun_verifies_and_reads_what_was_written_of_the_live_scene(running: Sy
 
 
 @needs_rerun
-def test_rerun_is_served_on_this_machine_only_without_usage_data_and_leaves_nothing(
+def test_rerun_is_served_at_a_loopback_address_nobody_guesses_without_usage_data_and_leaves_nothing(
     running: System, scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
@@ -195,10 +203,14 @@ def test_rerun_is_served_on_this_machine_only_without_usage_data_and_leaves_noth
     ports = ("--port", str(port), "--web-port", str(web_port))
     viewing = running.start("actum_command", "view", "--web", *ports, str(scene))
     wait_until(lambda: "messages sent to Rerun" in viewing.said(), "the recording is sent")
-    assert f"http://127.0.0.1:{web_port}/?url=rerun%2Bhttp%3A%2F%2F127.0.0.1%3A{port}%2Fproxy" in viewing.said()
-    with urlopen(f"http://127.0.0.1:{web_port}/") as page:
+    [address] = listening_on(port)
+    assert address.startswith("127.") and address != "127.0.0.1"
+    assert listening_on(web_port) == {address}
+    assert f"http://{address}:{web_port}/?url=rerun%2Bhttp%3A%2F%2F{address}%3A{port}%2Fproxy" in viewing.said()
+    with urlopen(f"http://{address}:{web_port}/") as page:
         assert b"rerun" in page.read().lower()
-    assert listening_on(port) == listening_on(web_port) == {"127.0.0.1"}
+    assert may_read(address, port, f"http://{address}:{web_port}")
+    assert not may_read(address, port, "http://evil.example")
     viewing.terminate()
     assert viewing.process.returncode == 0
     assert listening_on(port) == listening_on(web_port) == set()
@@ -222,7 +234,7 @@ def test_the_end_of_the_viewer_ends_the_command(running: System) -> None:
 @needs_rerun
 def test_a_viewer_that_cannot_start_says_why(running: System, scene: Path) -> None:
     with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
+        taken.bind(("", 0))  # on every address, as that of the viewer is not known
         taken.listen()
         refused = running.actum("view", "--web", "--port", str(taken.getsockname()[1]), str(scene))
     assert refused.returncode == 1

@@ -10,10 +10,12 @@ from actum.health import write_health
 from actum.runtime.credentials import CERTIFICATE, USERS, check, is_renewed, login_values, router_values
 from actum.runtime.session import TRANSPORT, insert
 from actum.runtime.waiting import wait_for
-from actum.settings import SettingsError
+from actum.settings import DEFAULT_ENDPOINT, SettingsError
 
 log = logging.getLogger("actum")
 
+LISTEN = "listen/endpoints"
+"""Where Zenoh's configuration has the endpoints that a router listens on."""
 LOOK_S = 1.0
 """Interval (s) at which a router looks whether it works, and whether its certificate was renewed."""
 
@@ -23,6 +25,8 @@ def router_config(
 ) -> zenoh.Config:
     """Build the router's configuration from a JSON5 file or the defaults, with the endpoint to listen on.
 
+    Where neither `listen` nor the file names one, it is this machine's alone.
+
     `link` is the endpoint of another host's router, which is connected to for as long as it takes.
 
     Raises:
@@ -30,8 +34,10 @@ def router_config(
         SettingsError: the credentials cannot be used.
     """
     config = zenoh.Config.from_file(config_file) if config_file else _default_config()
+    if listen is None and config.get_json(LISTEN) == zenoh.Config().get_json(LISTEN):
+        listen = DEFAULT_ENDPOINT  # Zenoh's own default is every interface
     if listen is not None:
-        insert(config, {"listen/endpoints": [listen]})
+        insert(config, {LISTEN: [listen]})
     if link is not None:
         insert(config, {"connect/endpoints": [link]})
     if credentials is not None:
