@@ -4,12 +4,12 @@ A router asks it of each message that comes from a client or another router (ing
 Advanced publishers and subscribers also use keys with the chunk `@adv`, which `**` does not match.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Literal
 
 from actum import keys
 from actum.keys import BASE, Topic
-from actum_deployer.roles import IMAGES, Role, identity
+from actum_deployer.roles import IMAGES, Role, common_name, identity
 
 Rule = dict[str, Any]
 """One rule of Zenoh's access control."""
@@ -33,7 +33,11 @@ LINK = "routers pass on"
 
 
 def access_control(
-    subjects: Sequence[tuple[Role, str]], routers: Sequence[str], images_cross: bool, passwords: bool
+    subjects: Sequence[tuple[Role, str]],
+    routers: Sequence[str],
+    images_cross: bool,
+    passwords: bool,
+    named: Callable[[str], str] = common_name,
 ) -> dict[str, Any]:
     """Return the section `access_control` of a router's configuration.
 
@@ -42,16 +46,17 @@ def access_control(
         routers: the common names of all routers' certificates.
         images_cross: whether images go from one router to another.
         passwords: whether a role is known by its user name as well, which is the common name.
+        named: returns the common name of an identity.
     """
     people_and_services = {identity(role, sensor): list(rules(role, sensor)) for role, sensor in subjects}
     between = link_rules(images_cross)
-    policies = [{"subjects": [name], "rules": [*_ids(own), TOLD]} for name, own in people_and_services.items()]
+    policies = [{"subjects": [named(who)], "rules": [*_ids(own), TOLD]} for who, own in people_and_services.items()]
     return {
         "enabled": True,
         "default_permission": "deny",
         "rules": [_told(), *(rule for own in people_and_services.values() for rule in own), *between],
         "subjects": [
-            *(_subject(name, passwords) for name in people_and_services),
+            *(_subject(named(who), passwords) for who in people_and_services),
             *(_subject(name, False) for name in routers),  # who connects learns no user name of whom it connects to
         ],
         "policies": [*policies, {"subjects": list(routers), "rules": _ids(between)}],

@@ -3,6 +3,7 @@
 Access control, credentials, compose files and the page on security are made from it.
 """
 
+import hashlib
 from dataclasses import dataclass
 
 from actum import keys
@@ -19,7 +20,7 @@ class Role:
     """One row of the table.
 
     Attributes:
-        name: the role's name; with a sensor's it is the common name of a certificate, `gateway.kinect0`.
+        name: the role's name; with a sensor's it is the identity that a certificate shows, `gateway.kinect0`.
         about: who has it, for people.
         services: the services that run with it, each for one sensor: it puts their status and answers for them. None
             for a person's program, which may work with every sensor.
@@ -114,14 +115,34 @@ ROLES = (GATEWAY, PREPROCESSOR, CLASSIFIER, TRACKER, FUSION, TRAINER, PAGE, SWIT
 PEOPLES = tuple(role for role in ROLES if not role.services)
 """The roles of people's programs, such as `actum watch`."""
 ROUTER = "router"
-"""The name of a router's role; with its host's it is the common name of its certificate, `router.camera`."""
+"""The name of a router's role; with its host's it is its identity, `router.camera`."""
+LONGEST_COMMON_NAME = 64
+"""Characters of a certificate's common name (RFC 5280)."""
+DIGEST_LENGTH = 16
+"""Characters of the digest that stands for the end of a name that is too long."""
 
 
 def identity(role: Role, sensor: str) -> str:
-    """Return the common name of a role's certificate: a service's holds the sensor that it is for."""
+    """Return the identity of who has a role: a service's holds the sensor that it is for."""
     return f"{role.name}.{sensor}" if role.services else role.name
 
 
 def router_identity(host: str) -> str:
-    """Return the common name of the certificate of a host's router."""
+    """Return the identity of a host's router."""
     return f"{ROUTER}.{host}"
+
+
+def common_name(identity: str, revoked: int = 0) -> str:
+    """Return the name by which routers know an identity whose credentials were revoked so often.
+
+    A certificate with an earlier name is somebody's whom no rule allows anything.
+    """
+    return shortened(f"{identity}#{revoked}" if revoked else identity, LONGEST_COMMON_NAME)
+
+
+def shortened(name: str, longest: int, before_digest: str = ".") -> str:
+    """Return a name, or where it is longer than `longest` its beginning and a digest of it, which no other name has."""
+    if len(name) <= longest:
+        return name
+    digest = hashlib.sha256(name.encode()).hexdigest()[:DIGEST_LENGTH]
+    return f"{name[: longest - DIGEST_LENGTH - 1]}{before_digest}{digest}"

@@ -30,7 +30,7 @@ def router_file(deployment: Deployment, host: Host) -> str:
 def router_configuration(deployment: Deployment, host: Host) -> dict[str, Any]:
     """Return the values of Zenoh's configuration by their paths."""
     earlier = deployment.routers[: deployment.routers.index(host)]
-    routers = [router_identity(each.name) for each in deployment.routers]
+    routers = [deployment.common_name(router_identity(each.name)) for each in deployment.routers]
     transport = deployment.transport
     values = {
         "mode": "router",
@@ -47,7 +47,8 @@ def router_configuration(deployment: Deployment, host: Host) -> dict[str, Any]:
     }
     if not deployment.secured:
         return values
-    rules = access_control(deployment.subjects, routers, deployment.images_cross, deployment.passwords)
+    crossing, passwords = deployment.images_cross, deployment.passwords
+    rules = access_control(deployment.subjects, routers, crossing, passwords, deployment.common_name)
     files = router_values(Path(INSTALLED) / CREDENTIALS / ROUTER, deployment.passwords)
     return {**values, **files, "access_control": rules}
 

@@ -9,22 +9,27 @@ from typing import BinaryIO
 
 UNFINISHED = ".part"
 """Ending of files that are still being written; one that a killed process has left may be deleted."""
+USUAL_MODE = 0o666
+"""What a file's mode is without the umask."""
 LONGEST_STEM = 40
 """Characters of a file's name in that of its unfinished one, whose name may not get too long for the file system."""
 
 
 @contextmanager
-def replaced(path: Path) -> Iterator[BinaryIO]:
+def replaced(path: Path, mode: int | None = None) -> Iterator[BinaryIO]:
     """Yield a file to write; once the block ends, it stands on the disk in place of `path`.
 
-    Where the block raises, `path` is as it was before.
+    Where the block raises, `path` is as it was before. With `mode` nobody whom it keeps out can read the file at any
+    moment, whatever the umask and the file before; without, the umask decides.
 
     Raises:
         OSError: the file cannot be written.
     """
     unfinished = path.with_name(f".{path.name[:LONGEST_STEM]}.{secrets.token_hex(4)}{UNFINISHED}")
     try:
-        with unfinished.open("xb") as file:
+        with open(unfinished, "xb", opener=lambda name, flags: os.open(name, flags, mode or USUAL_MODE)) as file:
+            if mode is not None and hasattr(os, "fchmod"):
+                os.fchmod(file.fileno(), mode)  # the umask may have taken away what the mode grants
             yield file
             file.flush()
             os.fsync(file.fileno())
@@ -35,13 +40,13 @@ def replaced(path: Path) -> Iterator[BinaryIO]:
     store_names(path.parent)
 
 
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file, or leave the one that is there as it is.
+def write_whole(path: Path, content: bytes, mode: int | None = None) -> None:
+    """Write a file, with a mode as `replaced`, or leave the one that is there as it is.
 
     Raises:
         OSError: the file cannot be written.
     """
-    with replaced(path) as file:
+    with replaced(path, mode) as file:
         file.write(content)
 
 
