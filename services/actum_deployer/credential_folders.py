@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from actum.atomic_file import write_whole
+from actum.atomic_file import PRIVATE_FOLDER, write_whole
 from actum.runtime.credentials import AUTHORITY, CERTIFICATE, KEY, USER, USERS
 from actum.settings import SettingsError
 from actum_deployer.certificates import Signed, new_authority, new_certificate, now
@@ -24,8 +24,8 @@ PASSWORD_BYTES = 24
 """Random bytes of a password: nobody has to type it."""
 SERVICES_USER = 10001
 """The user as which containers run, who has to be able to read the private keys."""
-PRIVATE, PRIVATE_FOLDER = 0o600, 0o700
-"""The modes of files and folders that nobody but their owner may read."""
+PRIVATE = 0o600
+"""The mode of files that nobody but their owner may read."""
 
 
 @dataclass(frozen=True)

@@ -4,16 +4,16 @@ from collections.abc import Mapping
 from datetime import timedelta
 from pathlib import Path
 
-from actum.atomic_file import write_whole
+from actum.atomic_file import PRIVATE_FOLDER, write_whole
 from actum.settings import SettingsError
 from actum_deployer.certificates import now
 from actum_deployer.compose_file import compose_file
-from actum_deployer.credential_folders import AUTHORITYS, PRIVATE, PRIVATE_FOLDER, write_credentials
+from actum_deployer.credential_folders import AUTHORITYS, PRIVATE, write_credentials
 from actum_deployer.deployment import FILE, Deployment, Host
-from actum_deployer.host_readme import UNITS, readme, settings_file
-from actum_deployer.programs import FILES, SETTINGS
+from actum_deployer.host_readme import OWNERS, UNITS, USERS, readme, settings_file
+from actum_deployer.programs import FILES, ROUTER_FILE, SETTINGS
 from actum_deployer.router_file import router_file
-from actum_deployer.systemd_units import units
+from actum_deployer.systemd_units import owners, units, users
 
 PUBLIC, PUBLIC_FOLDER = 0o644, 0o755
 """The modes of what the users of containers and units have to read, whatever the umask: it holds no secret."""
@@ -55,9 +55,11 @@ def _write_host(deployment: Deployment, host: Host, folder: Path, days: float) -
         "compose.yml": compose_file(deployment, host),
         "README.md": readme(deployment, host, expiry),
         **{f"{UNITS}/{name}": text for name, text in units(deployment, host).items()},
+        f"{UNITS}/{USERS}": users(deployment, host),
+        f"{UNITS}/{OWNERS}": owners(deployment, host),
     }
     if host in deployment.routers:
-        texts["router.json5"] = router_file(deployment, host)
+        texts[ROUTER_FILE] = router_file(deployment, host)
     for each in (folder, folder / UNITS, folder / FILES):
         each.mkdir(parents=True, exist_ok=True)
         each.chmod(PUBLIC_FOLDER)

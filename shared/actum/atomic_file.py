@@ -9,6 +9,8 @@ from typing import BinaryIO
 
 UNFINISHED = ".part"
 """Ending of files that are still being written; one that a killed process has left may be deleted."""
+PRIVATE_FOLDER = 0o700
+"""The mode of a new folder that holds secrets, or what people look like and do: nobody but its owner enters it."""
 USUAL_MODE = 0o666
 """What a file's mode is without the umask."""
 LONGEST_STEM = 40
