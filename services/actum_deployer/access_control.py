@@ -72,9 +72,9 @@ def rules(role: Role, sensor: str) -> Iterator[Rule]:
     ]
     states = [keys.key(keys.STATUS, of, service) for service in role.services]
     tokens = [f"{BASE}/{of}/{token.format(service)}" for service in role.services for token in TOKENS]
-    asked = _asked(role)
+    asked = _asked(role, of)
     places = [keys.claims(of, service) for service in role.services]
-    looked = [f"{BASE}/*/alive/**"] if role.inspects else []
+    looked = [f"{BASE}/{of}/alive/**"] if role.inspects else []
     yield from _allowed(f"{name} puts", "ingress", ["put"], [*puts, *_advanced(puts), *states])
     yield from _allowed(f"{name} offers", "ingress", ["declare_queryable", "reply"], [*puts, *_advanced(puts), *own])
     yield from _allowed(f"{name} is there", "ingress", ["liveliness_token"], [*tokens, *_advanced(puts)])
@@ -122,14 +122,14 @@ def _advanced(patterns: Iterable[str]) -> list[str]:
 
 
 def _wanted(role: Role, reads: Sequence[str]) -> list[str]:
-    """Return what a role subscribes to: one that watches may name all keys at once, and gets what it may read."""
-    return [*reads, *_advanced(reads), *(EVERYTHING if role.inspects else ())]
+    """Return what a role subscribes to: people may name all keys at once, and get what they may read."""
+    return [*reads, *_advanced(reads), *(() if role.services or not role.inspects else EVERYTHING)]
 
 
-def _asked(role: Role) -> list[str]:
-    """Return what a role asks of services of every sensor, and of its router."""
-    infos = [keys.pattern(keys.INFO), ROUTER_ITSELF] if role.inspects else []
-    return [*infos, f"{BASE}/*/command/**"] if role.commands else infos
+def _asked(role: Role, of: str) -> list[str]:
+    """Return what a role asks of its sensor's services, people's of every sensor's, and of its router."""
+    infos = [keys.pattern(keys.INFO, of), ROUTER_ITSELF] if role.inspects else []
+    return [*infos, f"{BASE}/{of}/command/**"] if role.commands else infos
 
 
 def _ids(own: Iterable[Mapping[str, Any]]) -> list[str]:

@@ -9,7 +9,7 @@ from actum import keys
 from actum.keys import Topic
 from actum.node import replay
 from actum_deployer.access_control import TOLD, access_control, link_rules, rules
-from actum_deployer.roles import GATEWAY, IMAGES, PEOPLES, ROLES, SWITCH, VIEWER, Role, identity
+from actum_deployer.roles import GATEWAY, IMAGES, PAGE, PEOPLES, ROLES, SWITCH, VIEWER, Role, identity
 from actum_model_trainer.teaching.trainer import ModelTrainer
 from marker_tracker.node import MarkerTracker
 from node_cases import CASES, Case
@@ -66,6 +66,15 @@ def test_a_viewer_says_nothing_and_asks_only_who_is_there() -> None:
         assert allowed(VIEWER, "ingress", kind) == set()
     assert not any("command" in expression for expression in allowed(VIEWER, "ingress", "query"))
     assert any("command" in expression for expression in allowed(SWITCH, "ingress", "query"))
+
+
+def test_the_page_asks_only_services_of_its_own_sensor_to_do_something() -> None:
+    for flow, message in (("ingress", "query"), ("egress", "reply"), ("ingress", "liveliness_query")):
+        about_sensors = {each for each in allowed(PAGE, flow, message) if not each.startswith("@/")}
+        assert about_sensors
+        assert all(each.startswith("actum/kinect0/") for each in about_sensors)
+    assert "actum/kinect0/command/**" in allowed(PAGE, "ingress", "query")
+    assert "actum/*/command/**" in allowed(SWITCH, "ingress", "query")
 
 
 @pytest.mark.parametrize("role", ROLES, ids=lambda role: role.name)
