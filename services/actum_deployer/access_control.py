@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from actum import keys
 from actum.keys import BASE, Topic
-from actum_deployer.roles import IMAGES, Role, common_name, identity
+from actum_deployer.roles import IMAGES, ROS_MARKS, ROS_TOPICS, Role, common_name, identity
 
 Rule = dict[str, Any]
 """One rule of Zenoh's access control."""
@@ -26,6 +26,8 @@ WISHES = ("declare_subscriber", "declare_queryable", "query", "liveliness_query"
 """What a router tells a client of others, so that it knows for whom to put and answers queries: no content."""
 LOOKING = ("liveliness_query", "declare_liveliness_subscriber")
 """Asking who is there, once and from now on."""
+ROS_TOKENS = "@ros2_lv/{}/**"
+"""The liveliness tokens by which rmw_zenoh's nodes of a domain find each other and their topics."""
 TOLD = "everybody is told what others wish"
 """The name of the rule that all roles have."""
 LINK = "routers pass on"
@@ -38,6 +40,7 @@ def access_control(
     images_cross: bool,
     passwords: bool,
     named: Callable[[str], str] = common_name,
+    ros_domain: int | None = None,
 ) -> dict[str, Any]:
     """Return the section `access_control` of a router's configuration.
 
@@ -47,9 +50,10 @@ def access_control(
         images_cross: whether images go from one router to another.
         passwords: whether a role is known by its user name as well, which is the common name.
         named: returns the common name of an identity.
+        ros_domain: the domain of the bridge to ROS 2; None where there is none.
     """
-    people_and_services = {identity(role, sensor): list(rules(role, sensor)) for role, sensor in subjects}
-    between = link_rules(images_cross)
+    people_and_services = {identity(role, sensor): list(rules(role, sensor, ros_domain)) for role, sensor in subjects}
+    between = link_rules(images_cross, ros_domain)
     policies = [{"subjects": [named(who)], "rules": [*_ids(own), TOLD]} for who, own in people_and_services.items()]
     return {
         "enabled": True,
@@ -63,10 +67,11 @@ def access_control(
     }
 
 
-def rules(role: Role, sensor: str) -> Iterator[Rule]:
+def rules(role: Role, sensor: str, ros_domain: int | None = None) -> Iterator[Rule]:
     """Yield the rules of a role for a sensor; of people's roles for all sensors."""
     name, of = identity(role, sensor), sensor if role.services else "*"
-    puts, reads = _patterns(role.puts, of), _patterns(role.reads, of)
+    puts = [*_patterns(role.puts, of), *_ros(role.ros_puts, of, ros_domain)]
+    reads = [*_patterns(role.reads, of), *_ros(role.ros_reads, of, ros_domain)]
     own = [
         f"{BASE}/{of}/{place.format(service)}" for service in role.services for place in ("info/{}", "command/{}/**")
     ]
@@ -75,6 +80,11 @@ def rules(role: Role, sensor: str) -> Iterator[Rule]:
     asked = _asked(role, of)
     places = [keys.claims(of, service) for service in role.services]
     looked = [f"{BASE}/{of}/alive/**"] if role.inspects else []
+    if role.speaks_ros and ros_domain is not None:
+        nodes = ROS_TOKENS.format(ros_domain)
+        tokens, looked = [*tokens, nodes], [*looked, nodes]
+        theirs = [*puts, *reads, *_advanced([*puts, *reads]), nodes]
+        yield from _allowed(f"{name} is told", "egress", WISHES, theirs)
     yield from _allowed(f"{name} puts", "ingress", ["put"], [*puts, *_advanced(puts), *states])
     yield from _allowed(f"{name} offers", "ingress", ["declare_queryable", "reply"], [*puts, *_advanced(puts), *own])
     yield from _allowed(f"{name} is there", "ingress", ["liveliness_token"], [*tokens, *_advanced(puts)])
@@ -86,16 +96,18 @@ def rules(role: Role, sensor: str) -> Iterator[Rule]:
     yield from _allowed(f"{name} sees", "egress", ["liveliness_token"], [*tokens, *_advanced(reads), *looked])
 
 
-def link_rules(images_cross: bool) -> list[Rule]:
+def link_rules(images_cross: bool, ros_domain: int | None = None) -> list[Rule]:
     """Return the rules between routers: what any role may put, but images only where these may cross."""
     crossing = [topic for topic in keys.TOPICS if images_cross or topic not in IMAGES]
-    content = [*_patterns(crossing, "*"), f"{BASE}/*/command/**"]
-    tokens = [f"{BASE}/*/{token.format('*')}" for token in TOKENS]
+    ros = _ros((*ROS_TOPICS, *ROS_MARKS), "*", ros_domain)
+    nodes = [] if ros_domain is None else [ROS_TOKENS.format(ros_domain)]
+    content = [*_patterns(crossing, "*"), f"{BASE}/*/command/**", *ros]
+    tokens = [*(f"{BASE}/*/{token.format('*')}" for token in TOKENS), *nodes]
     both: tuple[Literal["ingress", "egress"], ...] = ("ingress", "egress")
     return [
         *_allowed(f"{LINK} content", both, ["put", "reply"], [*content, *_advanced(content)]),
         *_allowed(f"{LINK} who is there", both, ["liveliness_token"], [*tokens, *_advanced(content)]),
-        *_allowed(f"{LINK} wishes", both, WISHES, EVERYTHING),
+        *_allowed(f"{LINK} wishes", both, WISHES, [*EVERYTHING, *ros, *_advanced(ros), *nodes]),
     ]
 
 
@@ -115,6 +127,11 @@ def _allowed(
 
 def _patterns(topics: Iterable[Topic], sensor: str) -> list[str]:
     return [keys.pattern(topic, sensor) for topic in topics]
+
+
+def _ros(topics: Iterable[str], sensor: str, domain: int | None) -> list[str]:
+    """Return the keys of ROS 2's topics, each with its type below it; none where there is no bridge."""
+    return [] if domain is None else [f"{domain}/{topic.format(sensor)}/**" for topic in topics]
 
 
 def _advanced(patterns: Iterable[str]) -> list[str]:

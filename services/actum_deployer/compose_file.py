@@ -20,7 +20,7 @@ from actum_deployer.programs import (
     programs,
     suffix,
 )
-from actum_deployer.roles import CLASSIFIER, GATEWAY, ROUTER, TRACKER, TRAINER
+from actum_deployer.roles import BRIDGE, CLASSIFIER, GATEWAY, ROUTER, TRACKER, TRAINER
 
 PIDS = 256
 """Most processes and threads of a container: some tens are in use."""
@@ -34,7 +34,8 @@ PAGE_IN_CONTAINER = {"ACTUM_PAGE_HOST": "0.0.0.0", "ACTUM_PAGE_GUARDED": "1"}
 
 def compose_file(deployment: Deployment, host: Host) -> str:
     """Return the text of the file."""
-    services = {program.name: _service(deployment, host, program) for program in programs(deployment, host)}
+    running = [program for program in programs(deployment, host) if program.role is not BRIDGE]  # no image has it
+    services = {program.name: _service(deployment, host, program) for program in running}
     mounts = [mount for service in services.values() for mount in service["volumes"]]
     volumes: dict[str, Any] = {mount.partition(":")[0]: {} for mount in mounts if not mount.startswith(".")}
     content = {"name": f"actum-{host.name}", "services": services, **({"volumes": volumes} if volumes else {})}

@@ -12,7 +12,7 @@ from actum.runtime.credentials import AUTHORITY, CERTIFICATE, KEY, USER, USERS
 from actum.settings import SettingsError
 from actum_deployer.certificates import Signed, new_authority, new_certificate, now
 from actum_deployer.deployment import Deployment, Host
-from actum_deployer.roles import PEOPLES, ROUTER, identity, router_identity
+from actum_deployer.roles import ROUTER, identity, router_identity
 
 AUTHORITYS = "authority"
 """The folder of the authority: with its key anybody can make credentials, so it belongs on no host."""
@@ -41,7 +41,7 @@ def folders(deployment: Deployment, root: Path) -> Iterator[Folder]:
     """Yield every folder of credentials."""
     for host in deployment.hosts:
         yield from _folders_of(deployment, host, root / host.name / CREDENTIALS)
-    for role in PEOPLES:
+    for role in deployment.peoples:
         yield Folder(root / PEOPLES_FOLDER / role.name, deployment.common_name(identity(role, "")))
 
 
@@ -77,7 +77,7 @@ def _folders_of(deployment: Deployment, host: Host, path: Path) -> Iterator[Fold
         addresses = [host.address, ROUTER, "localhost", "127.0.0.1", "::1"]
         name = deployment.common_name(router_identity(host.name))
         yield Folder(path / ROUTER, name, list(dict.fromkeys(addresses)))
-    for role, sensor in host.roles:
+    for role, sensor in deployment.roles_of(host):
         own = identity(role, sensor)
         yield Folder(path / own, deployment.common_name(own))
 

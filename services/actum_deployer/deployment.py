@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from ipaddress import ip_address
 from pathlib import Path
@@ -12,6 +12,7 @@ from actum.atomic_file import write_whole
 from actum.keys import chunk
 from actum.settings import HIGHEST_PORT, SettingsError
 from actum_deployer.roles import (
+    BRIDGE,
     CLASSIFIER,
     FUSION,
     GATEWAY,
@@ -33,7 +34,7 @@ DEFAULT_PORT = 7447
 """Zenoh's usual port."""
 KINDS = {
     "camera": (GATEWAY, TRACKER),
-    "compute": (PREPROCESSOR, CLASSIFIER, FUSION, TRAINER, PAGE),
+    "compute": (PREPROCESSOR, CLASSIFIER, FUSION, TRAINER, PAGE, BRIDGE),
 }
 """The roles of the services on each kind of host, by the beginning of the host's name."""
 HOST_NAME = re.compile(
@@ -70,11 +71,6 @@ class Host:
         """Where others reach its router, without the transport."""
         return f"[{self.address}]:{self.port}" if ":" in self.address else f"{self.address}:{self.port}"
 
-    @property
-    def roles(self) -> list[tuple[Role, str]]:
-        """The roles of its services, each with the sensor."""
-        return [(role, sensor) for sensor in self.sensors for role in KINDS[self.kind]]
-
 
 @dataclass(frozen=True)
 class Deployment:
@@ -88,6 +84,7 @@ class Deployment:
         one_router: whether the first host's router serves all, instead of one on each host.
         simulated: whether the simulated scene stands in the place of cameras.
         revoked: how often the credentials of an identity were revoked.
+        ros_domain: the domain of the bridge to ROS 2; None where there is none.
     """
 
     hosts: tuple[Host, ...]
@@ -97,6 +94,7 @@ class Deployment:
     one_router: bool = False
     simulated: bool = False
     revoked: Mapping[str, int] = field(default_factory=dict)
+    ros_domain: int | None = None
 
     @property
     def routers(self) -> tuple[Host, ...]:
@@ -111,7 +109,19 @@ class Deployment:
     @property
     def subjects(self) -> list[tuple[Role, str]]:
         """Every role with the sensor that it is for, all of people's included."""
-        return [*(each for host in self.hosts for each in host.roles), *((role, "") for role in PEOPLES)]
+        return [*(each for host in self.hosts for each in self.roles_of(host)), *((role, "") for role in self.peoples)]
+
+    @property
+    def peoples(self) -> tuple[Role, ...]:
+        """The roles of people's programs."""
+        return self._taking_part(PEOPLES)
+
+    def roles_of(self, host: Host) -> list[tuple[Role, str]]:
+        """Return the roles of a host's services, each with the sensor."""
+        return [(role, sensor) for sensor in host.sensors for role in self._taking_part(KINDS[host.kind])]
+
+    def _taking_part(self, roles: Iterable[Role]) -> tuple[Role, ...]:
+        return tuple(role for role in roles if self.ros_domain is not None or not role.speaks_ros)
 
     @property
     def transport(self) -> str:

@@ -5,6 +5,7 @@ from datetime import date
 from actum_deployer.credential_folders import CREDENTIALS, SERVICES_USER
 from actum_deployer.deployment import Deployment, Host
 from actum_deployer.programs import FILES, INSTALLED, SETTINGS, Program, programs
+from actum_deployer.roles import BRIDGE
 from actum_deployer.systemd_units import VENV
 
 UNITS = "systemd"
@@ -33,7 +34,7 @@ docker compose up --detach
 docker compose ps                            # all healthy after some seconds
 docker compose down
 ```
-
+{bridge}
 ## Without containers
 
 ```sh
@@ -68,6 +69,9 @@ is not believed any more; a router in a container then needs `docker compose res
 OPEN = """\
 **Nobody is asked who they are**: whoever reaches this router is trusted with everything. Use a network you trust.
 
+"""
+NO_IMAGE = """
+No image has the bridge to ROS 2 yet: run it as below, beside the containers.
 """
 SETTINGS_OF = {
     "camera": """\
@@ -106,6 +110,7 @@ def readme(deployment: Deployment, host: Host, expiry: date) -> str:
         else OPEN,
         user=SERVICES_USER,
         credentials=CREDENTIALS if deployment.secured else "files",
+        bridge=NO_IMAGE if any(program.role is BRIDGE for program in running) else "",
         installed=INSTALLED,
         venv=VENV,
         units=UNITS,

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from actum.settings import PROCESS_ENVIRONMENT
 from actum_deployer.credential_folders import CREDENTIALS
 from actum_deployer.deployment import Deployment, Host
-from actum_deployer.roles import CLASSIFIER, FUSION, GATEWAY, PAGE, ROUTER, TRAINER, Role, identity
+from actum_deployer.roles import BRIDGE, CLASSIFIER, FUSION, GATEWAY, PAGE, ROUTER, TRAINER, Role, identity
 
 INSTALLED = "/etc/actum"
 """Where a host's folder is found, in containers and by systemd."""
@@ -74,7 +74,7 @@ def programs(deployment: Deployment, host: Host) -> Iterator[Program]:
     if host in deployment.routers:
         credentials = f"{INSTALLED}/{CREDENTIALS}/{ROUTER}" if deployment.secured else ""
         yield Program(ROUTER, "the router", "actum_command", COMMAND_IMAGE, None, "", credentials)
-    for role, sensor in host.roles:
+    for role, sensor in deployment.roles_of(host):
         yield _program(deployment, host, role, sensor)
 
 
@@ -97,6 +97,8 @@ def environment(deployment: Deployment, host: Host, program: Program, own_router
         own["ACTUM_TRAINER_DATA"] = f"{data.models}/teaching{several}"
     if program.role in STATEFUL:
         own["ACTUM_STATE"] = data.state
+    if program.role is BRIDGE:
+        own["ACTUM_ROS_DOMAIN_ID"] = str(deployment.ros_domain)
     if program.page_port:
         own["ACTUM_PAGE_PORT"] = str(program.page_port)
     return own

@@ -7,7 +7,7 @@ import hashlib
 from dataclasses import dataclass
 
 from actum import keys
-from actum.keys import Topic
+from actum.keys import BASE, Topic
 
 IMAGES = (keys.COLOR, keys.DEPTH)
 """The topics that show people as a camera sees them."""
@@ -28,6 +28,8 @@ class Role:
         reads: the topics that it receives.
         inspects: whether it may ask which services there are, and for their descriptions.
         commands: whether it may ask services to do something.
+        ros_puts: what it puts on ROS 2's keys, below a domain; `{}` stands for the sensor.
+        ros_reads: what it receives of them.
     """
 
     name: str
@@ -37,8 +39,19 @@ class Role:
     reads: tuple[Topic, ...] = ()
     inspects: bool = False
     commands: bool = False
+    ros_puts: tuple[str, ...] = ()
+    ros_reads: tuple[str, ...] = ()
+
+    @property
+    def speaks_ros(self) -> bool:
+        """Whether it takes part only where there is a bridge to ROS 2."""
+        return bool(self.ros_puts)
 
 
+ROS_TOPICS = (*(f"{BASE}/{{}}/{name}" for name in ("skeletons", "objects", "event", "event_json")), "tf", "tf_static")
+"""What the bridge publishes on ROS 2's keys, below a domain, in the namespace that it has unless it is told another."""
+ROS_MARKS = (f"{BASE}/{{}}/mark",)
+"""What it subscribes to."""
 GATEWAY = Role(
     "gateway",
     "a sensor's gateway, or the simulated scene",
@@ -89,6 +102,21 @@ PAGE = Role(
     inspects=True,
     commands=True,
 )
+BRIDGE = Role(
+    "ros2",
+    "the bridge to ROS 2, which is a switch to its nodes",
+    services=("ros2_bridge",),
+    puts=(keys.SEGMENT,),
+    reads=(keys.SKELETON, keys.OBJECTS, keys.EVENT),
+    ros_puts=ROS_TOPICS,
+    ros_reads=ROS_MARKS,
+)
+ROBOT = Role(
+    "robot",
+    "ROS 2 nodes, or their router: they read what the bridge publishes, and mark",
+    ros_puts=ROS_MARKS,
+    ros_reads=ROS_TOPICS,
+)
 SWITCH = Role(
     "switch",
     "who marks actions and asks services to do something",
@@ -110,7 +138,7 @@ RECORDER = Role(
     inspects=True,
 )
 
-ROLES = (GATEWAY, PREPROCESSOR, CLASSIFIER, TRACKER, FUSION, TRAINER, PAGE, SWITCH, VIEWER, RECORDER)
+ROLES = (GATEWAY, PREPROCESSOR, CLASSIFIER, TRACKER, FUSION, TRAINER, PAGE, BRIDGE, SWITCH, VIEWER, RECORDER, ROBOT)
 """Every role but that of routers, which pass on what others may put."""
 PEOPLES = tuple(role for role in ROLES if not role.services)
 """The roles of people's programs, such as `actum watch`."""

@@ -43,12 +43,18 @@ def router_configuration(deployment: Deployment, host: Host) -> dict[str, Any]:
         **TRANSPORT,
         "transport/link/protocols": [transport],
         "transport/unicast/max_sessions": MOST_SESSIONS,
-        **message_limits(deployment.sensors),
+        **message_limits(deployment.sensors, deployment.ros_domain),
     }
     if not deployment.secured:
         return values
-    crossing, passwords = deployment.images_cross, deployment.passwords
-    rules = access_control(deployment.subjects, routers, crossing, passwords, deployment.common_name)
+    rules = access_control(
+        deployment.subjects,
+        routers,
+        deployment.images_cross,
+        deployment.passwords,
+        deployment.common_name,
+        deployment.ros_domain,
+    )
     files = router_values(Path(INSTALLED) / CREDENTIALS / ROUTER, deployment.passwords)
     return {**values, **files, "access_control": rules}
 

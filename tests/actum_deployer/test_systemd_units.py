@@ -4,8 +4,10 @@ import os
 import re
 import shutil
 import subprocess
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -99,9 +101,6 @@ def install(folder: Path, root: Path) -> Installed:
         (etc / place).mkdir(parents=True)
         shutil.copy(folder / "systemd" / f"{name}.conf", etc / place / "actum.conf")
     hand_over(root)
-    for each in (root, *root.parents):
-        if not each.stat().st_mode & 0o001:
-            each.chmod(each.stat().st_mode | 0o111)
     return Installed(root)
 
 
@@ -110,10 +109,18 @@ def hand_over(root: Path) -> None:
         subprocess.run([*tool, f"--root={root}", "actum.conf"], check=True, capture_output=True)
 
 
+@pytest.fixture
+def other_root() -> Iterator[Path]:
+    """A folder that every user may enter, unlike those of pytest."""
+    with TemporaryDirectory() as folder:
+        Path(folder).chmod(0o755)
+        yield Path(folder)
+
+
 @needs_tools
-def test_each_user_reads_its_own_credentials_and_no_others(lab: Path, tmp_path: Path) -> None:
+def test_each_user_reads_its_own_credentials_and_no_others(lab: Path, other_root: Path) -> None:
     for host in [each for each in lab.iterdir() if (each / "systemd").exists()]:
-        installed = install(host, tmp_path / host.name)
+        installed = install(host, other_root / host.name)
         own = {}
         for file in host.glob("systemd/*.service"):
             unit = file.read_text()
@@ -131,11 +138,11 @@ def test_each_user_reads_its_own_credentials_and_no_others(lab: Path, tmp_path: 
 
 
 @needs_tools
-def test_renewed_credentials_are_handed_over_as_the_first(tmp_path: Path) -> None:
+def test_renewed_credentials_are_handed_over_as_the_first(tmp_path: Path, other_root: Path) -> None:
     root = tmp_path / "lab"
     deployment = Deployment(hosts_of("camera=192.168.1.5,compute=192.168.1.6"))
     write_deployment(deployment, root, days=30)
-    installed = install(root / "compute", tmp_path / "root")
+    installed = install(root / "compute", other_root / "compute")
     write_deployment(deployment, root, days=30)
     etc = installed.root / "etc" / "actum"
     shutil.copytree(root / "compute" / "credentials", etc / "credentials", dirs_exist_ok=True)

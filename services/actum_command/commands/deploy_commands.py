@@ -25,7 +25,7 @@ MOST_DAYS = 3650
 
 
 @app.command()
-def init(
+def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
     folder: DirArgument,
     hosts: Annotated[
         str,
@@ -38,6 +38,10 @@ def init(
     passwords: Annotated[bool, typer.Option("--passwords", help="ask for user names and passwords as well")] = False,
     images: Annotated[bool, typer.Option("--images", help="let images go from one host to another")] = False,
     simulate: Annotated[bool, typer.Option("--simulate", help="the simulated scene in the place of cameras")] = False,
+    ros2: Annotated[
+        int | None,
+        typer.Option(metavar="DOMAIN", min=0, max=232, help="the bridge to ROS 2 as well, in this domain: 0 is usual"),
+    ] = None,
     not_secured: Annotated[
         bool, typer.Option("--open", help="ask nobody who they are, encrypt nothing: on a network you trust")
     ] = False,
@@ -50,7 +54,7 @@ def init(
     except (SettingsError, InvalidKeyError) as error:
         fail(str(error))
     revoked = _revoked_before(folder)
-    deployment = Deployment(placed, not not_secured, passwords, images, one_router, simulate, revoked)
+    deployment = Deployment(placed, not not_secured, passwords, images, one_router, simulate, revoked, ros2)
     _write(deployment, folder, YEAR)
     for host in placed:
         say(f"{host.name}: copy {folder / host.name} to {host.address}, and do there what its README.md says")
