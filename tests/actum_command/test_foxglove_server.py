@@ -2,6 +2,7 @@
 
 import http.client
 import json
+import re
 import socket
 import struct
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from empty_messages import skeleton
+from empty_messages import image, skeleton
 from live import PATIENCE_S, wait_until
 
 pytest.importorskip("foxglove", reason="foxglove-sdk is not installed: pip install -e '.[dev]'")
@@ -171,6 +172,16 @@ def test_who_speaks_otherwise_disturbs_nobody(usual: Serving, sent: str | bytes)
             return True
 
         wait_until(is_served, "the other client is served")
+
+
+def test_who_takes_nothing_costs_bounded_memory_and_it_is_told(caplog: pytest.LogCaptureFixture) -> None:
+    with serving() as made, made.opened(max_queue=1, close_timeout=0.1) as client:
+        subscribe(client, advertised(client)["/actum/kinect0/image/color"]["id"], 1)
+        assert made.subscribed.wait(PATIENCE_S)
+        picture = image(1).model_copy(update={"data": bytes(4_000_000)})
+        for _ in range(60):
+            made.stream.show(picture)
+    assert re.search(r"\d+ messages were left out", caplog.text)
 
 
 def test_who_speaks_no_such_protocol_is_refused(usual: Serving) -> None:

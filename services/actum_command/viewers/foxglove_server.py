@@ -89,6 +89,13 @@ class FoxgloveServer:
         self._clients: list[Client] = []
         self._lock = threading.Lock()
         self._session = str(time.time_ns())
+        self._left_out = 0
+
+    @property
+    def left_out(self) -> int:
+        """How many messages clients did not get since the start, because they took none for too long."""
+        with self._lock:
+            return self._left_out + sum(client.mailbox.left_out for client in self._clients)
 
     def application(self, rule: Rule, refused: Callable[[str], object]) -> Starlette:
         """Build the web application, which lets in whom a rule admits."""
@@ -127,6 +134,7 @@ class FoxgloveServer:
         finally:
             with self._lock:
                 self._clients.remove(client)
+                self._left_out += client.mailbox.left_out
             sending.cancel()
 
     def _join(self, client: Client) -> None:

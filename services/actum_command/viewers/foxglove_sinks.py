@@ -1,6 +1,7 @@
 """Serves messages to Foxglove over a WebSocket, or writes them to a file that it opens."""
 
 import json
+import logging
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -18,6 +19,8 @@ from actum_command.viewers.foxglove_schemas import foxglove_schema
 from actum_command.viewers.foxglove_server import Channel, FoxgloveServer
 from web_dashboard.admission import FORBIDDEN, MISDIRECTED, Rule
 from web_dashboard.server import PageServer, socket_at
+
+log = logging.getLogger("actum")
 
 ADVICE = {FORBIDDEN: "--origin can name it", MISDIRECTED: "open the address that is printed"}
 """What to do where somebody is refused wrongly."""
@@ -44,8 +47,8 @@ class FoxgloveStream:
     def show(self, message: Message) -> None:
         """Log one message."""
         for put in self._messages.of(message):
-            log = self._channel(put.topic, type(put.content))
-            log(_as_json(message) if put.content is message else put.content.encode(), message.stamp_ns)
+            put_on = self._channel(put.topic, type(put.content))
+            put_on(_as_json(message) if put.content is message else put.content.encode(), message.stamp_ns)
 
     def _channel(self, topic: str, kind: type) -> Log:
         """Return the channel of a topic: one of Foxglove's own kinds, or of JSON with the schema of our message."""
@@ -96,6 +99,8 @@ def served(
     serving = PageServer(server.application(Rule(host, origins=origins, advice=ADVICE), refused), listening, host)
     with serving.serving():
         yield stream, serving.address.replace("http://", "ws://").rstrip("/")
+    if server.left_out:
+        log.warning("%d messages were left out for clients that took none for too long", server.left_out)
 
 
 @contextmanager
