@@ -61,8 +61,9 @@ def _write_host(deployment: Deployment, host: Host, folder: Path, days: float) -
     if host in deployment.routers:
         texts[ROUTER_FILE] = router_file(deployment, host)
     for each in (folder, folder / UNITS, folder / FILES):
-        each.mkdir(parents=True, exist_ok=True)
-        each.chmod(PUBLIC_FOLDER)
+        if not each.exists():
+            each.mkdir()
+            each.chmod(PUBLIC_FOLDER)  # the umask may have taken away what has to be read
     for name, text in texts.items():
         write_whole(folder / name, text.encode(), PUBLIC)
     if (folder / SETTINGS).exists():

@@ -17,9 +17,11 @@ from empty_messages import image, skeleton
 from live import PATIENCE_S, wait_until
 
 pytest.importorskip("foxglove", reason="foxglove-sdk is not installed: pip install -e '.[dev]'")
+from typer.testing import CliRunner
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
+from actum_command.__main__ import app
 from actum_command.viewers.foxglove_sinks import FoxgloveStream, served
 
 SUBPROTOCOL = "foxglove.sdk.v1"
@@ -187,3 +189,12 @@ def test_who_takes_nothing_costs_bounded_memory_and_it_is_told(caplog: pytest.Lo
 def test_who_speaks_no_such_protocol_is_refused(usual: Serving) -> None:
     with pytest.raises(InvalidStatus), usual.opened(subprotocols=None):
         pass
+
+
+@pytest.mark.parametrize(
+    "origin", ["*", "null", "app.foxglove.dev", "https://", "https://a/b", "javascript:1", "file://a", ""]
+)
+def test_an_origin_that_names_no_site_is_refused(origin: str) -> None:
+    ended = CliRunner().invoke(app, ["foxglove", "--origin", origin])
+    assert ended.exit_code == 1
+    assert "such as https://app.foxglove.dev" in ended.stderr

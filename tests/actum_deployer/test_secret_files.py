@@ -68,6 +68,15 @@ def test_files_and_folders_that_others_could_read_are_closed(tmp_path: Path) -> 
     assert (tmp_path / "camera" / "settings.env").read_text() == settings
 
 
+def test_a_folder_that_was_closed_is_not_opened(tmp_path: Path) -> None:
+    write(tmp_path)
+    closed = [tmp_path / "camera", tmp_path / "camera" / "files"]
+    for folder in closed:
+        folder.chmod(0o700)
+    write(tmp_path)
+    assert {mode(folder) for folder in closed} == {0o700}
+
+
 def test_at_no_moment_is_a_secret_readable_by_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Looks at every file and folder of the deployment just before each write ends."""
     seen: set[tuple[str, int]] = set()

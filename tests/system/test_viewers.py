@@ -79,13 +79,16 @@ def may_read(address: str, port: int, origin: str) -> bool:
         return answer.headers["access-control-allow-origin"] in (origin, "*")
 
 
-async def heard(address: str, enough: Callable[[dict[str, list[Any]]], bool]) -> dict[str, list[Any]]:
+async def heard(
+    address: str, enough: Callable[[dict[str, list[Any]]], bool], origin: str | None = None
+) -> dict[str, list[Any]]:
     """Subscribe to everything that a server advertises; return their messages by topic."""
     from websockets.asyncio.client import connect
 
     topics: dict[int, dict[str, Any]] = {}
     found: dict[str, list[Any]] = {}
-    async with connect(address, subprotocols=[SUBPROTOCOL], max_size=None) as client, asyncio.timeout(PATIENCE_S):
+    options: Any = {"subprotocols": [SUBPROTOCOL], "max_size": None, "origin": origin}
+    async with connect(address, **options) as client, asyncio.timeout(PATIENCE_S):
         while not enough(found):
             sent = await client.recv()
             if isinstance(sent, str):
@@ -127,7 +130,12 @@ def test_foxglove_is_served_the_live_scene_on_this_machine_only(running: System)
     log_time_ns, _, truth = found["/actum/kinect0/truth"][0]
     assert json.loads(truth)["stamp_ns"] == log_time_ns
     assert listening_on(int(address.rpartition(":")[2])) == {"127.0.0.1"}
+    for _ in range(2):
+        with pytest.raises(Exception, match="HTTP 403"):
+            listen(heard(address, bool, origin="https://app.foxglove.dev"))
     serving.terminate()
+    refusal = "refused: a page of 'https://app.foxglove.dev' may not come in here: --origin can name it"
+    assert serving.said().count(refusal) == 1
     assert re.search(r"\d+ messages served", serving.said())
 
 
