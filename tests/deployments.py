@@ -2,10 +2,11 @@
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from actum.runtime import Client
 from actum.settings import ServiceSettings, host_and_port
@@ -97,14 +98,15 @@ def free_port() -> int:
     return address[1]
 
 
-def described(**options: bool) -> Deployment:
-    """A camera's host and one that computes, with ports of this machine that are free."""
-    hosts = f"camera=127.0.0.1:{free_port()},compute=127.0.0.1:{free_port()}"
-    return Deployment(hosts_of(hosts), simulated=True, **options)
+def described(sensors: Sequence[str] = ("kinect0",), **options: Any) -> Deployment:
+    """A camera's host for each sensor and one that computes, with ports of this machine that are free."""
+    cameras = ["camera", *(f"camera-{sensor}" for sensor in sensors[1:])]
+    hosts = ",".join(f"{name}=127.0.0.1:{free_port()}" for name in (*cameras, "compute"))
+    return Deployment(hosts_of(hosts, ",".join(sensors)), simulated=True, **options)
 
 
 @contextmanager
-def deployed(root: Path, **options: bool) -> Iterator[Deployed]:
+def deployed(root: Path, **options: Any) -> Iterator[Deployed]:
     """Write a deployment and run its routers."""
     made = Deployed(described(**options), root)
     write_deployment(made.deployment, root, days=30)

@@ -15,13 +15,20 @@ def roles_table() -> str:
 
 def _row(role: Role) -> list[str]:
     asks = ["who is there"] if role.inspects else []
-    asks += ["services to do something"] if role.commands else []
-    return [code(role.name), role.about, _puts(role), _named(role.reads), ", ".join(asks)]
+    whose = "its sensor's services" if role.services else "services"
+    asks += [f"{whose} to do something"] if role.commands else []
+    reads = ", ".join(filter(None, [_named(role.reads), _on_ros(role.ros_reads)]))
+    return [code(role.name), role.about, _puts(role), reads, ", ".join(asks)]
 
 
 def _puts(role: Role) -> str:
     states = [code("status")] if role.services else []
-    return ", ".join([*filter(None, [_named(role.puts)]), *states])
+    return ", ".join([*filter(None, [_named(role.puts), _on_ros(role.ros_puts)]), *states])
+
+
+def _on_ros(topics: tuple[str, ...]) -> str:
+    names = ", ".join(code(topic.rpartition("/")[2]) for topic in topics)
+    return f"on ROS 2's keys {names}" if names else ""
 
 
 def _named(topics: tuple[Topic, ...]) -> str:

@@ -4,12 +4,12 @@ A router asks it of each message that comes from a client or another router (ing
 Advanced publishers and subscribers also use keys with the chunk `@adv`, which `**` does not match.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Literal
 
 from actum import keys
 from actum.keys import BASE, Topic
-from actum_deployer.roles import IMAGES, Role, identity
+from actum_deployer.roles import IMAGES, ROS_MARKS, ROS_TOPICS, Role, common_name, identity
 
 Rule = dict[str, Any]
 """One rule of Zenoh's access control."""
@@ -26,6 +26,8 @@ WISHES = ("declare_subscriber", "declare_queryable", "query", "liveliness_query"
 """What a router tells a client of others, so that it knows for whom to put and answers queries: no content."""
 LOOKING = ("liveliness_query", "declare_liveliness_subscriber")
 """Asking who is there, once and from now on."""
+ROS_TOKENS = "@ros2_lv/{}/**"
+"""The liveliness tokens by which rmw_zenoh's nodes of a domain find each other and their topics."""
 TOLD = "everybody is told what others wish"
 """The name of the rule that all roles have."""
 LINK = "routers pass on"
@@ -33,7 +35,12 @@ LINK = "routers pass on"
 
 
 def access_control(
-    subjects: Sequence[tuple[Role, str]], routers: Sequence[str], images_cross: bool, passwords: bool
+    subjects: Sequence[tuple[Role, str]],
+    routers: Sequence[str],
+    images_cross: bool,
+    passwords: bool,
+    named: Callable[[str], str] = common_name,
+    ros_domain: int | None = None,
 ) -> dict[str, Any]:
     """Return the section `access_control` of a router's configuration.
 
@@ -42,34 +49,42 @@ def access_control(
         routers: the common names of all routers' certificates.
         images_cross: whether images go from one router to another.
         passwords: whether a role is known by its user name as well, which is the common name.
+        named: returns the common name of an identity.
+        ros_domain: the domain of the bridge to ROS 2; None where there is none.
     """
-    people_and_services = {identity(role, sensor): list(rules(role, sensor)) for role, sensor in subjects}
-    between = link_rules(images_cross)
-    policies = [{"subjects": [name], "rules": [*_ids(own), TOLD]} for name, own in people_and_services.items()]
+    people_and_services = {identity(role, sensor): list(rules(role, sensor, ros_domain)) for role, sensor in subjects}
+    between = link_rules(images_cross, ros_domain)
+    policies = [{"subjects": [named(who)], "rules": [*_ids(own), TOLD]} for who, own in people_and_services.items()]
     return {
         "enabled": True,
         "default_permission": "deny",
         "rules": [_told(), *(rule for own in people_and_services.values() for rule in own), *between],
         "subjects": [
-            *(_subject(name, passwords) for name in people_and_services),
+            *(_subject(named(who), passwords) for who in people_and_services),
             *(_subject(name, False) for name in routers),  # who connects learns no user name of whom it connects to
         ],
         "policies": [*policies, {"subjects": list(routers), "rules": _ids(between)}],
     }
 
 
-def rules(role: Role, sensor: str) -> Iterator[Rule]:
+def rules(role: Role, sensor: str, ros_domain: int | None = None) -> Iterator[Rule]:
     """Yield the rules of a role for a sensor; of people's roles for all sensors."""
     name, of = identity(role, sensor), sensor if role.services else "*"
-    puts, reads = _patterns(role.puts, of), _patterns(role.reads, of)
+    puts = [*_patterns(role.puts, of), *_ros(role.ros_puts, of, ros_domain)]
+    reads = [*_patterns(role.reads, of), *_ros(role.ros_reads, of, ros_domain)]
     own = [
         f"{BASE}/{of}/{place.format(service)}" for service in role.services for place in ("info/{}", "command/{}/**")
     ]
     states = [keys.key(keys.STATUS, of, service) for service in role.services]
     tokens = [f"{BASE}/{of}/{token.format(service)}" for service in role.services for token in TOKENS]
-    asked = _asked(role)
+    asked = _asked(role, of)
     places = [keys.claims(of, service) for service in role.services]
-    looked = [f"{BASE}/*/alive/**"] if role.inspects else []
+    looked = [f"{BASE}/{of}/alive/**"] if role.inspects else []
+    if role.speaks_ros and ros_domain is not None:
+        nodes = ROS_TOKENS.format(ros_domain)
+        tokens, looked = [*tokens, nodes], [*looked, nodes]
+        theirs = [*puts, *reads, *_advanced([*puts, *reads]), nodes]
+        yield from _allowed(f"{name} is told", "egress", WISHES, theirs)
     yield from _allowed(f"{name} puts", "ingress", ["put"], [*puts, *_advanced(puts), *states])
     yield from _allowed(f"{name} offers", "ingress", ["declare_queryable", "reply"], [*puts, *_advanced(puts), *own])
     yield from _allowed(f"{name} is there", "ingress", ["liveliness_token"], [*tokens, *_advanced(puts)])
@@ -81,16 +96,18 @@ def rules(role: Role, sensor: str) -> Iterator[Rule]:
     yield from _allowed(f"{name} sees", "egress", ["liveliness_token"], [*tokens, *_advanced(reads), *looked])
 
 
-def link_rules(images_cross: bool) -> list[Rule]:
+def link_rules(images_cross: bool, ros_domain: int | None = None) -> list[Rule]:
     """Return the rules between routers: what any role may put, but images only where these may cross."""
     crossing = [topic for topic in keys.TOPICS if images_cross or topic not in IMAGES]
-    content = [*_patterns(crossing, "*"), f"{BASE}/*/command/**"]
-    tokens = [f"{BASE}/*/{token.format('*')}" for token in TOKENS]
+    ros = _ros((*ROS_TOPICS, *ROS_MARKS), "*", ros_domain)
+    nodes = [] if ros_domain is None else [ROS_TOKENS.format(ros_domain)]
+    content = [*_patterns(crossing, "*"), f"{BASE}/*/command/**", *ros]
+    tokens = [*(f"{BASE}/*/{token.format('*')}" for token in TOKENS), *nodes]
     both: tuple[Literal["ingress", "egress"], ...] = ("ingress", "egress")
     return [
         *_allowed(f"{LINK} content", both, ["put", "reply"], [*content, *_advanced(content)]),
         *_allowed(f"{LINK} who is there", both, ["liveliness_token"], [*tokens, *_advanced(content)]),
-        *_allowed(f"{LINK} wishes", both, WISHES, EVERYTHING),
+        *_allowed(f"{LINK} wishes", both, WISHES, [*EVERYTHING, *ros, *_advanced(ros), *nodes]),
     ]
 
 
@@ -112,19 +129,24 @@ def _patterns(topics: Iterable[Topic], sensor: str) -> list[str]:
     return [keys.pattern(topic, sensor) for topic in topics]
 
 
+def _ros(topics: Iterable[str], sensor: str, domain: int | None) -> list[str]:
+    """Return the keys of ROS 2's topics, each with its type below it; none where there is no bridge."""
+    return [] if domain is None else [f"{domain}/{topic.format(sensor)}/**" for topic in topics]
+
+
 def _advanced(patterns: Iterable[str]) -> list[str]:
     return [f"{pattern}/{ADVANCED}" for pattern in patterns]
 
 
 def _wanted(role: Role, reads: Sequence[str]) -> list[str]:
-    """Return what a role subscribes to: one that watches may name all keys at once, and gets what it may read."""
-    return [*reads, *_advanced(reads), *(EVERYTHING if role.inspects else ())]
+    """Return what a role subscribes to: people may name all keys at once, and get what they may read."""
+    return [*reads, *_advanced(reads), *(() if role.services or not role.inspects else EVERYTHING)]
 
 
-def _asked(role: Role) -> list[str]:
-    """Return what a role asks of services of every sensor, and of its router."""
-    infos = [keys.pattern(keys.INFO), ROUTER_ITSELF] if role.inspects else []
-    return [*infos, f"{BASE}/*/command/**"] if role.commands else infos
+def _asked(role: Role, of: str) -> list[str]:
+    """Return what a role asks of its sensor's services, people's of every sensor's, and of its router."""
+    infos = [keys.pattern(keys.INFO, of), ROUTER_ITSELF] if role.inspects else []
+    return [*infos, f"{BASE}/{of}/command/**"] if role.commands else infos
 
 
 def _ids(own: Iterable[Mapping[str, Any]]) -> list[str]:

@@ -7,8 +7,20 @@ import yaml
 
 from actum_deployer.credential_folders import SERVICES_USER
 from actum_deployer.deployment import Deployment, Host
-from actum_deployer.programs import FILES, INSTALLED, SETTINGS, STATEFUL, Data, Program, environment, programs
-from actum_deployer.roles import CLASSIFIER, GATEWAY, ROUTER, TRACKER, TRAINER
+from actum_deployer.programs import (
+    FILES,
+    INSTALLED,
+    ROUTER_FILE,
+    SETTINGS,
+    STATEFUL,
+    Data,
+    Program,
+    environment,
+    own_settings,
+    programs,
+    suffix,
+)
+from actum_deployer.roles import BRIDGE, CLASSIFIER, GATEWAY, ROUTER, TRACKER, TRAINER
 
 PIDS = 256
 """Most processes and threads of a container: some tens are in use."""
@@ -22,7 +34,8 @@ PAGE_IN_CONTAINER = {"ACTUM_PAGE_HOST": "0.0.0.0", "ACTUM_PAGE_GUARDED": "1"}
 
 def compose_file(deployment: Deployment, host: Host) -> str:
     """Return the text of the file."""
-    services = {program.name: _service(deployment, host, program) for program in programs(deployment, host)}
+    running = [program for program in programs(deployment, host) if program.role is not BRIDGE]  # no image has it
+    services = {program.name: _service(deployment, host, program) for program in running}
     mounts = [mount for service in services.values() for mount in service["volumes"]]
     volumes: dict[str, Any] = {mount.partition(":")[0]: {} for mount in mounts if not mount.startswith(".")}
     content = {"name": f"actum-{host.name}", "services": services, **({"volumes": volumes} if volumes else {})}
@@ -36,11 +49,11 @@ def _service(deployment: Deployment, host: Host, program: Program) -> dict[str, 
         "pull_policy": "never",
         **_closed(program),
         "environment": environment(deployment, host, program, ROUTER, DATA),
-        "volumes": [*_credentials(program), *_own(program)],
+        "volumes": [*_credentials(program), *_own(program, suffix(host, program.sensor))],
     }
     if program.role is None:
         return {**service, **_router(host)}
-    service["env_file"] = [{"path": SETTINGS, "required": False}]
+    service["env_file"] = [{"path": path, "required": False} for path in (SETTINGS, own_settings(program))]
     if program.role is TRAINER:
         service["entrypoint"] = ["python", "-m", program.module]
     if program.role is GATEWAY and not deployment.simulated:
@@ -75,13 +88,13 @@ def _credentials(program: Program) -> list[str]:
     return [f"./{PurePosixPath(program.credentials).relative_to(INSTALLED)}:{program.credentials}:ro"]
 
 
-def _own(program: Program) -> list[str]:
-    """Return the other mounts of a program."""
+def _own(program: Program, several: str) -> list[str]:
+    """Return the other mounts of a program: each sensor has its own models."""
     mounts = [f"./{FILES}:{INSTALLED}/{FILES}:ro"] if program.role in (GATEWAY, TRACKER) else []
     if program.role is None:
-        mounts.append(f"./router.json5:{INSTALLED}/router.json5:ro")
+        mounts.append(f"./{ROUTER_FILE}:{INSTALLED}/{ROUTER_FILE}:ro")
     if program.role in (CLASSIFIER, TRAINER):
-        mounts.append(f"models:{DATA.models}{':ro' if program.role is CLASSIFIER else ''}")
+        mounts.append(f"models{several}:{DATA.models}{':ro' if program.role is CLASSIFIER else ''}")
     if program.role in STATEFUL:
         mounts.append(f"state_{program.name}:{DATA.state}")
     return mounts
@@ -89,6 +102,6 @@ def _own(program: Program) -> list[str]:
 
 def _router(host: Host) -> dict[str, Any]:
     return {
-        "command": ["router", "--config", f"{INSTALLED}/router.json5"],
+        "command": ["router", "--config", f"{INSTALLED}/{ROUTER_FILE}"],
         "ports": [f"{host.port}:{host.port}"],
     }

@@ -1,23 +1,48 @@
 """A deployment: its hosts, what runs on each, and how strictly they are closed. Kept as a file without secrets."""
 
 import json
-from dataclasses import asdict, dataclass, replace
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from ipaddress import ip_address
 from pathlib import Path
 from typing import Self
 
+from actum.atomic_file import write_whole
 from actum.keys import chunk
 from actum.settings import HIGHEST_PORT, SettingsError
-from actum_deployer.roles import CLASSIFIER, FUSION, GATEWAY, PAGE, PEOPLES, PREPROCESSOR, TRACKER, TRAINER, Role
+from actum_deployer.roles import (
+    BRIDGE,
+    CLASSIFIER,
+    FUSION,
+    GATEWAY,
+    PAGE,
+    PEOPLES,
+    PREPROCESSOR,
+    TRACKER,
+    TRAINER,
+    Role,
+    common_name,
+    identity,
+)
 
+ROUTERS_CANNOT = "a stolen key of a router could still deceive clients: delete authority/ and write and copy all anew"
+"""Why the credentials of a router cannot be revoked: clients know it by its address, not by its name."""
 FILE = "deployment.json"
 """The name of the file in the deployment's folder."""
 DEFAULT_PORT = 7447
 """Zenoh's usual port."""
 KINDS = {
     "camera": (GATEWAY, TRACKER),
-    "compute": (PREPROCESSOR, CLASSIFIER, FUSION, TRAINER, PAGE),
+    "compute": (PREPROCESSOR, CLASSIFIER, FUSION, TRAINER, PAGE, BRIDGE),
 }
 """The roles of the services on each kind of host, by the beginning of the host's name."""
+HOST_NAME = re.compile(
+    r"(?=.{1,253}$)(?!-)[A-Za-z0-9_-]{1,63}(?<!-)(\.(?!-)[A-Za-z0-9_-]{1,63}(?<!-))*(?<!\.)", re.ASCII
+)
+"""A host's name that a certificate may hold: labels of ASCII letters, digits, hyphens and underscores."""
+NUMERIC = re.compile(r"(.*\.)?[0-9]+")
+"""What is no name but an address of IPv4, or none that can be: its last label is a number."""
 
 
 @dataclass(frozen=True)
@@ -46,11 +71,6 @@ class Host:
         """Where others reach its router, without the transport."""
         return f"[{self.address}]:{self.port}" if ":" in self.address else f"{self.address}:{self.port}"
 
-    @property
-    def roles(self) -> list[tuple[Role, str]]:
-        """The roles of its services, each with the sensor."""
-        return [(role, sensor) for sensor in self.sensors for role in KINDS[self.kind]]
-
 
 @dataclass(frozen=True)
 class Deployment:
@@ -63,6 +83,8 @@ class Deployment:
         images_cross: whether images go from one host to another.
         one_router: whether the first host's router serves all, instead of one on each host.
         simulated: whether the simulated scene stands in the place of cameras.
+        revoked: how often the credentials of an identity were revoked.
+        ros_domain: the domain of the bridge to ROS 2; None where there is none.
     """
 
     hosts: tuple[Host, ...]
@@ -71,6 +93,8 @@ class Deployment:
     images_cross: bool = False
     one_router: bool = False
     simulated: bool = False
+    revoked: Mapping[str, int] = field(default_factory=dict)
+    ros_domain: int | None = None
 
     @property
     def routers(self) -> tuple[Host, ...]:
@@ -85,16 +109,45 @@ class Deployment:
     @property
     def subjects(self) -> list[tuple[Role, str]]:
         """Every role with the sensor that it is for, all of people's included."""
-        return [*(each for host in self.hosts for each in host.roles), *((role, "") for role in PEOPLES)]
+        return [*(each for host in self.hosts for each in self.roles_of(host)), *((role, "") for role in self.peoples)]
+
+    @property
+    def peoples(self) -> tuple[Role, ...]:
+        """The roles of people's programs."""
+        return self._taking_part(PEOPLES)
+
+    def roles_of(self, host: Host) -> list[tuple[Role, str]]:
+        """Return the roles of a host's services, each with the sensor."""
+        return [(role, sensor) for sensor in host.sensors for role in self._taking_part(KINDS[host.kind])]
+
+    def _taking_part(self, roles: Iterable[Role]) -> tuple[Role, ...]:
+        return tuple(role for role in roles if self.ros_domain is not None or not role.speaks_ros)
 
     @property
     def transport(self) -> str:
         """The transport of every endpoint."""
         return "tls" if self.secured else "tcp"
 
+    def common_name(self, identity: str) -> str:
+        """Return the name by which routers know an identity now."""
+        return common_name(identity, self.revoked.get(identity, 0))
+
+    def revoking(self, identities: Sequence[str]) -> Self:
+        """Return the same deployment with the credentials of some identities revoked.
+
+        Raises:
+            SettingsError: there is no such identity, or it is a router's.
+        """
+        known = {identity(role, sensor) for role, sensor in self.subjects}
+        for each in identities:
+            if each not in known:
+                raise SettingsError(f"revoke: {each!r} is none of {', '.join(sorted(known))}; {ROUTERS_CANNOT}")
+        again = {each: self.revoked.get(each, 0) + 1 for each in identities}
+        return replace(self, revoked={**self.revoked, **again})
+
     def save(self, folder: Path) -> None:
         """Write the file."""
-        (folder / FILE).write_text(json.dumps(asdict(self), indent=2) + "\n", encoding="utf-8")
+        write_whole(folder / FILE, (json.dumps(asdict(self), indent=2) + "\n").encode())
 
     @classmethod
     def load(cls, folder: Path) -> Self:
@@ -123,11 +176,14 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
     hosts = [_host(part.strip()) for part in text.split(",")]
     cameras = [host for host in hosts if host.kind == "camera"]
     computing = [host for host in hosts if host.kind == "compute"]
-    named = sensors.split(",") if sensors else [f"kinect{number}" for number in range(len(cameras))]
+    named = sensors.split(",") if sensors is not None else [f"kinect{number}" for number in range(len(cameras))]
     if not cameras or not computing or len({host.name for host in hosts}) < len(hosts):
         raise SettingsError(f"hosts: {text!r}: name at least one camera… and one compute…, each once")
     if len(named) != len(cameras) or len(set(named)) < len(named):
         raise SettingsError(f"sensors: {sensors!r}: name as many as there are cameras ({len(cameras)}), each once")
+    places = [_normal(host.endpoint) for host in hosts]
+    if len({*places}) < len(places):
+        raise SettingsError(f"hosts: {text!r}: two have the same address and port")
     if len(computing) > len(named):
         raise SettingsError(f"hosts: {len(computing)} to compute are more than there are cameras ({len(named)})")
     its: dict[str, tuple[str, ...]] = {host.name: (chunk(sensor),) for host, sensor in zip(cameras, named, strict=True)}
@@ -145,4 +201,28 @@ def _host(text: str) -> Host:
         raise SettingsError(f"hosts: {text!r}: names begin with {' or '.join(KINDS)}, as camera=192.168.1.5")
     if not address or not own_port.isdecimal() or not 0 < int(own_port) <= HIGHEST_PORT:
         raise SettingsError(f"hosts: {text!r}: use NAME=ADDRESS or NAME=ADDRESS:PORT")
-    return Host(name, address.strip("[]"), int(own_port))
+    address = address.removeprefix("[").removesuffix("]")
+    if not _can_be_reached(address):
+        raise SettingsError(
+            f"hosts: {text!r}: a certificate cannot name {address!r}: use a host's name or its IP address"
+        )
+    return Host(name, address, int(own_port))
+
+
+def _can_be_reached(address: str) -> bool:
+    """Tell whether an address is one of IPv4 or IPv6 that a machine can have, or a host's name in ASCII."""
+    try:
+        parsed = ip_address(address)
+    except ValueError:
+        return bool(HOST_NAME.fullmatch(address)) and not NUMERIC.fullmatch(address)
+    return "%" not in address and not parsed.is_unspecified and not parsed.is_multicast
+
+
+def _normal(endpoint: str) -> str:
+    """Return what two endpoints have in common that lead to one place."""
+    address, _, port = endpoint.rpartition(":")
+    try:
+        address = str(ip_address(address.strip("[]")))
+    except ValueError:
+        address = address.lower()
+    return f"{address} {port}"

@@ -6,10 +6,13 @@ from actum.installing import WHEEL, pip_install
 from actum_deployer.credential_folders import CREDENTIALS, SERVICES_USER
 from actum_deployer.deployment import Deployment, Host
 from actum_deployer.programs import FILES, INSTALLED, SETTINGS, Program, programs
+from actum_deployer.roles import BRIDGE
 from actum_deployer.systemd_units import VENV
 
 UNITS = "systemd"
 """The folder of the units, in that of a host."""
+USERS, OWNERS = "sysusers.conf", "tmpfiles.conf"
+"""The files, in that folder, of the programs' users and of who owns what."""
 
 README = """\
 # {name}, {address}
@@ -32,32 +35,44 @@ docker compose up --detach
 docker compose ps                            # all healthy after some seconds
 docker compose down
 ```
-
+{bridge}
 ## Without containers
 
 ```sh
-sudo useradd --system --uid {user} --user-group --no-create-home actum
-sudo cp -r . {installed} && sudo chown -R {user}:{user} {installed}/{credentials}
+sudo cp -r . {installed}
+sudo cp {units}/{users} /etc/sysusers.d/actum.conf && sudo systemd-sysusers
+sudo cp {units}/{owners} /etc/tmpfiles.d/actum.conf && sudo systemd-tmpfiles --create actum.conf
 sudo python3 -m venv {venv} && sudo {venv}/bin/{install}     # a wheel of `make wheel`, copied here
 sudo cp {units}/*.service /etc/systemd/system/ && sudo systemctl daemon-reload
 sudo systemctl enable --now {unit_names}
 ```
 
+Each program runs as a user of its own, who can read its credentials and no others. Do the third line again whenever you
+have copied credentials or settings here: it hands them over. Models, recordings of what was taught, and the last
+answers lie in a folder for each program below `/var/lib/actum`. Users and owners are tested with systemd's own tools,
+and `systemd-analyze verify` accepts the units, but no systemd has run them yet.
+
 ## Settings
 
-`{settings}` holds those of yours, for both ways; it is not written again. Files that it names, such as a pose model, a
+`{settings}` holds those of yours, for both ways; it is not written again. All programs of this host get them. What only
+one may have, such as the page's token or a camera's password, goes into `NAME.env` with that service's name, such as
+`web_dashboard.env`, mode 0600. Files that it names, such as a pose model, a
 calibration or a scene file, lie in `{files}`, which is `{installed}/{files}` to the services.
 """
 
 SECURED = """\
 Credentials are valid until {expiry}. Before that, renew them with `actum deploy rotate`, and copy `{credentials}` here
-again, to be read by user {user} as below. The router notices and listens anew, and services show the new ones as they
-connect to it again: nothing has to be stopped.
+again, handed over as below. The router notices and listens anew, and services show the new ones as they connect to it
+again: nothing has to be stopped. After `actum deploy rotate --revoke NAME` copy `router.json5` as well, which says what
+is not believed any more; a router in a container then needs `docker compose restart router`.
 
 """
 OPEN = """\
 **Nobody is asked who they are**: whoever reaches this router is trusted with everything. Use a network you trust.
 
+"""
+NO_IMAGE = """
+No image has the bridge to ROS 2 yet: run it as below, beside the containers.
 """
 SETTINGS_OF = {
     "camera": """\
@@ -96,10 +111,13 @@ def readme(deployment: Deployment, host: Host, expiry: date) -> str:
         else OPEN,
         user=SERVICES_USER,
         credentials=CREDENTIALS if deployment.secured else "files",
+        bridge=NO_IMAGE if any(program.role is BRIDGE for program in running) else "",
         installed=INSTALLED,
         venv=VENV,
         install=pip_install("all", WHEEL),
         units=UNITS,
+        users=USERS,
+        owners=OWNERS,
         unit_names=" ".join(f"actum-{program.name}" for program in running),
         settings=SETTINGS,
         files=FILES,

@@ -14,13 +14,15 @@ HEARTBEAT_BYTES = 1000
 """Largest message on a key with `@adv`: a heartbeat is a number."""
 COMMAND_BYTES = 16_000_000
 """Largest command and reply: a video is taught from in parts of half a megabyte, a film of an example takes some."""
+ROS_BYTES = 4_000_000
+"""Largest message on ROS 2's keys: the markers of 64 people take some hundred kilobytes."""
 IMAGES_HZ = 120
 """Most images a second of one sensor: twice the fastest camera's. Only the newest counts, so others may be dropped."""
 STATUS_HZ = 20
 """Most reports a second of one service, which puts one; a report that is dropped is followed by another."""
 
 
-def message_limits(sensors: Sequence[str]) -> dict[str, Any]:
+def message_limits(sensors: Sequence[str], ros_domain: int | None = None) -> dict[str, Any]:
     """Return the values of a router's configuration that limit size and rate of messages.
 
     Rates are limited where a message may be dropped for the next one. Zenoh limits the time between two messages of a
@@ -33,6 +35,7 @@ def message_limits(sensors: Sequence[str]) -> dict[str, Any]:
             *(_size([keys.pattern(topic)], topic.max_bytes, topic.leaf) for topic in TOPICS),
             _size([f"{BASE}/**/{ADVANCED}"], HEARTBEAT_BYTES, "heartbeats"),
             _size([f"{BASE}/*/command/**"], COMMAND_BYTES, "commands"),
+            *([] if ros_domain is None else [_size([f"{ros_domain}/**"], ROS_BYTES, "ROS 2")]),
         ],
         "downsampling": [
             {

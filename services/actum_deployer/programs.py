@@ -6,14 +6,16 @@ from dataclasses import dataclass, field
 from actum.settings import PROCESS_ENVIRONMENT
 from actum_deployer.credential_folders import CREDENTIALS
 from actum_deployer.deployment import Deployment, Host
-from actum_deployer.roles import CLASSIFIER, FUSION, GATEWAY, PAGE, ROUTER, TRAINER, Role, identity
+from actum_deployer.roles import BRIDGE, CLASSIFIER, FUSION, GATEWAY, PAGE, ROUTER, TRAINER, Role, identity
 
 INSTALLED = "/etc/actum"
 """Where a host's folder is found, in containers and by systemd."""
 FILES = "files"
 """The folder, in that of a host, for what is the user's own: pose model, calibration, scene file."""
 SETTINGS = "settings.env"
-"""The file, in that of a host, of the user's own settings."""
+"""The file, in that of a host, of the user's own settings, which all programs of the host get."""
+ROUTER_FILE = "router.json5"
+"""The file, in that of a host, of its router's configuration."""
 SIMULATOR = "scene_simulator"
 """The program that stands in the place of a gateway."""
 COMMAND_IMAGE = "actum/actum_command"
@@ -32,7 +34,7 @@ STATEFUL = (CLASSIFIER, FUSION)
 
 @dataclass(frozen=True)
 class Data:
-    """The folders of what learns and classifies, and of what services have answered."""
+    """The folders of what learns and classifies, and of what a service has answered, which is its own."""
 
     models: str
     state: str
@@ -72,7 +74,7 @@ def programs(deployment: Deployment, host: Host) -> Iterator[Program]:
     if host in deployment.routers:
         credentials = f"{INSTALLED}/{CREDENTIALS}/{ROUTER}" if deployment.secured else ""
         yield Program(ROUTER, "the router", "actum_command", COMMAND_IMAGE, None, "", credentials)
-    for role, sensor in host.roles:
+    for role, sensor in deployment.roles_of(host):
         yield _program(deployment, host, role, sensor)
 
 
@@ -94,10 +96,17 @@ def environment(deployment: Deployment, host: Host, program: Program, own_router
     if program.role is TRAINER:
         own["ACTUM_TRAINER_DATA"] = f"{data.models}/teaching{several}"
     if program.role in STATEFUL:
-        own["ACTUM_STATE"] = f"{data.state}{several}"
+        own["ACTUM_STATE"] = data.state
+    if program.role is BRIDGE:
+        own["ACTUM_ROS_DOMAIN_ID"] = str(deployment.ros_domain)
     if program.page_port:
         own["ACTUM_PAGE_PORT"] = str(program.page_port)
     return own
+
+
+def own_settings(program: Program) -> str:
+    """Return the name of the file of the user's settings that one program alone gets, such as the page's token."""
+    return f"{program.name}.env"
 
 
 def suffix(host: Host, sensor: str) -> str:

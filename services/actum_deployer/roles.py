@@ -3,10 +3,11 @@
 Access control, credentials, compose files and the page on security are made from it.
 """
 
+import hashlib
 from dataclasses import dataclass
 
 from actum import keys
-from actum.keys import Topic
+from actum.keys import BASE, Topic
 
 IMAGES = (keys.COLOR, keys.DEPTH)
 """The topics that show people as a camera sees them."""
@@ -19,7 +20,7 @@ class Role:
     """One row of the table.
 
     Attributes:
-        name: the role's name; with a sensor's it is the common name of a certificate, `gateway.kinect0`.
+        name: the role's name; with a sensor's it is the identity that a certificate shows, `gateway.kinect0`.
         about: who has it, for people.
         services: the services that run with it, each for one sensor: it puts their status and answers for them. None
             for a person's program, which may work with every sensor.
@@ -27,6 +28,8 @@ class Role:
         reads: the topics that it receives.
         inspects: whether it may ask which services there are, and for their descriptions.
         commands: whether it may ask services to do something.
+        ros_puts: what it puts on ROS 2's keys, below a domain; `{}` stands for the sensor.
+        ros_reads: what it receives of them.
     """
 
     name: str
@@ -36,8 +39,19 @@ class Role:
     reads: tuple[Topic, ...] = ()
     inspects: bool = False
     commands: bool = False
+    ros_puts: tuple[str, ...] = ()
+    ros_reads: tuple[str, ...] = ()
+
+    @property
+    def speaks_ros(self) -> bool:
+        """Whether it takes part only where there is a bridge to ROS 2."""
+        return bool(self.ros_puts)
 
 
+ROS_TOPICS = (*(f"{BASE}/{{}}/{name}" for name in ("skeletons", "objects", "event", "event_json")), "tf", "tf_static")
+"""What the bridge publishes on ROS 2's keys, below a domain, in the namespace that it has unless it is told another."""
+ROS_MARKS = (f"{BASE}/{{}}/mark",)
+"""What it subscribes to."""
 GATEWAY = Role(
     "gateway",
     "a sensor's gateway, or the simulated scene",
@@ -88,6 +102,21 @@ PAGE = Role(
     inspects=True,
     commands=True,
 )
+BRIDGE = Role(
+    "ros2",
+    "the bridge to ROS 2, which is a switch to its nodes",
+    services=("ros2_bridge",),
+    puts=(keys.SEGMENT,),
+    reads=(keys.SKELETON, keys.OBJECTS, keys.EVENT),
+    ros_puts=ROS_TOPICS,
+    ros_reads=ROS_MARKS,
+)
+ROBOT = Role(
+    "robot",
+    "ROS 2 nodes, or their router: they read what the bridge publishes, and mark",
+    ros_puts=ROS_MARKS,
+    ros_reads=ROS_TOPICS,
+)
 SWITCH = Role(
     "switch",
     "who marks actions and asks services to do something",
@@ -109,19 +138,39 @@ RECORDER = Role(
     inspects=True,
 )
 
-ROLES = (GATEWAY, PREPROCESSOR, CLASSIFIER, TRACKER, FUSION, TRAINER, PAGE, SWITCH, VIEWER, RECORDER)
+ROLES = (GATEWAY, PREPROCESSOR, CLASSIFIER, TRACKER, FUSION, TRAINER, PAGE, BRIDGE, SWITCH, VIEWER, RECORDER, ROBOT)
 """Every role but that of routers, which pass on what others may put."""
 PEOPLES = tuple(role for role in ROLES if not role.services)
 """The roles of people's programs, such as `actum watch`."""
 ROUTER = "router"
-"""The name of a router's role; with its host's it is the common name of its certificate, `router.camera`."""
+"""The name of a router's role; with its host's it is its identity, `router.camera`."""
+LONGEST_COMMON_NAME = 64
+"""Characters of a certificate's common name (RFC 5280)."""
+DIGEST_LENGTH = 16
+"""Characters of the digest that stands for the end of a name that is too long."""
 
 
 def identity(role: Role, sensor: str) -> str:
-    """Return the common name of a role's certificate: a service's holds the sensor that it is for."""
+    """Return the identity of who has a role: a service's holds the sensor that it is for."""
     return f"{role.name}.{sensor}" if role.services else role.name
 
 
 def router_identity(host: str) -> str:
-    """Return the common name of the certificate of a host's router."""
+    """Return the identity of a host's router."""
     return f"{ROUTER}.{host}"
+
+
+def common_name(identity: str, revoked: int = 0) -> str:
+    """Return the name by which routers know an identity whose credentials were revoked so often.
+
+    A certificate with an earlier name is somebody's whom no rule allows anything.
+    """
+    return shortened(f"{identity}#{revoked}" if revoked else identity, LONGEST_COMMON_NAME)
+
+
+def shortened(name: str, longest: int, before_digest: str = ".") -> str:
+    """Return a name, or where it is longer than `longest` its beginning and a digest of it, which no other name has."""
+    if len(name) <= longest:
+        return name
+    digest = hashlib.sha256(name.encode()).hexdigest()[:DIGEST_LENGTH]
+    return f"{name[: longest - DIGEST_LENGTH - 1]}{before_digest}{digest}"

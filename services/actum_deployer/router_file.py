@@ -30,7 +30,7 @@ def router_file(deployment: Deployment, host: Host) -> str:
 def router_configuration(deployment: Deployment, host: Host) -> dict[str, Any]:
     """Return the values of Zenoh's configuration by their paths."""
     earlier = deployment.routers[: deployment.routers.index(host)]
-    routers = [router_identity(each.name) for each in deployment.routers]
+    routers = [deployment.common_name(router_identity(each.name)) for each in deployment.routers]
     transport = deployment.transport
     values = {
         "mode": "router",
@@ -43,11 +43,18 @@ def router_configuration(deployment: Deployment, host: Host) -> dict[str, Any]:
         **TRANSPORT,
         "transport/link/protocols": [transport],
         "transport/unicast/max_sessions": MOST_SESSIONS,
-        **message_limits(deployment.sensors),
+        **message_limits(deployment.sensors, deployment.ros_domain),
     }
     if not deployment.secured:
         return values
-    rules = access_control(deployment.subjects, routers, deployment.images_cross, deployment.passwords)
+    rules = access_control(
+        deployment.subjects,
+        routers,
+        deployment.images_cross,
+        deployment.passwords,
+        deployment.common_name,
+        deployment.ros_domain,
+    )
     files = router_values(Path(INSTALLED) / CREDENTIALS / ROUTER, deployment.passwords)
     return {**values, **files, "access_control": rules}
 

@@ -1,15 +1,45 @@
-"""Units of systemd, for hosts without containers: what runs there, as closed as services can be."""
+"""Units of systemd, for hosts without containers: what runs there, as closed as services can be.
 
+Each program has a user of its own, and only that user's group may read its credentials: with one user for all, whoever
+takes one service over would have every role of the host. The users are declared as systemd-sysusers reads them, owners
+and modes as systemd-tmpfiles does. Credentials stay in files, not in `LoadCredential=`, which a service would see
+renewed only once it is started anew.
+"""
+
+from collections.abc import Iterator
+
+from actum_deployer.credential_folders import CREDENTIALS
 from actum_deployer.deployment import Deployment, Host
-from actum_deployer.programs import INSTALLED, SETTINGS, Data, Program, environment, programs
-from actum_deployer.roles import GATEWAY
+from actum_deployer.programs import (
+    FILES,
+    INSTALLED,
+    ROUTER_FILE,
+    SETTINGS,
+    STATEFUL,
+    Data,
+    Program,
+    environment,
+    own_settings,
+    programs,
+    suffix,
+)
+from actum_deployer.roles import CLASSIFIER, GATEWAY, TRAINER, shortened
 
 VENV = "/opt/actum"
 """Where actum is installed: a virtual environment of its own."""
-DATA = Data(models="/var/lib/actum", state="/var/lib/actum/state")
-"""Where services keep what they learn and have answered; systemd makes the folder theirs."""
+STATE = "/var/lib/actum"
+"""Where each service that keeps anything has a folder of its own, which systemd makes its user's."""
+STATE_FOLDER = """\
+StateDirectory=actum/{name}
+StateDirectoryMode=0750
+"""
+"""What is said of that folder: of the trainer's, whose group the classifier is in, it reads the model."""
+LONGEST_USER = 31
+"""Characters of a user's name, by Linux's tools."""
 TASKS = 256
 """Most processes and threads of a service: some tens are in use."""
+MADE = "# Made by 'actum deploy init'."
+"""What stands first in each file of systemd's."""
 UNIT = """\
 # Made by 'actum deploy init'. Settings of yours belong into {installed}/{settings}.
 [Unit]
@@ -19,21 +49,29 @@ After=network-online.target
 StartLimitIntervalSec=0
 
 [Service]
-User=actum
+User={user}
+Group={user}
 {supplementary}{environment}
 EnvironmentFile=-{installed}/{settings}
+EnvironmentFile=-{installed}/{own_settings}
 ExecStart={command}
 Restart=always
 RestartSec=1
 TimeoutStopSec=10
-StateDirectory=actum
-NoNewPrivileges=yes
+UMask=0027
+{state}NoNewPrivileges=yes
 CapabilityBoundingSet=
 ProtectSystem=strict
 ProtectHome=yes
 ProtectKernelTunables=yes
 ProtectKernelModules=yes
 ProtectControlGroups=yes
+ProtectKernelLogs=yes
+ProtectHostname=yes
+ProtectProc=invisible
+RestrictNamespaces=yes
+RestrictSUIDSGID=yes
+LockPersonality=yes
 PrivateTmp=yes
 {devices}RestrictAddressFamilies=AF_UNIX AF_INET AF_INET6 AF_NETLINK
 MemoryMax={memory_mb}M
@@ -50,14 +88,52 @@ def units(deployment: Deployment, host: Host) -> dict[str, str]:
     return {f"actum-{program.name}.service": _unit(deployment, host, program) for program in running}
 
 
+def users(deployment: Deployment, host: Host) -> str:
+    """Return the declaration of the programs' users, as systemd-sysusers reads it."""
+    lines = [f'u {user_of(each.name)} - "actum {each.name}"' for each in programs(deployment, host)]
+    return "\n".join([MADE, *lines, ""])
+
+
+def owners(deployment: Deployment, host: Host) -> str:
+    """Return who may read which of the installed files, as systemd-tmpfiles reads it."""
+    return "\n".join([MADE, *_owners(deployment, host), ""])
+
+
+def user_of(name: str) -> str:
+    """Return the name of a program's user, and of that user's group."""
+    return shortened(f"actum-{name}", LONGEST_USER, "-")
+
+
+def _owners(deployment: Deployment, host: Host) -> Iterator[str]:
+    yield f"d {INSTALLED} 0755 root root"
+    yield f"z {INSTALLED}/*.env 0600 root root"
+    yield f"d {INSTALLED}/{FILES} 0755 root root"
+    yield f"Z {INSTALLED}/{FILES}/* ~0755 root root"
+    if host in deployment.routers:
+        yield f"z {INSTALLED}/{ROUTER_FILE} 0644 root root"
+    if deployment.secured:
+        yield f"d {INSTALLED}/{CREDENTIALS} 0711 root root"
+    for program in programs(deployment, host):
+        if program.credentials:
+            yield f"z {program.credentials} 0750 root {user_of(program.name)}"
+            yield f"z {program.credentials}/* 0640 root {user_of(program.name)}"
+
+
 def _unit(deployment: Deployment, host: Host, program: Program) -> str:
     sees_devices = program.role is GATEWAY and not deployment.simulated
-    settings = environment(deployment, host, program, "localhost", DATA)
+    teacher = TRAINER.services[0] + suffix(host, program.sensor)
+    settings = environment(
+        deployment, host, program, "localhost", Data(f"{STATE}/{teacher}", f"{STATE}/{program.name}")
+    )
+    groups = ["video"] if sees_devices else [user_of(teacher)] if program.role is CLASSIFIER else []
     return UNIT.format(
         installed=INSTALLED,
         settings=SETTINGS,
         about=program.about,
-        supplementary="SupplementaryGroups=video\n" if sees_devices else "",
+        user=user_of(program.name),
+        own_settings=own_settings(program),
+        supplementary="".join(f"SupplementaryGroups={group}\n" for group in groups),
+        state=STATE_FOLDER.format(name=program.name) if program.role in (*STATEFUL, TRAINER) else "",
         environment="\n".join(f'Environment="{name}={value}"' for name, value in settings.items()),
         command=_command(program),
         devices="" if sees_devices else "PrivateDevices=yes\n",
@@ -68,5 +144,5 @@ def _unit(deployment: Deployment, host: Host, program: Program) -> str:
 
 def _command(program: Program) -> str:
     if program.role is None:
-        return f"{VENV}/bin/actum router --config {INSTALLED}/router.json5"
+        return f"{VENV}/bin/actum router --config {INSTALLED}/{ROUTER_FILE}"
     return f"{VENV}/bin/python -m {program.module}"

@@ -1,16 +1,22 @@
 """Writes a deployment: a folder for each host, one for people's programs, and the authority's own."""
 
+from collections.abc import Mapping
 from datetime import timedelta
 from pathlib import Path
 
+from actum.atomic_file import PRIVATE_FOLDER, write_whole
+from actum.settings import SettingsError
 from actum_deployer.certificates import now
 from actum_deployer.compose_file import compose_file
-from actum_deployer.credential_folders import write_credentials
-from actum_deployer.deployment import Deployment, Host
-from actum_deployer.host_readme import UNITS, readme, settings_file
-from actum_deployer.programs import FILES, SETTINGS
+from actum_deployer.credential_folders import AUTHORITYS, PRIVATE, write_credentials
+from actum_deployer.deployment import FILE, Deployment, Host
+from actum_deployer.host_readme import OWNERS, UNITS, USERS, readme, settings_file
+from actum_deployer.programs import FILES, ROUTER_FILE, SETTINGS
 from actum_deployer.router_file import router_file
-from actum_deployer.systemd_units import units
+from actum_deployer.systemd_units import owners, units, users
+
+PUBLIC, PUBLIC_FOLDER = 0o644, 0o755
+"""The modes of what the users of containers and units have to read, whatever the umask: it holds no secret."""
 
 
 def write_deployment(deployment: Deployment, root: Path, days: float) -> None:
@@ -22,11 +28,25 @@ def write_deployment(deployment: Deployment, root: Path, days: float) -> None:
         SettingsError: the authority that is there cannot be used.
         OSError: a file cannot be written.
     """
+    root.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
+    deployment.save(root)
     for host in deployment.hosts:
         _write_host(deployment, host, root / host.name, days)
     if deployment.secured:
         write_credentials(deployment, root, days)
-    deployment.save(root)
+
+
+def revoked_before(root: Path) -> Mapping[str, int]:
+    """Return how often credentials were revoked in the deployment that a folder holds already, if it holds one.
+
+    Raises:
+        SettingsError: its authority is there, but not the file that says so.
+    """
+    if (root / FILE).exists() or not (root / AUTHORITYS).exists():
+        return Deployment.load(root).revoked if (root / FILE).exists() else {}
+    raise SettingsError(
+        f"{root} has an authority but no {FILE}, which says what was revoked: delete {AUTHORITYS}/ to write all anew"
+    )
 
 
 def _write_host(deployment: Deployment, host: Host, folder: Path, days: float) -> None:
@@ -35,12 +55,18 @@ def _write_host(deployment: Deployment, host: Host, folder: Path, days: float) -
         "compose.yml": compose_file(deployment, host),
         "README.md": readme(deployment, host, expiry),
         **{f"{UNITS}/{name}": text for name, text in units(deployment, host).items()},
+        f"{UNITS}/{USERS}": users(deployment, host),
+        f"{UNITS}/{OWNERS}": owners(deployment, host),
     }
     if host in deployment.routers:
-        texts["router.json5"] = router_file(deployment, host)
-    if not (folder / SETTINGS).exists():
-        texts[SETTINGS] = settings_file(deployment, host)
-    for each in (UNITS, FILES):
-        (folder / each).mkdir(parents=True, exist_ok=True)
+        texts[ROUTER_FILE] = router_file(deployment, host)
+    for each in (folder, folder / UNITS, folder / FILES):
+        if not each.exists():
+            each.mkdir()
+            each.chmod(PUBLIC_FOLDER)  # the umask may have taken away what has to be read
     for name, text in texts.items():
-        (folder / name).write_text(text, encoding="utf-8")
+        write_whole(folder / name, text.encode(), PUBLIC)
+    if (folder / SETTINGS).exists():
+        (folder / SETTINGS).chmod(PRIVATE)
+    else:
+        write_whole(folder / SETTINGS, settings_file(deployment, host).encode(), PRIVATE)

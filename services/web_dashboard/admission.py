@@ -1,14 +1,14 @@
-"""Who may use the page: checks of the names, origins and tokens of requests, and the headers of every answer.
+"""Who may use what is served to browsers: checks of names, origins and tokens, and the headers of every answer.
 
-A page of another site must not reach this one through a visitor's browser: neither by a WebSocket, which browsers
-open across sites (so the origin is checked), nor under a name that is made to point here (DNS rebinding, so the host
-is checked).
+A page of another site must not get in through a visitor's browser: neither by a WebSocket, which browsers open across
+sites (so the origin is checked), nor under a name that is made to point here (DNS rebinding, so the host is checked).
 """
 
 import hashlib
 import hmac
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
 from http.cookies import CookieError, SimpleCookie
 from ipaddress import ip_address
 from urllib.parse import parse_qs, urlsplit
@@ -17,7 +17,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from web_dashboard.settings import Settings
+from web_dashboard.settings import is_local
 
 MISDIRECTED, UNAUTHORIZED, FORBIDDEN = 421, 401, 403
 TOKEN_NEEDED = """This page needs its token: open it as http://…/?token=TOKEN
@@ -26,14 +26,33 @@ The token is what was set as ACTUM_PAGE_TOKEN or --page-token where the page is 
 """
 
 
+@dataclass(frozen=True)
+class Rule:
+    """Who may come in.
+
+    Attributes:
+        host: the address that is served.
+        names: names of this machine, beside its own and its addresses.
+        token: the word that opens what is served; None where none is needed.
+        origins: other sites whose pages may open a WebSocket.
+        advice: what to do where somebody is refused wrongly, by the status code of the refusal.
+    """
+
+    host: str
+    names: Collection[str] = ()
+    token: str | None = None
+    origins: Collection[str] = ()
+    advice: Mapping[int, str] = field(default_factory=dict)
+
+
 class Admission:
     """Middleware that refuses who may not come in."""
 
-    def __init__(self, app: ASGIApp, settings: Settings, refused: Callable[[str], object]) -> None:
+    def __init__(self, app: ASGIApp, rule: Rule, refused: Callable[[str], object]) -> None:
         self._app = app
-        self._settings = settings
+        self._rule = rule
         self._refused = refused
-        self._secret = hashlib.sha256((settings.page_token or "").encode()).hexdigest()
+        self._secret = hashlib.sha256((rule.token or "").encode()).hexdigest()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on, or refuse it."""
@@ -53,10 +72,11 @@ class Admission:
         headers = Headers(scope=scope)
         host = headers.get("host", "")
         if not self._is_ours(host):
-            return self._refusal(MISDIRECTED, f"{host!r} is no name of this page: --page-names can list it")
-        if scope["type"] == "websocket" and headers.get("origin") not in (None, f"http://{host}", f"https://{host}"):
+            return self._refusal(MISDIRECTED, f"{host!r} is no name of what is served here")
+        own = (None, f"http://{host}", f"https://{host}")
+        if scope["type"] == "websocket" and headers.get("origin") not in (*own, *self._rule.origins):
             return self._refusal(FORBIDDEN, f"a page of {headers.get('origin')!r} may not come in here")
-        if self._settings.page_token is None or self._has_cookie(scope, headers):
+        if self._rule.token is None or self._has_cookie(scope, headers):
             return None
         if scope["type"] == "http" and self._has_token(scope):
             answer = RedirectResponse("/", status_code=303)
@@ -65,21 +85,24 @@ class Admission:
         return self._refusal(UNAUTHORIZED, TOKEN_NEEDED)
 
     def _refusal(self, status: int, told: str) -> Response:
+        advice = self._rule.advice.get(status)
+        told = f"{told}: {advice}" if advice else told
         self._refused(told.partition("\n")[0][:200])
         return PlainTextResponse(told, status)
 
     def _is_ours(self, host: str) -> bool:
-        """Tell whether a Host header names this page: by an address, or by a name that is known to be its."""
+        """Tell whether a Host header names this machine: by an address, or by a name that is known to be its."""
         try:
             name = urlsplit(f"//{host}").hostname or ""
         except ValueError:
             return False
-        if name == "localhost" or name in self._settings.page_names:
+        if name == "localhost" or name in self._rule.names:
             return True
+        local = is_local(self._rule.host)
         try:
-            return ip_address(name).is_loopback or not self._settings.is_local
+            return ip_address(name).is_loopback or not local
         except ValueError:
-            return not self._settings.is_local and name in {self._settings.page_host, *_own_names()}
+            return not local and name in {self._rule.host, *_own_names()}
 
     def _has_cookie(self, scope: Scope, headers: Headers) -> bool:
         try:
@@ -90,7 +113,7 @@ class Admission:
 
     def _has_token(self, scope: Scope) -> bool:
         given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])[0]
-        return hmac.compare_digest(given.encode(), (self._settings.page_token or "").encode())
+        return hmac.compare_digest(given.encode(), (self._rule.token or "").encode())
 
 
 def _cookie_name(scope: Scope) -> str:

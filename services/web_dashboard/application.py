@@ -19,7 +19,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from actum import __version__
 from actum.skeletons import JOINTS, PARTS
-from web_dashboard.admission import Admission, Guarding
+from web_dashboard.admission import MISDIRECTED, Admission, Guarding, Rule
 from web_dashboard.encoding import text
 from web_dashboard.hub import Envelope, Hub, Mailbox
 from web_dashboard.orders import LONGEST_ORDER_BYTES, Orders
@@ -65,7 +65,7 @@ def application(settings: Settings, hub: Hub, orders: Orders) -> Starlette:
         routes=[Route("/", page), Mount("/page", StaticFiles(directory=PAGE)), WebSocketRoute("/ws", connection)],
         middleware=[
             Middleware(Guarding, policy=policy(html)),
-            Middleware(Admission, settings=settings, refused=orders.refused.append),
+            Middleware(Admission, rule=_rule(settings), refused=orders.refused.append),
         ],
         lifespan=lifespan,
     )
@@ -80,6 +80,11 @@ def policy(html: str) -> str:
         "media-src 'self' blob:; connect-src 'self'; font-src 'self'; base-uri 'none'; form-action 'none'; "
         "frame-ancestors 'none'"
     )
+
+
+def _rule(settings: Settings) -> Rule:
+    advice = {MISDIRECTED: "--page-names can list it"}
+    return Rule(settings.page_host, settings.page_names, settings.page_token, advice=advice)
 
 
 class Connection:

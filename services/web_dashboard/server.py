@@ -34,7 +34,7 @@ def bound_socket(host: str, port: int | None) -> socket.socket:
     trouble: OSError | None = None
     for candidate in PORTS if port is None else (port,):
         try:
-            return _bound(host, candidate)
+            return socket_at(host, candidate)
         except OSError as error:
             trouble = error
     raise SettingsError(
@@ -42,7 +42,12 @@ def bound_socket(host: str, port: int | None) -> socket.socket:
     )
 
 
-def _bound(host: str, port: int) -> socket.socket:
+def socket_at(host: str, port: int) -> socket.socket:
+    """Return a socket that listens at an address.
+
+    Raises:
+        OSError: it cannot be bound.
+    """
     family, kind, protocol, _, address = socket.getaddrinfo(
         host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
     )[0]

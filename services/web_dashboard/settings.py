@@ -17,6 +17,14 @@ def _names(value: object) -> object:
     return [name.strip().lower() for name in value.split(",") if name.strip()] if isinstance(value, str) else value
 
 
+def is_local(host: str) -> bool:
+    """Tell whether what is served at an address is reached by this machine alone."""
+    try:
+        return host == "localhost" or ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
 class Settings(ServiceSettings):
     """What the page's service can be told beside what every service can."""
 
@@ -41,24 +49,11 @@ class Settings(ServiceSettings):
         frozenset(), description="names by which browsers may call this machine, beside its own and its addresses"
     )
 
-    @property
-    def is_local(self) -> bool:
-        """Whether only this machine reaches the page."""
-        return self.page_host == "localhost" or (_is_address(self.page_host) and ip_address(self.page_host).is_loopback)
-
     @model_validator(mode="after")
     def _check_token(self) -> Self:
-        if not (self.is_local or self.page_guarded or self.page_token):
+        if not (is_local(self.page_host) or self.page_guarded or self.page_token):
             raise ValueError(
                 f"page-host {self.page_host} lets other machines in: set page-token (ACTUM_PAGE_TOKEN) to "
                 f"{SHORTEST_TOKEN} characters or more, as 'openssl rand -hex 16' prints"
             )
         return self
-
-
-def _is_address(text: str) -> bool:
-    try:
-        ip_address(text)
-    except ValueError:
-        return False
-    return True

@@ -14,20 +14,25 @@ if sys.platform != "win32":
 
 UNFINISHED = ".part"
 """Ending of files that are still being written. A recording that a killed process has left is readable up to there."""
+PRIVATE_FOLDER = 0o700
+"""The mode of a new folder that holds secrets, or what people look like and do: nobody but its owner enters it."""
+USUAL_MODE = 0o666
+"""What a file's mode is without the umask."""
 LONGEST_STEM = 40
 """Characters of a file's name in that of its unfinished one, whose name may not get too long for the file system."""
 
 
 @contextmanager
-def replaced(path: Path) -> Iterator[BinaryIO]:
+def replaced(path: Path, mode: int | None = None) -> Iterator[BinaryIO]:
     """Yield a file to write; once the block ends, it stands on the disk in place of `path`.
 
-    Where the block raises, `path` is as it was before.
+    Where the block raises, `path` is as it was before. With `mode` nobody whom it keeps out can read the file at any
+    moment, whatever the umask and the file before; without, the umask decides.
 
     Raises:
         OSError: the file cannot be written.
     """
-    with _temporary(path) as file:
+    with _temporary(path, mode) as file:
         yield file
         _stored(file).replace(path)
     store_names(path.parent)
@@ -47,11 +52,13 @@ def created(path: Path) -> Iterator[BinaryIO]:
 
 
 @contextmanager
-def _temporary(path: Path) -> Iterator[BinaryIO]:
+def _temporary(path: Path, mode: int | None = None) -> Iterator[BinaryIO]:
     """Yield a file beside another one; it is gone after the block unless it has got another name."""
     unfinished = path.with_name(f".{path.name[:LONGEST_STEM]}.{secrets.token_hex(4)}{UNFINISHED}")
     try:
-        with unfinished.open("xb") as file:
+        with open(unfinished, "xb", opener=lambda name, flags: os.open(name, flags, mode or USUAL_MODE)) as file:
+            if mode is not None and hasattr(os, "fchmod"):
+                os.fchmod(file.fileno(), mode)  # the umask may have taken away what the mode grants
             yield file
     finally:
         unfinished.unlink(missing_ok=True)
@@ -100,13 +107,13 @@ def claim(file: BinaryIO) -> bool:
     return True
 
 
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file, or leave the one that is there as it is.
+def write_whole(path: Path, content: bytes, mode: int | None = None) -> None:
+    """Write a file, with a mode as `replaced`, or leave the one that is there as it is.
 
     Raises:
         OSError: the file cannot be written.
     """
-    with replaced(path) as file:
+    with replaced(path, mode) as file:
         file.write(content)
 
 

@@ -3,14 +3,16 @@
 from collections.abc import Sequence
 
 import pytest
+import zenoh
 
 from action_fusion.node import ActionFusion
 from actum import keys
 from actum.keys import Topic
 from actum.node import replay
 from actum_deployer.access_control import TOLD, access_control, link_rules, rules
-from actum_deployer.roles import GATEWAY, IMAGES, PEOPLES, ROLES, SWITCH, VIEWER, Role, identity
+from actum_deployer.roles import BRIDGE, GATEWAY, IMAGES, PAGE, PEOPLES, ROBOT, ROLES, SWITCH, VIEWER, Role, identity
 from actum_model_trainer.teaching.trainer import ModelTrainer
+from conftest import NEEDS_ROS2_EXTRA
 from marker_tracker.node import MarkerTracker
 from node_cases import CASES, Case
 from pose_preprocessor.node import PosePreprocessor
@@ -22,9 +24,9 @@ NODES = (PosePreprocessor, SomClassifier, MarkerTracker, ActionFusion, ModelTrai
 EVERYBODY = [(role, "kinect0") for role in ROLES]
 
 
-def allowed(role: Role, flow: str, message: str) -> set[str]:
+def allowed(role: Role, flow: str, message: str, ros_domain: int | None = None) -> set[str]:
     """The key expressions on which a role may send (ingress) or receive (egress) a kind of message."""
-    own = [rule for rule in rules(role, "kinect0") if flow in rule["flows"] and message in rule["messages"]]
+    own = [rule for rule in rules(role, "kinect0", ros_domain) if flow in rule["flows"] and message in rule["messages"]]
     return {expression for rule in own for expression in rule["key_exprs"]}
 
 
@@ -52,7 +54,7 @@ def test_only_gateways_put_what_is_seen_and_images_go_to_whom_they_concern() -> 
 
 
 def test_who_marks_is_who_may_switch_and_the_classifier_that_finds() -> None:
-    assert {role.name for role in ROLES if keys.SEGMENT in role.puts} == {"switch", "page", "classifier"}
+    assert {role.name for role in ROLES if keys.SEGMENT in role.puts} == {"switch", "page", "classifier", "ros2"}
 
 
 def test_a_service_speaks_for_its_own_sensor_alone() -> None:
@@ -66,6 +68,15 @@ def test_a_viewer_says_nothing_and_asks_only_who_is_there() -> None:
         assert allowed(VIEWER, "ingress", kind) == set()
     assert not any("command" in expression for expression in allowed(VIEWER, "ingress", "query"))
     assert any("command" in expression for expression in allowed(SWITCH, "ingress", "query"))
+
+
+def test_the_page_asks_only_services_of_its_own_sensor_to_do_something() -> None:
+    for flow, message in (("ingress", "query"), ("egress", "reply"), ("ingress", "liveliness_query")):
+        about_sensors = {each for each in allowed(PAGE, flow, message) if not each.startswith("@/")}
+        assert about_sensors
+        assert all(each.startswith("actum/kinect0/") for each in about_sensors)
+    assert "actum/kinect0/command/**" in allowed(PAGE, "ingress", "query")
+    assert "actum/*/command/**" in allowed(SWITCH, "ingress", "query")
 
 
 @pytest.mark.parametrize("role", ROLES, ids=lambda role: role.name)
@@ -92,6 +103,33 @@ def test_people_are_known_by_certificate_and_user_and_routers_by_certificate() -
     with_user = {subject["id"] for subject in section["subjects"] if "usernames" in subject}
     assert with_user == {identity(role, "kinect0") for role in ROLES}
     assert {role.name for role in PEOPLES} <= with_user
+
+
+def test_the_bridge_to_ros_may_put_and_read_what_its_table_says_and_a_robot_the_other_side() -> None:
+    pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
+    from ros2_bridge.bridge import Ros2Bridge
+    from ros2_bridge.settings import Settings
+
+    bridge = Ros2Bridge(Settings(ros_domain_id=7))
+    assert {*bridge.inputs} == {*BRIDGE.reads}
+    node = bridge.foreign_node("5e55")
+    for topics, ours, theirs in ((node.publishes, "ingress", "egress"), (node.subscribes, "egress", "ingress")):
+        for topic in topics:
+            key = zenoh.KeyExpr(topic.key)
+            for role, flow, other in ((BRIDGE, ours, theirs), (ROBOT, theirs, ours)):
+                assert any(zenoh.KeyExpr(each).includes(key) for each in allowed(role, flow, "put", 7))
+                assert not any(zenoh.KeyExpr(each).intersects(key) for each in allowed(role, other, "put", 7))
+                assert not any(zenoh.KeyExpr(each).intersects(key) for each in allowed(role, flow, "put", 0))
+    for token in (node.token, *(topic.token for topic in (*node.publishes, *node.subscribes))):
+        key = zenoh.KeyExpr(token)
+        assert any(zenoh.KeyExpr(each).includes(key) for each in allowed(BRIDGE, "ingress", "liveliness_token", 7))
+
+
+def test_a_robot_has_nothing_of_ours_and_without_a_bridge_nothing_at_all() -> None:
+    every = {each for rule in rules(ROBOT, "", 0) for each in rule["key_exprs"]}
+    assert every
+    assert not any(each.startswith("actum/") for each in every)
+    assert [*rules(ROBOT, "")] == []
 
 
 @pytest.mark.parametrize("cross", [False, True])

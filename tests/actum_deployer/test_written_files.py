@@ -102,7 +102,10 @@ def test_only_the_router_is_reached_from_elsewhere(written: Path) -> None:
 
 def test_a_unit_for_each_container_starts_the_same(written: Path) -> None:
     for host in ("camera", "compute"):
-        units = {file.stem.removeprefix("actum-"): file.read_text() for file in (written / host / "systemd").iterdir()}
+        units = {
+            file.stem.removeprefix("actum-"): file.read_text()
+            for file in (written / host / "systemd").glob("*.service")
+        }
         services = compose(written, host)
         assert units.keys() == services.keys()
         for name, text in units.items():
@@ -135,6 +138,14 @@ def test_several_sensors_on_a_host_keep_apart(tmp_path: Path) -> None:
     for setting in ("ACTUM_SENSOR", "ACTUM_MODEL", "ACTUM_CREDENTIALS"):
         values = [services[f"som_classifier-kinect{n}"]["environment"][setting] for n in (0, 1)]
         assert values[0] != values[1]
+    for program in ("som_classifier", "action_fusion", "model_trainer"):
+        mounts = [
+            {mount.split(":")[1]: mount.split(":")[0] for mount in services[f"{program}-kinect{n}"]["volumes"]}
+            for n in (0, 1)
+        ]
+        kept = [services[f"{program}-kinect{n}"]["environment"].get("ACTUM_STATE") for n in (0, 1)]
+        assert all(path is None or path in mounted for path, mounted in zip(kept, mounts, strict=True)), program
+        assert {*mounts[0].values()}.isdisjoint(mounts[1].values()), program
     pages = [services[f"web_dashboard-kinect{n}"]["ports"] for n in (0, 1)]
     assert pages == [["127.0.0.1:8080:8080"], ["127.0.0.1:8081:8081"]]
 

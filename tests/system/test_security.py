@@ -221,6 +221,22 @@ def test_a_viewer_cannot_stand_in_for_a_service(deployment: Deployed, third: Thi
             assert client.infos() == []
 
 
+def test_a_page_asks_the_services_of_its_own_sensor_and_no_others(tmp_path: Path) -> None:
+    with deployed(tmp_path, sensors=("kinect0", "kinect1")) as two:
+        for sensor in ("kinect0", "kinect1"):
+            two.start("pose_preprocessor", "compute", sensor=sensor)
+        with two.client("switch", "compute", "kinect1") as switch:
+            wait_until(lambda: len(switch.infos()) == 1, "the other sensor's service is there")
+            assert switch.ask("pose_preprocessor", "parameters")
+        with two.client("page.kinect0", "compute", "kinect0") as page:
+            assert page.ask("pose_preprocessor", "parameters")
+        with two.client("page.kinect0", "compute", "kinect1") as page:
+            assert page.infos() == []
+            assert page.alive() == []
+            with pytest.raises(NotAnsweredError):
+                page.ask("pose_preprocessor", "parameters", timeout_s=REFUSED_S)
+
+
 def test_who_may_ask_services_is_answered_and_who_may_not_is_not(deployment: Deployed, third: Third) -> None:
     service = deployment.start("pose_preprocessor", "compute")
     try:

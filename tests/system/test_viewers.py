@@ -15,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
-from urllib.request import urlopen
+from urllib.request import Request, urlopen
 
 import psutil
 import pytest
@@ -72,13 +72,24 @@ def listening_on(port: int) -> set[str]:
     return {address.ip for address in sockets if address.port == port}
 
 
-async def heard(address: str, enough: Callable[[dict[str, list[Any]]], bool]) -> dict[str, list[Any]]:
+def may_read(address: str, port: int, origin: str) -> bool:
+    """Tell whether Rerun's server lets scripts of an origin read what it answers."""
+    asked = {"Origin": origin, "Access-Control-Request-Method": "POST", "Access-Control-Request-Headers": "x-grpc-web"}
+    method = "/rerun.sdk_comms.v1alpha1.MessageProxyService/ReadMessages"
+    with urlopen(Request(f"http://{address}:{port}{method}", headers=asked, method="OPTIONS")) as answer:
+        return answer.headers["access-control-allow-origin"] in (origin, "*")
+
+
+async def heard(
+    address: str, enough: Callable[[dict[str, list[Any]]], bool], origin: str | None = None
+) -> dict[str, list[Any]]:
     """Subscribe to everything that a server advertises; return their messages by topic."""
     from websockets.asyncio.client import connect
 
     topics: dict[int, dict[str, Any]] = {}
     found: dict[str, list[Any]] = {}
-    async with connect(address, subprotocols=[SUBPROTOCOL], max_size=None) as client, asyncio.timeout(PATIENCE_S):
+    options: Any = {"subprotocols": [SUBPROTOCOL], "max_size": None, "origin": origin}
+    async with connect(address, **options) as client, asyncio.timeout(PATIENCE_S):
         while not enough(found):
             sent = await client.recv()
             if isinstance(sent, str):
@@ -120,7 +131,12 @@ def test_foxglove_is_served_the_live_scene_on_this_machine_only(running: System)
     log_time_ns, _, truth = found["/actum/kinect0/truth"][0]
     assert json.loads(truth)["stamp_ns"] == log_time_ns
     assert listening_on(int(address.rpartition(":")[2])) == {"127.0.0.1"}
+    for _ in range(2):
+        with pytest.raises(Exception, match="HTTP 403"):
+            listen(heard(address, bool, origin="https://app.foxglove.dev"))
     serving.terminate()
+    refusal = "refused: a page of 'https://app.foxglove.dev' may not come in here: --origin can name it"
+    assert serving.said().count(refusal) == 1
     assert re.search(r"\d+ messages served", serving.said())
 
 
@@ -187,7 +203,7 @@ def test_rerun_verifies_and_reads_what_was_written_of_the_live_scene(running: Sy
 
 
 @needs_rerun
-def test_rerun_is_served_on_this_machine_only_without_usage_data_and_leaves_nothing(
+def test_rerun_is_served_at_a_loopback_address_nobody_guesses_without_usage_data_and_leaves_nothing(
     running: System, scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
@@ -196,10 +212,14 @@ def test_rerun_is_served_on_this_machine_only_without_usage_data_and_leaves_noth
     ports = ("--port", str(port), "--web-port", str(web_port))
     viewing = running.start("actum_command", "view", "--web", *ports, str(scene))
     wait_until(lambda: "messages sent to Rerun" in viewing.said(), "the recording is sent")
-    assert f"http://127.0.0.1:{web_port}/?url=rerun%2Bhttp%3A%2F%2F127.0.0.1%3A{port}%2Fproxy" in viewing.said()
-    with urlopen(f"http://127.0.0.1:{web_port}/") as page:
+    [address] = listening_on(port)
+    assert address.startswith("127.") and address != "127.0.0.1"
+    assert listening_on(web_port) == {address}
+    assert f"http://{address}:{web_port}/?url=rerun%2Bhttp%3A%2F%2F{address}%3A{port}%2Fproxy" in viewing.said()
+    with urlopen(f"http://{address}:{web_port}/") as page:
         assert b"rerun" in page.read().lower()
-    assert listening_on(port) == listening_on(web_port) == {"127.0.0.1"}
+    assert may_read(address, port, f"http://{address}:{web_port}")
+    assert not may_read(address, port, "http://evil.example")
     viewing.terminate()
     assert viewing.process.returncode == 0
     assert listening_on(port) == listening_on(web_port) == set()
@@ -223,7 +243,7 @@ def test_the_end_of_the_viewer_ends_the_command(running: System) -> None:
 @needs_rerun
 def test_a_viewer_that_cannot_start_says_why(running: System, scene: Path) -> None:
     with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
+        taken.bind(("", 0))  # on every address, as that of the viewer is not known
         taken.listen()
         refused = running.actum("view", "--web", "--port", str(taken.getsockname()[1]), str(scene))
     assert refused.returncode == 1

@@ -1,5 +1,6 @@
 """`actum deploy`: what the hosts of a lab need, each a folder, with credentials that their routers ask for."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -19,10 +20,12 @@ app = PlainTyper(
 DirArgument = Annotated[Path, typer.Argument(metavar="DIR", help="the deployment's folder; keep it private")]
 YEAR = 365
 """How long certificates are valid (days) where nothing else is said."""
+MOST_DAYS = 3650
+"""How long they can be: no longer than their authority."""
 
 
 @app.command()
-def init(
+def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
     folder: DirArgument,
     hosts: Annotated[
         str,
@@ -35,6 +38,10 @@ def init(
     passwords: Annotated[bool, typer.Option("--passwords", help="ask for user names and passwords as well")] = False,
     images: Annotated[bool, typer.Option("--images", help="let images go from one host to another")] = False,
     simulate: Annotated[bool, typer.Option("--simulate", help="the simulated scene in the place of cameras")] = False,
+    ros2: Annotated[
+        int | None,
+        typer.Option(metavar="DOMAIN", min=0, max=232, help="the bridge to ROS 2 as well, in this domain: 0 is usual"),
+    ] = None,
     not_secured: Annotated[
         bool, typer.Option("--open", help="ask nobody who they are, encrypt nothing: on a network you trust")
     ] = False,
@@ -46,7 +53,8 @@ def init(
         placed = hosts_of(hosts, sensors)
     except (SettingsError, InvalidKeyError) as error:
         fail(str(error))
-    deployment = Deployment(placed, not not_secured, passwords, images, one_router, simulate)
+    revoked = _revoked_before(folder)
+    deployment = Deployment(placed, not not_secured, passwords, images, one_router, simulate, revoked, ros2)
     _write(deployment, folder, YEAR)
     for host in placed:
         say(f"{host.name}: copy {folder / host.name} to {host.address}, and do there what its README.md says")
@@ -58,11 +66,19 @@ def init(
 @app.command()
 def rotate(
     folder: DirArgument,
-    days: Annotated[float, typer.Option(min=0, help="how long they are valid (days)")] = YEAR,
+    days: Annotated[float, typer.Option(min=0, max=MOST_DAYS, help="how long they are valid (days)")] = YEAR,
+    revoke: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="have routers allow nothing to the old ones of a folder, such as viewer"),
+    ] = None,
 ) -> None:
-    """Renew all certificates and their keys; copied to the hosts, they are used without a stop."""
+    """Renew all certificates and their keys; copied to the hosts, they are used without a stop.
+
+    With --revoke, once for each folder of credentials that was lost or stolen, routers allow nothing any more to who
+    shows the old certificate, as soon as they have their new router.json5.
+    """
     try:
-        deployment = Deployment.load(folder)
+        deployment = Deployment.load(folder).revoking(revoke or [])
     except SettingsError as error:
         fail(str(error))
     if not deployment.secured:
@@ -70,6 +86,17 @@ def rotate(
     _write(deployment, folder, days)
     names = ", ".join(host.name for host in deployment.hosts)
     say(f"copy the folders of {names}, and those of people, to their machines again")
+    if revoke:
+        say("revoked once every host has its router.json5; routers in containers: docker compose restart router")
+
+
+def _revoked_before(folder: Path) -> Mapping[str, int]:
+    with needs_extra("deploy"):
+        from actum_deployer.writing import revoked_before
+    try:
+        return revoked_before(folder)
+    except SettingsError as error:
+        fail(str(error))
 
 
 def _write(deployment: Deployment, folder: Path, days: float) -> None:

@@ -3,6 +3,7 @@
 from pathlib import Path
 from threading import Event as Flag
 from typing import Annotated
+from urllib.parse import urlsplit
 
 import typer
 
@@ -15,6 +16,7 @@ from actum_command.commands.viewed_streams import RecordingArgument, refuse_with
 from actum_command.viewers.showing import Showing
 
 POLL_S = 0.1  # how soon a stop takes effect while nobody has subscribed
+MOST_REFUSALS = 20  # distinct refusals that are printed
 SUBSCRIBING_S = 0.5  # from a client's first subscription to its last: a viewer's panels subscribe one after another
 
 
@@ -24,20 +26,26 @@ def foxglove(
         str, typer.Option(help="the address to serve; others than 127.0.0.1 show people to your network")
     ] = ("127.0.0.1"),
     port: Annotated[int, typer.Option(min=0, max=65535, help="0 for any that is free")] = 8765,
+    origin: Annotated[
+        list[str] | None,
+        typer.Option(help="a site whose pages may connect, such as https://app.foxglove.dev; again for more"),
+    ] = None,
     speed: Annotated[float, typer.Option(min=0.01, help="of a recording: 1 is the pace of its capture")] = 1.0,
 ) -> None:
     """Serve live streams, or play a recording, to Foxglove: frames, people, objects, images, events; until Ctrl-C.
 
+    Programs of this machine may connect, websites may not unless --origin names them: who is refused is printed.
     A recording begins once somebody has subscribed. To go to and fro in one, see actum export.
     """
     refuse_without("foxglove", "foxglove-sdk", "foxglove")
     from actum_command.viewers.foxglove_sinks import ServerError, served
 
+    origins = [_origin(each) for each in origin or []]
     stop, subscribed = stop_on_signals(), Flag()
     try:
         with (
             streams_of(recording, Pace(speed)) as streams,
-            served(streams.sensors, host, port, subscribed) as (stream, address),
+            served(streams.sensors, host, port, subscribed, origins, _Refusals()) as (stream, address),
         ):
             say(f"in Foxglove open a connection to {address}; Ctrl-C ends it")
             if recording is not None:
@@ -47,6 +55,30 @@ def foxglove(
             tell_shown(showing, "served")
     except ServerError as error:
         fail(str(error))
+
+
+class _Refusals:
+    """Prints each refusal once, and no more than a few: a website may try again and again."""
+
+    def __init__(self) -> None:
+        self._told: set[str] = set()
+
+    def __call__(self, refusal: str) -> None:
+        if refusal not in self._told and len(self._told) < MOST_REFUSALS:
+            self._told.add(refusal)
+            say(f"refused: {refusal}", style="yellow")
+
+
+def _origin(text: str) -> str:
+    """Return an origin as browsers write it; fail where it stands for no site, or for any."""
+    site = urlsplit(text)
+    if (
+        site.scheme not in ("http", "https", "file")
+        or site.path.strip("/")
+        or bool(site.netloc) == (site.scheme == "file")
+    ):
+        fail(f"--origin {text}: write what is printed for a refused page, such as https://app.foxglove.dev")
+    return f"{site.scheme}://{site.netloc.lower()}"
 
 
 def _wait_for_subscriber(subscribed: Flag, stop: Flag) -> None:

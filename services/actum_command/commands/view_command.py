@@ -55,13 +55,14 @@ def _opened(
     sensors: list[str], output: Path | None, web: bool, port: int, web_port: int, stop: Flag
 ) -> "Iterator[RerunStream]":
     """Open what the options name: a file, a page, or a window, whose end sets `stop`."""
-    from actum_command.viewers.rerun_program import page, saved, viewer
+    from actum_command.viewers.rerun_program import own_address, page, saved, viewer
 
     if output is not None:
         with saved(output, sensors) as stream:
             yield stream
         return
-    with viewer(sensors, port, web_port if web else None, stop) as stream:
+    address = own_address()
+    with viewer(sensors, address, port, web_port if web else None, stop) as stream:
         if web:
-            say(f"open {page(port, web_port)}; Ctrl-C ends it")
+            say(f"open {page(address, port, web_port)}; Ctrl-C ends it")
         yield stream

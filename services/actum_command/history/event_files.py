@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
+from actum.atomic_file import PRIVATE_FOLDER
 from actum.messages import Message
 from actum.node import SECOND_NS
 from actum.recorder import StoredRecorder
@@ -91,7 +92,7 @@ class EventFiles:
         Raises:
             OSError: the folder cannot be read or written.
         """
-        self._folder.mkdir(parents=True, exist_ok=True)
+        self._folder.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
         for part in self._files(finished=False):
             file = part.with_suffix("")
             try:

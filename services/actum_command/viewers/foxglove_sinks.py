@@ -1,15 +1,15 @@
 """Serves messages to Foxglove over a WebSocket, or writes them to a file that it opens."""
 
+import json
+import logging
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import foxglove
-from foxglove import channels
 from foxglove.messages import FrameTransforms
-from foxglove.websocket import ServerListener
 from pydantic_core import to_json
 
 from actum.atomic_file import created
@@ -17,18 +17,28 @@ from actum.messages import Message
 from actum.recorder import METADATA
 from actum_command.viewers.foxglove_messages import CONTENTS, TRANSFORMS, FoxgloveMessages, below
 from actum_command.viewers.foxglove_schemas import foxglove_schema
+from actum_command.viewers.foxglove_server import Channel, FoxgloveServer
+from web_dashboard.admission import FORBIDDEN, MISDIRECTED, Rule
+from web_dashboard.server import PageServer, socket_at
+
+log = logging.getLogger("actum")
+
+ADVICE = {FORBIDDEN: "--origin can name it", MISDIRECTED: "open the address that is printed"}
+"""What to do where somebody is refused wrongly."""
+Log = Callable[[bytes, int], object]
+"""Puts a payload with its time (ns) on a channel."""
 
 
 class FoxgloveStream:
-    """Logs messages to all that listen to a context of Foxglove's, at their stamps.
+    """Puts messages on channels, at their stamps.
 
     The topics of `sensors` are there from the start, so that a client has subscribed before the first message.
     """
 
-    def __init__(self, context: foxglove.Context, sensors: Sequence[str] = ()) -> None:
-        self._context = context
+    def __init__(self, opened: Callable[[Channel], Log], sensors: Sequence[str] = ()) -> None:
+        self._opened = opened
         self._messages = FoxgloveMessages()
-        self._channels: dict[tuple[str, type], Any] = {}
+        self._channels: dict[tuple[str, type], Log] = {}
         if sensors:
             self._channel(TRANSFORMS, FrameTransforms)
         for sensor in sensors:
@@ -38,33 +48,27 @@ class FoxgloveStream:
     def show(self, message: Message) -> None:
         """Log one message."""
         for put in self._messages.of(message):
-            channel = self._channel(put.topic, type(put.content))
-            channel.log(_as_json(message) if put.content is message else put.content, log_time=message.stamp_ns)
+            put_on = self._channel(put.topic, type(put.content))
+            put_on(_as_json(message) if put.content is message else put.content.encode(), message.stamp_ns)
 
-    def _channel(self, topic: str, kind: type) -> Any:
+    def _channel(self, topic: str, kind: type) -> Log:
         """Return the channel of a topic: one of Foxglove's own kinds, or of JSON with the schema of our message."""
         if (topic, kind) not in self._channels:
-            self._channels[topic, kind] = (
-                foxglove.Channel(topic, schema=foxglove_schema(kind), context=self._context)
-                if issubclass(kind, Message)
-                else getattr(channels, f"{kind.__name__}Channel")(topic, context=self._context)
-            )
+            self._channels[topic, kind] = self._opened(_described(topic, kind))
         return self._channels[topic, kind]
+
+
+def _described(topic: str, kind: Any) -> Channel:
+    if issubclass(kind, Message):
+        schema = foxglove_schema(kind)
+        return Channel(topic, "json", schema["title"], "jsonschema", json.dumps(schema).encode())
+    own = kind.get_schema()
+    return Channel(topic, own.encoding, own.name, own.encoding, own.data)
 
 
 def _as_json(message: Message) -> bytes:
     """Write a message as `actum watch --json` does: bytes as URL-safe base64, which Foxglove reads, too."""
     return to_json(message.model_dump(), bytes_mode="base64", inf_nan_mode="null")
-
-
-class _FirstSubscriber(ServerListener):  # type: ignore[misc]  # the package may be absent
-    """Sets a flag once somebody subscribes to anything."""
-
-    def __init__(self, subscribed: threading.Event) -> None:
-        self._subscribed = subscribed
-
-    def on_subscribe(self, client: Any, channel: Any) -> None:
-        self._subscribed.set()
 
 
 class ServerError(RuntimeError):
@@ -73,25 +77,31 @@ class ServerError(RuntimeError):
 
 @contextmanager
 def served(
-    sensors: Sequence[str], host: str, port: int, subscribed: threading.Event
+    sensors: Sequence[str],
+    host: str,
+    port: int,
+    subscribed: threading.Event,
+    origins: Sequence[str] = (),
+    refused: Callable[[str], object] = lambda _: None,
 ) -> Iterator[tuple[FoxgloveStream, str]]:
     """Return a context in which messages are served, with the address; `subscribed` is set with the first subscriber.
+
+    Programs may connect, and pages of the sites `origins`; `refused` is called with a line for each other one.
 
     Raises:
         ServerError: the address cannot be bound.
     """
-    context = foxglove.Context()
-    stream = FoxgloveStream(context, sensors)
+    server = FoxgloveServer(subscribed)
+    stream = FoxgloveStream(server.open, sensors)
     try:
-        server = foxglove.start_server(
-            name="actum", host=host, port=port, context=context, server_listener=_FirstSubscriber(subscribed)
-        )
-    except (RuntimeError, OSError, ValueError) as error:
+        listening = socket_at(host, port)
+    except OSError as error:
         raise ServerError(f"{host}:{port} cannot be served ({error}): name another --port or --host") from None
-    try:
-        yield stream, f"ws://{host}:{server.port}"
-    finally:
-        server.stop()
+    serving = PageServer(server.application(Rule(host, origins=origins, advice=ADVICE), refused), listening, host)
+    with serving.serving():
+        yield stream, serving.address.replace("http://", "ws://").rstrip("/")
+    if server.left_out:
+        log.warning("%d messages were left out for clients that took none for too long", server.left_out)
 
 
 @contextmanager
@@ -108,4 +118,10 @@ def written(path: Path, metadata: dict[str, str]) -> Iterator[FoxgloveStream]:
     path.parent.mkdir(parents=True, exist_ok=True)
     with created(path) as file, foxglove.open_mcap(file, context=context) as writer:
         writer.write_metadata(METADATA, metadata)
-        yield FoxgloveStream(context)
+        yield FoxgloveStream(lambda channel: _in_file(channel, context))
+
+
+def _in_file(channel: Channel, context: foxglove.Context) -> Log:
+    schema = foxglove.Schema(name=channel.schema_name, encoding=channel.schema_encoding, data=channel.schema)
+    written_to = foxglove.Channel(channel.topic, schema=schema, message_encoding=channel.encoding, context=context)
+    return lambda payload, time_ns: written_to.log(payload, log_time=time_ns)

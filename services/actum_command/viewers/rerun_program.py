@@ -1,6 +1,11 @@
-"""Runs the Rerun viewer, bound to this machine, and sends it messages; or writes them to a file of Rerun's."""
+"""Runs the Rerun viewer, bound to this machine, and sends it messages; or writes them to a file of Rerun's.
+
+Rerun's server refuses pages of other origins, but not names that are made to point to it (DNS rebinding): a website
+that guesses its address may read it. So it is served on a loopback address that nobody can guess.
+"""
 
 import os
+import secrets
 import socket
 import subprocess
 import threading
@@ -18,7 +23,7 @@ from actum.messages import Message
 from actum_command.viewers.rerun_entries import TIMELINE, RerunEntries, layout
 
 LOCAL = "127.0.0.1"
-"""The only address served: by default Rerun's own functions and program serve all the machine's."""
+"""What is served where a system has no other loopback addresses, as macOS."""
 START_S = 30.0
 """How long (s) the program may take to listen: it is read from disk, 150 MB."""
 POLL_S = 0.05
@@ -62,16 +67,20 @@ def saved(path: Path, sensors: Sequence[str]) -> Iterator[RerunStream]:
 
 
 @contextmanager
-def viewer(sensors: Sequence[str], port: int, web_port: int | None, ended: threading.Event) -> Iterator[RerunStream]:
+def viewer(
+    sensors: Sequence[str], address: str, port: int, web_port: int | None, ended: threading.Event
+) -> Iterator[RerunStream]:
     """Return a context in which Rerun's program runs: its window, or with `web_port` a page. `ended` is set with it.
+
+    Only `address` is served: by default Rerun's own functions and program serve all the machine's.
 
     Raises:
         ViewerError: a port is taken, or the program ends at once.
     """
-    with _running(port, web_port) as process:
+    with _running(address, port, web_port) as process:
         threading.Thread(target=_tell_end, args=(process, ended), daemon=True).start()
         recording = rr.RecordingStream("actum")
-        recording.connect_grpc(proxy(port), default_blueprint=layout(sensors))
+        recording.connect_grpc(proxy(address, port), default_blueprint=layout(sensors))
         try:
             yield RerunStream(recording)
         finally:
@@ -81,33 +90,45 @@ def viewer(sensors: Sequence[str], port: int, web_port: int | None, ended: threa
 
 
 @contextmanager
-def _running(port: int, web_port: int | None) -> Iterator["subprocess.Popen[bytes]"]:
-    """Run the program, bound to this machine, from when it listens."""
-    page_options = [] if web_port is None else ["--serve-web", "--web-viewer-port", str(web_port)]
+def _running(address: str, port: int, web_port: int | None) -> Iterator["subprocess.Popen[bytes]"]:
+    """Run the program, bound to an address, from when it listens."""
+    own_page = ["--cors-allow-origin", f"http://{address}:{web_port}"]
+    page_options = [] if web_port is None else ["--serve-web", "--web-viewer-port", str(web_port), *own_page]
     ports = [port] if web_port is None else [port, web_port]
     for needed in ports:
-        if _is_listened_on(needed):
+        if _is_listened_on(address, needed):
             raise ViewerError(f"something listens on port {needed} already: end it, or name another port")
     process = subprocess.Popen(
-        [_program(), "--bind", LOCAL, "--port", str(port), "--expect-data-soon", *page_options],
+        [_program(), "--bind", address, "--port", str(port), "--expect-data-soon", *page_options],
         env={**os.environ, **QUIET},
         stdin=subprocess.DEVNULL,
     )
     try:
-        _wait_until_listening(process, ports)
+        _wait_until_listening(process, address, ports)
         yield process
     finally:
         _stop(process)
 
 
-def proxy(port: int) -> str:
-    """Return the address at which the program takes data."""
-    return f"rerun+http://{LOCAL}:{port}/proxy"
+def own_address() -> str:
+    """Return a loopback address that no website can guess: one of sixteen million, where the system has them."""
+    address = ".".join(["127", *(str(1 + secrets.randbelow(254)) for _ in range(3))])
+    with socket.socket() as probe:
+        try:
+            probe.bind((address, 0))
+        except OSError:
+            return LOCAL
+    return address
 
 
-def page(port: int, web_port: int) -> str:
+def proxy(address: str, port: int) -> str:
+    """Return where the program takes data."""
+    return f"rerun+http://{address}:{port}/proxy"
+
+
+def page(address: str, port: int, web_port: int) -> str:
     """Return the address of the page that shows the data."""
-    return f"http://{LOCAL}:{web_port}/?url={quote(proxy(port), safe='')}"
+    return f"http://{address}:{web_port}/?url={quote(proxy(address, port), safe='')}"
 
 
 def _program() -> Path:
@@ -117,14 +138,14 @@ def _program() -> Path:
     return next(folder / name for name in names if (folder / name).exists())
 
 
-def _is_listened_on(port: int) -> bool:
+def _is_listened_on(address: str, port: int) -> bool:
     with socket.socket() as probe:
-        return probe.connect_ex((LOCAL, port)) == 0
+        return probe.connect_ex((address, port)) == 0
 
 
-def _wait_until_listening(process: "subprocess.Popen[bytes]", ports: Sequence[int]) -> None:
+def _wait_until_listening(process: "subprocess.Popen[bytes]", address: str, ports: Sequence[int]) -> None:
     deadline_s = time.monotonic() + START_S
-    while not all(map(_is_listened_on, ports)):
+    while not all(_is_listened_on(address, port) for port in ports):
         if process.poll() is not None:
             why = "is there a screen? --web needs none"
             raise ViewerError(f"the Rerun viewer ended at once (code {process.returncode}): {why}")

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from actum import keys
+from actum.atomic_file import PRIVATE_FOLDER
 from actum.commands import Command, NoFields
 from actum.messages import Message, Segment, Skeleton, Training
 from actum.node import SECOND_NS, Counters, Tick
@@ -69,6 +70,7 @@ class ModelTrainer:
         """
         folder = settings.trainer_data
         try:
+            folder.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
             return cls(folder, settings.model or folder / "model.npz", settings.sensor, JobProcess, time.time_ns)
         except OSError as error:
             raise ValueError(f"{folder} cannot be used ({error}): name another in ACTUM_TRAINER_DATA") from None

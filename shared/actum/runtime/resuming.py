@@ -3,6 +3,7 @@
 import logging
 import math
 
+from actum.atomic_file import PRIVATE_FOLDER
 from actum.codec import DecodeError, Frame, decode
 from actum.messages import Message
 from actum.node import Counters, Remembering
@@ -22,7 +23,7 @@ def check_state_folder(settings: ServiceSettings) -> None:
     """
     try:
         if settings.state is not None:
-            settings.state.mkdir(parents=True, exist_ok=True)
+            settings.state.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
     except OSError as error:
         raise SettingsError(f"state: the folder {settings.state} cannot be made: {error.strerror}") from None
 
