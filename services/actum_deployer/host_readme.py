@@ -47,17 +47,17 @@ sudo cp {units}/*.service /etc/systemd/system/ && sudo systemctl daemon-reload
 sudo systemctl enable --now {unit_names}
 ```
 
-Each program runs as a user of its own, who can read its credentials and no others. Do the third line again whenever you
-have copied credentials or settings here: it hands them over. Models, recordings of what was taught, and the last
-answers lie in a folder for each program below `/var/lib/actum`. Users and owners are tested with systemd's own tools,
-and `systemd-analyze verify` accepts the units, but no systemd has run them yet.
+Each program runs as a user of its own, who can read its credentials and no others. Whenever you have copied credentials
+or settings here again, `sudo systemd-tmpfiles --create actum.conf` hands them over. Models, recordings of what was
+taught, and the last answers lie in a folder for each program below `/var/lib/actum`. Users and owners are tested with
+systemd's own tools, and `systemd-analyze verify` accepts the units, but no systemd has run them yet.
 
 ## Settings
 
 `{settings}` holds those of yours, for both ways; it is not written again. All programs of this host get them. What only
 one may have, such as the page's token or a camera's password, goes into `NAME.env` with that service's name, such as
-`web_dashboard.env`, mode 0600. Files that it names, such as a pose model, a
-calibration or a scene file, lie in `{files}`, which is `{installed}/{files}` to the services.
+`web_dashboard.env`, mode 0600. Files that the settings name, such as a pose model, a calibration or a scene file, lie
+in `{files}`, which is `{installed}/{files}` to the services.
 """
 
 SECURED = """\
