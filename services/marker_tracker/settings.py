@@ -11,7 +11,7 @@ from actum.settings import ServiceSettings
 class ObjectSpec(BaseModel):
     """An object that carries a marker: its name, and its marker's side in metres if that is not `marker_size_m`."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     name: str
     size_m: float | None = Field(None, gt=0, le=10)
