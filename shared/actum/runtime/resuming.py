@@ -2,7 +2,10 @@
 
 import logging
 import math
+import os
+import threading
 
+from actum.atomic_file import store_names
 from actum.codec import DecodeError, Frame, decode
 from actum.messages import Message
 from actum.node import Counters, Remembering
@@ -32,6 +35,8 @@ class Resumption:
 
     def __init__(self, node: Remembering, journal: Journal, counters: Counters) -> None:
         self._node, self._journal, self._counters = node, journal, counters
+        self._lock = threading.Lock()
+        self._writes = True
 
     @classmethod
     def of(cls, node: object, name: str, settings: ServiceSettings, counters: Counters) -> "Resumption | None":
@@ -42,7 +47,8 @@ class Resumption:
         try:
             return cls(node, Journal(path), counters)
         except OSError as error:
-            _report(counters, error)
+            counters.reject("unwritable_state", f"{path}: {error.strerror}")
+            log.warning("answers are not written down, so that a restart may give others: %s", error)
             return None
 
     def resume(self, outbox: Outbox, vacant_s: float) -> Reach:
@@ -62,16 +68,45 @@ class Resumption:
             return Reach(recent_s, RESUMED_S, depth=None)
         return Reach(min(self._journal.age_s + HISTORY_S, RESUMED_S), RESUMED_S, RESUMED_FRAMES_S, depth=None)
 
+    def store(self) -> None:
+        """Have stored on the disk what was written; answers do not wait for it, for a disk may take its time.
+
+        Raises:
+            OSError: that failed.
+        """
+        with self._lock:
+            written = self._journal.unstored()
+        if written is not None:
+            try:
+                os.fsync(written)
+            finally:
+                os.close(written)
+            store_names(self._journal.folder)
+
     def close(self) -> None:
-        """Close the journal."""
-        self._journal.close()
+        """Close the journal; where its end cannot be stored, that is counted."""
+        try:
+            with self._lock:
+                self._journal.close()
+        except OSError as error:
+            self.report(error)
+
+    def report(self, error: OSError) -> None:
+        """Count that answers cannot be written, and log it where they could be before."""
+        reason = f"{error.filename or 'the journal'}: {error.strerror}"
+        self._counters.reject("unwritable_state", reason)
+        if self._writes:
+            log.warning("answers are not written down, so that a restart may give others: %s", reason)
+        self._writes = False
 
     def _keep(self, frame: Frame) -> None:
-        """Write down an answer; where that fails it is put all the same, and the failure is told."""
+        """Write down an answer; where that fails it is put all the same, and the failure is counted."""
         try:
-            self._journal.add(frame)
+            with self._lock:
+                self._journal.add(frame)
+            self._writes = True
         except OSError as error:
-            _report(self._counters, error)
+            self.report(error)
 
 
 def _decoded(answer: WrittenAnswer) -> Message | None:
@@ -80,8 +115,3 @@ def _decoded(answer: WrittenAnswer) -> Message | None:
         return decode(answer.frame.key, answer.frame.payload, answer.frame.encoding)
     except DecodeError:
         return None
-
-
-def _report(counters: Counters, error: OSError) -> None:
-    counters.reject("unwritable_state", f"{error.filename or 'the journal'}: {error.strerror}")
-    log.warning("answers are not written down, so that a restart may give others: %s", error)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import zenoh
 
-from actum.health import write_health
 from actum.runtime.credentials import CERTIFICATE, USERS, check, is_renewed, login_values, router_values
+from actum.runtime.health_file import HealthFile
 from actum.runtime.session import TRANSPORT, insert
 from actum.runtime.waiting import wait_for
 from actum.settings import SettingsError
@@ -57,11 +57,12 @@ def serve_router(
     Raises:
         SettingsError: the endpoint is taken, or the configuration or the credentials are refused.
     """
+    health = HealthFile(health_file)
     while not stop.is_set():
         session = _opened(listen, config_file, credentials, link)
         log.info("router %s listens on %s", session.zid(), listen or config_file)
         try:
-            _wait_for_renewal(session, credentials, health_file, stop)
+            _wait_for_renewal(session, credentials, health, stop)
         finally:
             session.close()
 
@@ -78,13 +79,12 @@ def _opened(listen: str | None, config_file: Path | None, credentials: Path | No
 
 
 def _wait_for_renewal(
-    session: zenoh.Session, credentials: Path | None, health_file: Path | None, stop: threading.Event
+    session: zenoh.Session, credentials: Path | None, health: HealthFile, stop: threading.Event
 ) -> None:
     """Wait until stopped, or until the folder holds another certificate that can be used; keep the health file."""
     shown = (credentials / CERTIFICATE).read_bytes() if credentials else b""
     while credentials is None or not is_renewed(credentials, shown):
-        if health_file is not None:
-            write_health(health_file, any(session.get(f"@/{session.zid()}/router", timeout=LOOK_S)))
+        health.write(any(session.get(f"@/{session.zid()}/router", timeout=LOOK_S)))
         if wait_for(stop, LOOK_S):
             return
     log.info("the certificate in %s was renewed: listening anew", credentials)
