@@ -5,7 +5,6 @@ import os
 import subprocess
 import sys
 import threading
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -14,8 +13,6 @@ from actum.runtime.parent import PARENT
 
 END_S = 2.0
 """How long (s) a job may take to end when it is told to, before it is killed."""
-ENDS = frozenset({"result", "error"})
-"""Fields of a job's last line."""
 LAST_WORDS = 400
 """Characters of what a job printed at the end, for one that died."""
 
@@ -104,18 +101,15 @@ class JobProcess:
         assert self._process.stdout is not None
         with self._process.stdout as lines:
             for line in lines:
-                with suppress(ValueError, RecursionError):  # what a library prints
-                    said = json.loads(line)
-                    if isinstance(said, dict) and (ENDS & said.keys() or said.keys() >= {"stage", "done"}):
-                        self._newest = said
+                try:
+                    self._newest = json.loads(line)
+                except ValueError:
+                    continue  # what a library prints
 
     def _how(self) -> str:
         code = self._process.returncode
         return f"signal {-code}" if code < 0 else f"exit code {code}"
 
     def _last_words(self) -> str:
-        try:
-            words = self._errors.read_text(errors="replace").strip()[-LAST_WORDS:]
-        except OSError as error:
-            return f"what it said cannot be read: {error}"
+        words = self._errors.read_text(errors="replace").strip()[-LAST_WORDS:]
         return words or "it said nothing"
