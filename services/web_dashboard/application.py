@@ -103,12 +103,14 @@ class Connection:
         await self._socket.accept()
         await self._socket.send_text(greeting)
         self._hub.join(self._mailbox)
-        sending = asyncio.create_task(self._send())
+        tasks = [asyncio.create_task(self._send()), asyncio.create_task(self._receive())]
         try:
-            await self._receive()
+            ended, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+            for task in ended:
+                task.result()  # a bug ends the connection and is logged; the page connects anew
         finally:
             self._hub.leave(self._mailbox)
-            for task in (sending, *self._waiting):
+            for task in (*tasks, *self._waiting):
                 task.cancel()
 
     async def _send(self) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Protocol, Self
@@ -43,6 +44,7 @@ from teaching import Teacher
 PREPROCESSOR, CLASSIFIER, _, FUSION = CASES
 SERVICES = Path(__file__).parents[2] / "services"
 OUTSIDE = "outside"
+FRAMES = 50
 
 
 class Asked(Protocol):
@@ -114,6 +116,7 @@ class Desk:
         )  # fmt: skip
         self._base = keys.commands_key(ServiceSettings().sensor, name)
         self._tick_ns = 0
+        self._frames = self.node.frames() if isinstance(self.node, DrivenSimulator) else iter(())
 
     def ask(self, command: str, payload: bytes, encoding: str) -> tuple[bool, dict[str, Any]]:
         question = Question(zenoh.KeyExpr(f"{self._base}/{command}"), encoding, zenoh.ZBytes(payload))
@@ -129,6 +132,9 @@ class Desk:
         if hasattr(self.node, "handle"):
             for message in self._messages():
                 self._put(message)
+        else:
+            for messages in islice(self._frames, FRAMES):
+                assert all(map(encode, messages))
         frame = encode(self._meter.status())
         decode(frame.key, frame.payload, frame.encoding)
         encode(self._meter.info())
