@@ -110,7 +110,7 @@ class Meter:
             joint_names=list(JOINTS),
             model=details.get("model"),
             calibration=details.get("calibration"),
-            host=socket.gethostname(),
+            host=encodable(socket.gethostname()),
             source=details.get("source"),
             rate_hz=float(details["rate_hz"]) if "rate_hz" in details else None,
             page=details.get("page"),
