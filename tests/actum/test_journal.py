@@ -2,11 +2,13 @@
 
 import errno
 import shutil
+import zlib
 from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import BinaryIO, NoReturn
 
+import msgpack
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -17,6 +19,7 @@ from actum.node import Counters
 from actum.runtime import journal as journals
 from actum.runtime.journal import Journal
 from actum.runtime.resuming import Resumption
+from actum.settings import ServiceSettings
 
 frames = st.builds(
     Frame,
@@ -311,3 +314,29 @@ def test_what_is_written_is_stored_once_a_second_and_not_beside_every_answer(
     kept.store()
     assert not synced, "nothing is new"
     kept.close()
+
+
+def test_a_file_that_cannot_be_read_is_counted_and_written_again_once_that_is_possible(tmp_path: Path) -> None:
+    class Remembering(ServiceSettings):
+        state: Path | None = tmp_path
+
+    counters = Counters()
+    path = tmp_path / "kinect0-fusion.journal"
+    path.mkdir()
+    kept = Resumption.of(Remembers(), "fusion", Remembering(), counters)
+    assert kept is not None and counters.rejects == {"unwritable_state": 1}
+    path.rmdir()
+    kept._keep(frame(1))
+    kept.close()
+    assert counters.rejects == {"unwritable_state": 1} and read(path) == [frame(1)]
+
+
+def test_answers_of_another_form_are_left_out(tmp_path: Path) -> None:
+    path = tmp_path / "a.journal"
+    bodies = [["soon", "key", b"", "", b""], [None], [1, 2, 3, 4, 5], "text", [2**63, "key", b"", "", b""]]
+    written(path, [])
+    with path.open("ab") as file:
+        for body in map(msgpack.packb, bodies):
+            file.write(journals.HEAD.pack(journals.MAGIC, len(body), zlib.crc32(body)) + body)
+    add(path, [frame(1)])
+    assert read(path) == [frame(1)]

@@ -51,19 +51,17 @@ class Journal:
     that cannot be written is opened anew for the next answer.
 
     Attributes:
-        is_new: whether there was no file, so that nobody knows what was answered before.
+        is_new: whether there was no file that can be read, so that nobody knows what was answered before.
         answers: what was read, the oldest first.
-
-    Raises:
-        OSError: the file cannot be read.
+        unread: why a file cannot be read; None where all that there are can be.
     """
 
     def __init__(self, path: Path) -> None:
         self._path, self._set_aside = path, path.with_name(f"{path.name}.before")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        files = [file for file in (self._set_aside, path) if file.exists()]
-        found = [body for file in files for body in _records(file.read_bytes())]
-        self.is_new = not files
+        self.unread: OSError | None = None
+        contents = [content for file in (self._set_aside, path) if (content := self._content(file)) is not None]
+        found = [body for content in contents for body in _records(content)]
+        self.is_new = not contents
         self._begun_ns = next((body for body in found if isinstance(body, int)), time.time_ns())
         self.answers = [body for body in found if isinstance(body, WrittenAnswer) and body.age_s <= KEPT_S]
         self._file: BinaryIO | None = None
@@ -124,6 +122,16 @@ class Journal:
                 os.fsync(file.fileno())
             finally:
                 file.close()
+
+    def _content(self, file: Path) -> bytes | None:
+        """Read a file; None where there is none, or it cannot be read."""
+        try:
+            return file.read_bytes()
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            self.unread = error
+            return None
 
     def _opened(self) -> BinaryIO:
         """Return the file, opened to add to it; a new one says first since when all answers are known."""

@@ -43,13 +43,11 @@ class Resumption:
         """Open the journal in the folder that is set; None where there is none, or the node needs none."""
         if settings.state is None or not isinstance(node, Remembering):
             return None
-        path = settings.state / f"{settings.sensor}-{name}.journal"
-        try:
-            return cls(node, Journal(path), counters)
-        except OSError as error:
-            counters.reject("unwritable_state", f"{path}: {error.strerror}")
-            log.warning("answers are not written down, so that a restart may give others: %s", error)
-            return None
+        journal = Journal(settings.state / f"{settings.sensor}-{name}.journal")
+        resumption = cls(node, journal, counters)
+        if journal.unread is not None:
+            resumption.report(journal.unread)
+        return resumption
 
     def resume(self, outbox: Outbox, vacant_s: float) -> Reach:
         """Tell the node what was answered and offer it to late subscribers; write down what is put from now on.
