@@ -8,7 +8,6 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 from actum.messages import LARGEST_SIDE_PX
 from actum.settings import ServiceSettings
 
-
 Pixels = Annotated[int, Field(gt=0, le=LARGEST_SIDE_PX)]
 
 
