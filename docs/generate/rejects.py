@@ -45,8 +45,9 @@ OF_ALL: Mapping[str, Problem] = {
         "Let `sensor`, `agent` and `service` be those of the key, or leave `sensor` out.",
     ),
     "unwritable_state": Problem(
-        "An answer could not be written to the folder `ACTUM_STATE`: after a restart it may be given otherwise.",
-        "Make room on that disk, and the folder writable.",
+        "An answer could not be written to the folder `ACTUM_STATE`, or what was written there is gone: after a "
+        "restart it may be given otherwise.",
+        "Make room on that disk, and the folder writable; the service tries again with each answer.",
     ),
     "refused_command": Problem(
         "A command was not carried out: there is none of that name, its fields are wrong, or it cannot be done now.",

@@ -14,6 +14,7 @@ import yaml
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
 from actum.arrays import Array
+from actum.calibration import YAML_ERRORS
 from marker_tracker.detection.families import UnknownMarkerError, canonical, family
 from marker_tracker.detection.marker import Key
 from marker_tracker.pose.catalogue import Catalogue, MountedMarker
@@ -104,7 +105,7 @@ def load(path: Path) -> Catalogue:
         content = yaml.SafeLoader("").construct_document(root) if root is not None else None
     except (OSError, UnicodeDecodeError) as error:
         raise SceneFileError(f"{path} cannot be read as text: {error}") from None
-    except (yaml.YAMLError, ValueError, AttributeError, RecursionError) as error:
+    except YAML_ERRORS as error:
         raise SceneFileError(f"{path} is no YAML: {' '.join(str(error).split())}") from None
     if root is None or not isinstance(content, dict):
         raise SceneFileError(f"{path} holds no scene: it needs `objects:` with an id and a name for each")

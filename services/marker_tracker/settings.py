@@ -5,13 +5,16 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
+from actum.messages import LARGEST_SIDE_PX
 from actum.settings import ServiceSettings
+
+Pixels = Annotated[int, Field(gt=0, le=LARGEST_SIDE_PX)]
 
 
 class ObjectSpec(BaseModel):
     """An object that carries a marker: its name, and its marker's side in metres if that is not `marker_size_m`."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     name: str
     size_m: float | None = Field(None, gt=0, le=10)
@@ -30,7 +33,7 @@ class Settings(ServiceSettings):
         description='what carries which marker, as {"3": {"name": "cup", "size_m": 0.05}}; empty: every marker counts',
     )
     memory_s: float = Field(1.0, gt=0, le=60, description="how long a hidden object stays listed, by stamps")
-    calibrated_size_px: tuple[Annotated[int, Field(gt=0)], Annotated[int, Field(gt=0)]] | None = Field(
+    calibrated_size_px: tuple[Pixels, Pixels] | None = Field(
         None, description="width and height of the images that the camera was calibrated with, where images may differ"
     )
 

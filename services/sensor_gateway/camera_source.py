@@ -1,5 +1,6 @@
 """The source of a camera: a webcam, a stream, a depth camera or a file of pictures, with reconnection."""
 
+import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
@@ -83,7 +84,7 @@ class CameraSource:
             yield from self._waiting(back_off.failed())
 
     def _tell_rate(self, capture: Capture) -> None:
-        if capture.rate_hz is not None:
+        if capture.rate_hz is not None and math.isfinite(capture.rate_hz):
             self.counters.details["rate_hz"] = f"{capture.rate_hz:g}"
 
     def _watched(self, capture: Capture) -> Iterator[Captured]:

@@ -45,7 +45,11 @@ class MapDescription(BaseModel):
 
 
 def map_description(model: Model | None) -> MapDescription:
-    """Describe a model's maps."""
+    """Describe a model's maps.
+
+    Raises:
+        NoMapsError: it is of a kind without maps.
+    """
     if model is None:
         return MapDescription(model=None)
     maps = maps_of(model)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from actum.atomic_file import replaced
+from actum.messages import MOST_ACTIONS, Name
 from actum.skeletons import JOINTS
 from som_classifier.frames import Frame
 from som_classifier.recognition import Recognition
@@ -47,7 +48,7 @@ class ModelMetadata(BaseModel):
 
     format: Literal["actum.model/1"] = "actum.model/1"
     kind: str
-    labels: Annotated[list[str], Field(min_length=1)]
+    labels: Annotated[list[Name], Field(min_length=1, max_length=MOST_ACTIONS)]
     joint_order: list[str] = list(JOINTS)
     preset: str
     parameters: dict[str, Any]

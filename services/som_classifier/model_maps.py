@@ -19,6 +19,10 @@ TORSO_FROM_HIPS_M = np.array([0.0, 0.24, 0.0])
 """The torso relative to the hips' middle of somebody who stands, (3,): metres to the left, up and forward."""
 
 
+class NoMapsError(TypeError):
+    """A model of a kind without maps."""
+
+
 class ModelMaps(ABC):
     """The maps of one model.
 
@@ -121,7 +125,7 @@ def maps_of(model: Model) -> ModelMaps:
     """Return a model's maps.
 
     Raises:
-        TypeError: it is of a kind without maps.
+        NoMapsError: it is of a kind without maps.
     """
     match model:
         case PyramidModel():
@@ -129,7 +133,7 @@ def maps_of(model: Model) -> ModelMaps:
         case PaperModel():
             return PaperMaps(model)
         case _:
-            raise TypeError(f"no maps of a model of kind {model.metadata.kind!r}")
+            raise NoMapsError(f"the model has no maps: it is of kind {model.metadata.kind!r}")
 
 
 def complete_weights(model: PyramidModel, frames: Sequence[Frame]) -> Sequence[float]:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Protocol
 
 from actum import keys
-from actum.commands import Command, NoFields
+from actum.commands import Command, NoFields, Refusal
 from actum.messages import AUTO, Action, Message, Posture, Segment
 from actum.node import Counters, Tick
 from actum.parameters import LiveParameters
@@ -12,6 +12,7 @@ from som_classifier.answers import final_action, ongoing_action, own_mark, parti
 from som_classifier.frames import Frame
 from som_classifier.map_description import MapDescription, map_description
 from som_classifier.model import Model
+from som_classifier.model_maps import NoMapsError
 from som_classifier.recognition import Recognition
 from som_classifier.segmentation import DEFAULT, Segmentation
 from som_classifier.segmenter import Segmenter
@@ -126,11 +127,15 @@ class SomClassifier:
     def _use_settings(self, settings: Settings) -> None:
         self._publish_maps, self._segmentation = settings.publish_maps, settings.segmentation
         if self._model is not None:
-            self._use(self._model)
+            self.counters.state = self._segmentation.state(self._model)
+            self._segmenter.adjust(self._segmentation.plan(self._model))
 
     def _describe_maps(self, _request: NoFields) -> MapDescription:
         """Tell what the units of the model's maps stand for: a body for each posture, an action for each place."""
-        return map_description(self._model)
+        try:
+            return map_description(self._model)
+        except NoMapsError as error:
+            raise Refusal(str(error)) from None
 
     def _use(self, model: Model) -> None:
         self._model, self.counters.state = model, self._segmentation.state(model)

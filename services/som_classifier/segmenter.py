@@ -54,6 +54,10 @@ class Segmenter:
         """Encode every agent's frames by an encoder of its own, kept ones and those to come; search the latter."""
         self._streams.use(encoders, plan)
 
+    def adjust(self, plan: SearchPlan) -> None:
+        """Search every agent's frames by another plan for the same model."""
+        self._streams.adjust(plan)
+
     def posture(self, posture: Posture) -> tuple[Frame | None, list[ClosedSegment]]:
         """Take the next posture; return its frame, None if it is stale, and the segments it closes."""
         closed = self._restart(posture.session_id)

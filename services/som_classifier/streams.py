@@ -131,6 +131,13 @@ class Streams:
             if stream.search is not None:
                 stream.search.use(plan)
 
+    def adjust(self, plan: SearchPlan) -> None:
+        """Search every agent's frames by another plan for the same model."""
+        self._plan = plan
+        for stream in self._streams.values():
+            if stream.search is not None:
+                stream.search.adjust(plan)
+
     def __iter__(self) -> Iterator[Frame]:
         return chain.from_iterable(self._streams.values())
 

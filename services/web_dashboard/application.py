@@ -108,12 +108,14 @@ class Connection:
         await self._socket.accept()
         await self._socket.send_text(greeting)
         self._hub.join(self._mailbox)
-        sending = asyncio.create_task(self._send())
+        tasks = [asyncio.create_task(self._send()), asyncio.create_task(self._receive())]
         try:
-            await self._receive()
+            ended, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+            for task in ended:
+                task.result()  # a bug ends the connection and is logged; the page connects anew
         finally:
             self._hub.leave(self._mailbox)
-            for task in (sending, *self._waiting):
+            for task in (*tasks, *self._waiting):
                 task.cancel()
 
     async def _send(self) -> None:
@@ -160,9 +162,10 @@ def _greeting(settings: Settings) -> str:
 
 
 def _tell_bug(task: asyncio.Task[None], orders: Orders) -> None:
-    """Log what ended a task that has no end; a session that is closed meanwhile may."""
+    """Log what ended a task that has no end, and end the server with it; a session that is closed meanwhile may."""
     if not task.cancelled() and orders.client is not None:
         log.error("a bug: pages are no longer told how the services are", exc_info=task.exception())
+        task.get_loop().stop()
 
 
 async def _pulse(settings: Settings, hub: Hub, orders: Orders) -> None:

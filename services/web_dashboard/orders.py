@@ -22,7 +22,7 @@ CLASSIFIER_S = 2.0
 """How long (s) a mark waits for a classifier that is starting to listen."""
 AT_ONCE = 8
 """Commands that wait for services' answers at the same time, of all browsers."""
-OURS = frozenset({"service", "command", "timeout_s"})
+OURS = frozenset({"self", "service", "command", "timeout_s"})
 """Names that `Client.ask` has taken for itself."""
 NO_ROUTER = "there is no router, so nobody can be asked"
 

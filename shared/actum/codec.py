@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, TypeVar
+from typing import Any
 
 import msgpack
 from pydantic import ValidationError
@@ -11,7 +11,6 @@ from pydantic import ValidationError
 from actum import keys
 from actum.messages import Message
 
-C = TypeVar("C", list[Any], dict[str, Any])
 ENCODING = re.compile(r"application/msgpack;(?P<schema>[a-z0-9_.]+)/(?P<version>\d{1,6})")
 """The Zenoh encoding of a message: the schema's name and version."""
 UNPACK_ERRORS = (ValueError, TypeError, RecursionError, msgpack.exceptions.UnpackException)
@@ -40,6 +39,11 @@ class Frame:
     payload: bytes
     encoding: str
     attachment: bytes
+
+
+def encodable(text: str) -> str:
+    """Return a text with escapes for what UTF-8 cannot hold, such as the halves of pairs in names of files."""
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def schema_name(message: Message | type[Message]) -> str:
@@ -113,11 +117,23 @@ def unpack(payload: bytes) -> Any:
     Raises:
         UNPACK_ERRORS: it is no msgpack, is nested too deeply, or has too many values.
     """
-    return msgpack.unpackb(payload) if len(payload) <= keys.MOST_BYTES else _Unpacking().unpack(payload)
+    return msgpack.unpackb(payload) if len(payload) <= keys.MOST_BYTES else Unpacking().unpack(payload)
 
 
-class _Unpacking:
-    """Unpacks one large payload, and refuses it where it has too many values.
+def with_different_names(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
+    """Build a map of its entries.
+
+    Raises:
+        ValueError: a name comes twice, so that nobody knows which value is meant.
+    """
+    made = dict(pairs)
+    if len(made) < len(pairs):
+        raise ValueError("a name that comes twice")
+    return made
+
+
+class Unpacking:
+    """Unpacks one payload, and refuses it where it has too many values, or a name twice.
 
     One byte can become an empty list of 56 bytes in memory. Only images are large, and their pixels are one value.
     """
@@ -126,6 +142,11 @@ class _Unpacking:
         self._left = MOST_VALUES
 
     def unpack(self, payload: bytes) -> Any:
+        """Unpack it.
+
+        Raises:
+            UNPACK_ERRORS: it is no msgpack, is nested too deeply, has too many values, or a name twice.
+        """
         return msgpack.unpackb(
             payload,
             raw=False,
@@ -133,10 +154,10 @@ class _Unpacking:
             max_array_len=MOST_VALUES,
             max_map_len=MOST_VALUES,
             list_hook=self._counted,
-            object_hook=self._counted,
+            object_pairs_hook=lambda pairs: with_different_names(self._counted(pairs)),
         )
 
-    def _counted(self, container: C) -> C:
+    def _counted(self, container: list[Any]) -> list[Any]:
         self._left -= 1 + len(container)
         if self._left < 0:
             raise ValueError(f"more than {MOST_VALUES} values")

@@ -1,14 +1,15 @@
 """Commands: what a service does when asked by a Zenoh query, beside the messages that it handles."""
 
 import json
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 import msgpack
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from actum.codec import MOST_VALUES, UNPACK_ERRORS, unpack
+from actum.codec import MOST_VALUES, UNPACK_ERRORS, Unpacking, encodable, with_different_names
 
 Q = TypeVar("Q", bound="Request")
 A = TypeVar("A", bound=BaseModel)
@@ -18,6 +19,12 @@ MSGPACK = "application/msgpack"
 """The other encoding: it holds bytes as they are."""
 MAX_REQUEST_BYTES = 8_000_000
 """Largest request (bytes): a piece of an uploaded video, as base64, and room to spare."""
+INTEGERS = range(-(2**63), 2**64)
+"""The integers that MessagePack can hold."""
+MOST_LEVELS = 32
+"""How deeply the values of a request may be nested: ours are four deep."""
+MOST_PROBLEMS = 5
+"""How many of a request's wrong fields a refusal names."""
 BEFORE_VALUES = (b"[", b"{", b",")
 """What stands before values in JSON, and now and then within one."""
 
@@ -25,11 +32,14 @@ BEFORE_VALUES = (b"[", b"{", b",")
 class Refusal(ValueError):  # noqa: N818 - it is an answer, not a fault
     """A command that is not carried out; the text says why and what to do."""
 
+    def __init__(self, text: str) -> None:
+        super().__init__(encodable(text))
+
 
 class Request(BaseModel):
     """The fields of a command; unknown ones are refused, since a misspelt option would be silently ignored."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
 class NoFields(Request):
@@ -62,8 +72,9 @@ class Command(Generic[Q, A]):
         """Carry the command out and return the reply's fields, plain values and bytes.
 
         Raises:
-            Refusal: the fields are wrong, or the handler refuses.
+            Refusal: the fields are wrong or hold what cannot be encoded, or the handler refuses.
         """
+        _check_encodable(fields)
         try:
             request = self.request.model_validate(fields)
         except ValidationError as error:
@@ -127,7 +138,7 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
     if not payload:
         return {}
     try:
-        fields = unpack(payload) if encoding.startswith(MSGPACK) else _from_json(payload)
+        fields = Unpacking().unpack(payload) if encoding.startswith(MSGPACK) else _from_json(payload)
     except UNPACK_ERRORS as error:
         raise Refusal(f"a request that cannot be read ({error}): send a JSON object, or {MSGPACK}") from None
     if not isinstance(fields, dict) or not all(isinstance(name, str) for name in fields):
@@ -139,16 +150,56 @@ def _from_json(payload: bytes) -> Any:
     """Parse JSON; one of many values is refused, for each takes many times its bytes once parsed."""
     if sum(map(payload.count, BEFORE_VALUES)) > MOST_VALUES:
         raise ValueError(f"more than {MOST_VALUES} values")
-    return json.loads(payload)
+    return json.loads(payload, object_pairs_hook=with_different_names)
 
 
-def packed(fields: dict[str, Any], encoding: str) -> bytes:
-    """Encode fields as MessagePack where that is the encoding, and as JSON elsewhere."""
-    if encoding.startswith(MSGPACK):
-        return bytes(msgpack.packb(fields, use_bin_type=True))
-    return json.dumps(fields, ensure_ascii=False, allow_nan=False).encode()
+def packed(fields: Mapping[str, Any], encoding: str) -> bytes:
+    """Encode fields as MessagePack where that is the encoding, and as JSON elsewhere.
+
+    Raises:
+        Refusal: they hold what the encoding has no form for, such as a number of 70 bits, or in JSON NaN.
+    """
+    try:
+        if encoding.startswith(MSGPACK):
+            return bytes(msgpack.packb(fields, use_bin_type=True))
+        return json.dumps(fields, ensure_ascii=False, allow_nan=False).encode()
+    except (ValueError, TypeError, OverflowError, RecursionError) as error:
+        raise Refusal(f"fields that {encoding} cannot hold: {error}") from None
+
+
+def _check_encodable(fields: dict[str, Any]) -> None:
+    """Raise a refusal of what one of the encodings cannot hold: a reply or an error text may repeat it."""
+    values: list[Any] = [fields]
+    for _ in range(MOST_LEVELS):
+        values = [inner for value in values for inner in _inner(value)]
+        if not values:
+            return
+    raise Refusal(f"a request that is nested deeper than {MOST_LEVELS} levels")
+
+
+def _inner(value: Any) -> Iterator[Any]:
+    """Yield what a container holds, names included; raise a refusal of a single value that cannot be encoded."""
+    match value:
+        case dict():
+            for name, inner in value.items():
+                if not isinstance(name, str):
+                    raise Refusal(f"a request with the name {name!r}: names are texts")
+                yield from (name, inner)
+        case list():
+            yield from value
+        case str() if encodable(value) != value:
+            raise Refusal("a request with half of a surrogate pair: texts are UTF-8")
+        case float() if not math.isfinite(value):
+            raise Refusal(f"a request with the number {value}: numbers are finite")
+        case int() if value not in INTEGERS:
+            raise Refusal("a request with an integer of more than 64 bits")
+        case None | str() | float() | int() | bytes():
+            return
+        case _:
+            raise Refusal(f"a request with a {type(value).__name__}: use what JSON has, or bytes")
 
 
 def _problems(error: ValidationError) -> str:
     problems = error.errors(include_url=False, include_input=False)
-    return "; ".join(f"{'.'.join(map(str, each['loc'])) or 'fields'}: {each['msg']}" for each in problems)
+    named = [f"{'.'.join(map(str, each['loc'])) or 'fields'}: {each['msg']}" for each in problems[:MOST_PROBLEMS]]
+    return "; ".join(named + [f"and {len(problems) - len(named)} more"] * (len(problems) > len(named)))

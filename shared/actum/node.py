@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
 from actum import keys
+from actum.codec import encodable
 from actum.messages import Message
 
 SECOND_NS = 1_000_000_000
@@ -44,10 +45,10 @@ class Counters:
     details: dict[str, str] = field(default_factory=dict)
 
     def reject(self, kind: str, detail: str = "") -> None:
-        """Count one rejected input under its kind; kind and detail become the newest error."""
+        """Count one rejected input under its kind; kind and detail, of any text, become the newest error."""
         self.rejects[kind] += 1
         complaint = f"{kind}: {detail}" if detail else kind
-        self.last_error = complaint[:LONGEST_COMPLAINT]
+        self.last_error = encodable(complaint[:LONGEST_COMPLAINT])
 
 
 class Node(Protocol):

@@ -101,6 +101,7 @@ class ServiceSettings(BaseSettings):
         cli_avoid_json=True,
         cli_implicit_flags=True,
         extra="ignore",
+        allow_inf_nan=False,
     )
 
     connect: Annotated[str, AfterValidator(_endpoint)] = Field(DEFAULT_ENDPOINT, description="the router's endpoint")

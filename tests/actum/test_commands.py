@@ -1,5 +1,6 @@
 """Commands: fields in, fields out, refusals in words; and settings that may be changed while a service runs."""
 
+import math
 from typing import Annotated, Any
 
 import msgpack
@@ -8,8 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel, Field
 
+from actum.codec import encode
 from actum.commands import JSON, MAX_REQUEST_BYTES, MSGPACK, Command, Refusal, Request, described, packed, unpacked
+from actum.node import Counters
 from actum.parameters import LiveParameters
+from actum.runtime.meter import Meter
 from actum.settings import ServiceSettings
 
 
@@ -93,6 +97,47 @@ def test_what_is_no_object_is_refused(payload: bytes, encoding: str) -> None:
         unpacked(payload, encoding)
 
 
+@pytest.mark.parametrize("encoding", [JSON, MSGPACK])
+@pytest.mark.parametrize("value", [2**70, "\ud800", object(), {"deep": {1, 2}}])
+def test_fields_that_cannot_be_encoded_are_refused(value: Any, encoding: str) -> None:
+    if encoding == JSON and isinstance(value, int):
+        return  # JSON has numbers of any length
+    with pytest.raises(Refusal, match="fields that application/.* cannot hold"):
+        packed({"name": value}, encoding)
+
+
+def test_a_reply_with_a_number_that_json_lacks_is_refused_and_no_bug() -> None:
+    with pytest.raises(Refusal, match="application/json cannot hold"):
+        packed({"score": math.nan}, JSON)
+
+
+@pytest.mark.parametrize(
+    "value", [math.inf, math.nan, 2**70, -(2**63) - 1, "\ud800", {"\ud800": 1}, {1: 2}, (1,), msgpack.ExtType(1, b"")]
+)
+def test_fields_that_an_encoding_cannot_hold_reach_no_handler(value: Any) -> None:
+    with pytest.raises(Refusal, match="a request with"):
+        GREET.obey({"name": value})
+
+
+def test_a_refusal_and_the_newest_error_can_be_encoded_whatever_text_they_quote() -> None:
+    assert str(Refusal("no set \ud800 é")) == "no set \\ud800 é"
+    counters = Counters()
+    counters.reject("bad_model", "models/\udcff.npz" * 200)
+    assert counters.last_error is not None and counters.last_error.startswith("bad_model: models/\\udcff.npz")
+
+
+def test_a_status_and_a_description_can_be_encoded_whatever_the_state_and_the_model_are_called() -> None:
+    counters = Counters(state="no model: there is no \udcff.npz yet", details={"model": "\udcff", "source": "\ud800"})
+    meter = Meter("som_classifier", counters, ServiceSettings())
+    assert encode(meter.status()) and encode(meter.info())
+
+
+def test_a_refusal_names_some_of_many_problems() -> None:
+    with pytest.raises(Refusal) as refused:
+        GREET.obey({f"field {n}": n for n in range(1000)})
+    assert str(refused.value).endswith("and 996 more") and len(str(refused.value)) < 500
+
+
 class Adjustable(ServiceSettings):
     reach_m: float = Field(0.5, gt=0, le=2, description="how far")
     rate_hz: Annotated[int | None, Field(ge=1)] = Field(None, description="how often")
@@ -123,7 +168,9 @@ def test_new_values_are_applied_and_listed(parameters: dict[str, Command[Any, An
     assert [(each.reach_m, each.rate_hz) for each in applied] == [(1.0, 5)]
 
 
-@pytest.mark.parametrize("values", [{"reach_m": 3}, {"rate_hz": 2, "reach_m": -1}, {"fixed": True}, {"reach": 1}, {}])
+@pytest.mark.parametrize(
+    "values", [{"reach_m": 3}, {"reach_m": math.nan}, {"rate_hz": 2, "reach_m": -1}, {"fixed": True}, {"reach": 1}, {}]
+)
 def test_a_refused_value_changes_nothing(
     parameters: dict[str, Command[Any, Any]], applied: list[Adjustable], values: dict[str, Any]
 ) -> None:

@@ -12,6 +12,9 @@ from pydantic import ValidationError
 from actum.command_line import from_command_line
 from actum.runtime.session import client_config
 from actum.settings import ServiceSettings, SettingsError, complaint, host_and_port
+from marker_tracker.settings import Settings as TrackerSettings
+
+SERVICES = Path(__file__).parents[2] / "services"
 
 
 @pytest.mark.parametrize(
@@ -117,3 +120,37 @@ def test_two_processes_have_two_instance_names_also_where_host_and_process_id_ar
     ]
     assert [len(each) for each in names] == [1, 1]
     assert names[0] != names[1]
+
+
+def every_number() -> list[tuple[type[ServiceSettings], str]]:
+    """Each service's settings that are numbers with a fraction, perhaps in a list or a map."""
+    names = [
+        ".".join(file.relative_to(SERVICES).with_suffix("").parts) for file in sorted(SERVICES.rglob("settings.py"))
+    ]
+    kinds = [importlib.import_module(name).Settings for name in names]
+    return [
+        (kind, name) for kind in kinds for name, field in kind.model_fields.items() if "float" in str(field.annotation)
+    ]
+
+
+@pytest.mark.parametrize("value", ["inf", "-inf", "nan", "1e999"])
+@pytest.mark.parametrize(("kind", "name"), every_number())
+def test_a_number_that_is_not_finite_is_refused_from_wherever_it_comes(
+    kind: type[ServiceSettings], name: str, value: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written = f"wave={value}" if name == "cooldown_s" else value
+    with pytest.raises(ValidationError, match=name):
+        from_command_line(kind, "service", [f"--{name.replace('_', '-')}={written}"])
+    with monkeypatch.context() as patch, pytest.raises(ValidationError, match=name):
+        patch.setenv(f"ACTUM_{name.upper()}", written)
+        kind()
+    (tmp_path / "actum.toml").write_text(f"{name} = {'{wave = inf}' if name == 'cooldown_s' else value}\n")
+    monkeypatch.setenv("ACTUM_CONFIG", str(tmp_path / "actum.toml"))
+    with pytest.raises(ValidationError, match=name):
+        kind()
+
+
+def test_a_size_of_a_marker_that_is_not_finite_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ACTUM_OBJECTS", '{"3": {"name": "cup", "size_m": NaN}}')
+    with pytest.raises(ValidationError, match="size_m"):
+        TrackerSettings()

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
+from typing import Annotated, Any
 
 import pytest
 import typer
@@ -29,6 +30,7 @@ from actum_command.commands import (
     terminal,
     training_commands,
 )
+from actum_command.commands.plain_help import PlainCommand, PlainTyper
 from actum_command.preset_settings import preset_named
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from people import FRAME_NS
@@ -446,3 +448,30 @@ def test_why_nothing_could_be_learnt_is_said_before_that_it_could_not(tmp_path: 
     assert "left out s1 of " in done.stdout
     assert "2 usable frames, at least 3 are needed" in done.stdout
     assert "samples of at least two actions are needed" in done.stderr
+
+
+def leaves(command: Any) -> Iterator[Any]:
+    """Every command, those in groups too."""
+    for each in getattr(command, "commands", {}).values():
+        yield from leaves(each)
+    if not hasattr(command, "commands"):
+        yield command
+
+
+@pytest.mark.parametrize("value", ["inf", "nan", "1e999"])
+def test_a_number_that_is_not_finite_is_refused_as_argument_and_as_option(value: str) -> None:
+    measured: list[float] = []
+    measuring = PlainTyper()
+
+    @measuring.command()
+    def measure(start: Annotated[float, typer.Argument()], seconds: Annotated[float, typer.Option()] = 1.0) -> None:
+        measured.append(start + seconds)
+
+    for arguments in ([value], ["1", "--seconds", value]):
+        refused = CliRunner().invoke(measuring, arguments, standalone_mode=False).exception
+        assert isinstance(refused, typer.BadParameter) and "is no finite number" in refused.message
+    assert not measured
+
+
+def test_every_command_holds_its_numbers_to_that() -> None:
+    assert all(isinstance(command, PlainCommand) for command in leaves(typer.main.get_command(app)))

@@ -11,7 +11,21 @@ import msgpack
 from actum.codec import Frame
 from garbage import ABSURD
 
-TEXTS = ("", "\0", "\u202egnp", "é" * 300, "𝔘" * 250, "../../etc/passwd", "a\nb", "NaN", "null", "actum/**", "kitchen")
+TEXTS = (
+    "",
+    "\0",
+    "\u202egnp",
+    "é" * 300,
+    "𝔘" * 250,
+    "../../etc/passwd",
+    "a\nb",
+    "NaN",
+    "null",
+    "actum/**",
+    "kitchen",
+    "self",
+    "\ud800",
+)
 NUMBERS = (0, -1, 1, 2**31, 2**53 + 1, 2**62 - 1, 2**62, 2**63 - 1, -(2**63), 2**64 - 1, 1e-308, 1e308, -0.0)
 DEEPEST = 2000
 MOST_COPIES = 3000

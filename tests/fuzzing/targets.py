@@ -11,7 +11,7 @@ from typing import Any
 
 from actum import codec
 from actum.bridge import Foreign
-from actum.commands import JSON, Command, Refusal, packed, unpacked
+from actum.commands import JSON, MSGPACK, Command, Refusal, packed, unpacked
 from actum.messages import Event, Message, Status, Training
 from actum.node import Counters, Numbering, Tick
 from actum_model_trainer.teaching.trainer import ModelTrainer
@@ -76,9 +76,11 @@ class Target:
         command = rng.choice(list(self.commands.values()))
         try:
             reply = command.obey(unpacked(request(rng, list(command.request.model_fields)), JSON))
-            packed(reply, "application/msgpack")
         except Refusal as refusal:
             self.counters.reject("refused_command", str(refusal))
+            reply = {"error": str(refusal)}
+        for encoding in (JSON, MSGPACK):
+            packed(reply, encoding)
 
     def take_foreign(self, rng: Random) -> None:
         """Give it another system's payload with something wrong."""
@@ -149,7 +151,8 @@ def _dashboard(_: Path) -> Target:
 def _finished(order: Coroutine[Any, Any, Any]) -> None:
     """Carry out an order in a thread of its own: where a browser was tested before, this one's event loop is taken."""
     with ThreadPoolExecutor(1) as thread:
-        thread.submit(asyncio.run, order).result()
+        answer = thread.submit(asyncio.run, order).result()
+    assert "its log says why" not in answer, "the order met a bug"
 
 
 def _bridge(_: Path) -> Target:

@@ -64,6 +64,7 @@ BAD = {
     "[1, 2]": "holds no scene: it needs `objects:`",
     "a: [1": "is no YAML",
     "a: !!int foo": "is no YAML",
+    'a: !!int ""': "is no YAML",
     "a: 2026-13-45": "is no YAML",
     "[" * 3000: "is no YAML",
     "objects: &all\n  1: *all\n": "contains itself",

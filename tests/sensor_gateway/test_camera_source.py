@@ -1,5 +1,6 @@
 """The camera as a source: what each picture becomes, and what happens while there is none."""
 
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
@@ -258,3 +259,12 @@ def test_leaving_early_closes_camera_and_model() -> None:
     next(frames)
     frames.close()  # type: ignore[attr-defined]
     assert (world.closed, world.model_closed) == (1, True)
+
+
+def test_a_rate_that_is_no_number_is_not_told() -> None:
+    for rate_hz, told in ((30.0, "30"), (math.nan, None), (math.inf, None)):
+        world = World([0])
+        world.rate_hz = rate_hz
+        source = world.source()
+        assert list(source.frames())
+        assert source.counters.details.get("rate_hz") == told

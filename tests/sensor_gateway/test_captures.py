@@ -141,3 +141,14 @@ def test_a_file_that_is_no_video_is_a_lost_camera(tmp_path: Path) -> None:
     path.write_text("no video")
     with pytest.raises(CameraLostError, match="no video"):
         capture_of(str(path), None).next(0.0)
+
+
+def test_a_device_at_whose_opening_opencv_fails_is_lost_and_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise cv2.error("no such backend")
+
+    monkeypatch.setattr(cv2, "VideoCapture", fail)
+    capture = LiveCapture(0)
+    with pytest.raises(CameraLostError, match="OpenCV says: no such backend"):
+        capture.next(5.0)
+    capture.close()

@@ -1,7 +1,7 @@
 """Actions that nobody marked: the node marks and answers what its model spots, per person, by stamps alone."""
 
 import random
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -21,6 +21,7 @@ from som_classifier.model import Model
 from som_classifier.node import POLL_TICKS, SomClassifier
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.segmentation import CANNOT, DEFAULT, NO_BACKGROUND, Segmentation
+from som_classifier.settings import Settings
 from som_classifier.spotting.spotted import SpottedSegment, SpottingOptions
 from spotters import Beats, beating, finding, spotting
 from wire import Wire, packed, without_seq
@@ -365,3 +366,48 @@ def test_the_same_stream_gives_the_same_to_the_last_bit_live_and_replayed() -> N
 
 def _unnumbered(message: Message) -> Message:
     return message.model_copy(update={"seq": None})
+
+
+CHANGES: tuple[dict[str, object], ...] = (
+    {"publish_maps": True}, {"cooldown_s": {"lift": 3.0}}, {"disabled_actions": ["lift"]},
+    {"enabled_actions": ["push"]}, {"false_alarms_per_min": 2.5}, {"shortest_pause_s": 0.1}, {"segments": "auto"},
+    {"segments": "auto", "false_alarms_per_min": 0.1, "publish_maps": True},
+)  # fmt: skip
+
+
+def asked(node: SomClassifier, **values: object) -> None:
+    {command.name: command for command in node.commands}["set_parameters"].obey({"values": values})
+
+
+def found_with_changes(changes: dict[int, list[dict[str, object]]]) -> list[tuple[int, int, int]]:
+    """What is found of three actions, one in each second, where settings are changed before some frames."""
+    node = SomClassifier.configured(Settings())
+    node._use(beating(tiny_model()))
+
+    def frames() -> Iterator[Posture]:
+        for number, posture in enumerate(stream()):
+            for values in changes.get(number, ()):
+                asked(node, **values)
+            yield posture
+
+    return found(put_by(node, frames()))
+
+
+@pytest.mark.parametrize("values", CHANGES, ids=",".join)
+def test_an_action_in_whose_middle_a_setting_is_changed_is_found_as_if_nothing_had_been(
+    values: dict[str, object],
+) -> None:
+    undisturbed = found_with_changes({})
+    assert len(undisturbed) == 3
+    for at_frame in (1, 15, 27, 45):
+        assert found_with_changes({at_frame: [values]}) == undisturbed
+
+
+def test_what_is_switched_off_and_on_again_in_the_middle_of_an_action_is_found() -> None:
+    off, on = {"disabled_actions": ["push"]}, {"disabled_actions": []}
+    assert found_with_changes({15: [off], 20: [on]}) == found_with_changes({})
+
+
+def test_where_found_actions_are_not_wanted_any_more_none_is_told_and_then_again_some_are() -> None:
+    told = found_with_changes({15: [{"segments": "marks"}], 45: [{"segments": "both"}]})
+    assert told == found_with_changes({})[2:]

@@ -276,3 +276,9 @@ def test_a_cut_or_altered_file_is_refused_or_whole(tmp_path: Path, kind: str, da
     except ModelError:
         return
     assert loaded.id == model_of(kind).id
+
+
+@each_kind
+@pytest.mark.parametrize("label", ["x" * 201, None, 5])
+def test_a_label_that_no_action_can_hold_is_refused(tmp_path: Path, kind: str, label: object) -> None:
+    assert "metadata labels" in refused(with_metadata(saved(tmp_path, kind), labels=[label, "push"]))

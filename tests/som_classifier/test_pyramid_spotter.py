@@ -132,3 +132,20 @@ def test_what_was_decided_is_not_going_on_any_more() -> None:
     shown = spotted(WAVE | {(1300, 2300): 0.9}, TENTHS)
     assert [ms for ms, each in zip(TENTHS, shown, strict=True) if each.ongoing] == [2000]
     assert [each.segments for each in shown if each.segments] == [(SpottedSegment(1000 * MS, 2000 * MS, "wave"),)]
+
+
+@pytest.mark.parametrize(("accepted_per_min", "is_found"), [(1.0, True), (0.1, False)])
+def test_how_many_false_alarms_are_accepted_may_be_changed_in_the_middle_of_an_action(
+    accepted_per_min: float, is_found: bool
+) -> None:
+    metadata = METADATA.model_copy(
+        update={"thresholds": [0.5, 0.95], "false_alarms_per_min": [1.0, 0.1], "recalls": [1.0, 0.5]}
+    )
+    learned = SpottingModel(CompletenessHeads(np.eye(1, dtype=np.float32), np.zeros(1, np.float32)), metadata)
+    spotter = PyramidSpotter(Scripted(WAVE), learned, SpottingOptions())
+    shown = []
+    for ms in TENTHS:
+        if ms == 1500:
+            spotter.use(SpottingOptions(accepted_per_min))
+        shown += spotter.step(Frame(ms * MS, None, (1,), 0, 2.0, np.zeros((15, 3)), np.zeros(5))).segments
+    assert [(each.start_ns // MS, each.end_ns // MS) for each in shown] == [(1000, 2000)] * is_found

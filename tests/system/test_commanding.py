@@ -48,6 +48,8 @@ def test_a_service_is_asked_in_json_and_says_what_it_can_be_asked(running: Syste
         assert asked(session, f"{base}/parameters")[0] == [changed]
         for key, payload in [
             (f"{base}/set_parameters", '{"values": {"reach_limit_m": -4}}'),
+            (f"{base}/set_parameters", '{"values": {"reach_limit_m": 1e999}}'),
+            (f"{base}/set_parameters", '{"values": {"\\ud800": 1}}'),
             (f"{base}/set_parameters", "no json"),
             (f"{base}/unheard_of", None),
             (f"{base}/*", None),
@@ -55,7 +57,7 @@ def test_a_service_is_asked_in_json_and_says_what_it_can_be_asked(running: Syste
             good, refused = asked(session, key, payload)
             assert not good and refused[0]["error"], key
     statuses = collect(client.listen(keys.pattern(keys.STATUS)), Status, lambda found: any(s.rejects for s in found))
-    assert statuses[-1].rejects == {"refused_command": 4}
+    assert statuses[-1].rejects == {"refused_command": 6}
 
 
 def test_our_client_gets_the_reply_or_the_refusal_or_nothing(running: System, client: Client) -> None:

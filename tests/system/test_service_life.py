@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from importlib.util import find_spec
+from pathlib import Path
 
 import msgpack
 import pytest
@@ -10,7 +11,7 @@ from actum import codec, keys
 from actum.messages import Posture, Status
 from actum.runtime import Client
 from actum.runtime.outbox import MOST_PUBLISHERS
-from live import Running, System, collect, described, wait_until
+from live import ROUTER, Running, System, collect, described, wait_until
 from people import STANDING, reaches, skeleton
 
 PROGRAMS = {
@@ -175,3 +176,32 @@ def test_a_service_goes_on_where_its_health_file_cannot_be_written(running: Syst
         statuses = client.listen(keys.pattern(keys.STATUS, client.sensor))
         assert len(collect(statuses, Status, lambda found: len(found) == 3)) == 3
     assert service.said().count("the health file cannot be written") == 1
+
+
+@pytest.mark.parametrize(
+    ("bug", "where"), [("status", "in the thread reporting"), ("thread", "in the thread own"), ("info", "describing")]
+)
+def test_a_service_of_which_a_part_has_a_bug_ends_and_says_so_instead_of_going_on_mute(
+    running: System, bug: str, where: str
+) -> None:
+    running.start_router()
+    service = running.start_script(Path(__file__).parents[1] / "mute_service.py", bug)
+    with running.client() as client:
+
+        def ended() -> bool:
+            client.infos()
+            return service.process.poll() is not None
+
+        wait_until(ended, "the process ends", 15.0)
+    assert service.process.returncode == 1
+    assert "a bug, met" in service.said() and where in service.said()
+
+
+def test_a_router_goes_on_where_its_health_file_cannot_be_written(running: System) -> None:
+    program = ROUTER.replace("stop_on_signals())", "stop_on_signals(), health_file=Path('/nowhere/health'))")
+    router = running._start(
+        "router", "-c", "import logging\nlogging.basicConfig()\n" + program, running.settings.connect
+    )
+    with running.client() as client:
+        wait_until(lambda: "the health file cannot be written" in router.said(), "it says so")
+        assert client.connected() and router.process.poll() is None

@@ -1,8 +1,13 @@
 """What waits for a browser: the newest of each stream, and all of what must not be lost, up to a bound."""
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from websockets.exceptions import ConnectionClosed
 
+from actum.node import Tick
+from dashboards import Colleague, heard, served
+from live import wait_until
 from web_dashboard.hub import LONGEST_QUEUE, MOST_KEPT, MOST_STREAMS, REMEMBERED, Envelope, Hub, Mailbox
 
 
@@ -80,3 +85,21 @@ def test_a_stalled_browser_does_not_keep_what_others_get() -> None:
         read += reading.empty()
     assert read == list(map(str, range(10_000)))
     assert stalled.empty() == ["9999"]
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_bug_in_what_tells_pages_how_services_are_ends_the_server(monkeypatch: pytest.MonkeyPatch) -> None:
+    with served(Colleague(lambda *_: {})) as page:
+        monkeypatch.setattr(page.node._hub, "silent_s", [].pop)
+        wait_until(lambda: not page.node.working, "the server has ended", 5.0)
+        with pytest.raises(RuntimeError, match="the page's server has ended"):
+            page.node.handle(Tick(0))
+
+
+def test_a_bug_in_what_sends_to_a_browser_ends_its_connection(monkeypatch: pytest.MonkeyPatch) -> None:
+    with served(Colleague(lambda *_: {})) as page, page.browser() as browser:
+        heard(browser, "pulse")
+        monkeypatch.setattr(Mailbox, "empty", [].pop)
+        with pytest.raises(ConnectionClosed):
+            heard(browser, "never", patience_s=5.0)
+        assert page.node.working

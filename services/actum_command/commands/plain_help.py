@@ -1,5 +1,9 @@
-"""Help with the placeholders of the services' own help (TEXT, PATH) where Typer shows Python's types."""
+"""Commands with the placeholders of the services' own help (TEXT, PATH) where Typer shows Python's types.
 
+Their numbers are finite, as the services' settings are.
+"""
+
+import math
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -25,7 +29,16 @@ class _Plain:
 
 
 class PlainCommand(_Plain, TyperCommand):
-    """A command with plain help."""
+    """A command with plain help, whose numbers are finite."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse the arguments; fail where one is a number that is not finite."""
+        left = super().parse_args(ctx, args)
+        for param in self.params:
+            value = ctx.params.get(param.name)
+            if isinstance(value, float) and not math.isfinite(value):
+                raise typer.BadParameter(f"{value} is no finite number.", ctx, param_hint=f"'{param.opts[-1]}'")
+        return left
 
 
 class PlainGroup(_Plain, TyperGroup):

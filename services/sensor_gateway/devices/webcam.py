@@ -61,13 +61,14 @@ class LiveCapture:
         self._thread.join(CLOSING_S)
 
     def _read(self) -> None:
-        capture = self._opened()
         try:
-            reason = self._read_all(capture)
+            capture = self._opened()
+            try:
+                reason = self._read_all(capture)
+            finally:
+                capture.release()
         except cv2.error as error:
             reason = f"OpenCV says: {error}"
-        finally:
-            capture.release()
         with self._changed:
             self._lost = reason
             self._changed.notify_all()

@@ -51,6 +51,10 @@ class PyramidSpotter:
         self._next_decision_ns = 0
         self._ongoing: Ongoing | None = None
 
+    def use(self, options: SpottingOptions) -> None:
+        """Go on with the threshold of other options, and all that was seen so far."""
+        self._threshold = self._learned.metadata.threshold_for(options.false_alarms_per_min)
+
     def step(self, frame: Frame) -> Spotted:
         """Take the next frame, valid or not; return what it shows."""
         if frame.valid and not self._recent.add(frame):

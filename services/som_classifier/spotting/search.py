@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from actum.messages import Posture
 from som_classifier.frames import Frame
 from som_classifier.spotting.admission import Admission
-from som_classifier.spotting.spotted import NOTHING, Spotted, Spotter, SpottingOptions
+from som_classifier.spotting.spotted import NOTHING, Adjustable, Spotted, Spotter, SpottingOptions
 
 SESSION_DIGITS = 6
 """Hexadecimal digits that stand for a session in a segment's id: clocks may begin alike in two sessions."""
@@ -59,6 +59,15 @@ class Search:
         """Go on with another model's spotter, which knows nothing of the frames before; cooldowns go on."""
         self._plan, self._spotter = plan, plan.spotter()
         self.admission.options = plan.options
+
+    def adjust(self, plan: SearchPlan) -> None:
+        """Go on by another plan for the same model: what was seen of an action that goes on still counts."""
+        if self._spotter is None or plan is NO_SEARCH:
+            self.use(plan)
+            return
+        self._plan, self.admission.options = plan, plan.options
+        if isinstance(self._spotter, Adjustable):
+            self._spotter.use(plan.options)
 
     def restart(self) -> None:
         """Begin anew, since the stream's clock has: nothing before counts but the numbers that are used up."""

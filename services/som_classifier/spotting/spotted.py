@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from som_classifier.frames import Frame
 
@@ -80,4 +80,13 @@ class Spotter(Protocol):
 
     def step(self, frame: Frame) -> Spotted:
         """Take the next frame, valid or not, with the activity that the model's encoder gave it if it is valid."""
+        ...
+
+
+@runtime_checkable
+class Adjustable(Protocol):
+    """A spotter that heeds options, which may be changed while an action goes on."""
+
+    def use(self, options: SpottingOptions) -> None:
+        """Go on by other options, with all that was seen so far."""
         ...

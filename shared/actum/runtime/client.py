@@ -164,11 +164,11 @@ class Client:
         finally:
             querier.undeclare()
 
-    def ask(self, service: str, command: str = "", timeout_s: float = ANSWER_S, **fields: Any) -> dict[str, Any]:
+    def ask(self, service: str, command: str = "", /, timeout_s: float = ANSWER_S, **fields: Any) -> dict[str, Any]:
         """Ask a service of this sensor for a command, or without one for the list of its commands; return its reply.
 
         Raises:
-            Refusal: the service does not carry it out, and says why.
+            Refusal: the service does not carry it out, and says why, or the fields cannot be encoded.
             NotAnsweredError: no such service answered in time.
         """
         key = "/".join(filter(None, [keys.commands_key(self.sensor, service), command]))

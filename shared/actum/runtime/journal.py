@@ -1,14 +1,18 @@
 """The last answers of a service in a small file, so that a process started in its place gives no others.
 
 The file is records one after the other: magic, length and checksum, then a body in msgpack. The first record says when
-the journal was begun. A record is written before its answer is put: an answer that anybody has seen stands here. A full
-file is set aside, in place of the one before: nothing is read or written anew while a service runs.
+the journal was begun. A record is written before its answer is put, and stored on the disk with the next report: a
+killed process loses no answer that anybody has seen, a power cut those of the last two seconds. A full file is set
+aside, in place of the one before: nothing is read or written anew while a service runs.
 """
 
+import errno
+import os
 import struct
 import time
 import zlib
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -43,55 +47,120 @@ class WrittenAnswer:
 class Journal:
     """The answers of one service, read when it starts and added to while it runs; not thread-safe.
 
-    What is damaged is left out: the end that a killed process has not written, a record whose checksum is wrong.
+    What is damaged is left out: the end that a killed process has not written, a record whose checksum is wrong. A file
+    that cannot be written is opened anew for the next answer.
 
     Attributes:
-        is_new: whether there was no file, so that nobody knows what was answered before.
+        is_new: whether there was no file that can be read, so that nobody knows what was answered before.
         answers: what was read, the oldest first.
-
-    Raises:
-        OSError: the file cannot be read or written.
+        unread: why a file cannot be read; None where all that there are can be.
     """
 
     def __init__(self, path: Path) -> None:
         self._path, self._set_aside = path, path.with_name(f"{path.name}.before")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        files = [file for file in (self._set_aside, path) if file.exists()]
-        found = [body for file in files for body in _records(file.read_bytes())]
-        self.is_new = not files
+        self.unread: OSError | None = None
+        contents = [content for file in (self._set_aside, path) if (content := self._content(file)) is not None]
+        found = [body for content in contents for body in _records(content)]
+        self.is_new = not contents
         self._begun_ns = next((body for body in found if isinstance(body, int)), time.time_ns())
         self.answers = [body for body in found if isinstance(body, WrittenAnswer) and body.age_s <= KEPT_S]
-        self._file = self._opened()
+        self._file: BinaryIO | None = None
+        self._is_stored = True
+        with suppress(OSError):  # the first answer, or the first report, says so
+            self._opened()
 
     @property
     def age_s(self) -> float:
         """How long ago the journal was begun (s): all answers since then stand in it, as far as they are kept."""
         return max(time.time_ns() - self._begun_ns, 0) / 1e9
 
+    @property
+    def folder(self) -> Path:
+        """The folder in which the file stands."""
+        return self._path.parent
+
     def add(self, frame: Frame) -> None:
         """Write down an answer that is about to be put.
 
         Raises:
-            OSError: it cannot be written.
+            OSError: it cannot be written, or the full file cannot be set aside; the next answer tries again.
         """
-        self._file.write(_record(WrittenAnswer(time.time_ns(), frame)))
-        if self._file.tell() > FULL_BYTES:
-            self._file.close()
-            try:
-                self._path.replace(self._set_aside)
-            finally:
-                self._file = self._opened()
+        file = self._opened()
+        self._write(file, _record(WrittenAnswer(time.time_ns(), frame)))
+        if file.tell() > FULL_BYTES:
+            self.close()
+            self._path.replace(self._set_aside)
+
+    def unstored(self) -> int | None:
+        """Return a descriptor of its own for the file if that is to be stored on the disk (fsync), else None.
+
+        Raises:
+            OSError: the file cannot be opened, or is gone with all that stood in it; then another one is begun.
+        """
+        file = self._opened()
+        if not self._is_in_place(file):
+            self.close()
+            self._begun_ns = time.time_ns()
+            self._opened()
+            raise FileNotFoundError(
+                errno.ENOENT, "it was removed with the answers in it, and is begun anew", self._path
+            )
+        if self._is_stored:
+            return None
+        self._is_stored = True
+        return os.dup(file.fileno())
 
     def close(self) -> None:
-        """Close the file."""
-        self._file.close()
+        """Have stored what was written, and close the file.
+
+        Raises:
+            OSError: it cannot be stored; it is closed all the same.
+        """
+        file, self._file = self._file, None
+        if file is not None:
+            try:
+                os.fsync(file.fileno())
+            finally:
+                file.close()
+
+    def _content(self, file: Path) -> bytes | None:
+        """Read a file; None where there is none, or it cannot be read."""
+        try:
+            return file.read_bytes()
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            self.unread = error
+            return None
 
     def _opened(self) -> BinaryIO:
-        """Open the file to add to it; a new one says first since when all answers are known."""
-        file = self._path.open("ab", buffering=0)
-        if file.tell() == 0:
-            file.write(_record(self._begun_ns))
-        return file
+        """Return the file, opened to add to it; a new one says first since when all answers are known."""
+        if self._file is None:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            self._file = self._path.open("ab", buffering=0)
+            if self._file.tell() == 0:
+                self._write(self._file, _record(self._begun_ns))
+        return self._file
+
+    def _write(self, file: BinaryIO, record: bytes) -> None:
+        """Write a record; where that fails nothing of it is left, and the file is closed."""
+        self._is_stored, before, left = False, file.tell(), memoryview(record)
+        try:
+            while left:
+                left = left[file.write(left) :]
+        except OSError:
+            with suppress(OSError):
+                file.truncate(before)
+            with suppress(OSError):
+                self.close()
+            raise
+
+    def _is_in_place(self, file: BinaryIO) -> bool:
+        """Tell whether the open file still stands in its folder."""
+        try:
+            return os.path.samestat(os.fstat(file.fileno()), self._path.stat())
+        except (FileNotFoundError, NotADirectoryError):
+            return False
 
 
 def _record(content: WrittenAnswer | int) -> bytes:
@@ -126,7 +195,11 @@ def _read(content: bytes, at: int) -> tuple[WrittenAnswer | int, int] | None:
     if len(body) < length or zlib.crc32(body) != checksum:
         return None
     try:
-        given_ns, *frame = msgpack.unpackb(body)
-        return (WrittenAnswer(given_ns, Frame(*frame)) if frame else given_ns), begin + length
+        match msgpack.unpackb(body):
+            case [int(begun_ns)]:
+                return begun_ns, begin + length
+            case [int(given_ns), str(key), bytes(payload), str(encoding), bytes(attachment)]:
+                return WrittenAnswer(given_ns, Frame(key, payload, encoding, attachment)), begin + length
     except UNPACK_ERRORS:
-        return None
+        pass
+    return None

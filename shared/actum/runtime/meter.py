@@ -7,7 +7,7 @@ from collections import Counter, deque
 import numpy as np
 
 from actum import __version__
-from actum.codec import schema_name
+from actum.codec import encodable, schema_name
 from actum.messages import MESSAGES, Action, Info, Message, Status
 from actum.node import Counters
 from actum.settings import ServiceSettings
@@ -93,12 +93,13 @@ class Meter:
             rejects=dict(self._counters.rejects),
             last_error=self._counters.last_error,
             latency_ms=_percentiles(list(self._latencies_ms)),
-            state=self._counters.state,
+            state=encodable(self._counters.state),
             counts=dict(self._counters.counts),
         )
 
     def info(self) -> Info:
         """Return the service's description."""
+        details = {name: encodable(text) for name, text in self._counters.details.items()}
         return Info(
             stamp_ns=time.time_ns(),
             sensor=self._settings.sensor,
@@ -107,12 +108,12 @@ class Meter:
             version=__version__,
             schemas=[schema_name(message) for message in MESSAGES],
             joint_names=list(JOINTS),
-            model=self._counters.details.get("model"),
-            calibration=self._counters.details.get("calibration"),
-            host=socket.gethostname(),
-            source=self._counters.details.get("source"),
-            rate_hz=float(self._counters.details["rate_hz"]) if "rate_hz" in self._counters.details else None,
-            page=self._counters.details.get("page"),
+            model=details.get("model"),
+            calibration=details.get("calibration"),
+            host=encodable(socket.gethostname()),
+            source=details.get("source"),
+            rate_hz=float(details["rate_hz"]) if "rate_hz" in details else None,
+            page=details.get("page"),
         )
 
 

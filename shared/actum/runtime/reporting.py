@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import zenoh
 
-from actum.health import write_health
 from actum.node import Counters
+from actum.runtime.health_file import HealthFile
 from actum.runtime.meter import Meter
 from actum.runtime.outbox import Outbox
 from actum.runtime.place import Place
@@ -45,11 +45,18 @@ class Reporter:
 
     def __init__(self, meter: Meter, state_log: StateLog, settings: ServiceSettings, lock: threading.Lock) -> None:
         self._meter, self._state_log, self._settings, self._lock = meter, state_log, settings, lock
-        self._health_unwritable = False
+        self._health_file = HealthFile(settings.health_file)
         self._connected = True
 
-    def report(self, session: zenoh.Session, place: Place, stop: threading.Event, healthy: Callable[[], bool]) -> None:
-        """Report once a second until stopped."""
+    def report(
+        self,
+        session: zenoh.Session,
+        place: Place,
+        stop: threading.Event,
+        healthy: Callable[[], bool],
+        store: Callable[[], None],
+    ) -> None:
+        """Report once a second until stopped, and have stored what the service writes."""
         outbox = Outbox(session)
         while not stop.wait(REPORT_S):
             with self._lock:
@@ -57,7 +64,8 @@ class Reporter:
                 self._state_log.log_change()
             outbox.put(status)
             self._log_connection(connected(session))
-            self._write_health(healthy() and self._connected)
+            self._health_file.write(healthy() and self._connected)
+            store()
             successor = place.lost_to()
             if successor is not None:
                 log.warning("%s takes over for sensor %s: this one stops", successor, self._settings.sensor)
@@ -70,14 +78,3 @@ class Reporter:
         elif now and not self._connected:
             log.info("connected to %s again", self._settings.connect)
         self._connected = now
-
-    def _write_health(self, healthy: bool) -> None:
-        """Write the health file if one is set; where it cannot be written, log that once and go on."""
-        if self._settings.health_file is None:
-            return
-        try:
-            write_health(self._settings.health_file, healthy)
-        except OSError as error:
-            if not self._health_unwritable:
-                log.warning("the health file cannot be written: %s", error)
-            self._health_unwritable = True

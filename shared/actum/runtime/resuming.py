@@ -2,8 +2,10 @@
 
 import logging
 import math
+import os
+import threading
 
-from actum.atomic_file import PRIVATE_FOLDER
+from actum.atomic_file import PRIVATE_FOLDER, store_names
 from actum.codec import DecodeError, Frame, decode
 from actum.messages import Message
 from actum.node import Counters, Remembering
@@ -33,18 +35,19 @@ class Resumption:
 
     def __init__(self, node: Remembering, journal: Journal, counters: Counters) -> None:
         self._node, self._journal, self._counters = node, journal, counters
+        self._lock = threading.Lock()
+        self._writes = True
 
     @classmethod
     def of(cls, node: object, name: str, settings: ServiceSettings, counters: Counters) -> "Resumption | None":
         """Open the journal in the folder that is set; None where there is none, or the node needs none."""
         if settings.state is None or not isinstance(node, Remembering):
             return None
-        path = settings.state / f"{settings.sensor}-{name}.journal"
-        try:
-            return cls(node, Journal(path), counters)
-        except OSError as error:
-            _report(counters, error)
-            return None
+        journal = Journal(settings.state / f"{settings.sensor}-{name}.journal")
+        resumption = cls(node, journal, counters)
+        if journal.unread is not None:
+            resumption.report(journal.unread)
+        return resumption
 
     def resume(self, outbox: Outbox, vacant_s: float) -> Reach:
         """Tell the node what was answered and offer it to late subscribers; write down what is put from now on.
@@ -63,16 +66,45 @@ class Resumption:
             return Reach(recent_s, RESUMED_S, depth=None)
         return Reach(min(self._journal.age_s + HISTORY_S, RESUMED_S), RESUMED_S, RESUMED_FRAMES_S, depth=None)
 
+    def store(self) -> None:
+        """Have stored on the disk what was written; answers do not wait for it, for a disk may take its time.
+
+        Raises:
+            OSError: that failed.
+        """
+        with self._lock:
+            written = self._journal.unstored()
+        if written is not None:
+            try:
+                os.fsync(written)
+            finally:
+                os.close(written)
+            store_names(self._journal.folder)
+
     def close(self) -> None:
-        """Close the journal."""
-        self._journal.close()
+        """Close the journal; where its end cannot be stored, that is counted."""
+        try:
+            with self._lock:
+                self._journal.close()
+        except OSError as error:
+            self.report(error)
+
+    def report(self, error: OSError) -> None:
+        """Count that answers cannot be written, and log it where they could be before."""
+        reason = f"{error.filename or 'the journal'}: {error.strerror}"
+        self._counters.reject("unwritable_state", reason)
+        if self._writes:
+            log.warning("answers are not written down, so that a restart may give others: %s", reason)
+        self._writes = False
 
     def _keep(self, frame: Frame) -> None:
-        """Write down an answer; where that fails it is put all the same, and the failure is told."""
+        """Write down an answer; where that fails it is put all the same, and the failure is counted."""
         try:
-            self._journal.add(frame)
+            with self._lock:
+                self._journal.add(frame)
+            self._writes = True
         except OSError as error:
-            _report(self._counters, error)
+            self.report(error)
 
 
 def _decoded(answer: WrittenAnswer) -> Message | None:
@@ -81,8 +113,3 @@ def _decoded(answer: WrittenAnswer) -> Message | None:
         return decode(answer.frame.key, answer.frame.payload, answer.frame.encoding)
     except DecodeError:
         return None
-
-
-def _report(counters: Counters, error: OSError) -> None:
-    counters.reject("unwritable_state", f"{error.filename or 'the journal'}: {error.strerror}")
-    log.warning("answers are not written down, so that a restart may give others: %s", error)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import zenoh
 
-from actum.health import write_health
 from actum.runtime.credentials import CERTIFICATE, USERS, check, is_renewed, login_values, router_values
+from actum.runtime.health_file import HealthFile
 from actum.runtime.session import TRANSPORT, insert
 from actum.runtime.waiting import wait_for
 from actum.settings import DEFAULT_ENDPOINT, SettingsError
@@ -65,12 +65,13 @@ def serve_router(
     Raises:
         SettingsError: the endpoint is taken, or the configuration or the credentials are refused.
     """
+    health = HealthFile(health_file)
     while not stop.is_set():
         read = _content(config_file)
         session = _opened(listen, config_file, credentials, link)
         log.info("router %s listens on %s", session.zid(), listen or config_file)
         try:
-            _wait_for_renewal(session, credentials, config_file, read, health_file, stop)
+            _wait_for_renewal(session, credentials, config_file, read, health, stop)
         finally:
             session.close()
 
@@ -91,14 +92,13 @@ def _wait_for_renewal(
     credentials: Path | None,
     config_file: Path | None,
     read: bytes,
-    health_file: Path | None,
+    health: HealthFile,
     stop: threading.Event,
 ) -> None:
     """Wait until stopped, or until certificate or configuration are others that can be used; keep the health file."""
     shown = _content(credentials / CERTIFICATE) if credentials else b""
     while credentials is None or not (is_renewed(credentials, shown) or _is_changed(config_file, read)):
-        if health_file is not None:
-            write_health(health_file, any(session.get(f"@/{session.zid()}/router", timeout=LOOK_S)))
+        health.write(any(session.get(f"@/{session.zid()}/router", timeout=LOOK_S)))
         if wait_for(stop, LOOK_S):
             return
     log.info("the certificate in %s or the configuration was renewed: listening anew", credentials)

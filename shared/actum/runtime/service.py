@@ -3,6 +3,8 @@
 import logging
 import threading
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import zenoh
 
@@ -50,11 +52,12 @@ class Service(ABC):
         if not place.take(stop, settling_s):
             return
         info = keys.key(keys.INFO, self._settings.sensor, self.name)
-        queryables = [session.declare_queryable(info, self._answer_info)]
+        queryables = [session.declare_queryable(info, lambda query: self._answer_info(query, stop))]
         if self._commands:
             queryables.append(self._commander(stop).declare(session))
         reporter = Reporter(self._meter, self._state_log, self._settings, self._lock)
-        reporting = threading.Thread(target=reporter.report, args=(session, place, stop, self._healthy), daemon=True)
+        told = (session, place, stop, self._healthy, self._store)
+        reporting = threading.Thread(target=reporter.report, args=told, name="reporting", daemon=True)
         reporting.start()
         try:
             self._work(session, Outbox(session), stop, place.vacant_s)
@@ -72,6 +75,31 @@ class Service(ABC):
     def _healthy(self) -> bool:
         return True
 
+    def _store(self) -> None:  # noqa: B027 - most services write nothing
+        """Have stored on the disk what was written, once a second."""
+
+    def end_at_bugs(self, stop: threading.Event) -> None:
+        """Have the process end where any of its threads does by an exception: without it a service is mute or deaf."""
+
+        def ended(thread: threading.ExceptHookArgs) -> None:
+            if not stop.is_set() and thread.exc_value is not None:
+                self._end_at_bug(f"in the thread {thread.thread and thread.thread.name}", thread.exc_value, stop)
+
+        threading.excepthook = ended
+
+    def _end_at_bug(self, where: str, error: BaseException, stop: threading.Event) -> None:
+        log.error("a bug, met %s", where, exc_info=error)
+        self.failed = True
+        stop.set()
+
+    @contextmanager
+    def _ending_at_a_bug(self, where: str, stop: threading.Event) -> Iterator[None]:
+        """Return a context for what Zenoh calls: it would swallow an exception, which is a bug and ends the process."""
+        try:
+            yield
+        except Exception as error:
+            self._end_at_bug(where, error, stop)
+
     def _commander(self, stop: threading.Event) -> Commander:
         def failed() -> None:
             self.failed = True
@@ -79,8 +107,8 @@ class Service(ABC):
 
         return Commander(self._commands, self._settings, self.name, self._counters, self._lock, failed)
 
-    def _answer_info(self, query: zenoh.Query) -> None:
-        with query:
+    def _answer_info(self, query: zenoh.Query, stop: threading.Event) -> None:
+        with self._ending_at_a_bug("while describing the service", stop), query:
             with self._lock:
                 commands = sorted(each.name for each in self._commands)
                 frame = encode(self._meter.info().model_copy(update={"commands": commands}))

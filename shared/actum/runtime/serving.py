@@ -72,6 +72,7 @@ def live(
     """
     logging.basicConfig(level=os.environ.get("ACTUM_LOG", "INFO"), format=f"{service.name}: %(message)s")
     stop = stop_on_signals()
+    service.end_at_bugs(stop)
     service.introduce()
     with beside():
         _serve(service, settings, stop)

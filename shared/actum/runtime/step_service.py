@@ -1,11 +1,8 @@
 """Runs a pure step: gives it the messages of its topics, and ticks."""
 
-import logging
 import threading
 import time
 from abc import abstractmethod
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 import zenoh
 
@@ -19,8 +16,6 @@ from actum.runtime.repetitions import Repetitions
 from actum.runtime.resuming import Resumption
 from actum.runtime.service import Service
 from actum.settings import ServiceSettings
-
-log = logging.getLogger("actum")
 
 LONGEST_TICK_NS = 2 * TICK_NS
 """Most that time goes on from one tick to the next (ns): a process that was stopped first reads what has come
@@ -67,7 +62,7 @@ class StepService(Service):
             with self._lock:
                 self._meter.rejected(error.kind, str(error))
             return
-        with self._ending_at_a_bug(key, stop):
+        with self._ending_at_a_bug(f"while handling a message on {key}", stop):
             with self._lock:
                 if self._repetitions.has(message, payload):
                     return
@@ -75,16 +70,6 @@ class StepService(Service):
             self._step(message, outbox)
             with self._lock:
                 self._meter.took((time.perf_counter_ns() - began_ns) / 1e6)
-
-    @contextmanager
-    def _ending_at_a_bug(self, key: str, stop: threading.Event) -> Iterator[None]:
-        """Return a context in which to handle a sample: an exception is a bug, which is logged and ends the process."""
-        try:
-            yield
-        except Exception:
-            log.exception("a bug, met while handling a message on %s", key)
-            self.failed = True
-            stop.set()
 
     @abstractmethod
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
@@ -97,16 +82,26 @@ class NodeService(StepService):
     def __init__(self, node: Node, settings: ServiceSettings) -> None:
         super().__init__(node, settings)
         self._node = node
+        self._resumption: Resumption | None = None
 
     def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
-        resumption = Resumption.of(self._node, self.name, self._settings, self._counters)
-        if resumption is None:
+        self._resumption = Resumption.of(self._node, self.name, self._settings, self._counters)
+        if self._resumption is None:
             super()._work(session, outbox, stop, vacant_s)
             return
         try:
-            self._serve_inputs(session, outbox, stop, resumption.resume(outbox, vacant_s))
+            self._serve_inputs(session, outbox, stop, self._resumption.resume(outbox, vacant_s))
         finally:
-            resumption.close()
+            self._resumption.close()
+
+    def _store(self) -> None:
+        if self._resumption is None:
+            return
+        try:
+            self._resumption.store()
+        except OSError as error:
+            with self._lock:
+                self._resumption.report(error)
 
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
         with self._lock:
