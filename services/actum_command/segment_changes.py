@@ -1,4 +1,4 @@
-"""What `actum takes` and `actum label` change in a recording: a segment's label, its bounds, or that it is there."""
+"""What `actum takes` and `actum label` change in the marks of a recording: a segment's label or its bounds."""
 
 from collections.abc import Callable, Collection
 from dataclasses import replace
@@ -36,11 +36,6 @@ def moved(segment_id: str, later_start_ns: int, later_end_ns: int) -> Change:
         return _mended(message, {"stamp_ns": message.stamp_ns + later_ns})
 
     return _of_segments([segment_id], edit)
-
-
-def dropped(segment_ids: Collection[str]) -> Change:
-    """Return the change that leaves out segments: their marks, their answers and their ground truth."""
-    return _of_segments(segment_ids, lambda _: None)
 
 
 def _mended(mark: Segment, update: dict[str, Any]) -> Segment:

@@ -1,6 +1,7 @@
 """`actum takes`: lists the marked actions of recordings, and changes them."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated
@@ -20,9 +21,10 @@ from actum_command.commands.recording_options import (
     tell_unread,
 )
 from actum_command.commands.terminal import fail, say
-from actum_command.labelled_segments import LabelledSegment, labelled_segments
+from actum_command.labelled_segments import LabelledSegment, LabellingError, followed, labelled_segments, refuse_outside
 from actum_command.marked_actions import MarkedAction, marked_actions
-from actum_command.segment_changes import dropped, moved, relabelled
+from actum_command.segment_changes import moved, relabelled
+from actum_model_trainer.segment_edits import deleted, fields_after, in_turn
 
 app = PlainTyper(
     cls=ListingGroup,
@@ -61,7 +63,7 @@ def relabel(
 ) -> None:
     """Give an action another label."""
     refuse_length(label)
-    if _marked(file, segment_id).start_ns is None:
+    if _marked(file, segment_id).segment.start_ns is None:
         fail(f"{segment_id} has no start mark in {file}, which a label belongs to: drop it")
     change_recording(file, relabelled(segment_id, label))
     say(f"{segment_id} is labelled {label!r} in {file}")
@@ -79,8 +81,8 @@ def trim(
     ] = None,
 ) -> None:
     """Move the start and the end of an action; times count from its present start."""
-    segment = _marked(file, segment_id)
-    start_ns, end_ns = segment.start_ns, segment.end_ns
+    marked = _marked(file, segment_id)
+    start_ns, end_ns = marked.segment.start_ns, marked.segment.end_ns
     if start_ns is None or end_ns is None:
         fail(f"{segment_id} has no {'start' if start_ns is None else 'end'} mark in {file}: drop it")
     duration_s = (end_ns - start_ns) / SECOND_NS
@@ -89,15 +91,24 @@ def trim(
         fail(f"{segment_id} would start at {start:g} s and end at {until_s:g} s of its {duration_s:g} s")
     if start_ns + start * SECOND_NS < 0:
         fail(f"{segment_id} would start before its sensor's clock does: at the most {start_ns / SECOND_NS:g} s earlier")
-    change_recording(file, moved(segment_id, round(start * SECOND_NS), round((until_s - duration_s) * SECOND_NS)))
+    later_start_ns, later_end_ns = round(start * SECOND_NS), round((until_s - duration_s) * SECOND_NS)
+    trimmed = replace(marked.segment, start_ns=start_ns + later_start_ns, end_ns=end_ns + later_end_ns)
+    try:
+        refuse_outside(marked.recording, trimmed.sensor, start_ns + later_start_ns, end_ns + later_end_ns)
+        frames = followed(marked.segments, trimmed)
+    except (LabellingError, RecordingError) as error:
+        fail(str(error))
+    change_recording(file, in_turn(moved(segment_id, later_start_ns, later_end_ns), frames))
     say(f"{segment_id} lasts {until_s - start:.2f} s, and lasted {duration_s:.2f} s before, in {file}")
 
 
 @app.command("drop")
 def drop(file: RecordingFile, segment_id: SegmentId) -> None:
-    """Take an action out: its marks and what was answered; the frames stay."""
-    segment = _marked(file, segment_id)
-    change_recording(file, dropped([segment.segment_id]))
+    """Delete an action: its marks, what was answered, and the frames of whoever acts in it, unless it has no label or
+    another labelled action of that person needs them."""
+    marked = _marked(file, segment_id)
+    kept = [other for other in marked.segments if other is not marked.segment]
+    change_recording(file, deleted([marked.segment], kept), metadata=fields_after(marked.recording, kept))
     say(f"{segment_id} is no longer in {file}")
 
 
@@ -118,10 +129,20 @@ def _show(recording: Recording, actions: Sequence[MarkedAction]) -> None:
         say(line, style=None if action.problem is None else "yellow")
 
 
-def _marked(file: Path, segment_id: str) -> LabelledSegment:
+@dataclass(frozen=True)
+class _Marked:
+    """A marked segment, with the recording and all segments that it is one of."""
+
+    recording: Recording
+    segments: list[LabelledSegment]
+    segment: LabelledSegment
+
+
+def _marked(file: Path, segment_id: str) -> _Marked:
     """Return a marked segment of a recording; fail, naming similar ones, where it has none of that name."""
     try:
-        segments = labelled_segments(Recording(file))
+        recording = Recording(file)
+        segments = labelled_segments(recording)
     except RecordingError as error:
         fail(str(error))
     found = next((segment for segment in segments if segment.segment_id == segment_id), None)
@@ -129,4 +150,4 @@ def _marked(file: Path, segment_id: str) -> LabelledSegment:
         names = [segment.segment_id for segment in segments]
         near = get_close_matches(segment_id, names, n=1) or names[:5]
         fail(f"no {segment_id!r} in {file}" + (f": is {' or '.join(near)} meant?" if near else ": nothing is marked"))
-    return found
+    return _Marked(recording, segments, found)
