@@ -1,6 +1,7 @@
 """Files that are replaced as a whole or not at all, however the process or the machine ends."""
 
 import os
+import re
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,6 +10,8 @@ from typing import BinaryIO
 
 UNFINISHED = ".part"
 """Ending of files that are still being written; one that a killed process has left may be deleted."""
+LEFT = re.compile(rf"\..+\.[0-9a-f]{{8}}{re.escape(UNFINISHED)}", re.DOTALL)
+"""The names of unfinished files."""
 LONGEST_STEM = 40
 """Characters of a file's name in that of its unfinished one, whose name may not get too long for the file system."""
 
@@ -33,6 +36,17 @@ def replaced(path: Path) -> Iterator[BinaryIO]:
         unfinished.unlink(missing_ok=True)
         raise
     store_names(path.parent)
+
+
+def clear_unfinished(folder: Path) -> None:
+    """Delete the unfinished files of `replaced` that a killed process has left in a folder, and no others.
+
+    Raises:
+        OSError: one cannot be deleted.
+    """
+    for path in folder.iterdir():
+        if LEFT.fullmatch(path.name) and not path.is_dir():
+            path.unlink(missing_ok=True)
 
 
 def write_whole(path: Path, content: bytes) -> None:

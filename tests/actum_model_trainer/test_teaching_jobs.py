@@ -199,7 +199,7 @@ def test_a_file_comes_in_pieces_that_follow_one_another(teacher: Teacher) -> Non
     with pytest.raises(Refusal, match="no finished upload 'clip.mp4'"):
         teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="wave")
     assert send(3, b"def", last=True) == {"upload": "clip.mp4", "size": 6}
-    assert (teacher.folder / "uploads" / "clip.mp4").read_bytes() == b"abcdef"
+    assert (teacher.folder / "uploads/.sent/clip.mp4").read_bytes() == b"abcdef"
     with pytest.raises(Refusal, match="base64"):
         teacher.ask("upload", name="clip.mp4", offset=0, data="no base64!", last=True)
 
@@ -233,5 +233,5 @@ def test_examples_are_cut_out_of_a_video(
     assert (ended["state"], ended["message"]) == ("done", "1 examples cut out of the video")
     (example,) = [each for each in teacher.examples() if each["person"] == "carl"]
     assert (example["label"], example["origin"], example["take"]) == ("drink", "cut", ended["result"]["take"])
-    assert not (teacher.folder / "uploads" / "clip.avi").exists()
+    assert not (teacher.folder / "uploads/.sent/clip.avi").exists()
     assert teacher.ask("film", set="kitchen", example=example["id"])["joints"]

@@ -1,15 +1,20 @@
 """Models on the disk, and which of them the classifier uses."""
 
 import json
+import os
+import re
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
-from actum.atomic_file import UNFINISHED, replaced, write_whole
+from pydantic import BaseModel, ConfigDict, FiniteFloat, TypeAdapter
+
+from actum.atomic_file import clear_unfinished, replaced, write_whole
 from actum.commands import Refusal
+from actum_model_trainer.teaching.names import printable
 from actum_model_trainer.teaching.set_store import date_of
+from actum_model_trainer.teaching.small_files import small_file
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 
@@ -17,6 +22,23 @@ HISTORY = "history.json"
 """The file with the models that were in use before, in order."""
 MOST_BEFORE = 50
 """Models that the history remembers: nobody undoes more."""
+ID = re.compile("[0-9a-f]{12}")
+"""The form of a model's id, after which its file is named."""
+IDS = TypeAdapter(list[str])
+"""The form of the history."""
+
+
+class About(BaseModel):
+    """What stands beside a model's file."""
+
+    model_config = ConfigDict(strict=True)
+
+    created: str
+    set: str
+    labels: list[str]
+    people: list[str]
+    samples: int
+    scores: dict[str, FiniteFloat]
 
 
 @dataclass(frozen=True)
@@ -53,8 +75,7 @@ class ModelStore:
         self._loaded: Model | None = None
         self._history = _read_history(folder / HISTORY)
         folder.mkdir(parents=True, exist_ok=True)
-        for unfinished in folder.glob(f".*{UNFINISHED}"):
-            unfinished.unlink(missing_ok=True)
+        clear_unfinished(folder)
         self.look()
 
     @property
@@ -77,11 +98,18 @@ class ModelStore:
 
     def all(self) -> list[StoredModel]:
         """List the models, the oldest first."""
-        for path in self._folder.glob("*.npz"):
-            if not path.with_suffix(".json").exists():
-                self._take_over(path)
-        stored = [_described(path) for path in self._folder.glob("*.npz")]
-        return sorted((each for each in stored if each is not None), key=lambda each: (each.created, each.id))
+        return self.listed()[0]
+
+    def listed(self) -> tuple[list[StoredModel], list[str]]:
+        """List the models, the oldest first, and of each file that cannot be read why."""
+        stored, unreadable = dict[str, StoredModel](), list[str]()
+        for path in sorted(self._folder.glob("*.npz")):
+            try:
+                each = _described(path) or self._take_over(path)
+                stored[each.id] = each
+            except (OSError, ModelError) as error:
+                unreadable.append(printable(str(error)))
+        return sorted(stored.values(), key=lambda each: (each.created, each.id)), unreadable
 
     def get(self, model_id: str) -> StoredModel:
         """Return a model's description.
@@ -113,7 +141,7 @@ class ModelStore:
             Refusal: there is none of that id.
             OSError: the file cannot be written.
         """
-        path = self.get(model_id).path
+        path = self._usable(model_id)
         if self._active is not None and self._active != model_id:
             self._remember([*self.before, self._active])
         self._put(path)
@@ -128,9 +156,18 @@ class ModelStore:
         before = self.before
         if not before:
             raise Refusal("there is no model to return to: none was in use before this one")
-        self._put(self.get(before[-1]).path)
+        self._put(self._usable(before[-1]))
         self._remember(before[:-1])
         return before[-1]
+
+    def _usable(self, model_id: str) -> Path:
+        """Return a model's file, once it could be loaded."""
+        path = self.get(model_id).path
+        try:
+            load_model(path)
+        except ModelError as error:
+            raise Refusal(printable(str(error))) from None
+        return path
 
     def delete(self, model_id: str) -> None:
         """Delete a model.
@@ -173,6 +210,11 @@ class ModelStore:
             self.add(self._watched, "", {})
 
     def _put(self, path: Path) -> None:
+        self.look()
+        if self._active is None and os.path.lexists(self._watched):
+            raise Refusal(
+                f"{self._watched} is no model that can be read, and would be lost: move it away, and ask again"
+            )
         self._watched.parent.mkdir(parents=True, exist_ok=True)
         _copy(path, self._watched)
         self.look()
@@ -184,52 +226,62 @@ class ModelStore:
     def _path(self, model_id: str) -> Path:
         return self._folder / f"{model_id}.npz"
 
-    def _describe(self, model: Model, set_name: str, scores: dict[str, float]) -> None:
+    def _describe(self, model: Model, set_name: str, scores: dict[str, float]) -> StoredModel:
         """Write beside a model's file what is listed of it."""
-        about = {
-            "created": date_of(self._now_ns()),
-            "set": set_name,
-            "labels": list(model.labels),
-            "people": model.metadata.persons,
-            "samples": model.metadata.samples,
-            "scores": scores,
-        }
-        write_whole(self._path(model.id).with_suffix(".json"), json.dumps(about).encode())
+        about = About(
+            created=date_of(self._now_ns()),
+            set=set_name,
+            labels=list(model.labels),
+            people=model.metadata.persons,
+            samples=model.metadata.samples,
+            scores=scores,
+        )
+        path = self._path(model.id)
+        write_whole(path.with_suffix(".json"), about.model_dump_json().encode())
+        return _stored(path, about)
 
-    def _take_over(self, path: Path) -> None:
-        """Describe a model that somebody has copied here, and name its file as all others; leave what is none."""
-        try:
-            model = load_model(path)
-        except ModelError:
-            return
-        self._describe(model, "", {})
-        path.replace(self._path(model.id))
+    def _take_over(self, path: Path) -> StoredModel:
+        """Describe a model that somebody has copied here, and name its file as all others.
+
+        Raises:
+            ModelError: it is none.
+            OSError: it cannot be described.
+        """
+        model = load_model(path)
+        stored = self._describe(model, "", {})
+        path.replace(stored.path)
+        return stored
 
 
 def _described(path: Path) -> StoredModel | None:
-    """Read what stands beside a model; None where that cannot be read."""
-    try:
-        about: dict[str, Any] = json.loads(path.with_suffix(".json").read_bytes())
-        return StoredModel(
-            path.stem,
-            path,
-            about["created"],
-            about["set"],
-            tuple(about["labels"]),
-            tuple(about["people"]),
-            about["samples"],
-            about["scores"],
-        )
-    except (OSError, ValueError, KeyError, TypeError):
+    """Read what stands beside a model; None where nothing does that can be read."""
+    if ID.fullmatch(path.stem) is None:
         return None
+    try:
+        return _stored(path, About.model_validate_json(small_file(path.with_suffix(".json"))))
+    except (OSError, ValueError):
+        return None
+
+
+def _stored(path: Path, about: About) -> StoredModel:
+    return StoredModel(
+        path.stem,
+        path,
+        about.created,
+        about.set,
+        tuple(about.labels),
+        tuple(about.people),
+        about.samples,
+        about.scores,
+    )
 
 
 def _read_history(path: Path) -> list[str]:
     try:
-        ids = json.loads(path.read_bytes())
+        ids = IDS.validate_json(small_file(path))
     except (OSError, ValueError):
         return []
-    return [each for each in ids if isinstance(each, str)] if isinstance(ids, list) else []
+    return [each for each in ids if ID.fullmatch(each)]
 
 
 def _copy(source: Path, target: Path) -> None:
