@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from actum.commands import Refusal
 from actum_model_trainer.teaching import upload_store
 from actum_model_trainer.teaching.job_process import Ended, Progressing
+from actum_model_trainer.teaching.set_store import SetStore
 from recognisers import tiny_model
 from repeating import Stream
 from teaching import WAVES, Teacher
@@ -246,6 +247,34 @@ def test_whatever_vanishes_commands_are_refused_and_the_service_goes_on(teacher:
     teacher.jobs[-1].news = Ended({"scores": {}}, "")
     teacher.tick(12)
     go_on(teacher)
+
+
+def test_a_take_that_vanishes_between_listing_and_reading_is_told(
+    teacher: Teacher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read = SetStore._take
+
+    def vanish(store: SetStore, path: Path) -> Any:
+        path.unlink()
+        return read(store, path)
+
+    monkeypatch.setattr(SetStore, "_take", vanish)
+    (listed,) = teacher.ask("list")["sets"]
+    assert listed["takes"] == [] and "take-0001.mcap" in listed["unreadable"][0]
+
+
+def test_a_film_of_a_take_that_has_just_vanished_is_refused(teacher: Teacher, monkeypatch: pytest.MonkeyPatch) -> None:
+    read = SetStore.get
+
+    def vanish(store: SetStore, name: str) -> Any:
+        found = read(store, name)
+        for take in found.takes:
+            take.path.unlink()
+        return found
+
+    monkeypatch.setattr(SetStore, "get", vanish)
+    with pytest.raises(Refusal, match="No such file"):
+        teacher.ask("film", set="kitchen", example="take-0001/cut-1")
 
 
 @pytest.mark.parametrize("place", [*GONE, "sets/.making", "sets/kitchen/set.json"])
