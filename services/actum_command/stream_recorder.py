@@ -77,6 +77,7 @@ class StreamRecorder:
         self._label = label
         self._origins = origins
         self._newest_ns: int | None = None
+        self._frames_ns: tuple[int, int] | None = None
         self._pending: list[_PendingMark] = []
         self._bounds: dict[str, _SegmentBounds] = {}
 
@@ -84,6 +85,8 @@ class StreamRecorder:
         """Take one message and the time it was received at (ns)."""
         if isinstance(message, Skeleton | Posture):
             self._newest_ns = message.stamp_ns
+            first_ns, last_ns = self._frames_ns or (message.stamp_ns, message.stamp_ns)
+            self._frames_ns = min(first_ns, message.stamp_ns), max(last_ns, message.stamp_ns)
         if isinstance(message, Action) and message.final:
             self._note_bounds(message, received_ns)
         if keys.address_of(message).topic not in self._topics:
@@ -111,11 +114,21 @@ class StreamRecorder:
         if mark.kind == "start" and mark.label is None:
             mark = mark.model_copy(update={"label": self._label})
         if mark.stamp_ns is not None:
-            self._store(mark, received_ns)
+            if self._is_outside(mark.stamp_ns):
+                self.counters.reject("mark_outside_frames", f"{mark.segment_id} at {mark.stamp_ns} ns, none of theirs")
+            else:
+                self._store(mark, received_ns)
             return
         self._pending.append(_PendingMark(mark, self._newest_ns, received_ns))
         self._forget(received_ns)
         self._resolve(mark.segment_id)
+
+    def _is_outside(self, stamp_ns: int) -> bool:
+        """Tell whether no frame that has come, or is about to come, may have a mark's stamp."""
+        if self._frames_ns is None:
+            return False
+        first_ns, last_ns = self._frames_ns
+        return not first_ns - MAX_SKEW_NS <= stamp_ns <= last_ns + MAX_SKEW_NS
 
     def _note_bounds(self, final: Action, received_ns: int) -> None:
         self._forget(received_ns)

@@ -1,11 +1,13 @@
 """Turns public skeleton sets and video clips into recordings."""
 
+import os
 from collections import Counter
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from actum.limits import MAX_SKEW_NS
 from actum.recorder import Recorder
 from actum_dataset_importer import bimacs, msr_action3d, msrc12, utkinect
 from actum_dataset_importer.bimacs import HandsTake
@@ -44,6 +46,7 @@ class ImportReport:
     actions: set[str] = field(default_factory=set)
     persons: set[str] = field(default_factory=set)
     skipped: list[str] = field(default_factory=list)
+    outside: list[str] = field(default_factory=list)
     oddities: Counter[str] = field(default_factory=Counter)
 
     def add(self, take: Take) -> None:
@@ -80,6 +83,8 @@ class ImportReport:
             lines.append(f"{self.excluded} recordings marked excluded: training skips them unless told otherwise")
         if self.skipped:
             lines.append(f"{len(self.skipped)} segments without bounds skipped: {', '.join(self.skipped)}")
+        if self.outside:
+            lines.append(f"{len(self.outside)} segments outside of the frames skipped: {', '.join(self.outside)}")
         return lines + [f"{self.oddities[kind]} {words}" for kind, words in ODDITIES.items() if self.oddities[kind]]
 
     def __str__(self) -> str:
@@ -157,7 +162,7 @@ def import_bimacs(src: Path, out: Path, progress: Progress) -> ImportReport:
     report = ImportReport()
     for file in files:
         take = bimacs.read_take(file, SENSOR)
-        with Recorder(out / f"{take.name}.mcap", person=take.person, source="bimacs") as recorder:
+        with Recorder(_new(out / f"{take.name}.mcap"), person=take.person, source="bimacs") as recorder:
             for message in take.messages():
                 recorder.write(message)
         report.add_hands(take)
@@ -188,12 +193,37 @@ def import_video(
 
 
 def import_takes(source: str, takes: Iterable[Take], total: int, out: Path, progress: Progress) -> ImportReport:
-    """Write one recording per take, `out/NAME.mcap`, with `source` in its metadata."""
+    """Write one recording per take, `out/NAME.mcap`, with `source` in its metadata.
+
+    Raises:
+        OSError: one cannot be written, or is there already.
+    """
     report = ImportReport()
-    for take in takes:
-        with Recorder(out / f"{take.name}.mcap", person=take.person, source=source, **take.metadata) as recorder:
+    for given in takes:
+        path, outside = _new(out / f"{given.name}.mcap"), _outside(given)
+        take = replace(given, marks=[mark for mark in given.marks if mark.segment_id not in outside])
+        report.outside += [f"{take.name} {segment_id}" for segment_id in outside]
+        with Recorder(path, person=take.person, source=source, **take.metadata) as recorder:
             for message in (*take.frames, *take.marks):
                 recorder.write(message)
         report.add(take)
         progress(report.files, total)
     return report
+
+
+def _outside(take: Take) -> list[str]:
+    """Return the ids of the segments of which a mark lies where whoever reads a recording would skip it."""
+    stamps_ns = [frame.stamp_ns for frame in take.frames]
+    first_ns, last_ns = min(stamps_ns, default=0) - MAX_SKEW_NS, max(stamps_ns, default=0) + MAX_SKEW_NS
+    return sorted({mark.segment_id for mark in take.marks if not first_ns <= (mark.stamp_ns or 0) <= last_ns})
+
+
+def _new(path: Path) -> Path:
+    """Return the path of a recording to write; one that is there may have been labelled by somebody.
+
+    Raises:
+        OSError: it is there.
+    """
+    if os.path.lexists(path):
+        raise FileExistsError(f"{path} is there already: import into another folder, or remove it")
+    return path

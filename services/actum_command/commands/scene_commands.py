@@ -30,6 +30,8 @@ def simulate(
     """
     refuse_unwritable(output)
     refuse_ending(output, ".mcap")
+    if output.exists():
+        fail(f"{output} is there already: name another file, or remove it")
     try:
         write_examples(output, repetitions, actor, seed, everyday, minutes, pauses)
     except OSError as error:
