@@ -207,7 +207,10 @@ class ModelStore:
             return
         self._active = self._loaded.id
         if not self._path(self._active).exists():
-            self.add(self._watched, "", {})
+            try:
+                self.add(self._watched, "", {})
+            except (ModelError, Refusal) as error:  # it was replaced meanwhile, or nothing can be read here
+                raise OSError(str(error)) from None
 
     def _put(self, path: Path) -> None:
         self.look()
