@@ -18,6 +18,7 @@ from actum.commands import Refusal
 from actum_model_trainer.teaching import upload_store
 from actum_model_trainer.teaching.job_process import Ended, Progressing
 from actum_model_trainer.teaching.set_store import SetStore
+from performers import TINY_PAPER
 from recognisers import tiny_model
 from repeating import Stream
 from teaching import WAVES, Teacher
@@ -109,6 +110,15 @@ def test_a_file_in_the_place_of_the_model_in_use_is_not_overwritten(teacher: Tea
     assert teacher.model.read_text() == "my notes"
 
 
+def test_a_model_in_use_of_which_no_copy_was_kept_is_copied_before_it_is_replaced(teacher: Teacher) -> None:
+    (used,) = (each["id"] for each in teacher.ask("list")["models"])
+    tiny_model(TINY_PAPER).save(teacher.folder / "models/other.npz")
+    (other,) = (each["id"] for each in teacher.ask("list")["models"] if each["id"] != used)
+    (teacher.folder / f"models/{used}.npz").unlink()
+    teacher.ask("activate", model=other)
+    assert teacher.ask("undo") and teacher.tick(12).model == used
+
+
 def test_a_job_names_no_file_but_its_own(teacher: Teacher) -> None:
     teacher.ask("cancel", job=teacher.ask("train", set="kitchen")["id"])
     job = json.loads((teacher.folder / "jobs/job-1.json").read_text())
@@ -116,7 +126,8 @@ def test_a_job_names_no_file_but_its_own(teacher: Teacher) -> None:
     (teacher.folder / "jobs/job-2.json").write_text(json.dumps(forged))
     teacher.begin()
     assert not (teacher.folder.parent / "mine.json").exists()
-    assert teacher.ask("train", set="kitchen")["id"] == "job-2"
+    assert teacher.ask("train", set="kitchen")["id"] == "job-3", "whatever job-2.json is, it stays"
+    assert json.loads((teacher.folder / "jobs/job-2.json").read_text()) == forged
 
 
 DEEP = b"[" * 100_000

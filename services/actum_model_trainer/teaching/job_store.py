@@ -86,8 +86,9 @@ class JobStore:
         raise Refusal(f"there is no job {job_id!r}; the newest {MOST_JOBS} are remembered")
 
     def new_id(self) -> str:
-        """Return the id of the next job."""
-        return f"job-{max((number_of(job.id) for job in self.all()), default=0) + 1}"
+        """Return the id of the next job, which no file has, whatever is in it."""
+        stems = (path.stem for path in self._folder.iterdir())
+        return f"job-{max((number_of(stem) for stem in stems if JOB_ID.fullmatch(stem)), default=0) + 1}"
 
     def keep(self, job: Job) -> None:
         """Write a job, and forget the oldest where there are many."""

@@ -206,15 +206,31 @@ class ModelStore:
             self._loaded, self._active = None, None
             return
         self._active = self._loaded.id
-        if not self._path(self._active).exists():
+        self._keep_copy(self._active)
+
+    def _keep_copy(self, model_id: str) -> None:
+        """Keep a copy of the watched file, which is a model of that id, where there is none.
+
+        Raises:
+            OSError: it cannot be kept.
+        """
+        if not self._path(model_id).exists():
             try:
                 self.add(self._watched, "", {})
             except (ModelError, Refusal) as error:  # it was replaced meanwhile, or nothing can be read here
                 raise OSError(str(error)) from None
 
     def _put(self, path: Path) -> None:
+        """Put a model in the place of the watched file, of which a copy stays.
+
+        Raises:
+            Refusal: that is none that could be returned to.
+            OSError: the file cannot be written, or no copy of it be kept.
+        """
         self.look()
-        if self._active is None and os.path.lexists(self._watched):
+        if self._active is not None:
+            self._keep_copy(self._active)
+        elif os.path.lexists(self._watched):
             raise Refusal(
                 f"{self._watched} is no model that can be read, and would be lost: move it away, and ask again"
             )
