@@ -157,28 +157,27 @@ def field_of(recording: Recording, name: str, form: TypeAdapter[T], default: T) 
 
 
 def _frames(before: Sequence[Marked], after: Sequence[Marked], gone: Sequence[Marked]) -> Change:
+    """Return the change that takes people out of the frames of what is gone, and mirrors others anew."""
     needed = [each for each in after if each.label is not None]
-    touched = [each for each in (*before, *after) if each in gone or each.mirrored]
+    was, will = ([each for each in some if each.mirrored] for some in (before, after))
+
+    def goes(agent: int, at: tuple[str, int]) -> bool:
+        return _held(gone, agent, *at) and not _held(needed, agent, *at)
 
     def change(stored: StoredMessage) -> StoredMessage | None:
-        if not any(_holds(each, None, stored.publish_ns) for each in touched):
+        if not any(_holds(each, None, stored.publish_ns) for each in (*was, *will, *gone)):
             return stored
         message = _decoded(stored, (keys.SKELETON, keys.POSTURE))
         if message is None:
             return stored
         at = message.sensor, stored.publish_ns
-
-        def goes(agent: int) -> bool:
-            return _held(gone, agent, *at) and not _held(needed, agent, *at)
-
         if isinstance(message, Posture):
-            return None if goes(message.agent) else stored
+            return None if goes(message.agent, at) else stored
         assert isinstance(message, Skeleton)
-        was, will = ([each for each in some if each.mirrored] for some in (before, after))
         agents = [
-            mirror_image(each) if _held(was, each.agent, *at) != _held(will, each.agent, *at) else each
+            each if _held(was, each.agent, *at) == _held(will, each.agent, *at) else mirror_image(each)
             for each in message.agents
-            if not goes(each.agent)
+            if not goes(each.agent, at)
         ]
         if agents == message.agents:
             return stored

@@ -29,13 +29,7 @@ from actum_command.labelled_segments import (
 )
 from actum_command.segment_changes import moved, relabelled
 from actum_model_trainer.cutting.marks import free_names, marks_of
-from actum_model_trainer.segment_edits import (
-    deleted,
-    fields_after,
-    following,
-    in_turn,
-    without_messages,
-)
+from actum_model_trainer.segment_edits import deleted, fields_after, following, in_turn, without_messages
 from som_classifier.model_loading import ModelError, load_model
 
 RIGHT_ALIGNED = (True, True, True, True, False, False, False, False)

@@ -91,14 +91,7 @@ def trim(
         fail(f"{segment_id} would start at {start:g} s and end at {until_s:g} s of its {duration_s:g} s")
     if start_ns + start * SECOND_NS < 0:
         fail(f"{segment_id} would start before its sensor's clock does: at the most {start_ns / SECOND_NS:g} s earlier")
-    later_start_ns, later_end_ns = round(start * SECOND_NS), round((until_s - duration_s) * SECOND_NS)
-    trimmed = replace(marked.segment, start_ns=start_ns + later_start_ns, end_ns=end_ns + later_end_ns)
-    try:
-        refuse_outside(marked.recording, trimmed.sensor, start_ns + later_start_ns, end_ns + later_end_ns)
-        frames = followed(marked.segments, trimmed)
-    except (LabellingError, RecordingError) as error:
-        fail(str(error))
-    change_recording(file, in_turn(moved(segment_id, later_start_ns, later_end_ns), frames))
+    _shift(file, marked, round(start * SECOND_NS), round((until_s - duration_s) * SECOND_NS))
     say(f"{segment_id} lasts {until_s - start:.2f} s, and lasted {duration_s:.2f} s before, in {file}")
 
 
@@ -151,3 +144,16 @@ def _marked(file: Path, segment_id: str) -> _Marked:
         near = get_close_matches(segment_id, names, n=1) or names[:5]
         fail(f"no {segment_id!r} in {file}" + (f": is {' or '.join(near)} meant?" if near else ": nothing is marked"))
     return _Marked(recording, segments, found)
+
+
+def _shift(file: Path, marked: _Marked, later_start_ns: int, later_end_ns: int) -> None:
+    """Shift the marks of a segment that has both (ns, positive is later), and let its frames follow; or fail."""
+    segment = marked.segment
+    assert segment.start_ns is not None and segment.end_ns is not None
+    start_ns, end_ns = segment.start_ns + later_start_ns, segment.end_ns + later_end_ns
+    try:
+        refuse_outside(marked.recording, segment.sensor, start_ns, end_ns)
+        frames = followed(marked.segments, replace(segment, start_ns=start_ns, end_ns=end_ns))
+    except (LabellingError, RecordingError) as error:
+        fail(str(error))
+    change_recording(file, in_turn(moved(segment.segment_id, later_start_ns, later_end_ns), frames))

@@ -2,19 +2,18 @@
 
 import json
 import os
-import re
 import shutil
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, FiniteFloat, TypeAdapter
+from pydantic import TypeAdapter
 
 from actum.atomic_file import clear_unfinished, replaced, write_whole
 from actum.commands import Refusal
 from actum_model_trainer.teaching.names import printable
 from actum_model_trainer.teaching.set_store import date_of
 from actum_model_trainer.teaching.small_files import small_file
+from actum_model_trainer.teaching.stored_model import ID, About, StoredModel, described, stored
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 
@@ -22,42 +21,8 @@ HISTORY = "history.json"
 """The file with the models that were in use before, in order."""
 MOST_BEFORE = 50
 """Models that the history remembers: nobody undoes more."""
-ID = re.compile("[0-9a-f]{12}")
-"""The form of a model's id, after which its file is named."""
 IDS = TypeAdapter(list[str])
 """The form of the history."""
-
-
-class About(BaseModel):
-    """What stands beside a model's file."""
-
-    model_config = ConfigDict(strict=True)
-
-    created: str
-    set: str
-    labels: list[str]
-    people: list[str]
-    samples: int
-    scores: dict[str, FiniteFloat]
-
-
-@dataclass(frozen=True)
-class StoredModel:
-    """A model: when it came (ISO 8601), of which set ("" where not known), what it tells apart, of whom it learnt.
-
-    Attributes:
-        samples: the number of examples.
-        scores: what is known of how well it does, by name, numbers.
-    """
-
-    id: str
-    path: Path
-    created: str
-    set: str
-    labels: tuple[str, ...]
-    people: tuple[str, ...]
-    samples: int
-    scores: dict[str, float] = field(default_factory=dict)
 
 
 class ModelStore:
@@ -102,14 +67,14 @@ class ModelStore:
 
     def listed(self) -> tuple[list[StoredModel], list[str]]:
         """List the models, the oldest first, and of each file that cannot be read why."""
-        stored, unreadable = dict[str, StoredModel](), list[str]()
+        found, unreadable = dict[str, StoredModel](), list[str]()
         for path in sorted(self._folder.glob("*.npz")):
             try:
-                each = _described(path) or self._take_over(path)
-                stored[each.id] = each
+                each = described(path) or self._take_over(path)
+                found[each.id] = each
             except (OSError, ModelError) as error:
                 unreadable.append(printable(str(error)))
-        return sorted(stored.values(), key=lambda each: (each.created, each.id)), unreadable
+        return sorted(found.values(), key=lambda each: (each.created, each.id)), unreadable
 
     def get(self, model_id: str) -> StoredModel:
         """Return a model's description.
@@ -117,9 +82,9 @@ class ModelStore:
         Raises:
             Refusal: there is none of that id.
         """
-        for stored in self.all():
-            if stored.id == model_id:
-                return stored
+        for each in self.all():
+            if each.id == model_id:
+                return each
         raise Refusal(f"there is no model {model_id!r}: ask for the list of models")
 
     def add(self, file: Path, set_name: str, scores: dict[str, float]) -> StoredModel:
@@ -257,7 +222,7 @@ class ModelStore:
         )
         path = self._path(model.id)
         write_whole(path.with_suffix(".json"), about.model_dump_json().encode())
-        return _stored(path, about)
+        return stored(path, about)
 
     def _take_over(self, path: Path) -> StoredModel:
         """Describe a model that somebody has copied here, and name its file as all others.
@@ -267,32 +232,9 @@ class ModelStore:
             OSError: it cannot be described.
         """
         model = load_model(path)
-        stored = self._describe(model, "", {})
-        path.replace(stored.path)
-        return stored
-
-
-def _described(path: Path) -> StoredModel | None:
-    """Read what stands beside a model; None where nothing does that can be read."""
-    if ID.fullmatch(path.stem) is None:
-        return None
-    try:
-        return _stored(path, About.model_validate_json(small_file(path.with_suffix(".json"))))
-    except (OSError, ValueError):
-        return None
-
-
-def _stored(path: Path, about: About) -> StoredModel:
-    return StoredModel(
-        path.stem,
-        path,
-        about.created,
-        about.set,
-        tuple(about.labels),
-        tuple(about.people),
-        about.samples,
-        about.scores,
-    )
+        taken = self._describe(model, "", {})
+        path.replace(taken.path)
+        return taken
 
 
 def _read_history(path: Path) -> list[str]:

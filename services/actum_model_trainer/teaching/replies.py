@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict
 
 from actum.messages import JobState, TakeState
-from actum_model_trainer.teaching.model_store import StoredModel
+from actum_model_trainer.teaching.stored_model import StoredModel
 from actum_model_trainer.teaching.take_files import Example, Take
 
 Joint = list[float] | None
