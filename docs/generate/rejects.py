@@ -227,8 +227,18 @@ OF_BRIDGE: Mapping[str, Problem] = {
 
 OF_TRAINER: Mapping[str, Problem] = {
     "lost_take": Problem(
-        "The take that was being recorded is lost: it could not be written, or the sensor has begun anew meanwhile.",
+        "The take that was being recorded is lost: it could not be written, its set is gone, or the sensor's clock has"
+        " begun anew or leaps.",
         "Record it again; where the disk of `ACTUM_TRAINER_DATA` is full, make room.",
+    ),
+    "refused_mark": Problem(
+        "A mark bounds no example of the take that is recorded: its stamp lies outside of the take's frames, or an end"
+        " has no start or lies more than 60 s after it.",
+        "Correct the program that puts it: stamps are the frames', in nanoseconds. The latest error names the mark.",
+    ),
+    "unreadable_file": Problem(
+        "A set, take or model in `ACTUM_TRAINER_DATA` cannot be read; everything else is listed.",
+        "The latest error, and `unreadable` in the reply to `list`, name the file and why; mend it or move it away.",
     ),
     "lost_model": Problem(
         "Somebody has replaced the model in use, and no copy of it could be kept to return to.",

@@ -23,7 +23,7 @@ def write_inspection(
         OSError: something cannot be written.
     """
     from actum_model_inspector.answered import answered_segments  # Matplotlib takes its time and need not be installed
-    from actum_model_inspector.folder import note
+    from actum_model_inspector.folder import PAGE, note
     from actum_model_inspector.html_page import page
     from actum_model_inspector.inspection import pictures, write
     from actum_model_trainer.evaluation import evaluate
@@ -37,7 +37,7 @@ def write_inspection(
     evaluation = evaluate(model, recordings, progress) if labelled else None
     planned = list(pictures(maps, segments, evaluation))
     written = write(planned, folder, ending, progress)
-    index = folder / "index.html"
+    index = folder / PAGE
     index.write_text(page(model, segments, evaluation, planned, written), encoding="utf-8")
     note(index)
     return len(planned)

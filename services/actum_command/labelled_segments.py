@@ -9,8 +9,10 @@ from actum import keys
 from actum.messages import CUT, Action, Event, Segment, Truth
 from actum.node import SECOND_NS
 from actum.recording import Recording
+from actum.rewriting import Change
 from actum_model_trainer.cutting.courses import recorded_courses
 from actum_model_trainer.cutting.repetitions import Cuts, cut
+from actum_model_trainer.segment_edits import MixedMirroringError, following, mirrored_ids, refuse_mixed
 
 FRAMES = (keys.SKELETON, keys.POSTURE)
 """What a person is seen in; a recording of made-up postures has no skeletons."""
@@ -35,6 +37,7 @@ class LabelledSegment:
         agent: who acts; None where the classifier is to find out.
         answer: the recorded answer in words; None where there is none.
         span_ns: within which stamps its name means this segment: one name is used again after a sensor's restart.
+        mirrored: whether left and right are exchanged in its frames, as the trainer does.
     """
 
     number: int
@@ -47,6 +50,7 @@ class LabelledSegment:
     agent: int | None
     answer: str | None = None
     span_ns: tuple[float, float] = (-inf, inf)
+    mirrored: bool = False
 
     def has(self, message: Segment | Action | Event | Truth) -> bool:
         """Tell whether a message with a stamp is a mark of this segment, an answer to it or its ground truth."""
@@ -96,7 +100,8 @@ def labelled_segments(recording: Recording) -> list[LabelledSegment]:
     spans = [each for uses in marks.values() for each in zip(uses, _spans_ns(uses), strict=True)]
     ordered = sorted(spans, key=lambda each: _first_ns(each[0]))
     listed = [_segment(number, pair, span_ns) for number, (pair, span_ns) in enumerate(ordered, start=1)]
-    return [replace(segment, answer=_answer_to(segment, answers)) for segment in listed]
+    mirrored = mirrored_ids(recording)
+    return [replace(each, answer=_answer_to(each, answers), mirrored=each.segment_id in mirrored) for each in listed]
 
 
 def segment_of(segments: Sequence[LabelledSegment], number: int) -> LabelledSegment:
@@ -131,6 +136,33 @@ def check_span(
             raise LabellingError(
                 f"{start_s:.2f} to {end_s:.2f} s overlaps segment {other.number} ({span}): move or delete that first"
             )
+
+
+def refuse_outside(recording: Recording, sensor: str, *stamps_ns: int) -> None:
+    """Refuse bounds that lie outside of a sensor's frames: whoever reads the recording would skip them.
+
+    Raises:
+        RecordingError: the file is damaged.
+        LabellingError: one of them does.
+    """
+    for stamp_ns in stamps_ns:
+        if recording.lacks_frames_at(sensor, stamp_ns):
+            at_s = (stamp_ns - first_stamp_ns(recording)) / SECOND_NS
+            raise LabellingError(f"{at_s:.2f} s lies outside of the recording's frames: stay within them")
+
+
+def followed(segments: Sequence[LabelledSegment], moved: LabelledSegment) -> Change:
+    """Return the change by which the frames of a recording follow one of its segments that was moved.
+
+    Raises:
+        LabellingError: it would share frames with another, where only one of both is mirrored.
+    """
+    others = [other for other in segments if other.number != moved.number]
+    try:
+        refuse_mixed(moved, others)
+    except MixedMirroringError as error:
+        raise LabellingError(str(error)) from None
+    return following(segments, [*others, moved])
 
 
 def only_sensor(recording: Recording) -> str:

@@ -1,17 +1,18 @@
-"""What `actum takes` and `actum label` change in a recording: a segment's label, its bounds, or that it is there."""
+"""What `actum takes` and `actum label` change in the marks of a recording: a segment's label or its bounds."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from actum import codec, keys
+from actum import codec
 from actum.mcap_file import StoredMessage
-from actum.messages import AUTO, MANUAL, Action, Event, Message, Segment, Truth
+from actum.messages import AUTO, MANUAL, Message, Segment
 from actum.rewriting import Change
 from actum_command.labelled_segments import LabelledSegment
+from actum_model_trainer.segment_edits import NAMING, Naming, decoded
 
-Edit = Callable[[Segment | Action | Event | Truth], Message | None]
-"""Returns the message to store in place of one that names the segment, or None to leave it out."""
+Edit = Callable[[Naming], Message]
+"""Returns the message to store in place of one that names the segment."""
 
 
 def relabelled(segment: LabelledSegment, label: str) -> Change:
@@ -23,7 +24,7 @@ def relabelled(segment: LabelledSegment, label: str) -> Change:
         named = {"label": label} if message.kind == "start" else {}
         return _mended(message, named)
 
-    return _of_segments([segment], edit)
+    return _of_segment(segment, edit)
 
 
 def moved(segment: LabelledSegment, later_start_ns: int, later_end_ns: int) -> Change:
@@ -36,12 +37,7 @@ def moved(segment: LabelledSegment, later_start_ns: int, later_end_ns: int) -> C
         later_ns = later_start_ns if message.kind == "start" else later_end_ns
         return _mended(message, {"stamp_ns": message.stamp_ns + later_ns})
 
-    return _of_segments([segment], edit)
-
-
-def dropped(segments: Collection[LabelledSegment]) -> Change:
-    """Return the change that leaves out segments: their marks, their answers and their ground truth."""
-    return _of_segments(segments, lambda _: None)
+    return _of_segment(segment, edit)
 
 
 def _mended(mark: Segment, update: dict[str, Any]) -> Segment:
@@ -51,29 +47,18 @@ def _mended(mark: Segment, update: dict[str, Any]) -> Segment:
     return mark.model_copy(update=changed) if changed else mark
 
 
-def _of_segments(segments: Collection[LabelledSegment], edit: Edit) -> Change:
-    """Return the change that edits the messages that name one of these segments, and no others."""
+def _of_segment(segment: LabelledSegment, edit: Edit) -> Change:
+    """Return the change that edits the messages that name a segment, and no others."""
 
     def change(stored: StoredMessage) -> StoredMessage | None:
-        message = _message(stored)
-        if not isinstance(message, Segment | Action | Event | Truth):
-            return stored
-        if not any(segment.has(message) for segment in segments):
+        message = decoded(stored, NAMING)
+        if not isinstance(message, Naming) or not segment.has(message):
             return stored
         edited = edit(message)
-        if edited is None or edited is message:
-            return None if edited is None else stored
-        return replace(stored, payload=codec.encode(edited).payload, publish_ns=edited.stamp_ns)
+        return (
+            stored
+            if edited is message
+            else replace(stored, payload=codec.encode(edited).payload, publish_ns=edited.stamp_ns)
+        )
 
     return change
-
-
-def _message(stored: StoredMessage) -> Message | None:
-    """Decode a message that may name a segment, None for any other. A mark without a stamp gets that of its storage."""
-    try:
-        if keys.parse(stored.key).topic not in (keys.SEGMENT, keys.ACTION, keys.EVENT, keys.TRUTH):
-            return None
-        message = codec.decode(stored.key, stored.payload, stored.encoding)
-    except (keys.InvalidKeyError, codec.DecodeError):
-        return None
-    return message if message.stamp_ns is not None else message.model_copy(update={"stamp_ns": stored.publish_ns})

@@ -5,6 +5,7 @@ from collections.abc import Collection, Iterable
 
 from actum import keys
 from actum.codec import DecodeError
+from actum.limits import MAX_SKEW_NS
 from actum.messages import MANUAL, Action, Message, Posture, Segment, Skeleton
 from actum.node import Counters
 from actum.recorder import Recorder
@@ -59,11 +60,14 @@ class StreamRecorder:
         self._origins = origins
         self._newest_ns: int | None = None
         self._marks = UnstampedMarks()
+        self._frames_ns: tuple[int, int] | None = None
 
     def take(self, message: Message, received_ns: int) -> None:
         """Take one message and the time it was received at (ns)."""
         if isinstance(message, Skeleton | Posture):
             self._newest_ns = message.stamp_ns
+            first_ns, last_ns = self._frames_ns or (message.stamp_ns, message.stamp_ns)
+            self._frames_ns = min(first_ns, message.stamp_ns), max(last_ns, message.stamp_ns)
         self._place(self._marks.tick(received_ns))
         if isinstance(message, Action) and message.final:
             self._place(self._marks.answer(message, received_ns))
@@ -90,8 +94,18 @@ class StreamRecorder:
         if mark.kind == "start" and mark.label is None:
             mark = mark.model_copy(update={"label": self._label})
         if mark.stamp_ns is not None:
+            if self._is_outside(mark.stamp_ns):
+                self.counters.reject("mark_outside_frames", f"{mark.segment_id} at {mark.stamp_ns} ns, none of theirs")
+                return
             self._store(mark, received_ns)
         self._place(self._marks.take(mark, received_ns, self._newest_ns))
+
+    def _is_outside(self, stamp_ns: int) -> bool:
+        """Tell whether no frame that has come, or is about to come, may have a mark's stamp."""
+        if self._frames_ns is None:
+            return False
+        first_ns, last_ns = self._frames_ns
+        return not first_ns - MAX_SKEW_NS <= stamp_ns <= last_ns + MAX_SKEW_NS
 
     def _place(self, marks: Iterable[Placed]) -> None:
         for pending, bounds in marks:

@@ -3,9 +3,10 @@
 from collections import Counter
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from actum.limits import MAX_SKEW_NS
 from actum.recorder import refuse_taken, write_recording
 from actum_dataset_importer import bimacs, msr_action3d, msrc12, utkinect
 from actum_dataset_importer.bimacs import HandsTake
@@ -44,6 +45,7 @@ class ImportReport:
     actions: set[str] = field(default_factory=set)
     persons: set[str] = field(default_factory=set)
     skipped: list[str] = field(default_factory=list)
+    outside: list[str] = field(default_factory=list)
     oddities: Counter[str] = field(default_factory=Counter)
 
     def add(self, take: Take) -> None:
@@ -80,6 +82,8 @@ class ImportReport:
             lines.append(f"{self.excluded} recordings marked excluded: training skips them unless told otherwise")
         if self.skipped:
             lines.append(f"{len(self.skipped)} segments without bounds skipped: {', '.join(self.skipped)}")
+        if self.outside:
+            lines.append(f"{len(self.outside)} segments outside of the frames skipped: {', '.join(self.outside)}")
         return lines + [f"{self.oddities[kind]} {words}" for kind, words in ODDITIES.items() if self.oddities[kind]]
 
     def __str__(self) -> str:
@@ -194,9 +198,19 @@ def import_takes(source: str, takes: Iterable[Take], total: int, out: Path, prog
         OSError: one cannot be written, or lies there already.
     """
     report = ImportReport()
-    for take in takes:
+    for given in takes:
+        outside = _outside(given)
+        take = replace(given, marks=[mark for mark in given.marks if mark.segment_id not in outside])
+        report.outside += [f"{take.name} {segment_id}" for segment_id in outside]
         file = out / f"{take.name}.mcap"
         write_recording(file, (*take.frames, *take.marks), person=take.person, source=source, **take.metadata)
         report.add(take)
         progress(report.files, total)
     return report
+
+
+def _outside(take: Take) -> list[str]:
+    """Return the ids of the segments of which a mark lies where whoever reads a recording would skip it."""
+    stamps_ns = [frame.stamp_ns for frame in take.frames]
+    first_ns, last_ns = min(stamps_ns, default=0) - MAX_SKEW_NS, max(stamps_ns, default=0) + MAX_SKEW_NS
+    return sorted({mark.segment_id for mark in take.marks if not first_ns <= (mark.stamp_ns or 0) <= last_ns})

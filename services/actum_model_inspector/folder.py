@@ -1,11 +1,15 @@
 """The list of the files that a run has written to a folder, so that the next run removes those and nothing else."""
 
 import hashlib
+import os
 import re
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 LIST = "written-by-actum-inspect.sha256"
 """Name of the list: one line per file, as `sha256sum` writes and checks them."""
+PAGE = "index.html"
+"""Name of the page that shows the pictures."""
 _LINE = re.compile(r"([0-9a-f]{64})  ([^/\\\\]+)")
 
 
@@ -19,20 +23,30 @@ def note(file: Path) -> None:
         listed.write(f"{_digest(file)}  {file.name}\n")
 
 
-def clear(folder: Path) -> None:
+def clear(folder: Path, wanted: Iterable[str]) -> None:
     """Remove the files on a folder's list that have not changed since they were written, and the list.
 
     Raises:
-        OSError: one cannot be removed.
+        OSError: one cannot be removed, or another file has one of the wanted names; nothing is removed then.
     """
+    ours = set(_unchanged(folder))
+    for file in (folder / name for name in wanted):
+        if os.path.lexists(file) and file not in ours:
+            raise FileExistsError(f"{file} is not as an earlier run wrote it: move it, or name another folder")
+    for file in ours:
+        file.unlink(missing_ok=True)
+    (folder / LIST).unlink(missing_ok=True)
+
+
+def _unchanged(folder: Path) -> Iterator[Path]:
+    """Yield the files on a folder's list that have not changed since they were written."""
     if not (folder / LIST).is_file():
         return
     lines = (folder / LIST).read_text(encoding="utf-8", errors="replace").splitlines()
     for digest, name in (match.groups() for match in map(_LINE.fullmatch, lines) if match is not None):
         file = folder / name
         if file.is_file() and _digest(file) == digest:
-            file.unlink()
-    (folder / LIST).unlink()
+            yield file
 
 
 def _digest(file: Path) -> str:

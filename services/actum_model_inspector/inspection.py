@@ -13,7 +13,7 @@ from actum_model_inspector.answered import AnsweredSegment, headline
 from actum_model_inspector.arm_map import arm_map
 from actum_model_inspector.confusion import confusion_picture
 from actum_model_inspector.explanation import explanation_picture
-from actum_model_inspector.folder import clear, note
+from actum_model_inspector.folder import PAGE, clear, note
 from actum_model_inspector.posture_map import posture_map
 from actum_model_inspector.reliability_diagram import labelled_answers, reliability_picture
 from actum_model_inspector.segment_selection import examples, file_names, mistake_name, mistakes
@@ -60,10 +60,10 @@ def write(planned: Sequence[Picture], folder: Path, ending: str, progress: Progr
     """Draw the pictures into a folder, in place of an earlier run's, and return each one's file name by its name.
 
     Raises:
-        OSError: one cannot be written, or one of an earlier run not be removed.
+        OSError: one cannot be written, one of an earlier run not be removed, or another file has the name of one.
     """
-    clear(folder)
     files = {picture.name: f"{picture.name}.{ending}" for picture in planned}
+    clear(folder, [*files.values(), PAGE])
     for done, picture in enumerate(planned):
         progress("drawing pictures", done, len(planned))
         save(picture.make(), folder / files[picture.name])

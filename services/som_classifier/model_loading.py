@@ -30,6 +30,8 @@ def load_model(path: Path) -> Model:
         ModelError: the file is missing, foreign, damaged, or made for another joint order.
     """
     try:
+        if path.exists() and not path.is_file():
+            raise ModelError(path, "no file")
         with path.open("rb") as stored:
             metadata, arrays = _parts(path, stored)
         kind = json.loads(metadata).get("kind")

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import re
 import secrets
 import sys
 from collections.abc import Iterator
@@ -14,6 +15,8 @@ if sys.platform != "win32":
 
 UNFINISHED = ".part"
 """Ending of files that are still being written. A recording that a killed process has left is readable up to there."""
+LEFT = re.compile(rf"\..+\.[0-9a-f]{{8}}{re.escape(UNFINISHED)}", re.DOTALL)
+"""The names of unfinished files."""
 PRIVATE_FOLDER = 0o700
 """The mode of a new folder that holds secrets, or what people look like and do: nobody but its owner enters it."""
 USUAL_MODE = 0o666
@@ -105,6 +108,17 @@ def claim(file: BinaryIO) -> bool:
     except OSError:
         return True
     return True
+
+
+def clear_unfinished(folder: Path) -> None:
+    """Delete the unfinished files of `replaced` that a killed process has left in a folder, and no others.
+
+    Raises:
+        OSError: one cannot be deleted.
+    """
+    for path in folder.iterdir():
+        if LEFT.fullmatch(path.name) and not path.is_dir():
+            path.unlink(missing_ok=True)
 
 
 def write_whole(path: Path, content: bytes, mode: int | None = None) -> None:

@@ -123,18 +123,23 @@ class Numbering:
 def replay(node: Node, messages: Iterable[tuple[int, Message]], settle_ns: int = SETTLE_NS) -> Iterator[Message]:
     """Feed a node messages at their arrival times (ns), with ticks between, and yield the messages that it puts.
 
-    Ticks go on for `settle_ns` after the last message, so that segments still waiting are answered, too.
+    Ticks go on for `settle_ns` after the last message, so that segments still waiting are answered, too. Between two
+    messages they go on for `SETTLE_NS` at the most, for nothing waits longer: a wrong stamp costs 700 ticks. They start
+    with the first arrival time, and do not go back where a message arrives before the one before it.
     """
     numbering = Numbering()
     inputs = tuple(topic.message for topic in node.inputs)
+    newest_ns: int | None = None
     now = next_tick = 0
     for arrival_ns, message in messages:
-        next_tick = next_tick or arrival_ns
-        while next_tick <= arrival_ns:
+        if newest_ns is None:
+            newest_ns = now = next_tick = arrival_ns
+        now += min(max(arrival_ns - newest_ns, 0), SETTLE_NS)
+        newest_ns = max(newest_ns, arrival_ns)
+        while next_tick <= now:
             yield from map(numbering.numbered, node.handle(Tick(next_tick)))
             next_tick += TICK_NS
-        now = arrival_ns
         if isinstance(message, inputs):
             yield from map(numbering.numbered, node.handle(message))
-    for tick in range(max(next_tick, now), now + settle_ns, TICK_NS):
+    for tick in range(next_tick, now + settle_ns, TICK_NS):
         yield from map(numbering.numbered, node.handle(Tick(tick)))

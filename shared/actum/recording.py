@@ -10,6 +10,7 @@ from operator import attrgetter
 from pathlib import Path
 
 from actum import codec, keys
+from actum.limits import MAX_SKEW_NS
 from actum.mcap_file import REMEDY, McapFile, RecordingError, StoredMessage
 from actum.messages import Image, Message, Segment
 from actum.recorder import METADATA
@@ -24,6 +25,9 @@ LEAST_HELD_BYTES = 64_000_000
 """What they may take (bytes) however small the file is."""
 MESSAGE_BYTES = 250
 """What a message in memory takes beside its payload (bytes)."""
+
+FRAMES = (keys.SKELETON, keys.POSTURE, keys.OBJECTS, keys.COLOR, keys.DEPTH)
+"""The topics of which a recording's frames are."""
 
 
 class Recording:
@@ -78,6 +82,18 @@ class Recording:
         """Return the sensors of which it holds at least one message of a topic, sorted."""
         return sorted({address.sensor for address in self._addresses if address.topic is topic})
 
+    def lacks_frames_at(self, sensor: str, stamp_ns: int) -> bool:
+        """Tell whether a mark of that stamp would be skipped: it lies outside of the sensor's frames.
+
+        Raises:
+            RecordingError: the file is damaged.
+        """
+        spans = _Spans()
+        for stored in self._file.stored():
+            if (address := _address(stored.key)) is not None:
+                spans.note(address, stored.publish_ns)
+        return not spans.hold(sensor, stamp_ns)
+
     @cached_property
     def _addresses(self) -> list[keys.Address]:
         found = {stored.key: _address(stored.key) for stored in self._file.stored()}
@@ -87,7 +103,8 @@ class Recording:
         """Yield the messages of these topics, or of all, in order of `publish_time`.
 
         At one stamp, start marks come before everything else and end marks after it. Images are streamed, each key's
-        in the order they were written; all other messages are sorted.
+        in the order they were written; all other messages are sorted. A mark that lies further outside of its sensor's
+        frames than a message may be late is skipped and counted as `mark_outside_frames`.
 
         Raises:
             RecordingError: the file is damaged.
@@ -104,12 +121,15 @@ class Recording:
         addresses: dict[str, keys.Address | None] = {}
         without_images: list[StoredMessage] = []
         image_keys: set[str] = set()
-        left = LEAST_HELD_BYTES + MOST_HELD * self.path.stat().st_size
+        spans = _Spans()
+        left = LEAST_HELD_BYTES + MOST_HELD * self._size_bytes()
         for stored in self._file.stored():
             address = addresses.setdefault(stored.key, _address(stored.key))
             if address is None:
                 self.skipped["unknown_key"] += 1
-            elif topics is None or address.topic in topics:
+                continue
+            spans.note(address, stored.publish_ns)
+            if topics is None or address.topic in topics:
                 if address.topic.message is Image:
                     image_keys.add(stored.key)
                 else:
@@ -117,7 +137,16 @@ class Recording:
                     if left < 0:
                         raise RecordingError(self.path, "far more messages than a file of its size holds", REMEDY)
                     without_images.append(stored)
-        return sorted(without_images, key=attrgetter("publish_ns")), image_keys
+        within = [each for each in without_images if _may_be_read(addresses[each.key], each.publish_ns, spans)]
+        if len(within) < len(without_images):
+            self.skipped["mark_outside_frames"] += len(without_images) - len(within)
+        return sorted(within, key=attrgetter("publish_ns")), image_keys
+
+    def _size_bytes(self) -> int:
+        try:
+            return self.path.stat().st_size
+        except OSError as error:
+            raise RecordingError(self.path, error.strerror or str(error), REMEDY) from None
 
     def _of_key(self, key: str) -> Iterator[StoredMessage]:
         return (stored for stored in self._file.stored() if stored.key == key)
@@ -132,6 +161,31 @@ class Recording:
             if message.stamp_ns is None:
                 message = message.model_copy(update={"stamp_ns": stored.publish_ns})
             yield message
+
+
+class _Spans:
+    """From when to when each sensor's frames last (ns)."""
+
+    def __init__(self) -> None:
+        self._of_sensor: dict[str, tuple[int, int]] = {}
+
+    def note(self, address: keys.Address, stamp_ns: int) -> None:
+        """Note a message; only those that a sensor captured, or that follow from these, count."""
+        if address.topic in FRAMES:
+            first_ns, last_ns = self._of_sensor.get(address.sensor, (stamp_ns, stamp_ns))
+            self._of_sensor[address.sensor] = min(first_ns, stamp_ns), max(last_ns, stamp_ns)
+
+    def hold(self, sensor: str, stamp_ns: int) -> bool:
+        """Tell whether a mark may belong to a sensor's frames; where it has none, every mark may."""
+        if sensor not in self._of_sensor:
+            return True
+        first_ns, last_ns = self._of_sensor[sensor]
+        return first_ns - MAX_SKEW_NS <= stamp_ns <= last_ns + MAX_SKEW_NS
+
+
+def _may_be_read(address: keys.Address | None, stamp_ns: int, spans: _Spans) -> bool:
+    """Tell whether a message is no mark, or one that may belong to its sensor's frames."""
+    return address is None or address.topic is not keys.SEGMENT or spans.hold(address.sensor, stamp_ns)
 
 
 def _address(key: str) -> keys.Address | None:

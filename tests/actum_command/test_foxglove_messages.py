@@ -95,6 +95,11 @@ def test_a_stamp_is_exact_to_the_nanosecond(tmp_path: Path) -> None:
     assert (log_time_ns, time.seconds, time.nanos) == (STAMP_NS, 1_700_000_000, 123_456_789)
 
 
+@pytest.mark.parametrize("stamp_ns", [0, 2**62 - 1])
+def test_a_stamp_that_foxglove_has_no_number_for_is_shown_as_the_last_it_has(tmp_path: Path, stamp_ns: int) -> None:
+    assert put(tmp_path, skeleton(stamp_ns, STANDING))
+
+
 def test_a_missing_joint_is_not_drawn_nor_are_its_bones(tmp_path: Path) -> None:
     [(_, update)] = put(tmp_path, skeleton(1, lacking(STANDING, "left_elbow")))["/actum/kinect0/skeleton"]
     assert len(update.entities[0].spheres) == 14

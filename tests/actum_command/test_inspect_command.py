@@ -85,6 +85,17 @@ def test_pictures_of_an_earlier_run_leave_the_folder(tmp_path: Path, ending: str
     assert files_of(out) == {*linked(out), out / "index.html"}
 
 
+@pytest.mark.parametrize("name", ["index.html", "posture-map.png"])
+def test_a_users_file_of_a_wanted_name_is_not_overwritten(tmp_path: Path, name: str) -> None:
+    out, model = tmp_path / "out", tmp_path / "model.npz"
+    tiny_model(TINY_PAPER).save(model)
+    out.mkdir()
+    (out / name).write_bytes(b"mine")
+    refused = inspect(model, "-o", out)
+    assert refused.exit_code == 1 and f"{name} is not as an earlier run wrote it" in refused.output
+    assert (out / name).read_bytes() == b"mine" and len(list(out.iterdir())) == 1
+
+
 def test_what_a_run_has_not_written_stays_whatever_its_name(tmp_path: Path) -> None:
     out, model = tmp_path / "out", tmp_path / "model.npz"
     tiny_model(TINY_PAPER).save(model)

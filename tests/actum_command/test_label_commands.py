@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from actum.messages import AUTO, MANUAL, Action, Message, Segment
+from actum.messages import AUTO, MANUAL, Action, Message, Segment, Skeleton
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum_command.__main__ import app
@@ -116,17 +116,27 @@ def test_a_segment_is_renamed_and_deleted_with_its_answers(path: Path) -> None:
     assert all(getattr(message, "segment_id", None) != "first" for message in Recording(path).messages())
 
 
-def test_a_segment_is_added_and_taken_out_again(path: Path) -> None:
-    before = list(Recording(path).messages())
+def test_a_segment_is_added_and_deleted_with_its_frames(path: Path) -> None:
+    marks = [m for m in Recording(path).messages() if isinstance(m, Segment)]
     label("add", path, 6.4, 7.8, "wave", "--agent", 1)
     assert rows(path)[2] == "3 6.40 s 7.80 s (1.40 s) wave manual agent 1"
     label("delete", path, 3)
-    assert list(Recording(path).messages()) == before
+    assert [m for m in Recording(path).messages() if isinstance(m, Segment)] == marks
+    empty = [(m.stamp_ns - FIRST_NS) / 1e9 for m in unmarked(path) if isinstance(m, Skeleton) and not m.agents]
+    assert (min(empty), max(empty)) == pytest.approx((6.4, 7.8), abs=0.04)
 
 
-def test_repetitions_are_cut_beside_marks_by_hand_and_cut_anew(path: Path, waves: Stream) -> None:
-    label("delete", path, 1)
-    label("delete", path, 1)
+def test_a_segment_without_a_label_is_deleted_without_its_frames(path: Path) -> None:
+    frames = unmarked(path)
+    label("delete", path, 2)
+    assert unmarked(path) == frames and len(rows(path)) == 1
+
+
+def test_repetitions_are_cut_and_cut_anew(tmp_path: Path, waves: Stream) -> None:
+    path = tmp_path / "unmarked.mcap"
+    with Recorder(path, person="anna", source="test") as recorder:
+        for frame in waves.skeletons(first_ns=FIRST_NS):
+            recorder.write(frame)
     frames = unmarked(path)
     assert "5 segments labelled 'wave'" in label("cut", path, 5, "wave")
     starts = [float(row.split()[1]) for row in rows(path)]

@@ -6,6 +6,7 @@ import pytest
 from mcap.reader import make_reader
 
 from actum import keys
+from actum.limits import MAX_SKEW_NS
 from actum.messages import AUTO, MANUAL, REPLAY, SIMULATOR, Image, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS, SETTLE_NS, Counters
 from actum.recorder import Recorder
@@ -47,6 +48,15 @@ def take(tmp_path: Path) -> Take:
 
 def test_a_mark_with_a_stamp_is_stored_as_it_is(take: Take) -> None:
     assert take.marks(skeleton(10), mark("start", 7), action(8, 9)) == [("start", 7)]
+
+
+@pytest.mark.parametrize("stamp_ns", [0, 1_790_000_000, 2**62 - 1])
+def test_a_mark_outside_of_the_frames_is_counted_and_left_out(take: Take, stamp_ns: int) -> None:
+    now_ns = 1_790_000_000 * SECOND_NS
+    assert take.marks(skeleton(now_ns), mark("start", stamp_ns), mark("end", now_ns + MAX_SKEW_NS)) == [
+        ("end", now_ns + MAX_SKEW_NS)
+    ]
+    assert take.counters.rejects == {"mark_outside_frames": 1}
 
 
 def test_a_mark_without_a_stamp_gets_the_one_the_classifier_gave_it(take: Take) -> None:

@@ -99,10 +99,12 @@ def test_start_and_end_are_moved(path: Path) -> None:
     assert marks_of(path, "unnamed") == [("start", 30, None), ("end", 40, None)]
 
 
-def test_an_action_is_dropped_with_its_answers_and_without_its_frames(path: Path) -> None:
+def test_an_action_is_dropped_with_its_answers_and_the_person_in_its_frames(path: Path) -> None:
     takes("drop", path, "whole")
     assert of_segment(path, "whole") == []
-    assert sum(isinstance(m, Skeleton) for m in Recording(path).messages()) == FRAMES
+    skeletons = [m for m in Recording(path).messages() if isinstance(m, Skeleton)]
+    assert len(skeletons) == FRAMES
+    assert [bool(each.agents) for each in skeletons] == [False] * 30 + [True] * (FRAMES - 30)
     assert set(rows(path)) == {"unnamed", "short", "open"}
 
 
@@ -113,6 +115,7 @@ def test_an_action_is_dropped_with_its_answers_and_without_its_frames(path: Path
         (("relabel", "whole", ""), "a label has 1 to 200 characters"),
         (("trim", "whole", "--start", "2"), "whole would start at 2 s and end at 0.96"),
         (("trim", "whole", "--start", "-2"), "before its sensor's clock"),
+        (("trim", "whole", "--end", "3600"), "3600.00 s lies outside of the recording's frames"),
         (("trim", "open", "--end", "2"), "open has no end mark"),
     ],
 )

@@ -97,6 +97,24 @@ def test_utkinect_recordings_keep_their_segments(tmp_path: Path) -> None:
     assert order == ["start", 1, "start", 2, "end", 3, "end"]
 
 
+def test_segments_outside_of_the_frames_are_skipped_and_named(tmp_path: Path) -> None:
+    (tmp_path / "joints_s03_e02.txt").write_text("".join(f"{image} " + "0.5 " * 60 + "\n" for image in (30, 60, 90)))
+    (tmp_path / "actionLabel_modified.txt").write_text("s03_e02\npush: 30 60\npull: 60 99000000\n")
+    report = import_utkinect(tmp_path, tmp_path / "out", lambda done, total: None)
+    assert report.segments == 1 and "1 segments outside of the frames skipped: s03_e02" in str(report)
+    marks = [m for m in Recording(tmp_path / "out/s03_e02.mcap").messages() if isinstance(m, Segment)]
+    assert {mark.label for mark in marks if mark.kind == "start"} == {"push"}
+
+
+def test_a_recording_that_is_there_is_not_overwritten(tmp_path: Path) -> None:
+    msr_sequence(tmp_path, "a01_s02_e03", "x0x")
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/a01_s02_e03.mcap").write_bytes(b"mine")
+    with pytest.raises(OSError, match="is there already: import into another folder"):
+        import_msr_action3d(tmp_path, tmp_path / "out", lambda done, total: None)
+    assert (tmp_path / "out/a01_s02_e03.mcap").read_bytes() == b"mine"
+
+
 def test_a_damaged_file_stops_the_import_and_is_named(tmp_path: Path) -> None:
     msr_sequence(tmp_path, "a01_s01_e01", "x")
     (tmp_path / "a01_s01_e02_skeleton3D.txt").write_text("1 2 3\n")

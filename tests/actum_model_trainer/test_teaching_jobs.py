@@ -5,6 +5,7 @@ import json
 import shutil
 import sys
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -195,6 +196,32 @@ def test_a_process_that_fails_is_told_with_its_last_words(tmp_path: Path) -> Non
     assert "it died (exit code 1)" in ended.error and "KeyError: 'no such kind'" in ended.error
 
 
+@pytest.mark.system
+def test_a_process_whose_folder_has_vanished_is_told(tmp_path: Path) -> None:
+    folder = tmp_path / "job-1.work"
+    folder.mkdir()
+    running = JobProcess(JobRequest("no such kind", folder))
+    shutil.rmtree(folder)
+    assert "what it said cannot be read (No such file" in wait_for_end(running).error
+
+
+@pytest.mark.parametrize("line", [b"5", b'"text"', b'{"stage": "x"}', b'{"a": 1}', b"[" * 100_000, b"no JSON"])
+def test_what_a_library_prints_is_no_news(line: bytes, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    class Printing:
+        returncode = 1
+
+        def __init__(self, *_: Any, **__: Any) -> None:
+            self.stdout = BytesIO(b'{"stage": "training", "done": 0.5}\n' + line + b"\n")
+
+        def poll(self) -> int | None:
+            return None
+
+    monkeypatch.setattr("subprocess.Popen", Printing)
+    running = JobProcess(JobRequest("train", tmp_path))
+    running._reading.join()
+    assert running.look() == Progressing("training", 0.5)
+
+
 def test_a_file_comes_in_pieces_that_follow_one_another(teacher: Teacher) -> None:
     def send(offset: int, data: bytes, last: bool = False) -> dict[str, Any]:
         text = base64.b64encode(data).decode()
@@ -206,7 +233,7 @@ def test_a_file_comes_in_pieces_that_follow_one_another(teacher: Teacher) -> Non
     with pytest.raises(Refusal, match="no finished upload 'clip.mp4'"):
         teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="wave")
     assert send(3, b"def", last=True) == {"upload": "clip.mp4", "size": 6}
-    assert (teacher.folder / "uploads" / "clip.mp4").read_bytes() == b"abcdef"
+    assert (teacher.folder / "uploads/.sent/clip.mp4").read_bytes() == b"abcdef"
     with pytest.raises(Refusal, match="base64"):
         teacher.ask("upload", name="clip.mp4", offset=0, data="no base64!", last=True)
 
@@ -240,5 +267,5 @@ def test_examples_are_cut_out_of_a_video(
     assert (ended["state"], ended["message"]) == ("done", "1 examples cut out of the video")
     (example,) = [each for each in teacher.examples() if each["person"] == "carl"]
     assert (example["label"], example["origin"], example["take"]) == ("drink", "cut", ended["result"]["take"])
-    assert not (teacher.folder / "uploads" / "clip.avi").exists()
+    assert not (teacher.folder / "uploads/.sent/clip.avi").exists()
     assert teacher.ask("film", set="kitchen", example=example["id"])["joints"]

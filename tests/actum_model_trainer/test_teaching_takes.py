@@ -110,16 +110,25 @@ def test_marks_that_nobody_put_by_hand_do_not_count(teacher: Teacher, origin: st
     assert [each["origin"] for each in teacher.examples()] == ["cut"] * 5
 
 
-def test_redo_drops_the_newest_example_and_records_one_anew(teacher: Teacher) -> None:
+def test_redo_records_the_newest_example_anew_and_drops_the_old_one_then(teacher: Teacher) -> None:
     teacher.teach("wave", WAVES)
     before = [each["id"] for each in teacher.examples()]
     teacher.ask("redo_last", set="kitchen")
-    assert [each["id"] for each in teacher.examples()] == before[:-1]
+    assert [each["id"] for each in teacher.examples()] == before, "until the new one is there"
     teacher.act(Stream().repeat(WAVES[:1], pause_s=2).then(rest(4)))
     after = teacher.examples()
     assert len(after) == 5 and [each["id"] for each in after[:4]] == before[:-1]
     assert (after[-1]["label"], after[-1]["person"], after[-1]["doubts"]) == ("wave", "anna", [])
     assert 1.0 < (after[-1]["end_ns"] - after[-1]["start_ns"]) / 1e9 < 2.2
+
+
+@pytest.mark.parametrize("end", ["discard", "stop"])
+def test_an_example_that_is_not_recorded_anew_stays(teacher: Teacher, end: str) -> None:
+    teacher.teach("wave", WAVES)
+    before = teacher.examples()
+    teacher.ask("redo_last", set="kitchen")
+    teacher.ask(end)
+    assert teacher.examples() == before
 
 
 def test_one_thing_is_recorded_at_a_time(teacher: Teacher) -> None:

@@ -1,5 +1,6 @@
 """`actum label`: lists the segments of a recording, draws and mends them."""
 
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
@@ -21,12 +22,15 @@ from actum_command.labelled_segments import (
     check_span,
     cut_anew,
     first_stamp_ns,
+    followed,
     labelled_segments,
     only_sensor,
+    refuse_outside,
     segment_of,
 )
-from actum_command.segment_changes import dropped, moved, relabelled
+from actum_command.segment_changes import moved, relabelled
 from actum_model_trainer.cutting.marks import free_names, marks_of
+from actum_model_trainer.segment_edits import deleted, fields_after, following, in_turn, without_messages
 from som_classifier.model_loading import ModelError, load_model
 
 RIGHT_ALIGNED = (True, True, True, True, False, False, False, False, False)
@@ -74,7 +78,7 @@ def move(
     end: Annotated[str | None, typer.Option(help="new end, likewise; default: stays")] = None,
 ) -> None:
     """Move the start or the end of a segment; what was answered stays."""
-    _, segments, first_ns = _opened(file)
+    recording, segments, first_ns = _opened(file)
     segment = _of_number(segments, number)
     if segment.start_ns is None or segment.end_ns is None:
         fail(
@@ -83,16 +87,24 @@ def move(
     start_ns, end_ns = _moved_to(start, segment.start_ns, first_ns), _moved_to(end, segment.end_ns, first_ns)
     others = [other for other in segments if other.number != number]
     _checked(others, start_ns, end_ns, segment.sensor, segment.agent, first_ns)
-    change_recording(file, moved(segment, start_ns - segment.start_ns, end_ns - segment.end_ns))
+    shifted = moved(segment, start_ns - segment.start_ns, end_ns - segment.end_ns)
+    try:
+        refuse_outside(recording, segment.sensor, start_ns, end_ns)
+        frames = followed(segments, replace(segment, start_ns=start_ns, end_ns=end_ns))
+    except (LabellingError, RecordingError) as error:
+        fail(str(error))
+    change_recording(file, in_turn(shifted, frames))
     say(f"segment {number} lasts from {_seconds(start_ns, first_ns)} to {_seconds(end_ns, first_ns)} in {file}")
 
 
 @app.command("delete")
 def delete(file: RecordingFile, number: Number) -> None:
-    """Take a segment out: its marks and what was answered; the frames stay."""
-    _, segments, _ = _opened(file)
+    """Delete a segment: its marks, what was answered, and the frames of whoever acts in it, unless it has no label or
+    another labelled segment of that person needs them."""
+    recording, segments, _ = _opened(file)
     segment = _of_number(segments, number)
-    change_recording(file, dropped([segment]))
+    kept = [other for other in segments if other.number != number]
+    change_recording(file, deleted([segment], kept), metadata=fields_after(recording, kept))
     say(f"segment {number} ({segment.label or 'no label'}) is no longer in {file}; later ones have one number less")
 
 
@@ -122,7 +134,8 @@ def add(
     start_ns, end_ns = (first_ns + round(seconds * SECOND_NS) for seconds in (start, end))
     try:
         sensor = only_sensor(recording)
-    except LabellingError as error:
+        refuse_outside(recording, sensor, start_ns, end_ns)
+    except (LabellingError, RecordingError) as error:
         fail(str(error))
     _checked(segments, start_ns, end_ns, sensor, agent, first_ns)
     name = next(free_names([segment.segment_id for segment in segments], "added"))
@@ -143,9 +156,10 @@ def cut(
         cuts, sensor = cut_anew(recording, segments, times), only_sensor(recording)
     except LabellingError as error:
         fail(str(error))
-    kept = [segment.segment_id for segment in segments if segment.origin != CUT]
-    marks = marks_of(cuts, free_names(kept, CUT), label, sensor)
-    change_recording(file, dropped([segment for segment in segments if segment.origin == CUT]), marks)
+    kept = [segment for segment in segments if segment.origin != CUT]
+    marks = marks_of(cuts, free_names([each.segment_id for each in kept], CUT), label, sensor)
+    old = without_messages(each for each in segments if each.origin == CUT)
+    change_recording(file, in_turn(old, following(segments, kept)), marks, fields_after(recording, kept))
     for line in cut_lines(cuts, first_ns):
         say(line)
     for doubt in cuts.doubts:

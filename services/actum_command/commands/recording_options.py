@@ -1,6 +1,6 @@
 """Options that choose recordings, warnings about those that were read, and how one is changed."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -65,10 +65,12 @@ def refuse_length(label: str) -> None:
         fail(f"a label has 1 to {LONGEST_LABEL} characters")
 
 
-def change_recording(file: Path, change: Change, added: Iterable[Message] = ()) -> None:
-    """Rewrite a recording with a change and further messages, or fail and leave it as it was."""
+def change_recording(
+    file: Path, change: Change, added: Iterable[Message] = (), metadata: Mapping[str, str] | None = None
+) -> None:
+    """Rewrite a recording with a change, further messages and other metadata, or fail and leave it as it was."""
     try:
-        rewrite(file, change, added)
+        rewrite(file, change, added, metadata)
     except RecordingError as error:
         fail(str(error))
     except OSError as error:

@@ -1,6 +1,7 @@
 """`actum takes`: lists the marked actions of recordings, and changes them."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated
@@ -20,9 +21,17 @@ from actum_command.commands.recording_options import (
     tell_unread,
 )
 from actum_command.commands.terminal import fail, say
-from actum_command.labelled_segments import LabelledSegment, LabellingError, first_stamp_ns, labelled_segments
+from actum_command.labelled_segments import (
+    LabelledSegment,
+    LabellingError,
+    first_stamp_ns,
+    followed,
+    labelled_segments,
+    refuse_outside,
+)
 from actum_command.marked_actions import MarkedAction, marked_actions
-from actum_command.segment_changes import dropped, moved, relabelled
+from actum_command.segment_changes import moved, relabelled
+from actum_model_trainer.segment_edits import deleted, fields_after, in_turn
 
 app = PlainTyper(
     cls=ListingGroup,
@@ -63,7 +72,7 @@ def relabel(
 ) -> None:
     """Give an action another label."""
     refuse_length(label)
-    segment = _marked(file, segment_id, sensor)
+    segment = _marked(file, segment_id, sensor).segment
     if segment.start_ns is None:
         fail(f"{segment_id} has no start mark in {file}, which a label belongs to: drop it")
     change_recording(file, relabelled(segment, label))
@@ -83,8 +92,8 @@ def trim(
     sensor: SensorOption = None,
 ) -> None:
     """Move the start and the end of an action; times count from its present start."""
-    segment = _marked(file, segment_id, sensor)
-    start_ns, end_ns = segment.start_ns, segment.end_ns
+    marked = _marked(file, segment_id, sensor)
+    start_ns, end_ns = marked.segment.start_ns, marked.segment.end_ns
     if start_ns is None or end_ns is None:
         fail(f"{segment_id} has no {'start' if start_ns is None else 'end'} mark in {file}: drop it")
     duration_s = (end_ns - start_ns) / SECOND_NS
@@ -93,15 +102,17 @@ def trim(
         fail(f"{segment_id} would start at {start:g} s and end at {until_s:g} s of its {duration_s:g} s")
     if start_ns + start * SECOND_NS < 0:
         fail(f"{segment_id} would start before its sensor's clock does: at the most {start_ns / SECOND_NS:g} s earlier")
-    change_recording(file, moved(segment, round(start * SECOND_NS), round((until_s - duration_s) * SECOND_NS)))
+    _shift(file, marked, round(start * SECOND_NS), round((until_s - duration_s) * SECOND_NS))
     say(f"{segment_id} lasts {until_s - start:.2f} s, and lasted {duration_s:.2f} s before, in {file}")
 
 
 @app.command("drop")
 def drop(file: RecordingFile, segment_id: SegmentId, sensor: SensorOption = None) -> None:
-    """Take an action out: its marks and what was answered; the frames stay."""
-    segment = _marked(file, segment_id, sensor)
-    change_recording(file, dropped([segment]))
+    """Delete an action: its marks, what was answered, and the frames of whoever acts in it, unless it has no label or
+    another labelled action of that person needs them."""
+    marked = _marked(file, segment_id, sensor)
+    kept = [other for other in marked.segments if other is not marked.segment]
+    change_recording(file, deleted([marked.segment], kept), metadata=fields_after(marked.recording, kept))
     say(f"{segment_id} is no longer in {file}")
 
 
@@ -124,7 +135,16 @@ def _show(recording: Recording, actions: Sequence[MarkedAction]) -> None:
         say(line, style=None if action.problem is None else "yellow")
 
 
-def _marked(file: Path, segment_id: str, sensor: str | None) -> LabelledSegment:
+@dataclass(frozen=True)
+class _Marked:
+    """A marked segment, with the recording and all segments that it is one of."""
+
+    recording: Recording
+    segments: list[LabelledSegment]
+    segment: LabelledSegment
+
+
+def _marked(file: Path, segment_id: str, sensor: str | None) -> _Marked:
     """Return the only segment of that name, at that sensor if one is named; else fail, naming those that there are."""
     try:
         recording = Recording(file)
@@ -139,7 +159,20 @@ def _marked(file: Path, segment_id: str, sensor: str | None) -> LabelledSegment:
         near = get_close_matches(segment_id, names, n=1) or names[:5]
         where = f"{segment_id!r} of {sensor}" if sensor is not None else repr(segment_id)
         fail(f"no {where} in {file}" + (f": is {' or '.join(near)} meant?" if near else ": nothing is marked"))
-    return named[0]
+    return _Marked(recording, segments, named[0])
+
+
+def _shift(file: Path, marked: _Marked, later_start_ns: int, later_end_ns: int) -> None:
+    """Shift the marks of a segment that has both (ns, positive is later), and let its frames follow; or fail."""
+    segment = marked.segment
+    assert segment.start_ns is not None and segment.end_ns is not None
+    start_ns, end_ns = segment.start_ns + later_start_ns, segment.end_ns + later_end_ns
+    try:
+        refuse_outside(marked.recording, segment.sensor, start_ns, end_ns)
+        frames = followed(marked.segments, replace(segment, start_ns=start_ns, end_ns=end_ns))
+    except (LabellingError, RecordingError) as error:
+        fail(str(error))
+    change_recording(file, in_turn(moved(segment, later_start_ns, later_end_ns), frames))
 
 
 def _several(named: Sequence[LabelledSegment], first_ns: int) -> str:

@@ -41,11 +41,14 @@ AXES: tuple[tuple[Point, Rgb], ...] = (
     ([0.0, 0.0, AXIS_M], (60, 100, 220)),
 )
 """The ends of an object's axes (m) with their colours: x red, y green, z blue."""
+LATEST_NS = 2**32 * SECOND_NS - 1
+"""Foxglove counts seconds in 32 bits: the last stamp (ns) that it has a number for."""
 
 
 def time_of(message: Message) -> Timestamp:
-    """Return a message's stamp as Foxglove writes it."""
-    return Timestamp(sec=message.stamp_ns // SECOND_NS, nsec=message.stamp_ns % SECOND_NS)
+    """Return a message's stamp as Foxglove writes it, or the latest that it can write."""
+    stamp_ns = min(message.stamp_ns, LATEST_NS)
+    return Timestamp(sec=stamp_ns // SECOND_NS, nsec=stamp_ns % SECOND_NS)
 
 
 def z_up(skeleton: Skeleton) -> FrameTransform:

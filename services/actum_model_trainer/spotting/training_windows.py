@@ -139,7 +139,10 @@ def _spans(stream: LabelledStream, durations_ns: Array, rng: np.random.Generator
     for start_ns, end_ns, _ in segments:
         yield start_ns, end_ns
         yield from _about(start_ns, end_ns, durations_ns, rng)
-    anywhere = BACKGROUND * max(len(segments), int((last_ns - first_ns) / SECOND_NS / BACKGROUND_S))
+    stretches = min(
+        int((last_ns - first_ns) / SECOND_NS / BACKGROUND_S), len(stream.stamps_ns)
+    )  # one stamp may be wrong
+    anywhere = BACKGROUND * max(len(segments), stretches)
     for duration_ns in rng.choice(durations_ns, anywhere):
         start_ns = rng.uniform(first_ns, max(last_ns - duration_ns, first_ns + 1))
         yield start_ns, start_ns + duration_ns

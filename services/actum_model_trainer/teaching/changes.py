@@ -2,9 +2,13 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import wraps
+from typing import Any
 
-from actum.commands import Refusal
+from actum.commands import Command, Refusal
 from actum.recording import RecordingError
+from actum_model_trainer.teaching.names import printable
 
 
 class Changes:
@@ -35,4 +39,17 @@ def on_disk() -> Iterator[None]:
     try:
         yield
     except (OSError, RecordingError) as error:
-        raise Refusal(f"{error}; everything is as it was") from None
+        raise Refusal(f"{printable(str(error))}; everything is as it was") from None
+
+
+def refusing(command: Command[Any, Any]) -> Command[Any, Any]:
+    """Return a command that is refused, instead of ending the service, where a file or folder of it has vanished."""
+
+    @wraps(command.handler)
+    def handler(request: Any) -> Any:
+        try:
+            return command.handler(request)
+        except (OSError, RecordingError) as error:
+            raise Refusal(f"{printable(str(error))}: see to that file or folder, and ask again") from None
+
+    return replace(command, handler=handler)

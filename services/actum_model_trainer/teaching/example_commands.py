@@ -7,6 +7,7 @@ import numpy as np
 from actum.arrays import Array
 from actum.commands import Command, Refusal
 from actum.recording import Recording
+from actum_model_trainer.segment_edits import MixedMirroringError
 from actum_model_trainer.teaching import take_mending
 from actum_model_trainer.teaching.changes import Changes, on_disk
 from actum_model_trainer.teaching.film import Film, films_of
@@ -45,12 +46,12 @@ class ExampleCommands:
         )
 
     def remove(self, take: Take, examples: list[Example]) -> None:
-        """Take examples out of a take, and delete one of an action that has none left.
+        """Delete examples of a take; one that was made here goes as a whole where it was of these alone.
 
         Raises:
             OSError: it cannot be written; it is as it was.
         """
-        if take.kind == "action" and len(examples) == len(take.examples):
+        if take.kind == "action" and take.created and len(examples) == len(take.examples):
             take.path.unlink()
         else:
             take_mending.without(take, examples)
@@ -86,19 +87,22 @@ class ExampleCommands:
         for other in take.examples:
             if other.segment_id != example.segment_id and other.overlaps(start_ns, end_ns):
                 raise Refusal(f"it would overlap {other.id} ({other.start_ns} to {other.end_ns} ns): trim that first")
-        with self._changes.change():
-            take_mending.trim(take, example, start_ns, end_ns)
+        try:
+            with self._changes.change():
+                take_mending.trim(take, example, start_ns, end_ns)
+        except MixedMirroringError as error:
+            raise Refusal(str(error)) from None
         return Done(revision=self._changes.revision)
 
     def _mirror(self, request: OfExample) -> Done:
-        """Exchange left and right in an example; twice is as before."""
+        """Exchange left and right in an example and those that share frames with it; twice is as before."""
         take, example = self._found(request)
         with self._changes.change():
             take_mending.mirror(take, example)
         return Done(revision=self._changes.revision)
 
     def _delete(self, request: OfExample) -> Done:
-        """Delete an example with its frames."""
+        """Delete an example with the frames of whoever acts in it, unless another example needs them."""
         take, example = self._found(request)
         with self._changes.change():
             self.remove(take, [example])
@@ -126,12 +130,12 @@ class ExampleCommands:
     def _films_of(self, take: Take) -> dict[str, Film]:
         """Return the films of a take, of the file as it is now and by the model in use."""
         model = self._models.loaded
-        key = str(take.path), take.path.stat().st_mtime_ns, None if model is None else model.id
-        if key not in self._films:
-            with on_disk():
+        with on_disk():
+            key = str(take.path), take.path.stat().st_mtime_ns, None if model is None else model.id
+            if key not in self._films:
                 self._films[key] = films_of(Recording(take.path), model)
-            for oldest in list(self._films)[:-MOST_FILMED]:
-                del self._films[oldest]
+        for oldest in list(self._films)[:-MOST_FILMED]:
+            del self._films[oldest]
         return self._films[key]
 
 

@@ -21,6 +21,8 @@ from som_classifier.presets import DEFAULT, PRESETS
 
 Start = Callable[[JobRequest], RunningJob]
 """Starts a job."""
+UPLOAD = "upload"
+"""The folder, within a job's, of the video that it imports."""
 LONGEST_TEXT = 1000
 """Characters of a stage or message that are told."""
 
@@ -47,7 +49,6 @@ class JobCommands:
         self._date = date
         self._job = next(iter(jobs.all()[::-1]), None)
         self._running: RunningJob | None = None
-        self._video: Path | None = None
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:
@@ -101,15 +102,9 @@ class JobCommands:
 
     def _import_video(self, request: ImportVideo) -> Job:
         """Make a take of a video that was sent: find the person in it, cut the examples out, and delete the video."""
-        video = self._uploads.get(request.upload)
-        fields = {
-            "video": str(video),
-            "created": self._date(),
-            **request.model_dump(include={"label", "person", "count"}),
-        }
-        job = self._start("import", request.set, fields)
-        self._video = video
-        return job
+        self._uploads.refuse_missing(request.upload)
+        fields = {"created": self._date(), **request.model_dump(include={"label", "person", "count"})}
+        return self._start("import", request.set, fields, request.upload)
 
     def _train(self, request: Train) -> Job:
         """Train a model on a set; 'activate' puts it into use."""
@@ -134,7 +129,8 @@ class JobCommands:
         """Tell how far a job is, and its result."""
         return self._job if self._job is not None and self._job.id == request.job else self._jobs.get(request.job)
 
-    def _start(self, kind: str, set_name: str, fields: dict[str, Any]) -> Job:
+    def _start(self, kind: str, set_name: str, fields: dict[str, Any], upload: str | None = None) -> Job:
+        """Start a job; an upload goes into its folder, where nobody can replace it, and is deleted with that."""
         if self._running is not None and self._job is not None:
             raise Refusal(f"{self._job.id} ({self._job.kind}) is running: wait for it, or 'cancel' it")
         takes = str(self._sets.folder(set_name))
@@ -142,9 +138,20 @@ class JobCommands:
             job = Job.model_validate(
                 {"id": self._jobs.new_id(), "kind": kind, "set": set_name, "started": self._date()}
             )
-            self._jobs.keep(job)
-            request = JobRequest(kind, self._jobs.work_folder(job.id), {"takes": takes, **fields})
-            self._running = self._start_process(request)
+            folder = self._jobs.work_folder(job.id)
+            video: Path | None = None
+            try:
+                if upload is not None:
+                    (folder / UPLOAD).mkdir()
+                    video = self._uploads.move(upload, folder / UPLOAD)
+                    fields = {"video": str(video), **fields}
+                self._jobs.keep(job)
+                self._running = self._start_process(JobRequest(kind, folder, {"takes": takes, **fields}))
+            except OSError:
+                if video is not None:
+                    self._uploads.put_back(video)
+                self._jobs.forget(job.id)
+                raise
         self._job = job
         return job
 
@@ -152,9 +159,6 @@ class JobCommands:
         """Note what became of a job, and delete what it wrote besides."""
         self._job = job
         self._jobs.clear(job.id)
-        if self._video is not None:
-            self._video.unlink(missing_ok=True)
-            self._video = None
         with suppress(OSError):  # a full disk: after a restart it counts as cancelled
             self._jobs.keep(job)
         return job

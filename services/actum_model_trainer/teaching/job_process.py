@@ -13,6 +13,8 @@ from actum.runtime.parent import PARENT
 
 END_S = 2.0
 """How long (s) a job may take to end when it is told to, before it is killed."""
+FORMS = ({"stage", "done"}, {"result"}, {"error"})
+"""The fields of a job's lines."""
 LAST_WORDS = 400
 """Characters of what a job printed at the end, for one that died."""
 
@@ -102,14 +104,19 @@ class JobProcess:
         with self._process.stdout as lines:
             for line in lines:
                 try:
-                    self._newest = json.loads(line)
-                except ValueError:
+                    told = json.loads(line, parse_constant=lambda _: None)  # no number: no reply can hold it
+                except (ValueError, RecursionError):
                     continue  # what a library prints
+                if isinstance(told, dict) and told.keys() in FORMS:
+                    self._newest = told
 
     def _how(self) -> str:
         code = self._process.returncode
         return f"signal {-code}" if code < 0 else f"exit code {code}"
 
     def _last_words(self) -> str:
-        words = self._errors.read_text(errors="replace").strip()[-LAST_WORDS:]
+        try:
+            words = self._errors.read_text(errors="replace").strip()[-LAST_WORDS:]
+        except OSError as error:
+            return f"what it said cannot be read ({error.strerror})"
         return words or "it said nothing"

@@ -1,15 +1,19 @@
 """Models on the disk, and which of them the classifier uses."""
 
 import json
+import os
 import shutil
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
-from actum.atomic_file import UNFINISHED, replaced, write_whole
+from pydantic import TypeAdapter
+
+from actum.atomic_file import clear_unfinished, replaced, write_whole
 from actum.commands import Refusal
+from actum_model_trainer.teaching.names import printable
 from actum_model_trainer.teaching.set_store import date_of
+from actum_model_trainer.teaching.small_files import small_file
+from actum_model_trainer.teaching.stored_model import ID, About, StoredModel, described, stored
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 
@@ -17,25 +21,8 @@ HISTORY = "history.json"
 """The file with the models that were in use before, in order."""
 MOST_BEFORE = 50
 """Models that the history remembers: nobody undoes more."""
-
-
-@dataclass(frozen=True)
-class StoredModel:
-    """A model: when it came (ISO 8601), of which set ("" where not known), what it tells apart, of whom it learnt.
-
-    Attributes:
-        samples: the number of examples.
-        scores: what is known of how well it does, by name, numbers.
-    """
-
-    id: str
-    path: Path
-    created: str
-    set: str
-    labels: tuple[str, ...]
-    people: tuple[str, ...]
-    samples: int
-    scores: dict[str, float] = field(default_factory=dict)
+IDS = TypeAdapter(list[str])
+"""The form of the history."""
 
 
 class ModelStore:
@@ -53,8 +40,7 @@ class ModelStore:
         self._loaded: Model | None = None
         self._history = _read_history(folder / HISTORY)
         folder.mkdir(parents=True, exist_ok=True)
-        for unfinished in folder.glob(f".*{UNFINISHED}"):
-            unfinished.unlink(missing_ok=True)
+        clear_unfinished(folder)
         self.look()
 
     @property
@@ -77,11 +63,18 @@ class ModelStore:
 
     def all(self) -> list[StoredModel]:
         """List the models, the oldest first."""
-        for path in self._folder.glob("*.npz"):
-            if not path.with_suffix(".json").exists():
-                self._take_over(path)
-        stored = [_described(path) for path in self._folder.glob("*.npz")]
-        return sorted((each for each in stored if each is not None), key=lambda each: (each.created, each.id))
+        return self.listed()[0]
+
+    def listed(self) -> tuple[list[StoredModel], list[str]]:
+        """List the models, the oldest first, and of each file that cannot be read why."""
+        found, unreadable = dict[str, StoredModel](), list[str]()
+        for path in sorted(self._folder.glob("*.npz")):
+            try:
+                each = described(path) or self._take_over(path)
+                found[each.id] = each
+            except (OSError, ModelError) as error:
+                unreadable.append(printable(str(error)))
+        return sorted(found.values(), key=lambda each: (each.created, each.id)), unreadable
 
     def get(self, model_id: str) -> StoredModel:
         """Return a model's description.
@@ -89,9 +82,9 @@ class ModelStore:
         Raises:
             Refusal: there is none of that id.
         """
-        for stored in self.all():
-            if stored.id == model_id:
-                return stored
+        for each in self.all():
+            if each.id == model_id:
+                return each
         raise Refusal(f"there is no model {model_id!r}: ask for the list of models")
 
     def add(self, file: Path, set_name: str, scores: dict[str, float]) -> StoredModel:
@@ -113,7 +106,7 @@ class ModelStore:
             Refusal: there is none of that id.
             OSError: the file cannot be written.
         """
-        path = self.get(model_id).path
+        path = self._usable(model_id)
         if self._active is not None and self._active != model_id:
             self._remember([*self.before, self._active])
         self._put(path)
@@ -128,9 +121,18 @@ class ModelStore:
         before = self.before
         if not before:
             raise Refusal("there is no model to return to: none was in use before this one")
-        self._put(self.get(before[-1]).path)
+        self._put(self._usable(before[-1]))
         self._remember(before[:-1])
         return before[-1]
+
+    def _usable(self, model_id: str) -> Path:
+        """Return a model's file, once it could be loaded."""
+        path = self.get(model_id).path
+        try:
+            load_model(path)
+        except ModelError as error:
+            raise Refusal(printable(str(error))) from None
+        return path
 
     def delete(self, model_id: str) -> None:
         """Delete a model.
@@ -169,10 +171,34 @@ class ModelStore:
             self._loaded, self._active = None, None
             return
         self._active = self._loaded.id
-        if not self._path(self._active).exists():
-            self.add(self._watched, "", {})
+        self._keep_copy(self._active)
+
+    def _keep_copy(self, model_id: str) -> None:
+        """Keep a copy of the watched file, which is a model of that id, where there is none.
+
+        Raises:
+            OSError: it cannot be kept.
+        """
+        if not self._path(model_id).exists():
+            try:
+                self.add(self._watched, "", {})
+            except (ModelError, Refusal) as error:  # it was replaced meanwhile, or nothing can be read here
+                raise OSError(str(error)) from None
 
     def _put(self, path: Path) -> None:
+        """Put a model in the place of the watched file, of which a copy stays.
+
+        Raises:
+            Refusal: that is none that could be returned to.
+            OSError: the file cannot be written, or no copy of it be kept.
+        """
+        self.look()
+        if self._active is not None:
+            self._keep_copy(self._active)
+        elif os.path.lexists(self._watched):
+            raise Refusal(
+                f"{self._watched} is no model that can be read, and would be lost: move it away, and ask again"
+            )
         self._watched.parent.mkdir(parents=True, exist_ok=True)
         _copy(path, self._watched)
         self.look()
@@ -184,52 +210,39 @@ class ModelStore:
     def _path(self, model_id: str) -> Path:
         return self._folder / f"{model_id}.npz"
 
-    def _describe(self, model: Model, set_name: str, scores: dict[str, float]) -> None:
+    def _describe(self, model: Model, set_name: str, scores: dict[str, float]) -> StoredModel:
         """Write beside a model's file what is listed of it."""
-        about = {
-            "created": date_of(self._now_ns()),
-            "set": set_name,
-            "labels": list(model.labels),
-            "people": model.metadata.persons,
-            "samples": model.metadata.samples,
-            "scores": scores,
-        }
-        write_whole(self._path(model.id).with_suffix(".json"), json.dumps(about).encode())
-
-    def _take_over(self, path: Path) -> None:
-        """Describe a model that somebody has copied here, and name its file as all others; leave what is none."""
-        try:
-            model = load_model(path)
-        except ModelError:
-            return
-        self._describe(model, "", {})
-        path.replace(self._path(model.id))
-
-
-def _described(path: Path) -> StoredModel | None:
-    """Read what stands beside a model; None where that cannot be read."""
-    try:
-        about: dict[str, Any] = json.loads(path.with_suffix(".json").read_bytes())
-        return StoredModel(
-            path.stem,
-            path,
-            about["created"],
-            about["set"],
-            tuple(about["labels"]),
-            tuple(about["people"]),
-            about["samples"],
-            about["scores"],
+        about = About(
+            created=date_of(self._now_ns()),
+            set=set_name,
+            labels=list(model.labels),
+            people=model.metadata.persons,
+            samples=model.metadata.samples,
+            scores=scores,
         )
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
+        path = self._path(model.id)
+        write_whole(path.with_suffix(".json"), about.model_dump_json().encode())
+        return stored(path, about)
+
+    def _take_over(self, path: Path) -> StoredModel:
+        """Describe a model that somebody has copied here, and name its file as all others.
+
+        Raises:
+            ModelError: it is none.
+            OSError: it cannot be described.
+        """
+        model = load_model(path)
+        taken = self._describe(model, "", {})
+        path.replace(taken.path)
+        return taken
 
 
 def _read_history(path: Path) -> list[str]:
     try:
-        ids = json.loads(path.read_bytes())
+        ids = IDS.validate_json(small_file(path))
     except (OSError, ValueError):
         return []
-    return [each for each in ids if isinstance(each, str)] if isinstance(ids, list) else []
+    return [each for each in ids if ID.fullmatch(each)]
 
 
 def _copy(source: Path, target: Path) -> None:

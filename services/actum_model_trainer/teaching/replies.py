@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict
 
 from actum.messages import JobState, TakeState
-from actum_model_trainer.teaching.model_store import StoredModel
+from actum_model_trainer.teaching.stored_model import StoredModel
 from actum_model_trainer.teaching.take_files import Example, Take
 
 Joint = list[float] | None
@@ -62,7 +62,7 @@ class SetListed(Reply):
     name: str
     """Its name."""
     created: str
-    """When it was made (ISO 8601)."""
+    """When it was made (ISO 8601); empty where that cannot be read."""
     actions: dict[str, int]
     """The number of examples of each action."""
     people: list[str]
@@ -123,6 +123,8 @@ class Everything(Reply):
     """The names of training parameters, the usual one first."""
     revision: int
     """A number that rises with each change of the sets and models."""
+    unreadable: list[str] = []
+    """Of each set and model that cannot be read, why."""
 
 
 class ExampleListed(Reply):

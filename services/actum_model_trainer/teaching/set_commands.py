@@ -4,9 +4,11 @@ from collections import Counter
 from typing import Any
 
 from actum.commands import Command, NoFields, Refusal
+from actum.node import Counters
 from actum_model_trainer.teaching.changes import Changes
 from actum_model_trainer.teaching.job_commands import JobCommands
 from actum_model_trainer.teaching.model_store import ModelStore
+from actum_model_trainer.teaching.names import printable
 from actum_model_trainer.teaching.replies import Done, Everything, ModelListed, SetListed, TakeListed
 from actum_model_trainer.teaching.requests import OfSet, RenameSet
 from actum_model_trainer.teaching.set_store import SetStore, StoredSet
@@ -18,13 +20,21 @@ class SetCommands:
     """Lists, creates, renames and deletes sets."""
 
     def __init__(
-        self, sets: SetStore, models: ModelStore, changes: Changes, takes: TakeCommands, jobs: JobCommands
+        self,
+        sets: SetStore,
+        models: ModelStore,
+        changes: Changes,
+        takes: TakeCommands,
+        jobs: JobCommands,
+        counters: Counters,
     ) -> None:
         self._sets = sets
         self._models = models
         self._changes = changes
         self._takes = takes
         self._jobs = jobs
+        self._counters = counters
+        self._counted: frozenset[str] = frozenset()
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:
@@ -38,14 +48,29 @@ class SetCommands:
 
     def _list(self, _: NoFields) -> Everything:
         """List all sets and models."""
-        active = self._models.active
+        active, sets = self._models.active, list[SetListed]()
+        models, unreadable = self._models.listed()
+        for name in self._sets.names():
+            try:
+                sets.append(_listed(self._sets.get(name)))
+            except (OSError, Refusal) as error:  # its folder has vanished meanwhile, or cannot be read
+                unreadable.append(printable(str(error)))
+        self._count([*unreadable, *(problem for each in sets for problem in each.unreadable)])
         return Everything(
-            sets=[_listed(self._sets.get(name)) for name in self._sets.names()],
-            models=[ModelListed.of(each, active) for each in self._models.all()],
+            sets=sets,
+            models=[ModelListed.of(each, active) for each in models],
             active=active,
             presets=[DEFAULT.name, *(name for name in PRESETS if name != DEFAULT.name)],
             revision=self._changes.revision,
+            unreadable=unreadable,
         )
+
+    def _count(self, problems: list[str]) -> None:
+        """Count the files that cannot be read, each once for as long as it cannot."""
+        for problem in problems:
+            if problem not in self._counted:
+                self._counters.reject("unreadable_file", problem)
+        self._counted = frozenset(problems)
 
     def _create(self, request: OfSet) -> Done:
         """Make an empty set of examples."""

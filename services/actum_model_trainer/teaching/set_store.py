@@ -1,7 +1,8 @@
 """Sets on the disk: a folder each, with a recording for each take; whatever is changed is changed at once or not."""
 
 import json
-import shutil
+import os
+import re
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -9,10 +10,14 @@ from datetime import UTC, datetime
 from itertools import count
 from pathlib import Path
 
-from actum.atomic_file import UNFINISHED, give_name, store_names, write_whole
+from pydantic import BaseModel
+
+from actum.atomic_file import clear_unfinished, give_name, store_names, write_whole
 from actum.commands import Refusal
 from actum.recorder import Recorder, is_being_written
 from actum.recording import RecordingError
+from actum_model_trainer.teaching.names import printable
+from actum_model_trainer.teaching.small_files import small_file
 from actum_model_trainer.teaching.take_files import CREATED, KIND, Example, Take, read_take
 
 Clock = Callable[[], int]
@@ -25,11 +30,20 @@ LEAVING = ".leaving-"
 """Beginning of the name of a folder that is being deleted."""
 SUFFIX = ".mcap"
 """Ending of takes."""
+LEFT = re.compile(rf"{re.escape(LEAVING)}[0-9]+")
+"""The names of such folders."""
+
+
+class Description(BaseModel):
+    """What stands in a set's file."""
+
+    created: str
 
 
 @dataclass(frozen=True)
 class StoredSet:
-    """A set: its name, when it was made (ISO 8601), its takes, and of each file that cannot be read why."""
+    """A set: its name, when it was made (ISO 8601; empty where that cannot be read), its takes, and of each file that
+    cannot be read why."""
 
     name: str
     created: str
@@ -50,33 +64,53 @@ class SetStore:
         self._now_ns = now_ns
         self._read: dict[Path, tuple[tuple[int, int], Take]] = {}
         folder.mkdir(parents=True, exist_ok=True)
-        for left in folder.glob(f"{LEAVING}*"):
-            shutil.rmtree(left, ignore_errors=True)
         for take in (folder / MAKING).glob("*"):
-            if not is_being_written(take):  # by another trainer, of another sensor, in the same folder
-                take.unlink()
+            with suppress(OSError):  # none of ours
+                if not is_being_written(take):  # by another trainer, of another sensor, in the same folder
+                    take.unlink()
         with suppress(OSError):  # it is not there, or not empty
             (folder / MAKING).rmdir()
-        for unfinished in folder.glob(f"*/.*{UNFINISHED}"):
-            unfinished.unlink(missing_ok=True)
+        for path in sorted(folder.iterdir()):
+            with suppress(OSError):  # somebody else's folder, or one that cannot be read
+                if LEFT.fullmatch(path.name):
+                    _clear(path)
+                elif path.is_dir():
+                    clear_unfinished(path)
 
     def names(self) -> list[str]:
-        """List the sets by name."""
-        return sorted(path.parent.name for path in self._folder.glob(f"*/{DESCRIPTION}"))
+        """List the sets by name.
+
+        Raises:
+            OSError: the folder cannot be read.
+        """
+        folders = (path for path in self._folder.iterdir() if not path.name.startswith("."))
+        return sorted(path.name for path in folders if os.path.lexists(path / DESCRIPTION))
 
     def get(self, name: str) -> StoredSet:
         """Read a set.
 
         Raises:
             Refusal: there is none of that name.
+            OSError: its folder cannot be read.
         """
+        folder = self.folder(name)
         takes, unreadable = [], []
-        for path in sorted(self.folder(name).glob(f"*{SUFFIX}")):
+        try:
+            created = _created(folder / DESCRIPTION)
+        except (OSError, ValueError) as error:
+            created = ""
+            problem = (
+                error.strerror or str(error) if isinstance(error, OSError) else "no JSON object with a date `created`"
+            )
+            unreadable.append(
+                f"{folder / DESCRIPTION}: {problem}; move it away, and make the set anew with 'create_set'"
+            )
+        for path in sorted(each for each in folder.iterdir() if each.name.endswith(SUFFIX)):
             try:
                 takes.append(self._take(path))
-            except RecordingError as error:
+            except (OSError, RecordingError) as error:
                 unreadable.append(str(error))
-        return StoredSet(name, self._created(name), tuple(takes), tuple(unreadable))
+        return StoredSet(printable(name), created, tuple(takes), tuple(map(printable, unreadable)))
 
     def folder(self, name: str) -> Path:
         """Return a set's folder.
@@ -85,7 +119,7 @@ class SetStore:
             Refusal: there is none of that name.
         """
         if name not in self.names():
-            there = ", ".join(self.names()) or "none yet"
+            there = printable(", ".join(self.names())) or "none yet"
             raise Refusal(f"there is no set {name!r}: name one of those there are ({there}) or create it")
         return self._folder / name
 
@@ -113,15 +147,19 @@ class SetStore:
         store_names(self._folder)
 
     def delete(self, name: str) -> None:
-        """Delete a set with all its takes.
+        """Delete a set with all its takes; files of other kinds in its folder stay there.
 
         Raises:
             Refusal: there is none of that name.
         """
+        folder = self.folder(name)
         leaving = self._folder / f"{LEAVING}{self._now_ns()}"
-        self.folder(name).rename(leaving)
+        folder.rename(leaving)
         store_names(self._folder)
-        shutil.rmtree(leaving, ignore_errors=True)
+        with suppress(OSError):  # what stays of it goes with the next start
+            _clear(leaving)
+            if os.path.lexists(leaving) and not os.path.lexists(folder):
+                leaving.rename(folder)
 
     def recorder(self, person: str, kind: str) -> Recorder:
         """Return what writes a take that is in no set yet.
@@ -146,21 +184,14 @@ class SetStore:
                 break
         return self._take(target)
 
-    def _created(self, name: str) -> str:
-        path = self._folder / name / DESCRIPTION
-        try:
-            return str(json.loads(path.read_bytes())["created"])
-        except (ValueError, KeyError, TypeError):
-            return date_of(path.stat().st_mtime_ns)
-
     def _refuse_taken(self, name: str) -> None:
-        if name.casefold() in (
-            path.name.casefold() for path in self._folder.iterdir() if (path / DESCRIPTION).exists()
-        ):
+        if name.casefold() in map(str.casefold, self.names()):
             raise Refusal(f"there is a set {name!r} already: choose another name, or delete or rename that one")
 
     def _take(self, path: Path) -> Take:
         """Read a take, or return what was read of it before where the file is still the same."""
+        if path.exists() and not path.is_file():
+            raise RecordingError(path, "no file", "move it away")
         stat = path.stat()
         version = stat.st_mtime_ns, stat.st_size
         known = self._read.get(path)
@@ -172,3 +203,34 @@ class SetStore:
 def date_of(time_ns: int) -> str:
     """Write a time (ns since 1970) as ISO 8601 in UTC, to the second."""
     return datetime.fromtimestamp(time_ns // 1_000_000_000, UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def _created(path: Path) -> str:
+    """Return when a set was made.
+
+    Raises:
+        OSError, ValueError: its description cannot be read, or is of another form.
+    """
+    created = Description.model_validate_json(small_file(path)).created
+    datetime.fromisoformat(created)
+    return created
+
+
+def _clear(folder: Path) -> None:
+    """Delete what makes a folder a set, and the folder where nothing else is in it; of a link, only the link.
+
+    Raises:
+        OSError: something cannot be deleted.
+    """
+    if folder.is_symlink():
+        folder.unlink()
+        return
+    clear_unfinished(folder)
+    for path in (folder / DESCRIPTION, *(each for each in folder.iterdir() if each.name.endswith(SUFFIX))):
+        if path.is_dir() and not path.is_symlink():
+            with suppress(OSError):  # something is in it
+                path.rmdir()
+        else:
+            path.unlink(missing_ok=True)
+    if not any(folder.iterdir()):
+        folder.rmdir()

@@ -1,17 +1,28 @@
 """The commands that record takes."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
+
+from pydantic import ValidationError
 
 from actum.commands import Command, NoFields, Refusal
 from actum.messages import Segment, Skeleton, TakeState
-from actum_model_trainer.teaching.changes import Changes, on_disk
+from actum.node import Counters
+from actum.recording import RecordingError
+from actum_model_trainer.segment_edits import OF_THE_TAKE
+from actum_model_trainer.teaching.changes import Changes
+from actum_model_trainer.teaching.names import printable
 from actum_model_trainer.teaching.replies import Done, TakeReply
 from actum_model_trainer.teaching.requests import OfSet, Record
 from actum_model_trainer.teaching.set_store import SetStore
-from actum_model_trainer.teaching.take_files import OF_THE_TAKE, Example, Take, finish_take
+from actum_model_trainer.teaching.take_files import Example, Take, finish_take
 from actum_model_trainer.teaching.take_in_progress import TakeInProgress
 
+LOSING = (OSError, RecordingError, Refusal)
+"""What is raised where a take is lost: it cannot be stored, its set is gone, or the sensor has begun anew."""
+LONGEST_DOUBT = 1000
+"""Characters of a doubt that are published."""
 Remove = Callable[[Take, list[Example]], None]
 """Takes examples out of a take, and deletes one that has none left."""
 
@@ -29,6 +40,7 @@ class TakeCommands:
         self._changes = changes
         self._remove = remove
         self._take: TakeInProgress | None = None
+        self._replaced: str | None = None
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:
@@ -44,24 +56,24 @@ class TakeCommands:
         """Tell whether a take of that set is being recorded."""
         return self._take is not None and self._take.state.set == name
 
-    def take(self, message: Skeleton | Segment) -> str | None:
-        """Take a frame or a mark; return why the take that was being recorded was lost, if it was."""
-        if self._take is None:
-            return None
+    def take(self, message: Skeleton | Segment, counters: Counters) -> None:
+        """Take a frame or a mark; count a mark that is refused, and the take where it is lost by that."""
+        take = self._take
+        if take is None:
+            return
         try:
             if isinstance(message, Skeleton):
-                self._take.skeleton(message)
-            else:
-                self._take.mark(message)
-            self.state = self._take.state
-            if self._take.over:
+                take.skeleton(message)
+            elif (refusal := take.mark(message)) is not None:
+                counters.reject("refused_mark", refusal)
+            self.state = take.state
+            if take.over:
                 self._finish()
-        except (OSError, Refusal) as error:
-            state = self._take.state
+        except LOSING as error:
             self._give_up()
-            self.state = state.model_copy(update={"phase": "done", "counted": 0, "doubts": [str(error)]})
-            return str(error)
-        return None
+            lost = {"phase": "done", "counted": 0, "doubts": [printable(str(error))[:LONGEST_DOUBT]]}
+            self.state = take.state.model_copy(update=lost)
+            counters.reject("lost_take", str(error))
 
     def _record(self, request: Record) -> TakeReply:
         """Begin a take: it counts along, ends by itself after the last repetition, and cuts the examples out."""
@@ -75,7 +87,7 @@ class TakeCommands:
         self._refuse_idle()
         try:
             return self._finish()
-        except OSError as error:
+        except LOSING as error:
             self._give_up()
             raise Refusal(f"the take is lost: {error}") from None
 
@@ -86,23 +98,26 @@ class TakeCommands:
         return Done(revision=self._changes.revision)
 
     def _redo_last(self, request: OfSet) -> TakeReply:
-        """Drop the newest example of a set, and record one in its place."""
+        """Record the newest example of a set anew; the old one goes once the new one is there."""
         self._refuse_recording()
         takes = [take for take in self._sets.get(request.set).takes if take.examples]
         if not takes:
             raise Refusal(f"{request.set} has no example yet: record some")
         newest = max(takes, key=lambda take: (take.created, take.id))
         example = newest.examples[-1]
-        with self._changes.change():
-            self._remove(newest, [example])
-        self._begin(Record(set=request.set, label=example.label, person=newest.person, count=1))
+        try:
+            anew = Record(set=request.set, label=example.label, person=newest.person, count=1)
+        except ValidationError:
+            raise Refusal(f"{example.id} has a name that no take can have: 'relabel' it, or 'delete' it") from None
+        self._begin(anew)
+        self._replaced = example.id
         return TakeReply(take=None, examples=0, doubts=[])
 
     def _begin(self, request: Record) -> None:
         self._refuse_recording()
         self._sets.folder(request.set)
         background = request.kind == "background"
-        self.state = TakeState(
+        state = TakeState(
             set=request.set,
             label=request.label,
             person=request.person,
@@ -112,36 +127,50 @@ class TakeCommands:
             phase="waiting",
             seconds=0.0,
         )
-        with on_disk():
-            recorder = self._sets.recorder(request.person, request.kind)
-        self._take = TakeInProgress(recorder, self.state, request.agent)
+        recorder = self._sets.recorder(request.person, request.kind)
+        self.state, self._replaced = state, None
+        self._take = TakeInProgress(recorder, state, request.agent)
 
     def _finish(self) -> TakeReply:
         """End the take and move it into its set, unless there is nothing in it.
 
         Raises:
-            OSError, Refusal: it cannot be written.
+            OSError, RecordingError, Refusal: it cannot be written.
         """
         take = self._take
         assert take is not None
         marking = take.marking()
-        doubts = marking.doubts.get(OF_THE_TAKE, [])
+        doubts = list(marking.doubts.get(OF_THE_TAKE, []))
         if marking.marks is None:
-            take.recorder.discard()
+            self._give_up()
             name, examples = None, 0
         else:
             added = self._sets.add(take.state.set, finish_take(take.recorder, marking.marks, marking.doubts))
+            self._take = None
             self._changes.revision += 1
             name, examples = added.id, len(added.examples)
-        self._take = None
+            doubts += self._remove_replaced(take.state.set) if examples else []
+        doubts = [doubt[:LONGEST_DOUBT] for doubt in doubts]
         self.state = take.state.model_copy(update={"phase": "done", "counted": examples, "doubts": doubts})
         return TakeReply(take=name, examples=examples, doubts=doubts)
 
+    def _remove_replaced(self, name: str) -> list[str]:
+        """Delete the example that was recorded anew, if it is still there; return why it stays where it has to."""
+        for take in self._sets.get(name).takes:
+            for example in take.examples:
+                if example.id == self._replaced:
+                    try:
+                        self._remove(take, [example])
+                    except (OSError, RecordingError) as error:
+                        return [f"{example.id}, which it replaces, could not be deleted: {printable(str(error))}"]
+        return []
+
     def _give_up(self) -> None:
-        """Drop the take."""
+        """Drop the take; what of its file cannot be deleted goes with the next start."""
         assert self._take is not None
-        self._take.recorder.discard()
-        self._take = self.state = None
+        take, self._take, self.state = self._take, None, None
+        with suppress(OSError):
+            take.recorder.discard()
 
     def _refuse_idle(self) -> None:
         if self._take is None:

@@ -5,26 +5,23 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Literal, TypeVar
-
-from pydantic import TypeAdapter, ValidationError
+from typing import Literal
 
 from actum import keys
-from actum.messages import CUT, MANUAL, Segment
+from actum.messages import CUT, MANUAL, Hand, Segment
 from actum.node import SECOND_NS
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum.rewriting import rewrite, unchanged
 from actum_model_trainer.cutting.marks import free_names, marks_of
 from actum_model_trainer.cutting.repetitions import Cuts
+from actum_model_trainer.segment_edits import DOUBTS, OF_THE_TAKE, TEXTS, Naming, field_of, mirrored_ids
+from actum_model_trainer.teaching.names import printable
 
-KIND, CREATED, DOUBTS, MIRRORED = "kind", "created", "doubts", "mirrored"
-"""Fields of a take's metadata: kind and date; doubts (texts by segment id) and mirrored segment ids, as JSON."""
-OF_THE_TAKE = ""
-"""The key among the doubts of those that are about the take as a whole."""
-TEXTS, IDS = TypeAdapter(dict[str, list[str]]), TypeAdapter(list[str])
-"""The forms of these."""
-T = TypeVar("T")
+KIND, CREATED = "kind", "created"
+"""Fields of a take's metadata, beside those that say something about its examples: kind and date."""
+UNREAD = "skipped while it was read: "
+"""How the doubt about what was skipped begins; it is found anew each time, and never stored."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +33,7 @@ class Example:
         origin: who marked it.
         mirrored: whether left and right have been exchanged.
         doubts: what may be wrong with it, in sentences.
+        hand: which hand acts; None where the mark does not say so.
     """
 
     take: str
@@ -49,11 +47,16 @@ class Example:
     origin: str
     mirrored: bool
     doubts: tuple[str, ...]
+    hand: Hand | None = None
 
     @property
     def id(self) -> str:
         """What commands call it."""
         return f"{self.take}/{self.segment_id}"
+
+    def has(self, message: Naming) -> bool:
+        """Tell whether a message names it."""
+        return (message.sensor, message.segment_id) == (self.sensor, self.segment_id)
 
     def overlaps(self, start_ns: int, end_ns: int) -> bool:
         """Tell whether it shares time with a span."""
@@ -89,14 +92,14 @@ def read_take(path: Path) -> Take:
     """
     recording = Recording(path)
     marks, stamps_ns = _marks_and_stamps(recording)
-    doubts, mirrored = _field(recording, DOUBTS, TEXTS, {}), _field(recording, MIRRORED, IDS, [])
+    doubts, mirrored = field_of(recording, DOUBTS, TEXTS, {}), mirrored_ids(recording)
     examples = [
-        _example(path.stem, recording.person, pair["start"], pair["end"], doubts, mirrored)
+        _example(printable(path.stem), recording.person, pair["start"], pair["end"], doubts, mirrored)
         for pair in marks.values()
         if {"start", "end"} <= pair.keys() and pair["start"].label is not None
     ]
     return Take(
-        path.stem,
+        printable(path.stem),
         path,
         "background" if recording.metadata.get(KIND) == "background" else "action",
         recording.person,
@@ -104,7 +107,7 @@ def read_take(path: Path) -> Take:
         min(stamps_ns, default=0),
         max(stamps_ns, default=0),
         tuple(sorted(examples, key=lambda example: example.start_ns)),
-        tuple(doubts.get(OF_THE_TAKE, ())),
+        (*doubts.get(OF_THE_TAKE, ()), *_unread(recording)),
     )
 
 
@@ -130,7 +133,13 @@ def cut_marks(cuts: Cuts, label: str, sensor: str) -> tuple[list[Segment], dict[
 
 def doubts_field(doubts: Mapping[str, Sequence[str]]) -> str:
     """Return the metadata field of doubts, from texts by segment id."""
-    return json.dumps({segment_id: list(texts) for segment_id, texts in doubts.items() if texts})
+    return json.dumps(
+        {
+            segment_id: [text for text in texts if not text.startswith(UNREAD)]
+            for segment_id, texts in doubts.items()
+            if texts
+        }
+    )
 
 
 def _marks_and_stamps(recording: Recording) -> tuple[dict[tuple[str, str], dict[str, Segment]], list[int]]:
@@ -143,6 +152,12 @@ def _marks_and_stamps(recording: Recording) -> tuple[dict[tuple[str, str], dict[
         else:
             stamps_ns.append(message.stamp_ns)
     return marks, stamps_ns
+
+
+def _unread(recording: Recording) -> list[str]:
+    """Return what was skipped of a take, as a doubt."""
+    kinds = ", ".join(f"{kind} {count}" for kind, count in sorted(recording.skipped.items()))
+    return [f"{UNREAD}{kinds}"] if kinds else []
 
 
 def _example(
@@ -166,13 +181,5 @@ def _example(
         start.origin or MANUAL,
         start.segment_id in mirrored,
         tuple(doubts.get(start.segment_id, ())),
+        start.hand,
     )
-
-
-def _field(recording: Recording, name: str, form: TypeAdapter[T], default: T) -> T:
-    """Return a field of the metadata that is JSON; one of another form, which only a foreign program writes, counts as
-    none."""
-    try:
-        return form.validate_json(recording.metadata.get(name, ""))
-    except ValidationError:
-        return default

@@ -4,11 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from actum.commands import Refusal
+from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
 from actum.messages import MANUAL, Segment, Skeleton, TakeState, segment_marks
 from actum.node import SECOND_NS
 from actum.recorder import Recorder
+from actum.stamps import Order, StampGuard
 from actum_model_trainer.cutting.counting import LAST_REST_S, RepetitionCounter
-from actum_model_trainer.teaching.take_files import OF_THE_TAKE, cut_marks
+from actum_model_trainer.segment_edits import OF_THE_TAKE
+from actum_model_trainer.teaching.take_files import cut_marks
 
 LONGEST_S = 600.0
 """Longest take (s): forty repetitions with pauses, and what a page can show."""
@@ -16,8 +19,11 @@ MOST_FRAMES = 36_000
 """Most frames of a take: so long at 60 a second."""
 MOST_MARKED = 500
 """Most segments that somebody marks in a take: one a second."""
+LONGEST_NAME = 50
+"""Characters of a segment's name that a refusal quotes."""
 NOBODY = "nobody was seen moving, so nothing was kept"
 BEGUN_ANEW = "the sensor has begun anew meanwhile, so nothing was kept: record it again"
+JUMPED = "the sensor's stamps leap by {:.0f} s, so nothing was kept: see to its clock, and record it again"
 EMPTY = "nobody was seen, so nothing was kept"
 
 
@@ -50,7 +56,9 @@ class TakeInProgress:
         self.state = state
         self._counter = RepetitionCounter(max(state.asked, 1), agent)
         self._marked: dict[str, Marked] = {}
-        self._sensor = self._session_id = ""
+        self._refused, self._refusal = 0, ""
+        self._order = StampGuard()
+        self._sensor = ""
         self._first_ns: int | None = None
         self._newest_ns = 0
         self._frames = 0
@@ -59,15 +67,19 @@ class TakeInProgress:
         """Store a frame and count along; one that is no newer than the one before it is left out.
 
         Raises:
-            Refusal: the sensor's clock has begun anew.
+            Refusal: the sensor's clock has begun anew, or leaps.
             OSError: it cannot be stored.
         """
-        if self._first_ns is None:
-            self._first_ns, self._session_id = skeleton.stamp_ns, skeleton.session_id
-        elif skeleton.session_id != self._session_id:
+        order = self._order.judge(skeleton.stamp_ns, skeleton.session_id)
+        if order is Order.RESTART:
             raise Refusal(BEGUN_ANEW)
-        elif skeleton.stamp_ns <= self._newest_ns:
+        if order is Order.STALE:
             return
+        if self._first_ns is None:
+            self._first_ns = self._newest_ns = skeleton.stamp_ns
+        passed_s = (skeleton.stamp_ns - self._newest_ns) / SECOND_NS
+        if passed_s > LONGEST_S:
+            raise Refusal(JUMPED.format(passed_s))
         self._sensor, self._newest_ns = skeleton.sensor, skeleton.stamp_ns
         self._frames += 1
         self.recorder.write(skeleton)
@@ -80,17 +92,41 @@ class TakeInProgress:
         }
         self.state = self.state.model_copy(update=update)
 
-    def mark(self, mark: Segment) -> None:
-        """Take somebody's mark; one without a stamp is put at the newest frame."""
-        if mark.origin not in (None, MANUAL) or self._first_ns is None or self.state.kind == "background":
-            return
+    def mark(self, mark: Segment) -> str | None:
+        """Take somebody's mark; one without a stamp is put at the newest frame. Return why it is refused, if it is."""
+        if mark.origin not in (None, MANUAL) or self.state.kind == "background":
+            return None
+        refusal = self._refusal_of(mark)
+        if refusal is not None:
+            self._refused, self._refusal = self._refused + 1, refusal
+            return refusal
         stamp_ns = self._newest_ns if mark.stamp_ns is None else mark.stamp_ns
         begun = self._marked.get(mark.segment_id)
-        if mark.kind == "start" and begun is None:
+        if begun is None:
             self._marked[mark.segment_id] = Marked(mark.segment_id, mark.agent, stamp_ns)
-        elif mark.kind == "end" and begun is not None and begun.end_ns is None and stamp_ns > begun.start_ns:
+        elif mark.kind == "end" and begun.end_ns is None:
             self._marked[mark.segment_id] = replace(begun, end_ns=stamp_ns)
             self.state = self.state.model_copy(update={"counted": self._counted()})
+        return None
+
+    def _refusal_of(self, mark: Segment) -> str | None:
+        """Return why a mark is refused: none of its frames can be in the take, or it bounds no example."""
+        name = f"the {mark.kind} mark of {mark.segment_id[:LONGEST_NAME]!r}"
+        if self._first_ns is None:
+            return f"{name} came before any frame: wait until somebody is seen"
+        stamp_ns = self._newest_ns if mark.stamp_ns is None else mark.stamp_ns
+        if not self._first_ns <= stamp_ns <= self._newest_ns + MAX_SKEW_NS:
+            there = f"whose frames last from {self._first_ns} to {self._newest_ns} ns"
+            return f"{name} at {stamp_ns} ns lies outside of the take, {there}: mark with the stamps of the frames"
+        begun = self._marked.get(mark.segment_id)
+        if mark.kind == "start" or (begun is not None and begun.end_ns is not None):
+            return None
+        if begun is None:
+            return f"{name} has no start mark before it: mark the start first"
+        if not begun.start_ns < stamp_ns <= begun.start_ns + MAX_SEGMENT_NS:
+            lasts_s, most_s = (stamp_ns - begun.start_ns) / SECOND_NS, MAX_SEGMENT_NS / SECOND_NS
+            return f"{name} lies {lasts_s:.1f} s after its start: an example lasts up to {most_s:.0f} s"
+        return None
 
     @property
     def over(self) -> bool:
@@ -110,19 +146,35 @@ class TakeInProgress:
             return Marking(None, {OF_THE_TAKE: [EMPTY]})
         if self.state.kind == "background":
             return Marking((), {})
-        ended = self._ended()
+        ended, doubts = self._ended(), self._doubts()
         if ended:
-            return Marking([mark for each in ended for mark in self._marks_of(each)], {})
+            return Marking([mark for each in ended for mark in self._marks_of(each)], {OF_THE_TAKE: doubts})
         cuts = self._counter.cuts()
         if cuts is None:
-            return Marking(None, {OF_THE_TAKE: [NOBODY]})
-        return Marking(*cut_marks(cuts, self.state.label, self._sensor))
+            return Marking(None, {OF_THE_TAKE: [NOBODY, *doubts]})
+        marks, of_cuts = cut_marks(cuts, self.state.label, self._sensor)
+        return Marking(marks, {**of_cuts, OF_THE_TAKE: [*of_cuts.get(OF_THE_TAKE, []), *doubts]})
+
+    def _doubts(self) -> list[str]:
+        """Return what became of the marks that make no example, in sentences."""
+        doubts = []
+        if self._refused:
+            doubts.append(f"marks refused: {self._refused}; of the last, {self._refusal}")
+        unended = len(self._marked) - len(self._ended())
+        if unended:
+            doubts.append(f"marked segments without an end in the take, left out: {unended}")
+        return doubts
 
     def _counted(self) -> int:
         return len(self._ended()) if self._marked else min(self._counter.count, self.state.asked)
 
     def _ended(self) -> list[Marked]:
-        return [each for each in self._marked.values() if each.end_ns is not None]
+        """Return the marked segments that have an end and frames; none lasts longer than the take."""
+        return [
+            replace(each, end_ns=min(each.end_ns, self._newest_ns))
+            for each in self._marked.values()
+            if each.end_ns is not None and each.start_ns < self._newest_ns
+        ]
 
     def _marks_of(self, marked: Marked) -> list[Segment]:
         assert marked.end_ns is not None

@@ -11,7 +11,7 @@ from actum.commands import Command, NoFields
 from actum.messages import Message, Segment, Skeleton, Training
 from actum.node import SECOND_NS, Counters, Tick
 from actum_model_trainer.settings import Settings
-from actum_model_trainer.teaching.changes import Changes
+from actum_model_trainer.teaching.changes import Changes, refusing
 from actum_model_trainer.teaching.example_commands import ExampleCommands
 from actum_model_trainer.teaching.job_commands import JobCommands, Start
 from actum_model_trainer.teaching.job_process import JobProcess
@@ -55,7 +55,7 @@ class ModelTrainer:
             start,
             lambda: date_of(now_ns()),
         )
-        self._set_commands = SetCommands(sets, self._models, self._changes, self._takes, self._jobs)
+        self._set_commands = SetCommands(sets, self._models, self._changes, self._takes, self._jobs, self.counters)
         self._model_commands = ModelCommands(self._models, self._changes)
         self._newest_ns = 0
         self._told: Training | None = None
@@ -80,7 +80,7 @@ class ModelTrainer:
         """What can be asked."""
         groups = (self._set_commands, self._takes, self._examples, self._jobs, self._model_commands)
         own = Command("state", NoFields, State, self._tell)
-        return (own, *(command for group in groups for command in group.commands))
+        return (own, *(refusing(command) for group in groups for command in group.commands))
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
         """Take a frame or a mark of the take that is recorded, or a tick; return what has changed, on ticks."""
@@ -88,9 +88,7 @@ class ModelTrainer:
             case Skeleton() | Segment():
                 if isinstance(message, Skeleton):
                     self._newest_ns = message.stamp_ns
-                lost = self._takes.take(message)
-                if lost is not None:
-                    self.counters.reject("lost_take", lost)
+                self._takes.take(message, self.counters)
                 return []
             case Tick():
                 return self._tick(message.monotonic_ns)

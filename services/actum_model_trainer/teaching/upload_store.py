@@ -1,5 +1,6 @@
 """Files that come in pieces."""
 
+import shutil
 from pathlib import Path
 
 from actum.atomic_file import UNFINISHED, store_names
@@ -7,45 +8,75 @@ from actum.commands import Refusal
 
 MOST_BYTES = 2_000_000_000
 """Largest file (bytes): half an hour of a phone's video."""
+MOST_TOTAL_BYTES = 6_000_000_000
+"""Most bytes of all files together: three of the largest."""
+MOST_FILES = 1000
+"""Most files, finished or not."""
+SENT = ".sent"
+"""The folder within the store's that holds what was sent: no file outside of it is touched."""
 
 
 class UploadStore:
     """The files that were sent, in a folder. They do not outlive the service: they show faces."""
 
     def __init__(self, folder: Path) -> None:
-        self._folder = folder
+        self._folder = folder / SENT
         folder.mkdir(parents=True, exist_ok=True)
-        for left in (file for file in folder.iterdir() if file.is_file()):
-            left.unlink()
+        shutil.rmtree(self._folder, ignore_errors=True)
 
     def add(self, name: str, offset: int, data: bytes, last: bool) -> int:
         """Add a piece at the end of a file, or begin it anew at offset 0; return its size so far (bytes).
 
         Raises:
-            Refusal: the piece does not follow the one before it, or the file gets too large.
+            Refusal: the piece does not follow the one before it, or the file, or all together, get too large.
             OSError: it cannot be written.
         """
+        self._folder.mkdir(parents=True, exist_ok=True)
         unfinished = self._folder / f".{name}{UNFINISHED}"
-        there = unfinished.stat().st_size if unfinished.exists() else 0
+        sizes = {file.name: file.stat().st_size for file in self._folder.iterdir()}
+        there = sizes.pop(unfinished.name, 0)
         if offset not in (0, there):
             raise Refusal(f"{name} has {there} bytes so far: go on from there, or begin anew with offset 0")
-        if offset + len(data) > MOST_BYTES:
+        size = offset + len(data)
+        if size > MOST_BYTES:
             raise Refusal(f"{name} gets larger than {MOST_BYTES} bytes: cut the video, or send a smaller one")
+        total, files = sum(sizes.values()) + size, len(sizes.keys() | {name})
+        if total > MOST_TOTAL_BYTES or files > MOST_FILES:
+            raise Refusal(
+                f"with {name}, the uploads would have {total} bytes in {files} files, at most {MOST_TOTAL_BYTES} bytes "
+                f"in {MOST_FILES}: import some of them, or restart the service"
+            )
         with unfinished.open("ab" if offset else "wb") as file:
             file.write(data)
         if last:
             unfinished.replace(self._folder / name)
             store_names(self._folder)
-        return offset + len(data)
+        return size
 
-    def get(self, name: str) -> Path:
-        """Return a finished file.
+    def refuse_missing(self, name: str) -> None:
+        """Refuse a file that was not sent whole.
 
         Raises:
-            Refusal: there is none of that name.
+            Refusal: there is no finished one of that name.
         """
         if not (self._folder / name).is_file():
             raise Refusal(
                 f"there is no finished upload {name!r}: send it with 'upload', the last piece with last: true"
             )
-        return self._folder / name
+
+    def move(self, name: str, folder: Path) -> Path:
+        """Move a finished file into a folder, where no later one of that name replaces it; return its path there.
+
+        Raises:
+            OSError: it cannot be moved.
+        """
+        return Path(shutil.move(self._folder / name, folder / name))
+
+    def put_back(self, file: Path) -> None:
+        """Return a file that was moved, unless one of its name was sent meanwhile.
+
+        Raises:
+            OSError: it cannot be moved.
+        """
+        if not (self._folder / file.name).exists():
+            shutil.move(file, self._folder / file.name)

@@ -10,7 +10,8 @@ from actum.recorder import Recorder
 from actum_model_trainer.cutting.courses import PersonTracks
 from actum_model_trainer.cutting.repetitions import cut
 from actum_model_trainer.progress import Progress
-from actum_model_trainer.teaching.take_files import CREATED, OF_THE_TAKE, cut_marks, finish_take
+from actum_model_trainer.segment_edits import OF_THE_TAKE
+from actum_model_trainer.teaching.take_files import CREATED, cut_marks, finish_take
 from sensor_gateway.cameras import estimator_of, optics_of
 from sensor_gateway.devices.video import frame_count, pictures_of
 from sensor_gateway.perceiver import Perceiver

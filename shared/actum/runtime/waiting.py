@@ -5,6 +5,8 @@ import signal
 import threading
 import time
 
+from actum.node import SETTLE_NS
+
 SLICE_S = 0.1
 """How late (s) a signal may be noticed."""
 
@@ -34,16 +36,21 @@ def wait_for(stop: threading.Event, seconds: float = float("inf")) -> bool:
 
 
 class Pace:
-    """Paces messages by their stamps, at the speed at which they were captured or a multiple of it."""
+    """Paces messages by their stamps, at the speed at which they were captured or a multiple of it.
+
+    A gap between two stamps is waited out for `SETTLE_NS` at the most: one wrong stamp would mean years.
+    """
 
     def __init__(self, speed: float) -> None:
         self._speed = speed
-        self._origin: tuple[int, int] | None = None
+        self._newest: tuple[int, float] | None = None
 
     def wait(self, stamp_ns: int, stop: threading.Event) -> bool:
         """Wait until the stamp is due; False if stopped meanwhile."""
-        if self._origin is None:
-            self._origin = stamp_ns, time.monotonic_ns()
-        first_stamp_ns, began_ns = self._origin
-        due_ns = began_ns + (stamp_ns - first_stamp_ns) / self._speed
+        if self._newest is None:
+            self._newest = stamp_ns, time.monotonic_ns()
+        newest_ns, due_ns = self._newest
+        if stamp_ns > newest_ns:
+            due_ns += min((stamp_ns - newest_ns) / self._speed, SETTLE_NS)
+            self._newest = stamp_ns, due_ns
         return not wait_for(stop, (due_ns - time.monotonic_ns()) / 1e9)

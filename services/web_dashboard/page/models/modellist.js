@@ -17,6 +17,7 @@ export function modelList() {
   const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
   const table = element("table", {}, element("caption", { class: "unseen" }, "Models"), head, body);
   const scrolled = element("div", { class: "scrolled", tabindex: "0", role: "region", "aria-label": "Table of models" }, table);
+  const wrong = element("div");
   let shown = null;
   trainer.on(() => {
     undo.disabled = !trainer.now?.can_undo;
@@ -24,9 +25,10 @@ export function modelList() {
     shown = trainer.all;
     scrolled.hidden = !shown.models.length;
     none.hidden = !scrolled.hidden;
+    wrong.replaceChildren(...(shown.unreadable ?? []).map((text) => element("p", { class: "doubt" }, text)));
     body.replaceChildren(...shown.models.toReversed().map((model) => row(model, line, compared)));
   });
-  return card("model-list", "Models", { wide: true, controls: [undo] }, none, scrolled, line, compared);
+  return card("model-list", "Models", { wide: true, controls: [undo] }, none, scrolled, wrong, line, compared);
 }
 
 function row(model, line, compared) {

@@ -80,7 +80,7 @@ class Examples {
   }
 
   redoLast() {
-    return attempt(this.line, () => trainer.ask("redo_last", { set: trainer.set.name }), "the last is dropped: do it once more");
+    return attempt(this.line, () => trainer.ask("redo_last", { set: trainer.set.name }), "do it once more: it takes the place of the last");
   }
 }
 

@@ -1,0 +1,117 @@
+"""To delete an example means one thing, whoever is asked for it; what was mirrored stays whole in every command."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from actum import keys
+from actum.messages import Agent, Skeleton, segment_marks
+from actum.recorder import Recorder
+from actum.recording import Recording
+from actum_command.__main__ import app
+from actum_model_trainer.samples import samples_from
+from actum_model_trainer.segment_edits import MIRRORED, mirror_image
+from people import FRAME_NS, reaching, skeleton
+from teaching import Teacher
+
+FIRST_NS, FRAMES = 10**9, 90
+
+
+def bodies() -> list[Skeleton]:
+    poses = (reaching((index % 30 + 1) / 31) for index in range(FRAMES))
+    return [skeleton(FIRST_NS + i * FRAME_NS, pose, pose + 1, seq=i) for i, pose in enumerate(poses)]
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    """Two people; the first one's two examples overlap, so that frames 20 to 30 belong to both."""
+    path = tmp_path / "take-0001.mcap"
+    with Recorder(path, person="anna", source="test") as recorder:
+        for body in bodies():
+            recorder.write(body)
+        for name, first, last, label in (("one", 5, 30, "wave"), ("two", 20, 50, "nod"), ("three", 60, 80, "wave")):
+            for mark in segment_marks(
+                FIRST_NS + first * FRAME_NS, FIRST_NS + last * FRAME_NS, "kinect0", name, label, 1
+            ):
+                recorder.write(mark)
+    return path
+
+
+def run(*arguments: object) -> str:
+    done = CliRunner().invoke(app, [*map(str, arguments)])
+    assert done.exit_code == 0, done.output
+    return done.stdout
+
+
+def refused(*arguments: object) -> str:
+    ended = CliRunner().invoke(app, [*map(str, arguments)])
+    assert ended.exit_code == 1, ended.output
+    return ended.stderr
+
+
+def by_trainer(path: Path, command: str, segment_id: str, **fields: int) -> None:
+    teacher = Teacher(path.parent / "trainer")
+    teacher.ask("create_set", set="kitchen")
+    there = teacher.folder / "sets/kitchen" / path.name
+    shutil.copy(path, there)
+    teacher.ask(command, set="kitchen", example=f"{path.stem}/{segment_id}", **fields)
+    shutil.move(there, path)
+
+
+def people(path: Path) -> list[list[Agent]]:
+    return [each.agents for each in Recording(path).messages((keys.SKELETON,)) if isinstance(each, Skeleton)]
+
+
+@pytest.mark.parametrize("how", ["trainer", "label", "takes"])
+def test_a_deleted_example_takes_along_the_frames_that_no_other_needs(path: Path, how: str) -> None:
+    if how == "trainer":
+        by_trainer(path, "delete", "one")
+    elif how == "label":
+        run("label", "delete", path, 1)
+    else:
+        run("takes", "drop", path, "one")
+    seen = [[agent.agent for agent in agents] for agents in people(path)]
+    assert seen == [[2] if 5 <= frame < 20 else [1, 2] for frame in range(FRAMES)]
+    (stream,) = [each for each in samples_from([Recording(path)]).streams if each.agent == 1]
+    frames = {(int(stamp_ns) - FIRST_NS) // FRAME_NS for stamp_ns in stream.stamps_ns}
+    assert not frames & set(range(5, 20)), "nothing of it is learnt as background"
+
+
+def mirrored_frames(path: Path) -> set[int]:
+    plain = [body.agents[0] for body in bodies()]
+    stored = [next(each for each in agents if each.agent == 1) for agents in people(path)]
+    for there, true in zip(stored, plain, strict=True):
+        assert there.joints in (
+            [pytest.approx(j) for j in true.joints],
+            [pytest.approx(j) for j in mirror_image(true).joints],
+        )
+    return {
+        number
+        for number, (there, true) in enumerate(zip(stored, plain, strict=True))
+        if there.joints != [pytest.approx(joint) for joint in true.joints]
+    }
+
+
+@pytest.mark.parametrize("how", ["label", "takes"])
+def test_the_frames_follow_a_mirrored_segment_that_is_moved(path: Path, how: str) -> None:
+    by_trainer(path, "mirror", "three")
+    assert mirrored_frames(path) == set(range(60, 81))
+    later_s = 5 * FRAME_NS / 1e9
+    if how == "label":
+        run("label", "move", path, 3, "--start", f"+{later_s}", "--end", f"+{later_s}")
+    else:
+        run("takes", "trim", path, "three", "--start", later_s, "--end", 25 * FRAME_NS / 1e9)
+    assert mirrored_frames(path) == set(range(65, 86))
+
+
+def test_a_mirrored_segment_does_not_reach_into_a_plain_one(path: Path) -> None:
+    by_trainer(path, "mirror", "three")
+    assert "three is mirrored and two is not" in refused("takes", "trim", path, "three", "--start", -0.5)
+
+
+def test_nothing_is_mirrored_once_its_segment_is_deleted(path: Path) -> None:
+    by_trainer(path, "mirror", "three")
+    run("takes", "drop", path, "three")
+    assert Recording(path).metadata[MIRRORED] == "[]"
