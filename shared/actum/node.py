@@ -46,7 +46,7 @@ class Counters:
 
     def reject(self, kind: str, detail: str = "") -> None:
         """Count one rejected input under its kind; kind and detail, of any text, become the newest error."""
-        self.rejects[kind] += 1
+        self.rejects[encodable(kind)] += 1
         complaint = f"{kind}: {detail}" if detail else kind
         self.last_error = encodable(complaint[:LONGEST_COMPLAINT])
 

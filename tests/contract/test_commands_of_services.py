@@ -18,12 +18,13 @@ import pytest
 import zenoh
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from pydantic import BaseModel
 
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings as FusionSettings
 from actum import keys
 from actum.codec import decode, encode
-from actum.commands import JSON, MSGPACK, Command
+from actum.commands import JSON, MSGPACK, Command, NoFields
 from actum.messages import Message
 from actum.node import TICK_NS, Counters, Tick
 from actum.runtime.commanding import Commander
@@ -101,12 +102,12 @@ class Question:
 class Desk:
     """A service that is asked, and held against what must be true of it afterwards."""
 
-    def __init__(self, name: str, folder: Path) -> None:
-        build, self._messages = BUILDERS[name]
+    def __init__(self, name: str, folder: Path, build: Callable[[Path], Asked] | None = None) -> None:
+        usual, self._messages = BUILDERS[name]
         (folder / OUTSIDE).mkdir()
         (folder / OUTSIDE / "kept.txt").write_text("kept")
         self._outside = folder / OUTSIDE
-        self.node = build(folder / "own")
+        self.node = (build or usual)(folder / "own")
         self.commands = {command.name: command for command in self.node.commands}
         self._failures: list[str] = []
         self._meter = Meter(name, self.node.counters, ServiceSettings())
@@ -318,3 +319,18 @@ def test_every_command_of_every_service_is_asked() -> None:
     written = {name for file in SERVICES.rglob("*.py") for name in re.findall(r'\bCommand\("(\w+)"', file.read_text())}
     asked = {command for service in BUILDERS for command in commands_of(service)}
     assert written and written <= asked, written - asked
+
+
+def test_an_answer_that_an_encoding_cannot_hold_is_refused_and_ends_nothing() -> None:
+    class Scores(BaseModel):
+        scores: list[float]
+
+    class Scorer:
+        counters = Counters()
+        name = "model_trainer"
+        commands = (Command("scores", NoFields, Scores, lambda _: Scores(scores=[math.nan])),)
+
+    with TemporaryDirectory() as folder:
+        desk = Desk("model_trainer", Path(folder), lambda _: Scorer())
+        good, reply = desk.ask("scores", b"", JSON)
+    assert not good and reply["error"].startswith("it was carried out, but its answer cannot be sent")

@@ -51,8 +51,8 @@ class Commander:
         with query:
             try:
                 name = self._asked(query.key_expr)
-                reply = packed(self._obey(name, unpacked(payload, encoding)), encoding)
-                query.reply("/".join([self._base, *name]), reply, encoding=encoding)
+                reply = self._obey(name, unpacked(payload, encoding))
+                query.reply("/".join([self._base, *name]), _packed_reply(reply, encoding), encoding=encoding)
             except Refusal as refusal:
                 with self._lock:
                     self._counters.reject("refused_command", str(refusal))
@@ -80,3 +80,15 @@ class Commander:
             return described(list(self._commands.values())).model_dump()
         with self._lock:
             return self._commands[name[0]].obey(fields)
+
+
+def _packed_reply(reply: dict[str, Any], encoding: str) -> bytes:
+    """Encode what a command answers.
+
+    Raises:
+        Refusal: it holds what the encoding has no form for, such as NaN that stood in a file.
+    """
+    try:
+        return packed(reply, encoding)
+    except Refusal as refusal:
+        raise Refusal(f"it was carried out, but its answer cannot be sent: {refusal}") from None
