@@ -8,7 +8,6 @@ from typing import Any
 
 from actum.commands import Command, Refusal
 from actum.recording import RecordingError
-from actum_model_trainer.teaching.names import printable
 
 
 class Changes:
@@ -39,7 +38,7 @@ def on_disk() -> Iterator[None]:
     try:
         yield
     except (OSError, RecordingError) as error:
-        raise Refusal(f"{printable(str(error))}; everything is as it was") from None
+        raise Refusal(f"{error}; everything is as it was") from None
 
 
 def refusing(command: Command[Any, Any]) -> Command[Any, Any]:
@@ -50,6 +49,6 @@ def refusing(command: Command[Any, Any]) -> Command[Any, Any]:
         try:
             return command.handler(request)
         except (OSError, RecordingError) as error:
-            raise Refusal(f"{printable(str(error))}: see to that file or folder, and ask again") from None
+            raise Refusal(f"{error}: see to that file or folder, and ask again") from None
 
     return replace(command, handler=handler)

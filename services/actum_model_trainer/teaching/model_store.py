@@ -9,8 +9,8 @@ from pathlib import Path
 from pydantic import TypeAdapter
 
 from actum.atomic_file import clear_unfinished, replaced, write_whole
+from actum.codec import encodable
 from actum.commands import Refusal
-from actum_model_trainer.teaching.names import printable
 from actum_model_trainer.teaching.set_store import date_of
 from actum_model_trainer.teaching.small_files import small_file
 from actum_model_trainer.teaching.stored_model import ID, About, StoredModel, described, stored
@@ -73,7 +73,7 @@ class ModelStore:
                 each = described(path) or self._take_over(path)
                 found[each.id] = each
             except (OSError, ModelError) as error:
-                unreadable.append(printable(str(error)))
+                unreadable.append(encodable(str(error)))
         return sorted(found.values(), key=lambda each: (each.created, each.id)), unreadable
 
     def get(self, model_id: str) -> StoredModel:
@@ -131,7 +131,7 @@ class ModelStore:
         try:
             load_model(path)
         except ModelError as error:
-            raise Refusal(printable(str(error))) from None
+            raise Refusal(str(error)) from None
         return path
 
     def delete(self, model_id: str) -> None:

@@ -31,11 +31,6 @@ def checked_name(name: str) -> str:
     return composed
 
 
-def printable(text: str) -> str:
-    """Return a text that can be sent: file names may hold bytes that are no UTF-8, and JSON lone surrogates."""
-    return text.encode(errors="replace").decode()
-
-
 Name = Annotated[str, Field(max_length=4 * LONGEST), AfterValidator(checked_name)]
 """A name, checked."""
 NameOrNone = Annotated[str, Field(max_length=4 * LONGEST), AfterValidator(lambda text: text and checked_name(text))]

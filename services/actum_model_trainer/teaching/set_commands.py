@@ -3,12 +3,12 @@
 from collections import Counter
 from typing import Any
 
+from actum.codec import encodable
 from actum.commands import Command, NoFields, Refusal
 from actum.node import Counters
 from actum_model_trainer.teaching.changes import Changes
 from actum_model_trainer.teaching.job_commands import JobCommands
 from actum_model_trainer.teaching.model_store import ModelStore
-from actum_model_trainer.teaching.names import printable
 from actum_model_trainer.teaching.replies import Done, Everything, ModelListed, SetListed, TakeListed
 from actum_model_trainer.teaching.requests import OfSet, RenameSet
 from actum_model_trainer.teaching.set_store import SetStore, StoredSet
@@ -54,7 +54,7 @@ class SetCommands:
             try:
                 sets.append(_listed(self._sets.get(name)))
             except (OSError, Refusal) as error:  # its folder has vanished meanwhile, or cannot be read
-                unreadable.append(printable(str(error)))
+                unreadable.append(encodable(str(error)))
         self._count([*unreadable, *(problem for each in sets for problem in each.unreadable)])
         return Everything(
             sets=sets,

@@ -13,10 +13,10 @@ from pathlib import Path
 from pydantic import BaseModel
 
 from actum.atomic_file import clear_unfinished, give_name, store_names, write_whole
+from actum.codec import encodable
 from actum.commands import Refusal
 from actum.recorder import Recorder, is_being_written
 from actum.recording import RecordingError
-from actum_model_trainer.teaching.names import printable
 from actum_model_trainer.teaching.small_files import small_file
 from actum_model_trainer.teaching.take_files import CREATED, KIND, Example, Take, read_take
 
@@ -110,7 +110,7 @@ class SetStore:
                 takes.append(self._take(path))
             except (OSError, RecordingError) as error:
                 unreadable.append(str(error))
-        return StoredSet(printable(name), created, tuple(takes), tuple(map(printable, unreadable)))
+        return StoredSet(encodable(name), created, tuple(takes), tuple(map(encodable, unreadable)))
 
     def folder(self, name: str) -> Path:
         """Return a set's folder.
@@ -119,7 +119,7 @@ class SetStore:
             Refusal: there is none of that name.
         """
         if name not in self.names():
-            there = printable(", ".join(self.names())) or "none yet"
+            there = ", ".join(self.names()) or "none yet"
             raise Refusal(f"there is no set {name!r}: name one of those there are ({there}) or create it")
         return self._folder / name
 

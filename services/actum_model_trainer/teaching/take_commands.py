@@ -6,13 +6,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from actum.codec import encodable
 from actum.commands import Command, NoFields, Refusal
 from actum.messages import Segment, Skeleton, TakeState
 from actum.node import Counters
 from actum.recording import RecordingError
 from actum_model_trainer.segment_edits import OF_THE_TAKE
 from actum_model_trainer.teaching.changes import Changes
-from actum_model_trainer.teaching.names import printable
 from actum_model_trainer.teaching.replies import Done, TakeReply
 from actum_model_trainer.teaching.requests import OfSet, Record
 from actum_model_trainer.teaching.set_store import SetStore
@@ -71,7 +71,7 @@ class TakeCommands:
                 self._finish()
         except LOSING as error:
             self._give_up()
-            lost = {"phase": "done", "counted": 0, "doubts": [printable(str(error))[:LONGEST_DOUBT]]}
+            lost = {"phase": "done", "counted": 0, "doubts": [encodable(str(error))[:LONGEST_DOUBT]]}
             self.state = take.state.model_copy(update=lost)
             counters.reject("lost_take", str(error))
 
@@ -162,7 +162,7 @@ class TakeCommands:
                     try:
                         self._remove(take, [example])
                     except (OSError, RecordingError) as error:
-                        return [f"{example.id}, which it replaces, could not be deleted: {printable(str(error))}"]
+                        return [f"{example.id}, which it replaces, could not be deleted: {encodable(str(error))}"]
         return []
 
     def _give_up(self) -> None:

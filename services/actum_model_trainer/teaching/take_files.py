@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from actum import keys
+from actum.codec import encodable
 from actum.messages import CUT, MANUAL, Hand, Segment
 from actum.node import SECOND_NS
 from actum.recorder import Recorder
@@ -16,7 +17,6 @@ from actum.rewriting import rewrite, unchanged
 from actum_model_trainer.cutting.marks import free_names, marks_of
 from actum_model_trainer.cutting.repetitions import Cuts
 from actum_model_trainer.segment_edits import DOUBTS, OF_THE_TAKE, TEXTS, Naming, field_of, mirrored_ids
-from actum_model_trainer.teaching.names import printable
 
 KIND, CREATED = "kind", "created"
 """Fields of a take's metadata, beside those that say something about its examples: kind and date."""
@@ -94,12 +94,12 @@ def read_take(path: Path) -> Take:
     marks, stamps_ns = _marks_and_stamps(recording)
     doubts, mirrored = field_of(recording, DOUBTS, TEXTS, {}), mirrored_ids(recording)
     examples = [
-        _example(printable(path.stem), recording.person, pair["start"], pair["end"], doubts, mirrored)
+        _example(encodable(path.stem), recording.person, pair["start"], pair["end"], doubts, mirrored)
         for pair in marks.values()
         if {"start", "end"} <= pair.keys() and pair["start"].label is not None
     ]
     return Take(
-        printable(path.stem),
+        encodable(path.stem),
         path,
         "background" if recording.metadata.get(KIND) == "background" else "action",
         recording.person,

@@ -19,6 +19,7 @@ from typing import BinaryIO
 
 import msgpack
 
+from actum.atomic_file import PRIVATE_FOLDER
 from actum.codec import UNPACK_ERRORS, Frame
 
 MAGIC = b"act\x01"
@@ -136,7 +137,7 @@ class Journal:
     def _opened(self) -> BinaryIO:
         """Return the file, opened to add to it; a new one says first since when all answers are known."""
         if self._file is None:
-            self._path.parent.mkdir(0o700, parents=True, exist_ok=True)  # what people did is theirs
+            self._path.parent.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)  # what people did is theirs
             self._file = self._path.open("ab", buffering=0)
             if self._file.tell() == 0:
                 self._write(self._file, _record(self._begun_ns))
