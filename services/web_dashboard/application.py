@@ -112,6 +112,7 @@ class Connection:
         try:
             await self._receive()
         finally:
+            self._orders.leave(self)
             self._hub.leave(self._mailbox)
             for task in (sending, *self._waiting):
                 task.cancel()
@@ -141,7 +142,7 @@ class Connection:
             task.add_done_callback(self._waiting.discard)
 
     async def _carry_out(self, order: str) -> None:
-        answer = await self._orders.carry_out(order)
+        answer = await self._orders.carry_out(order, self)
         with suppress(WebSocketDisconnect, RuntimeError):
             await self._socket.send_text(answer)
 
