@@ -197,7 +197,12 @@ def test_what_a_busy_service_did_not_answer_is_asked_for_again(room: Lesson, ope
     examples.get_by_text("no film: model_trainer does not answer").wait_for()
     wait_until(lambda: examples.get_by_text("does not answer").count() == 0, "all of it is there", 10)
     page.evaluate("() => { location.hash = 'parameters' }")
-    page.get_by_role("textbox", name="reach limit").wait_for(timeout=10_000)
+    reach = page.get_by_role("textbox", name="reach limit")
+    reach.wait_for(timeout=10_000)
+    refuse_first(room.page.colleague, "set_parameters")
+    reach.fill("7.5")
+    reach.press("Enter")
+    page.get_by_text("perhaps not set: pose_preprocessor does not answer").wait_for()
 
 
 def test_the_parameters_of_a_service_that_was_started_anew_are_read_anew(room: Lesson, open_page: Open) -> None:
