@@ -28,7 +28,7 @@ from actum_deployer.roles import (
     identity,
 )
 
-ROUTERS_CANNOT = "a stolen key of a router could still deceive clients: delete authority/ and write and copy all anew"
+ROUTERS_CANNOT = "a stolen key of a router could still deceive clients: delete authority/, init and copy all anew"
 """Why the credentials of a router cannot be revoked: clients know it by its address, not by its name."""
 FILE = "deployment.json"
 """The name of the file in the deployment's folder."""
@@ -173,7 +173,7 @@ class Deployment:
             told = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
             raise SettingsError(
                 f"{folder / FILE} cannot be used ({told}): mend it, for it says what was revoked; "
-                "or delete it and authority/, and write and copy all anew"
+                "or delete it and authority/, init and copy all anew"
             ) from None
         return read
 
