@@ -1,5 +1,7 @@
 """`actum deploy` says what it has written, and what cannot be."""
 
+import re
+import subprocess
 from datetime import timedelta
 from pathlib import Path
 
@@ -211,3 +213,31 @@ def test_while_one_writes_a_deployment_no_other_does(tmp_path: Path) -> None:
             assert ended.exit_code == 1
             assert "another 'actum deploy'" in ended.stderr
     assert run("rotate", tmp_path).exit_code == 0
+
+
+@pytest.mark.parametrize("options", [(), ("--one-router",), ("--open",)], ids=str)
+def test_what_is_copied_again_leaves_the_settings_of_a_host_as_they_are(
+    options: tuple[str, ...], tmp_path: Path
+) -> None:
+    """Does on a host what its README says: the first time, and after its settings were changed there."""
+    lab, installed = tmp_path / "lab", tmp_path / "etc"
+    run("init", lab, *HOSTS, *options)
+    for host in ("camera", "compute"):
+        page = (lab / host / "README.md").read_text()
+        (installed).mkdir(exist_ok=True)
+        first, later = re.findall(r"sudo (cp -r [^#\n`]+?) /etc/actum(?:`|\n| )", page)
+        subprocess.run([*first.split(), str(installed / host)], cwd=lab / host, check=True)
+        (installed / host / "settings.env").write_text("ACTUM_CAMERA=rtsp://mine\n")
+        renewed = [lab / host / "router.json5", *(lab / host).glob("credentials/*/certificate.pem")]
+        for file in filter(Path.exists, renewed):
+            file.write_text("renewed")
+        subprocess.run([*later.split(), str(installed / host)], cwd=lab / host, check=True)
+        assert (installed / host / "settings.env").read_text() == "ACTUM_CAMERA=rtsp://mine\n"
+        for file in filter(Path.exists, renewed):
+            assert (installed / host / file.relative_to(lab / host)).read_text() == "renewed"
+
+
+def test_rotate_has_only_copied_what_it_renews(tmp_path: Path) -> None:
+    run("init", tmp_path, *HOSTS)
+    said = " ".join(run("rotate", tmp_path).stdout.split())
+    assert "copy credentials/ and router.json5 of camera, compute, and the folders of people/" in said

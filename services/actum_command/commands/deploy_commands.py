@@ -96,7 +96,7 @@ def rotate(
                 fail(f"{folder} was made with --open and has no credentials")
             write_deployment(deployment, folder, days, may_be_new=False)
     names = ", ".join(host.name for host in deployment.hosts)
-    say(f"copy the folders of {names}, and those of people, to their machines again")
+    say(f"copy credentials/ and router.json5 of {names}, and the folders of people/, to their machines again")
     if revoke:
         say("revoked once every host has its router.json5; routers in containers: docker compose restart router")
 
