@@ -46,7 +46,10 @@ class Signed:
         key = serialization.load_pem_private_key(key_pem, password=None)
         if not isinstance(key, ec.EllipticCurvePrivateKey):
             raise ValueError("the authority's key is none on an elliptic curve")
-        return cls(x509.load_pem_x509_certificate(certificate_pem), key)
+        certificate = x509.load_pem_x509_certificate(certificate_pem)
+        if certificate.public_key() != key.public_key():
+            raise ValueError("its key is another certificate's")
+        return cls(certificate, key)
 
 
 def new_authority(common_name: str, now: datetime) -> Signed:

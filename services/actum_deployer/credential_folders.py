@@ -3,12 +3,13 @@
 import json
 import os
 import secrets
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import timedelta
 from pathlib import Path
 
 from actum.atomic_file import PRIVATE_FOLDER, write_whole
-from actum.runtime.credentials import AUTHORITY, CERTIFICATE, KEY, USER, USERS
+from actum.runtime.credentials import AUTHORITY, CERTIFICATE, KEY, LOGIN, USER, USERS, login_values
 from actum.settings import SettingsError
 from actum_deployer.certificates import Signed, new_authority, new_certificate, now
 from actum_deployer.deployment import Deployment, Host
@@ -45,18 +46,26 @@ def folders(deployment: Deployment, root: Path) -> Iterator[Folder]:
         yield Folder(root / PEOPLES_FOLDER / role.name, deployment.common_name(identity(role, "")))
 
 
-def write_credentials(deployment: Deployment, root: Path, days: float) -> None:
-    """Write all credentials anew, signed by the deployment's authority, which is made where there is none.
-
-    Passwords stay as they are. Each file is replaced as a whole, so that a router or service may read it meanwhile.
+def passwords_of(deployment: Deployment, root: Path) -> dict[str, str]:
+    """Return a password for each name, the one that its folder holds already or a new one; none where none are asked.
 
     Raises:
-        SettingsError: the authority's files cannot be used.
+        SettingsError: a file that is there holds none.
+    """
+    return _passwords(list(folders(deployment, root))) if deployment.passwords else {}
+
+
+def write_credentials(
+    deployment: Deployment, root: Path, days: float, authority: Signed, passwords: Mapping[str, str]
+) -> None:
+    """Write all credentials anew, signed by the deployment's authority.
+
+    Each file is replaced as a whole, so that a router or service may read it meanwhile.
+
+    Raises:
         OSError: a file cannot be written.
     """
-    authority = _authority(root / AUTHORITYS)
     written = list(folders(deployment, root))
-    passwords = _passwords(written) if deployment.passwords else {}
     for folder in written:
         make_private(folder.path.parent)
         make_private(folder.path)
@@ -66,6 +75,9 @@ def write_credentials(deployment: Deployment, root: Path, days: float) -> None:
         write_whole(folder.path / AUTHORITY, authority.certificate_pem, PRIVATE)
         if passwords:
             write_whole(folder.path / USER, _login(folder.name, passwords[folder.name]), PRIVATE)
+        else:  # a router that finds earlier ones asks for them
+            (folder.path / USER).unlink(missing_ok=True)
+            (folder.path / USERS).unlink(missing_ok=True)
         if passwords and folder.addresses:
             users = "".join(f"{user}:{password}\n" for user, password in sorted(passwords.items()))
             write_whole(folder.path / USERS, users.encode(), PRIVATE)
@@ -82,28 +94,48 @@ def _folders_of(deployment: Deployment, host: Host, path: Path) -> Iterator[Fold
         yield Folder(path / own, deployment.common_name(own))
 
 
-def _authority(folder: Path) -> Signed:
-    make_private(folder)
-    if (folder / KEY).exists():
-        try:
-            (folder / KEY).chmod(PRIVATE)
-            return Signed.load((folder / AUTHORITY).read_bytes(), (folder / KEY).read_bytes())
-        except (OSError, ValueError) as error:
-            raise SettingsError(f"the authority in {folder} cannot be used: {error}") from None
-    made = new_authority(f"actum {secrets.token_hex(4)}", now())
-    write_whole(folder / KEY, made.key_pem, PRIVATE)
-    write_whole(folder / AUTHORITY, made.certificate_pem, PRIVATE)
-    return made
+def authority_of(root: Path, may_be_made: bool) -> Signed:
+    """Return the deployment's authority; make it where nothing of one is left and a new one may take its place.
+
+    Raises:
+        SettingsError: its files cannot be used, or it has ended.
+        OSError: they cannot be written.
+    """
+    folder = root / AUTHORITYS
+    if may_be_made and not ((folder / KEY).exists() or (folder / AUTHORITY).exists()):
+        made = new_authority(f"actum {secrets.token_hex(4)}", now())
+        make_private(folder)
+        write_whole(folder / KEY, made.key_pem, PRIVATE)
+        write_whole(folder / AUTHORITY, made.certificate_pem, PRIVATE)
+        return made
+    try:
+        make_private(folder)
+        (folder / KEY).chmod(PRIVATE)
+        found = Signed.load((folder / AUTHORITY).read_bytes(), (folder / KEY).read_bytes())
+        if lasting(found, 1) <= 0:
+            raise ValueError(f"it ended at {found.certificate.not_valid_after_utc:%Y-%m-%d %H:%M} UTC")
+    except (OSError, ValueError) as error:
+        raise SettingsError(
+            f"the authority in {folder} cannot be used ({error}): bring its two files back, or delete the folder, run "
+            "'actum deploy init' and copy all folders anew: nobody believes what another authority has signed"
+        ) from None
+    return found
+
+
+def lasting(authority: Signed, days: float) -> float:
+    """Return for how many days from now certificates can last: no longer than their authority."""
+    return min(days, (authority.certificate.not_valid_after_utc - now()) / timedelta(days=1))
 
 
 def _passwords(written: Sequence[Folder]) -> dict[str, str]:
-    """Return a password for each name: the one that its folder holds already, or a new one."""
     passwords: dict[str, str] = {}
     for folder in written:
-        file = folder.path / USER
-        if file.exists():
-            login = json.loads(file.read_text())["transport"]["auth"]["usrpwd"]
-            passwords[login["user"]] = login["password"]
+        try:
+            login = login_values(folder.path)
+        except SettingsError as error:
+            raise SettingsError(f"{error}, or delete this file for a new password") from None
+        if login:
+            passwords[login[f"{LOGIN}/user"]] = login[f"{LOGIN}/password"]
         passwords.setdefault(folder.name, secrets.token_urlsafe(PASSWORD_BYTES))
     return {folder.name: passwords[folder.name] for folder in written}
 

@@ -8,8 +8,10 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import Self
 
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+
 from actum.atomic_file import write_whole
-from actum.keys import chunk
+from actum.keys import InvalidKeyError, chunk
 from actum.settings import HIGHEST_PORT, SettingsError
 from actum_deployer.roles import (
     BRIDGE,
@@ -26,7 +28,7 @@ from actum_deployer.roles import (
     identity,
 )
 
-ROUTERS_CANNOT = "a stolen key of a router could still deceive clients: delete authority/ and write and copy all anew"
+ROUTERS_CANNOT = "a stolen key of a router could still deceive clients: delete authority/, init and copy all anew"
 """Why the credentials of a router cannot be revoked: clients know it by its address, not by its name."""
 FILE = "deployment.json"
 """The name of the file in the deployment's folder."""
@@ -45,6 +47,10 @@ NUMERIC = re.compile(r"(.*\.)?[0-9]+")
 """What is no name but an address of IPv4, or none that can be: its last label is a number."""
 
 
+STRICT = ConfigDict(extra="forbid")
+"""Of what is read from the file: a misspelt field would be taken for one that is not there."""
+
+
 @dataclass(frozen=True)
 class Host:
     """A machine.
@@ -56,6 +62,7 @@ class Host:
         sensors: the sensors that it has, or whose streams it computes with.
     """
 
+    __pydantic_config__ = STRICT
     name: str
     address: str
     port: int
@@ -87,6 +94,7 @@ class Deployment:
         ros_domain: the domain of the bridge to ROS 2; None where there is none.
     """
 
+    __pydantic_config__ = STRICT
     hosts: tuple[Host, ...]
     secured: bool = True
     passwords: bool = False
@@ -157,11 +165,17 @@ class Deployment:
             SettingsError: it is not there, or is none.
         """
         try:
-            fields = json.loads((folder / FILE).read_text(encoding="utf-8"))
-            hosts = [Host(**{**host, "sensors": tuple(host["sensors"])}) for host in fields.pop("hosts")]
-            return cls(tuple(hosts), **fields)
-        except (OSError, ValueError, TypeError, KeyError):
+            read = TypeAdapter(cls).validate_json((folder / FILE).read_bytes())
+            _check(read.hosts)
+        except FileNotFoundError:
             raise SettingsError(f"{folder} holds no {FILE}: make it with 'actum deploy init'") from None
+        except (OSError, ValidationError, SettingsError, InvalidKeyError) as error:
+            told = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
+            raise SettingsError(
+                f"{folder / FILE} cannot be used ({told}): mend it, for it says what was revoked; "
+                "or delete it and authority/, init and copy all anew"
+            ) from None
+        return read
 
 
 def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
@@ -189,6 +203,16 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
     its: dict[str, tuple[str, ...]] = {host.name: (chunk(sensor),) for host, sensor in zip(cameras, named, strict=True)}
     its |= {host.name: tuple(named[i :: len(computing)]) for i, host in enumerate(computing)}
     return tuple(replace(host, sensors=its[host.name]) for host in hosts)
+
+
+def _check(hosts: Sequence[Host]) -> None:
+    """Check what a file says of hosts as if it had been said to `actum deploy init`."""
+    if not hosts:
+        raise SettingsError("no hosts")
+    for host in hosts:
+        _host(f"{host.name}={host.endpoint}")
+        for sensor in host.sensors:
+            chunk(sensor)
 
 
 def _host(text: str) -> Host:

@@ -5,7 +5,7 @@ from datetime import date
 from actum.installing import WHEEL, pip_install
 from actum_deployer.credential_folders import CREDENTIALS, SERVICES_USER
 from actum_deployer.deployment import Deployment, Host
-from actum_deployer.programs import FILES, INSTALLED, SETTINGS, Program, programs
+from actum_deployer.programs import FILES, INSTALLED, ROUTER_FILE, SETTINGS, Program, programs
 from actum_deployer.roles import BRIDGE
 from actum_deployer.systemd_units import VENV
 
@@ -47,24 +47,27 @@ sudo cp {units}/*.service /etc/systemd/system/ && sudo systemctl daemon-reload
 sudo systemctl enable --now {unit_names}
 ```
 
-Each program runs as a user of its own, who can read its credentials and no others. Whenever you have copied credentials
+Each program runs as a user of its own, who can read its credentials and no others. What was renewed is installed by
+`sudo cp -r {renewed} {installed}`, which leaves settings of yours as they are. Whenever you have copied credentials
 or settings here again, `sudo systemd-tmpfiles --create actum.conf` hands them over. Models, recordings of what was
 taught, and the last answers lie in a folder for each program below `/var/lib/actum`. Users and owners are tested with
 systemd's own tools, and `systemd-analyze verify` accepts the units, but no systemd has run them yet.
 
 ## Settings
 
-`{settings}` holds those of yours, for both ways; it is not written again. All programs of this host get them. What only
-one may have, such as the page's token or a camera's password, goes into `NAME.env` with that service's name, such as
-`web_dashboard.env`, mode 0600. Files that the settings name, such as a pose model, a calibration or a scene file, lie
-in `{files}`, which is `{installed}/{files}` to the services.
+`{settings}` holds those of yours, for both ways. `actum deploy` writes it once; whoever copies this whole folder here
+again replaces it. All programs of this host get them. What only one may have, such as the page's token or a camera's
+password, goes into `NAME.env` with that service's name, such as `web_dashboard.env`, mode 0600. Files that the
+settings name, such as a pose model, a calibration or a scene file, lie in `{files}`, which is `{installed}/{files}`
+to the services.
 """
 
 SECURED = """\
-Credentials are valid until {expiry}. Before that, renew them with `actum deploy rotate`, and copy `{credentials}` here
-again, handed over as below. The router notices and listens anew, and services show the new ones as they connect to it
-again: nothing has to be stopped. After `actum deploy rotate --revoke NAME` copy `router.json5` as well, which says what
-is not believed any more; a router in a container then needs `docker compose restart router`.
+Credentials are valid until {expiry}. Before that, renew them with `actum deploy rotate`, and copy `{credentials}`
+here again, not the whole folder, which would replace `{settings}`. Hand them over as below. The router notices and
+listens anew, and services show the new ones as they connect to it again: nothing has to be stopped. After `actum
+deploy rotate --revoke NAME` copy `router.json5` as well, which says what is not believed any more; a router in a
+container then needs `docker compose restart router`.
 
 """
 OPEN = """\
@@ -106,7 +109,7 @@ def readme(deployment: Deployment, host: Host, expiry: date) -> str:
         address=host.address,
         table=_table(running),
         link=_link(deployment, host),
-        secured=SECURED.format(expiry=expiry, credentials=CREDENTIALS, user=SERVICES_USER)
+        secured=SECURED.format(expiry=expiry, credentials=CREDENTIALS, user=SERVICES_USER, settings=SETTINGS)
         if deployment.secured
         else OPEN,
         user=SERVICES_USER,
@@ -115,6 +118,7 @@ def readme(deployment: Deployment, host: Host, expiry: date) -> str:
         installed=INSTALLED,
         venv=VENV,
         install=pip_install("all", WHEEL),
+        renewed=" ".join(_renewed(deployment, host)),
         units=UNITS,
         users=USERS,
         owners=OWNERS,
@@ -128,6 +132,13 @@ def settings_file(deployment: Deployment, host: Host) -> str:
     """Return what the file for the user's settings holds at first."""
     simulated = deployment.simulated and host.kind == "camera"
     return SIMULATED_SETTINGS if simulated else SETTINGS_OF[host.kind]
+
+
+def _renewed(deployment: Deployment, host: Host) -> list[str]:
+    """Name what is written anew, in a host's folder, that its programs read."""
+    credentials = [CREDENTIALS] if deployment.secured else []
+    router = [ROUTER_FILE] if host in deployment.routers else []
+    return [*credentials, *router, UNITS]
 
 
 def _table(running: list[Program]) -> str:

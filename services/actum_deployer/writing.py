@@ -1,14 +1,22 @@
 """Writes a deployment: a folder for each host, one for people's programs, and the authority's own."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
 
-from actum.atomic_file import PRIVATE_FOLDER, write_whole
+from actum.atomic_file import PRIVATE_FOLDER, claim, write_whole
 from actum.settings import SettingsError
 from actum_deployer.certificates import now
 from actum_deployer.compose_file import compose_file
-from actum_deployer.credential_folders import AUTHORITYS, PRIVATE, write_credentials
+from actum_deployer.credential_folders import (
+    AUTHORITYS,
+    PRIVATE,
+    authority_of,
+    lasting,
+    passwords_of,
+    write_credentials,
+)
 from actum_deployer.deployment import FILE, Deployment, Host
 from actum_deployer.host_readme import OWNERS, UNITS, USERS, readme, settings_file
 from actum_deployer.programs import FILES, ROUTER_FILE, SETTINGS
@@ -19,21 +27,48 @@ PUBLIC, PUBLIC_FOLDER = 0o644, 0o755
 """The modes of what the users of containers and units have to read, whatever the umask: it holds no secret."""
 
 
-def write_deployment(deployment: Deployment, root: Path, days: float) -> None:
-    """Write all files of a deployment; credentials are valid for `days`.
+LOCK = ".lock"
+"""The file, in the deployment's folder, that who writes it has claimed."""
 
-    The authority, passwords and the user's settings that are there already are kept.
+
+@contextmanager
+def alone(root: Path) -> Iterator[None]:
+    """Return a context in which no other process writes the deployment of a folder.
 
     Raises:
-        SettingsError: the authority that is there cannot be used.
+        SettingsError: another one does.
+        OSError: the folder cannot be written.
+    """
+    with (root / LOCK).open("ab") as file:
+        if not claim(file):
+            raise SettingsError(f"another 'actum deploy' is writing {root}: try again when it has ended")
+        yield
+
+
+def write_deployment(deployment: Deployment, root: Path, days: float, may_be_new: bool = True) -> None:
+    """Write all files of a deployment; credentials are valid for `days`, but no longer than the authority.
+
+    The authority, passwords and the user's settings that are there already are kept. Without `may_be_new` there has to
+    be an authority. Nothing is written where one of these cannot be used.
+
+    Raises:
+        SettingsError: the authority or a password that is there cannot be used.
         OSError: a file cannot be written.
     """
     root.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
+    if not deployment.secured:
+        _write_hosts(deployment, root, days)
+        return
+    passwords = passwords_of(deployment, root)
+    authority = authority_of(root, may_be_new)
+    _write_hosts(deployment, root, lasting(authority, days))
+    write_credentials(deployment, root, lasting(authority, days), authority, passwords)
+
+
+def _write_hosts(deployment: Deployment, root: Path, days: float) -> None:
     deployment.save(root)
     for host in deployment.hosts:
         _write_host(deployment, host, root / host.name, days)
-    if deployment.secured:
-        write_credentials(deployment, root, days)
 
 
 def revoked_before(root: Path) -> Mapping[str, int]:

@@ -1,11 +1,17 @@
 """`actum deploy` says what it has written, and what cannot be."""
 
+import re
+import subprocess
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
+from cryptography.x509 import load_pem_x509_certificate
 from typer.testing import CliRunner, Result
 
 from actum_command.__main__ import app
+from actum_deployer.certificates import new_authority, now
+from actum_deployer.writing import alone
 
 HOSTS = ("--hosts", "camera=192.168.1.5,compute=192.168.1.6")
 
@@ -91,3 +97,147 @@ def test_what_cannot_be_done_is_refused(arguments: tuple[str, ...], said: str, t
     ended = run(*arguments, tmp_path)
     assert ended.exit_code == 1
     assert said in ended.stderr
+
+
+def files_of(folder: Path) -> dict[Path, bytes]:
+    return {file: file.read_bytes() for file in folder.rglob("*") if file.is_file() and file.stat().st_size}
+
+
+def damage_authority(folder: Path, how: str) -> None:
+    authority = folder / "authority"
+    if how in ("no key", "nothing"):
+        (authority / "key.pem").unlink()
+    if how == "nothing":
+        (authority / "ca.pem").unlink()
+    if how == "no PEM":
+        (authority / "ca.pem").write_text("junk")
+    if how == "another's key":
+        (authority / "key.pem").write_bytes(new_authority("another", now()).key_pem)
+    if how == "ended":
+        ended = new_authority("ended", now() - timedelta(days=4000))
+        (authority / "key.pem").write_bytes(ended.key_pem)
+        (authority / "ca.pem").write_bytes(ended.certificate_pem)
+
+
+@pytest.mark.parametrize("command", [("rotate", "--revoke", "viewer"), ("init", *HOSTS, "--passwords")], ids=str)
+@pytest.mark.parametrize("how", ["no key", "nothing", "no PEM", "another's key", "ended"])
+def test_without_the_authority_that_signed_nothing_is_written(
+    how: str, command: tuple[str, ...], tmp_path: Path
+) -> None:
+    """Only `init` makes a new one, and only where nothing of the one before is left."""
+    folder = tmp_path / "lab"
+    run("init", folder, *HOSTS)
+    damage_authority(folder, how)
+    before = files_of(folder)
+    ended = run(command[0], folder, *command[1:])
+    if (how, command[0]) == ("nothing", "init"):
+        assert ended.exit_code == 0
+        return
+    assert ended.exit_code == 1
+    assert "the authority" in ended.stderr
+    assert files_of(folder) == before
+
+
+def test_no_certificate_outlasts_its_authority(tmp_path: Path) -> None:
+    run("init", tmp_path, *HOSTS)
+    old = new_authority("old", now() - timedelta(days=3600))
+    (tmp_path / "authority" / "key.pem").write_bytes(old.key_pem)
+    (tmp_path / "authority" / "ca.pem").write_bytes(old.certificate_pem)
+    assert run("rotate", tmp_path).exit_code == 0
+    shown = load_pem_x509_certificate((tmp_path / "people" / "viewer" / "certificate.pem").read_bytes())
+    assert shown.not_valid_after_utc <= old.certificate.not_valid_after_utc
+    assert (
+        f"valid until {old.certificate.not_valid_after_utc.date()}" in (tmp_path / "camera" / "README.md").read_text()
+    )
+
+
+def test_certificates_that_have_ended_already_are_not_written(tmp_path: Path) -> None:
+    run("init", tmp_path, *HOSTS)
+    before = files_of(tmp_path)
+    assert run("rotate", tmp_path, "--days", "0").exit_code == 2
+    assert files_of(tmp_path) == before
+
+
+DAMAGED = {
+    "no object": "3",
+    "empty": "",
+    "no host": '{"hosts": []}',
+    "a kind that there is not": '{"hosts": [{"name": "x", "address": "a", "port": 1, "sensors": ["k"]}]}',
+    "a name of another folder": '{"hosts": [{"name": "camera/../..", "address": "a", "port": 1, "sensors": ["k"]}]}',
+    "a port in words": '{"hosts": [{"name": "camera", "address": "a", "port": "x", "sensors": ["k"]}]}',
+    "a sensor of another key": '{"hosts": [{"name": "camera", "address": "a", "port": 1, "sensors": ["**"]}]}',
+    "revoked": '{"hosts": [{"name": "camera", "address": "a", "port": 1, "sensors": []}], "revoked": {"viewer": "x"}}',
+    "unknown": '{"hosts": [{"name": "camera", "address": "a", "port": 1, "sensors": ["k"]}], "revokd": {"viewer": 1}}',
+}
+
+
+@pytest.mark.parametrize("command", [("rotate",), ("rotate", "--revoke", "viewer"), ("init", *HOSTS)], ids=str)
+@pytest.mark.parametrize("text", DAMAGED.values(), ids=DAMAGED.keys())
+def test_a_damaged_deployment_is_refused_and_nothing_is_written(
+    text: str, command: tuple[str, ...], tmp_path: Path
+) -> None:
+    folder = tmp_path / "lab"
+    run("init", folder, *HOSTS)
+    (folder / "deployment.json").write_text(text)
+    before = files_of(tmp_path)
+    ended = run(command[0], folder, *command[1:])
+    assert ended.exit_code == 1
+    assert f"{folder / 'deployment.json'} cannot be used" in ended.stderr
+    assert files_of(tmp_path) == before
+
+
+def test_a_damaged_password_is_refused_by_name_and_nothing_is_written(tmp_path: Path) -> None:
+    run("init", tmp_path, *HOSTS, "--passwords")
+    login = tmp_path / "people" / "viewer" / "user.json5"
+    login.write_text("{")
+    before = files_of(tmp_path)
+    ended = run("rotate", tmp_path, "--revoke", "switch")
+    assert ended.exit_code == 1
+    assert str(login) in ended.stderr
+    assert files_of(tmp_path) == before
+
+
+def test_without_passwords_no_router_asks_for_earlier_ones(tmp_path: Path) -> None:
+    """A router that finds a list of users lets in nobody else, and a host that is new has no passwords."""
+    run("init", tmp_path, *HOSTS, "--passwords")
+    run("init", tmp_path, *HOSTS)
+    assert not [*tmp_path.rglob("users.txt"), *tmp_path.rglob("user.json5")]
+
+
+def test_while_one_writes_a_deployment_no_other_does(tmp_path: Path) -> None:
+    """Else a revocation could be lost, and a key be another certificate's."""
+    run("init", tmp_path, *HOSTS)
+    with alone(tmp_path):
+        for command in (("rotate", tmp_path), ("init", tmp_path, *HOSTS)):
+            ended = run(*command)
+            assert ended.exit_code == 1
+            assert "another 'actum deploy'" in ended.stderr
+    assert run("rotate", tmp_path).exit_code == 0
+
+
+@pytest.mark.parametrize("options", [(), ("--one-router",), ("--open",)], ids=str)
+def test_what_is_copied_again_leaves_the_settings_of_a_host_as_they_are(
+    options: tuple[str, ...], tmp_path: Path
+) -> None:
+    """Does on a host what its README says: the first time, and after its settings were changed there."""
+    lab, installed = tmp_path / "lab", tmp_path / "etc"
+    run("init", lab, *HOSTS, *options)
+    for host in ("camera", "compute"):
+        page = (lab / host / "README.md").read_text()
+        (installed).mkdir(exist_ok=True)
+        first, later = re.findall(r"sudo (cp -r [^#\n`]+?) /etc/actum(?:`|\n| )", page)
+        subprocess.run([*first.split(), str(installed / host)], cwd=lab / host, check=True)
+        (installed / host / "settings.env").write_text("ACTUM_CAMERA=rtsp://mine\n")
+        renewed = [lab / host / "router.json5", *(lab / host).glob("credentials/*/certificate.pem")]
+        for file in filter(Path.exists, renewed):
+            file.write_text("renewed")
+        subprocess.run([*later.split(), str(installed / host)], cwd=lab / host, check=True)
+        assert (installed / host / "settings.env").read_text() == "ACTUM_CAMERA=rtsp://mine\n"
+        for file in filter(Path.exists, renewed):
+            assert (installed / host / file.relative_to(lab / host)).read_text() == "renewed"
+
+
+def test_rotate_has_only_copied_what_it_renews(tmp_path: Path) -> None:
+    run("init", tmp_path, *HOSTS)
+    said = " ".join(run("rotate", tmp_path).stdout.split())
+    assert "copy credentials/ and router.json5 of camera, compute, and the folders of people/" in said

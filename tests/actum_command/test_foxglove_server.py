@@ -18,7 +18,7 @@ from live import PATIENCE_S, wait_until
 
 pytest.importorskip("foxglove", reason="foxglove-sdk is not installed: pip install -e '.[dev]'")
 from typer.testing import CliRunner
-from websockets.exceptions import InvalidStatus
+from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from actum_command.__main__ import app
@@ -192,9 +192,22 @@ def test_who_speaks_no_such_protocol_is_refused(usual: Serving) -> None:
 
 
 @pytest.mark.parametrize(
-    "origin", ["*", "null", "app.foxglove.dev", "https://", "https://a/b", "javascript:1", "file://a", ""]
+    "origin", ["*", "null", "app.foxglove.dev", "https://", "https://a/b", "javascript:1", "file://a", "", "http://["]
 )
 def test_an_origin_that_names_no_site_is_refused(origin: str) -> None:
     ended = CliRunner().invoke(app, ["foxglove", "--origin", origin])
     assert ended.exit_code == 1
     assert "such as https://app.foxglove.dev" in ended.stderr
+
+
+def test_what_is_nested_too_deep_ends_its_connection_and_is_no_bug(
+    usual: Serving, caplog: pytest.LogCaptureFixture
+) -> None:
+    with usual.opened() as client:
+        client.send("[" * 100_000)
+        with pytest.raises(ConnectionClosed) as closed:
+            while True:
+                client.recv(timeout=PATIENCE_S)
+    assert closed.value.rcvd is not None
+    assert closed.value.rcvd.code == 1008
+    assert "Traceback" not in caplog.text

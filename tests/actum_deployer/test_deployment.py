@@ -75,5 +75,7 @@ def test_a_deployment_is_read_as_it_was_saved(tmp_path: Path) -> None:
 def test_what_is_no_deployment_is_refused(content: str | None, tmp_path: Path) -> None:
     if content is not None:
         (tmp_path / "deployment.json").write_text(content)
-    with pytest.raises(SettingsError, match=r"holds no deployment\.json"):
+    with pytest.raises(
+        SettingsError, match=r"holds no deployment\.json" if content is None else r"deployment\.json cannot be used"
+    ):
         Deployment.load(tmp_path)

@@ -1,11 +1,13 @@
 """`actum deploy`: what the hosts of a lab need, each a folder, with credentials that their routers ask for."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from actum.atomic_file import PRIVATE_FOLDER
 from actum.keys import InvalidKeyError
 from actum.runtime import needs_extra
 from actum.settings import SettingsError
@@ -20,6 +22,8 @@ app = PlainTyper(
 DirArgument = Annotated[Path, typer.Argument(metavar="DIR", help="the deployment's folder; keep it private")]
 YEAR = 365
 """How long certificates are valid (days) where nothing else is said."""
+LEAST_DAYS = 0.01
+"""How short they can be: longer than what it takes to copy them."""
 MOST_DAYS = 3650
 """How long they can be: no longer than their authority."""
 
@@ -53,9 +57,14 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         placed = hosts_of(hosts, sensors)
     except (SettingsError, InvalidKeyError) as error:
         fail(str(error))
-    revoked = _revoked_before(folder)
-    deployment = Deployment(placed, not not_secured, passwords, images, one_router, simulate, revoked, ros2)
-    _write(deployment, folder, YEAR)
+    with _refusing(), needs_extra("deploy"):
+        from actum_deployer.writing import alone, revoked_before, write_deployment
+
+        folder.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
+        with alone(folder):
+            revoked = revoked_before(folder)
+            deployment = Deployment(placed, not not_secured, passwords, images, one_router, simulate, revoked, ros2)
+            write_deployment(deployment, folder, YEAR)
     for host in placed:
         say(f"{host.name}: copy {folder / host.name} to {host.address}, and do there what its README.md says")
     if deployment.secured:
@@ -66,7 +75,7 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
 @app.command()
 def rotate(
     folder: DirArgument,
-    days: Annotated[float, typer.Option(min=0, max=MOST_DAYS, help="how long they are valid (days)")] = YEAR,
+    days: Annotated[float, typer.Option(min=LEAST_DAYS, max=MOST_DAYS, help="how long they are valid (days)")] = YEAR,
     revoke: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME", help="have routers allow nothing to the old ones of a folder, such as viewer"),
@@ -77,33 +86,26 @@ def rotate(
     With --revoke, once for each folder of credentials that was lost or stolen, routers allow nothing any more to who
     shows the old certificate, as soon as they have their new router.json5.
     """
-    try:
-        deployment = Deployment.load(folder).revoking(revoke or [])
-    except SettingsError as error:
-        fail(str(error))
-    if not deployment.secured:
-        fail(f"{folder} was made with --open and has no credentials")
-    _write(deployment, folder, days)
+    with _refusing(), needs_extra("deploy"):
+        from actum_deployer.writing import alone, write_deployment
+
+        Deployment.load(folder)  # else a folder that holds none would get a file
+        with alone(folder):
+            deployment = Deployment.load(folder).revoking(revoke or [])
+            if not deployment.secured:
+                fail(f"{folder} was made with --open and has no credentials")
+            write_deployment(deployment, folder, days, may_be_new=False)
     names = ", ".join(host.name for host in deployment.hosts)
-    say(f"copy the folders of {names}, and those of people, to their machines again")
+    say(f"copy credentials/ and router.json5 of {names}, and the folders of people/, to their machines again")
     if revoke:
         say("revoked once every host has its router.json5; routers in containers: docker compose restart router")
 
 
-def _revoked_before(folder: Path) -> Mapping[str, int]:
-    with needs_extra("deploy"):
-        from actum_deployer.writing import revoked_before
+@contextmanager
+def _refusing() -> Iterator[None]:
+    """Return a context that ends the command with the reason where something cannot be done."""
     try:
-        return revoked_before(folder)
-    except SettingsError as error:
-        fail(str(error))
-
-
-def _write(deployment: Deployment, folder: Path, days: float) -> None:
-    with needs_extra("deploy"):
-        from actum_deployer.writing import write_deployment
-    try:
-        write_deployment(deployment, folder, days)
+        yield
     except (SettingsError, OSError) as error:
         fail(str(error))
 

@@ -71,13 +71,17 @@ class _Refusals:
 
 def _origin(text: str) -> str:
     """Return an origin as browsers write it; fail where it stands for no site, or for any."""
-    site = urlsplit(text)
+    advice = f"--origin {text}: write what is printed for a refused page, such as https://app.foxglove.dev"
+    try:
+        site = urlsplit(text)
+    except ValueError:
+        fail(advice)
     if (
         site.scheme not in ("http", "https", "file")
         or site.path.strip("/")
         or bool(site.netloc) == (site.scheme == "file")
     ):
-        fail(f"--origin {text}: write what is printed for a refused page, such as https://app.foxglove.dev")
+        fail(advice)
     return f"{site.scheme}://{site.netloc.lower()}"
 
 

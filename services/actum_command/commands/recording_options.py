@@ -33,10 +33,10 @@ def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[R
     return recordings
 
 
-def refuse_output(output: Path) -> None:
+def refuse_output(output: Path, ending: str = ".mcap") -> None:
     """Fail before long work where no recording can be written, or one lies already, finished or not."""
     refuse_unwritable(output)
-    refuse_ending(output, ".mcap")
+    refuse_ending(output, ending)
     try:
         refuse_taken(output)
     except TakenError as error:

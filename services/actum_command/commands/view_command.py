@@ -10,7 +10,8 @@ import typer
 
 from actum.runtime import stop_on_signals
 from actum.runtime.waiting import wait_for
-from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
+from actum_command.commands.recording_options import refuse_output
+from actum_command.commands.terminal import fail, say
 from actum_command.commands.viewed_streams import RecordingArgument, refuse_without, streams_of, tell_shown
 from actum_command.viewers.showing import Showing
 
@@ -33,8 +34,7 @@ def view(
     """
     refuse_without("rerun", "rerun-sdk", "view")
     if output is not None:
-        refuse_unwritable(output)
-        refuse_ending(output, ".rrd")
+        refuse_output(output, ".rrd")
     from actum_command.viewers.rerun_program import ViewerError
 
     stop = stop_on_signals()

@@ -63,7 +63,7 @@ class Client:
         """Subscribe or unsubscribe as a request says; tell whether it was for a subscription.
 
         Raises:
-            ValueError, TypeError, KeyError, AttributeError: it is no request.
+            ValueError, TypeError, KeyError, AttributeError, RecursionError: it is no request.
         """
         request = json.loads(text)
         if request["op"] == "subscribe":
@@ -150,7 +150,7 @@ class FoxgloveServer:
             try:
                 if client.take(received.get("text") or ""):
                     self._subscribed.set()
-            except (ValueError, TypeError, KeyError, AttributeError):
+            except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
                 await socket.close(UNUSABLE)
                 return
 
