@@ -110,7 +110,7 @@ def load(path: Path) -> Catalogue:
     if root is None or not isinstance(content, dict):
         raise SceneFileError(f"{path} holds no scene: it needs `objects:` with an id and a name for each")
     try:
-        _refuse_repeated_keys(path, root)
+        _refuse_repeated_keys(path, root, set())
         scene = SceneFile.model_validate(content)
     except RecursionError:
         raise SceneFileError(f"{path} contains itself: write out what its `*` stand for") from None
@@ -178,7 +178,10 @@ def _refuse_shared_codes(path: Path, families: tuple[str, ...]) -> None:
             raise SceneFileError(f"{path}: {one} and {other} hold the same markers: use the larger for both")
 
 
-def _refuse_repeated_keys(path: Path, node: yaml.Node) -> None:
+def _refuse_repeated_keys(path: Path, node: yaml.Node, done: set[yaml.Node]) -> None:
+    """Raise an error for a key that comes twice; what is `done` is not looked at again, however many `*` name it."""
+    if node in done:
+        return
     if isinstance(node, yaml.MappingNode):
         names: set[str] = set()
         for key, value in node.value:
@@ -186,10 +189,11 @@ def _refuse_repeated_keys(path: Path, node: yaml.Node) -> None:
             if name in names:
                 raise SceneFileError(f"{path}, line {key.start_mark.line + 1}: {name} is given twice: remove one")
             names.add(name)
-            _refuse_repeated_keys(path, value)
+            _refuse_repeated_keys(path, value, done)
     elif isinstance(node, yaml.SequenceNode):
         for value in node.value:
-            _refuse_repeated_keys(path, value)
+            _refuse_repeated_keys(path, value, done)
+    done.add(node)
 
 
 def _problem(path: Path, root: yaml.Node, error: Any) -> str:

@@ -8,11 +8,11 @@ from som_classifier.model_loading import ModelError, load_model
 
 
 class WatchedModel:
-    """Loads the file whenever its modification time or size has changed."""
+    """Loads the file whenever it has changed, may be read since, or is back where it could not be looked at."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._loaded_version: tuple[int, int] | None = None
+        self._loaded_version: tuple[int, int, int] | None = None
         self._loaded = False
 
     def poll(self, counters: Counters) -> Model | None:
@@ -27,9 +27,10 @@ class WatchedModel:
                 counters.state = f"no model: there is no {self._path} yet"
             return None
         except OSError as error:
+            self._loaded_version = None
             self._refuse(counters, str(error))
             return None
-        version = (stat.st_mtime_ns, stat.st_size)
+        version = (stat.st_mtime_ns, stat.st_ctime_ns, stat.st_size)
         if version == self._loaded_version:
             return None
         self._loaded_version = version

@@ -20,7 +20,7 @@ MOST_KEYS = 4096
 SOURCE_ENDED = "source ended"
 """The state of a source whose files or scene are over."""
 LONGEST_COMPLAINT = 500
-"""Characters kept of an error text: it may quote a megabyte of input."""
+"""Characters told of an error or a state: it may quote a megabyte of input, and then nobody could read the status."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,11 @@ class Counters:
     state: str = "running"
     counts: Counter[str] = field(default_factory=Counter)
     details: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def told_state(self) -> str:
+        """The state as a status and a log tell it: it may quote whatever names somebody has set."""
+        return encodable(self.state[:LONGEST_COMPLAINT])
 
     def reject(self, kind: str, detail: str = "") -> None:
         """Count one rejected input under its kind; kind and detail, of any text, become the newest error."""

@@ -1,5 +1,9 @@
+import pytest
+
+from actum.codec import decode, encode
 from actum.node import Counters
 from actum.runtime.meter import MOST_KEYS, MOST_ORIGINS, Meter
+from actum.runtime.reporting import StateLog
 from actum.settings import ServiceSettings
 from people import STANDING, skeleton
 from scenes import action
@@ -60,3 +64,11 @@ def test_gaps_between_final_actions_of_before_are_no_losses() -> None:
     for seq in (10, 70, 130):
         watched.received(key, action("push", seq=seq), "one")
     assert watched.status().drops == {}
+
+
+def test_a_state_that_quotes_what_somebody_wrote_leaves_the_status_readable(caplog: pytest.LogCaptureFixture) -> None:
+    counters = Counters(state="settings name actions that the model does not know: " + "x" * 300_000)
+    status = encode(Meter("som_classifier", counters, ServiceSettings()).status())
+    assert decode(status.key, status.payload, status.encoding)
+    StateLog(counters).log_change()
+    assert len(caplog.text) < 1000

@@ -10,6 +10,7 @@ import pytest
 from pydantic import ValidationError
 
 from actum.command_line import from_command_line
+from actum.runtime.serving import UNUSABLE, configured, log_level
 from actum.runtime.session import client_config
 from actum.settings import ServiceSettings, SettingsError, complaint, host_and_port
 from marker_tracker.settings import Settings as TrackerSettings
@@ -154,3 +155,19 @@ def test_a_size_of_a_marker_that_is_not_finite_is_refused(monkeypatch: pytest.Mo
     monkeypatch.setenv("ACTUM_OBJECTS", '{"3": {"name": "cup", "size_m": NaN}}')
     with pytest.raises(ValidationError, match="size_m"):
         TrackerSettings()
+
+
+@pytest.mark.parametrize(("level", "used"), [("debug", "DEBUG"), ("", "INFO"), ("Warning", "WARNING")])
+def test_a_log_level_is_taken_however_it_is_written(level: str, used: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ACTUM_LOG", level)
+    assert log_level() == used
+
+
+def test_a_log_level_that_there_is_not_is_refused_in_a_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ACTUM_LOG", "verbose")
+    with pytest.raises(SystemExit) as ended:
+        configured(ServiceSettings, lambda _: None, [])
+    assert ended.value.code == UNUSABLE
+    assert "ACTUM_LOG: there is no level 'verbose'" in capsys.readouterr().err

@@ -68,6 +68,7 @@ BAD = {
     "a: 2026-13-45": "is no YAML",
     "[" * 3000: "is no YAML",
     "objects: &all\n  1: *all\n": "contains itself",
+    "a0: &a0 [x]\n" + "".join(f"a{n + 1}: &a{n + 1} [{f'*a{n}, ' * 9}]\n" for n in range(9)): "a0: no such field",
 }
 
 

@@ -93,7 +93,7 @@ class Meter:
             rejects=dict(self._counters.rejects),
             last_error=self._counters.last_error,
             latency_ms=_percentiles(list(self._latencies_ms)),
-            state=encodable(self._counters.state),
+            state=self._counters.told_state,
             counts=dict(self._counters.counts),
         )
 

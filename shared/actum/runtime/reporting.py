@@ -31,7 +31,7 @@ class StateLog:
 
     def log_change(self) -> None:
         """Log the problem if it is new, or that there is none any more."""
-        trouble = None if self._counters.state.startswith(WELL) else self._counters.state
+        trouble = None if self._counters.state.startswith(WELL) else self._counters.told_state
         source = self._counters.details.get("source")
         if trouble is not None and trouble != self._trouble:
             log.warning("%s", f"{trouble} ({source})" if source else trouble)

@@ -22,7 +22,7 @@ from actum.runtime.session import RETRY_S, open_session, secret_config
 from actum.runtime.source_service import SourceService
 from actum.runtime.step_service import NodeService
 from actum.runtime.waiting import stop_on_signals
-from actum.settings import ServiceSettings, complaint
+from actum.settings import ServiceSettings, SettingsError, complaint
 
 log = logging.getLogger("actum")
 S = TypeVar("S", bound=ServiceSettings)
@@ -51,6 +51,7 @@ def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[
     service = settings_type.__module__.partition(".")[0]
     try:
         settings = from_command_line(settings_type, f"python -m {service}", flags)
+        log_level()
         secret_config(settings)  # a wrong one is refused now, before the build, which may take long
         check_state_folder(settings)
         return settings, build(settings)
@@ -59,6 +60,18 @@ def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[
     except ValueError as error:
         print(f"{service}: {error}", file=sys.stderr)
     sys.exit(UNUSABLE)
+
+
+def log_level() -> str:
+    """Return the level of the log that `ACTUM_LOG` names, `INFO` where it names none.
+
+    Raises:
+        SettingsError: there is no such level.
+    """
+    named = os.environ.get("ACTUM_LOG") or "INFO"
+    if named.upper() not in logging.getLevelNamesMapping():
+        raise SettingsError(f"ACTUM_LOG: there is no level {named!r}: use DEBUG, INFO, WARNING or ERROR")
+    return named.upper()
 
 
 def live(
@@ -70,7 +83,7 @@ def live(
 
     `beside` is entered before there is a router, and left at the end.
     """
-    logging.basicConfig(level=os.environ.get("ACTUM_LOG", "INFO"), format=f"{service.name}: %(message)s")
+    logging.basicConfig(level=log_level(), format=f"{service.name}: %(message)s")
     stop = stop_on_signals()
     service.end_at_bugs(stop)
     service.introduce()
