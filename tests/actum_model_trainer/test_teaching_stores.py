@@ -382,3 +382,35 @@ def test_too_many_uploads_are_refused(teacher: Teacher, monkeypatch: pytest.Monk
     with pytest.raises(Refusal, match="import some of them, or restart"):
         send(teacher, "clip3")
     send(teacher, "clip0", b"anew")
+
+
+def test_a_set_that_vanishes_once_its_take_is_stored_ends_nothing(
+    teacher: Teacher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    teacher.ask("redo_last", set="kitchen")
+    teacher.see(Stream().repeat(WAVES[:1], pause_s=2).skeletons(first_ns=10**12))
+    monkeypatch.setattr(SetStore, "get", lambda *_: (_ for _ in ()).throw(PermissionError(13, "Permission denied")))
+    reply = teacher.ask("stop")
+    assert reply["take"] == "take-0002" and "take-0001/cut-5, which it replaces" in reply["doubts"][-1]
+    monkeypatch.undo()
+    go_on(teacher)
+
+
+def test_a_folder_of_models_that_nobody_may_enter_ends_nothing(
+    teacher: Teacher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = teacher.ask("list")["active"]
+    tiny_model(TINY_PAPER).save(teacher.folder / "models/mine.npz")
+    other = next(each["id"] for each in teacher.ask("list")["models"] if each["id"] != first)
+    teacher.ask("activate", model=other)
+    stat = os.stat
+
+    def denied(path: Path | str | int, **options: Any) -> os.stat_result:
+        if isinstance(path, Path) and path.parent == teacher.folder / "models":
+            raise PermissionError(13, "Permission denied", str(path))
+        return stat(path, **options)
+
+    monkeypatch.setattr(os, "stat", denied)
+    assert not teacher.tick(20).can_undo
+    monkeypatch.undo()
+    assert teacher.tick(20).can_undo
