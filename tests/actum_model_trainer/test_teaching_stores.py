@@ -14,6 +14,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from actum.atomic_file import claim
 from actum.commands import Refusal
 from actum_model_trainer.teaching import upload_store
 from actum_model_trainer.teaching.job_process import Ended, Progressing
@@ -414,3 +415,16 @@ def test_a_folder_of_models_that_nobody_may_enter_ends_nothing(
     assert not teacher.tick(20).can_undo
     monkeypatch.undo()
     assert teacher.tick(20).can_undo
+
+
+def test_a_job_that_another_trainer_of_the_folder_runs_is_left_to_it(teacher: Teacher) -> None:
+    send(teacher)
+    job = teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="nod")["id"]
+    video = Path(teacher.jobs[-1].request.fields["video"])
+    with (teacher.folder / f"jobs/{job}.work/.running").open("wb") as claimed:
+        claim(claimed)
+        other = Teacher(teacher.folder)
+    assert other.tick().job is None
+    assert video.read_bytes() == b"video" and other.ask("job", job=job)["state"] == "running"
+    teacher.ask("cancel", job=job)
+    assert not video.exists() and other.ask("job", job=job)["state"] == "cancelled"
