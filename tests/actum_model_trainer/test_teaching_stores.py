@@ -14,11 +14,16 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from actum import keys
 from actum.atomic_file import claim
 from actum.commands import Refusal
+from actum.messages import segment_marks
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_model_trainer.teaching import upload_store
 from actum_model_trainer.teaching.job_process import Ended, Progressing
 from actum_model_trainer.teaching.set_store import SetStore
+from people import FRAME_NS
 from performers import TINY_PAPER
 from recognisers import tiny_model
 from repeating import Stream
@@ -428,3 +433,19 @@ def test_a_job_that_another_trainer_of_the_folder_runs_is_left_to_it(teacher: Te
     assert video.read_bytes() == b"video" and other.ask("job", job=job)["state"] == "running"
     teacher.ask("cancel", job=job)
     assert not video.exists() and other.ask("job", job=job)["state"] == "cancelled"
+
+
+def test_marks_that_use_an_examples_name_again_are_left_as_they_are(teacher: Teacher) -> None:
+    stream = Stream().repeat(WAVES[:2])
+    (one, other), later_ns = stream.truths, 10**9
+    bounds = [[later_ns + at * FRAME_NS for at in truth] for truth in (one, other)]
+    path = teacher.folder / "sets/kitchen/live.mcap"
+    with Recorder(path, person="anna", source="test") as recorder:
+        for message in stream.skeletons(first_ns=later_ns):
+            recorder.write(message)
+        for start_ns, end_ns in bounds:
+            for each in segment_marks(start_ns, end_ns, "kinect0", "live-1", "nod"):
+                recorder.write(each)
+    teacher.ask("relabel", set="kitchen", example="live/live-1", label="bow")
+    teacher.ask("delete", set="kitchen", example="live/live-1")
+    assert [message.stamp_ns for message in Recording(path).messages((keys.SEGMENT,))] == bounds[1]
