@@ -12,7 +12,7 @@ from mcap.writer import Writer
 
 from actum import codec, messages
 from actum.atomic_file import UNFINISHED, claim, created, replaced
-from actum.mcap_file import McapFile, RecordingError, StoredMessage, encoding_of
+from actum.mcap_file import REMEDY, McapFile, RecordingError, StoredMessage, encoding_of
 from actum.recorder import CHUNK_BYTES, MESSAGE_ENCODING, METADATA, SCHEMA_ENCODING, TakenError, json_schema, unfinished
 
 Change = Callable[[StoredMessage], StoredMessage | None]
@@ -80,7 +80,12 @@ def _copy(
     writer = Writer(file, chunk_size=CHUNK_BYTES)
     copying = _Copying(writer, change, metadata)
     for record in source.records():
-        copying.take(record)
+        try:
+            copying.take(record)
+        except KeyError as error:
+            raise RecordingError(source.path, f"damaged (a message of the unknown channel {error})", REMEDY) from None
+    if metadata and not copying.described:
+        writer.add_metadata(METADATA, dict(metadata))
     for message in added:
         copying.add(message)
     writer.finish()  # type: ignore[no-untyped-call]
@@ -101,6 +106,7 @@ class _Copying:
         self._numbers: Counter[str] = Counter()
         self._new_channels: dict[str, int] = {}
         self.kept = 0
+        self.described = False
 
     def take(self, record: McapRecord) -> None:
         match record:
@@ -112,12 +118,13 @@ class _Copying:
             case Channel() if record.id not in self._channels:
                 self._channel_records[record.id] = record
                 self._channels[record.id] = self._writer.register_channel(
-                    record.topic, record.message_encoding, self._schemas[record.schema_id], record.metadata
+                    record.topic, record.message_encoding, self._schemas.get(record.schema_id, 0), record.metadata
                 )
             case Message():
                 self._message(record)
             case Metadata():
                 changed = self._metadata if record.name == METADATA else {}
+                self.described |= record.name == METADATA
                 self._writer.add_metadata(record.name, {**record.metadata, **changed})
             case Attachment():
                 self._writer.add_attachment(

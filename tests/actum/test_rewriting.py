@@ -1,5 +1,8 @@
 """A recording written anew holds what it held but for what was changed, and is never left half written."""
 
+import os
+import subprocess
+import sys
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -9,10 +12,11 @@ import pytest
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
+from actum.codec import encode
 from actum.mcap_file import RecordingError, StoredMessage
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum.rewriting import rewrite
+from actum.rewriting import finish, rewrite
 from empty_messages import image, mark, skeleton
 
 SKELETON = "actum/kinect0/skeleton"
@@ -131,3 +135,47 @@ def test_of_a_recording_that_breaks_off_all_that_can_be_read_is_kept(path: Path)
     kept = Recording(path)
     assert len(list(kept.messages())) == readable > 100
     assert not kept.truncated
+
+
+def foreign(path: Path, schema: int = 0, channel: int = 1, metadata: bool = True) -> Path:
+    """A recording as another program may write it, one message long."""
+    with path.open("wb") as file:
+        writer = Writer(file, use_chunking=False)
+        writer.start()
+        if metadata:
+            writer.add_metadata("actum.recording", {"person": "anna"})
+        writer.register_channel(SKELETON, "msgpack", schema, {"encoding": encode(skeleton(1)).encoding})
+        writer.add_message(channel, 1, encode(skeleton(1)).payload, 1)
+        writer.finish()
+    return path
+
+
+def test_a_channel_of_a_schema_that_is_not_there_is_copied_without_one(tmp_path: Path) -> None:
+    path = foreign(tmp_path / "a.mcap", schema=77)
+    rewrite(path, same)
+    assert [message.stamp_ns for message in Recording(path).messages()] == [1]
+
+
+def test_a_message_of_an_unknown_channel_is_told_and_the_file_is_as_it_was(tmp_path: Path) -> None:
+    path = foreign(tmp_path / "a.mcap.part", channel=5)
+    before = path.read_bytes()
+    with pytest.raises(RecordingError, match="the unknown channel 5"):
+        finish(tmp_path / "a.mcap")
+    assert [*tmp_path.iterdir()] == [path] and path.read_bytes() == before
+
+
+def test_what_is_said_of_a_recording_that_says_nothing_of_itself_is_stored(tmp_path: Path) -> None:
+    path = foreign(tmp_path / "a.mcap", metadata=False)
+    rewrite(path, same)
+    assert Recording(path).metadata == {}
+    rewrite(path, same, metadata={"mirrored": '["cut-1"]'})
+    assert Recording(path).metadata == {"mirrored": '["cut-1"]'}
+
+
+def test_a_named_pipe_is_no_recording(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "a.mcap")
+    program = "import sys; from actum.recording import *; from pathlib import Path; Recording(Path(sys.argv[1]))"
+    ended = subprocess.run(
+        [sys.executable, "-c", program, tmp_path / "a.mcap"], capture_output=True, timeout=10, check=False
+    )
+    assert b"RecordingError" in ended.stderr and b"no file" in ended.stderr

@@ -230,3 +230,18 @@ def test_segments_of_several_sensors_are_listed_and_changed_one_by_one(path: Pat
     assert rows(both)[0] == kinect0
     label("delete", both, 2)
     assert rows(both) == [kinect0.removesuffix(" kinect0")]
+
+
+@pytest.mark.parametrize("seconds", ["1e300", "-1e300"])
+def test_a_time_beyond_any_clock_is_refused(path: Path, seconds: str) -> None:
+    before = path.read_bytes()
+    for command in (
+        ["label", "add", str(path), "--", "0", seconds, "wave"],
+        ["label", "add", str(path), "--", seconds, "1", "wave"],
+        ["label", "move", str(path), "1", f"--start={seconds}"],
+        ["takes", "trim", str(path), "first", f"--start={seconds}", "--end=1e301"],
+        ["takes", "trim", str(path), "first", f"--end={seconds}"],
+    ):
+        ended = CliRunner().invoke(app, command)
+        assert (ended.exit_code, ended.stderr.count("\n")) == (1, 1), command
+    assert path.read_bytes() == before

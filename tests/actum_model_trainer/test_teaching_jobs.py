@@ -13,8 +13,9 @@ import pytest
 
 from actum.commands import Refusal
 from actum.node import Counters
+from actum.recorder import is_being_written
 from actum_model_trainer.teaching import job
-from actum_model_trainer.teaching.job_process import Ended, JobProcess, JobRequest, Progressing
+from actum_model_trainer.teaching.job_process import CLAIM, Ended, JobProcess, JobRequest, Progressing
 from actum_model_trainer.teaching.job_store import JobStore
 from live import wait_until
 from models import QUICK
@@ -183,8 +184,10 @@ def test_a_process_that_is_ended_says_how(teacher: Teacher, tmp_path: Path, end:
     fields = {"takes": str(teacher.folder / "sets/kitchen"), "preset": "pyramid", "seed": 0}
     running = JobProcess(JobRequest("train", tmp_path, fields))
     wait_until(lambda: isinstance(running.look(), Progressing), "it has begun", 60)
+    assert is_being_written(tmp_path / CLAIM)
     end(running)
     ended = wait_for_end(running)
+    assert not is_being_written(tmp_path / CLAIM)
     assert ended.result is None and "it died (signal" in ended.error
 
 

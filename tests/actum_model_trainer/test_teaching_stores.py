@@ -14,10 +14,16 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from actum import keys
+from actum.atomic_file import claim
 from actum.commands import Refusal
+from actum.messages import segment_marks
+from actum.recorder import Recorder
+from actum.recording import Recording
 from actum_model_trainer.teaching import upload_store
 from actum_model_trainer.teaching.job_process import Ended, Progressing
 from actum_model_trainer.teaching.set_store import SetStore
+from people import FRAME_NS
 from performers import TINY_PAPER
 from recognisers import tiny_model
 from repeating import Stream
@@ -382,3 +388,64 @@ def test_too_many_uploads_are_refused(teacher: Teacher, monkeypatch: pytest.Monk
     with pytest.raises(Refusal, match="import some of them, or restart"):
         send(teacher, "clip3")
     send(teacher, "clip0", b"anew")
+
+
+def test_a_set_that_vanishes_once_its_take_is_stored_ends_nothing(
+    teacher: Teacher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    teacher.ask("redo_last", set="kitchen")
+    teacher.see(Stream().repeat(WAVES[:1], pause_s=2).skeletons(first_ns=10**12))
+    monkeypatch.setattr(SetStore, "get", lambda *_: (_ for _ in ()).throw(PermissionError(13, "Permission denied")))
+    reply = teacher.ask("stop")
+    assert reply["take"] == "take-0002" and "take-0001/cut-5, which it replaces" in reply["doubts"][-1]
+    monkeypatch.undo()
+    go_on(teacher)
+
+
+def test_a_folder_of_models_that_nobody_may_enter_ends_nothing(
+    teacher: Teacher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = teacher.ask("list")["active"]
+    tiny_model(TINY_PAPER).save(teacher.folder / "models/mine.npz")
+    other = next(each["id"] for each in teacher.ask("list")["models"] if each["id"] != first)
+    teacher.ask("activate", model=other)
+    stat = os.stat
+
+    def denied(path: Path | str | int, **options: Any) -> os.stat_result:
+        if isinstance(path, Path) and path.parent == teacher.folder / "models":
+            raise PermissionError(13, "Permission denied", str(path))
+        return stat(path, **options)
+
+    monkeypatch.setattr(os, "stat", denied)
+    assert not teacher.tick(20).can_undo
+    monkeypatch.undo()
+    assert teacher.tick(20).can_undo
+
+
+def test_a_job_that_another_trainer_of_the_folder_runs_is_left_to_it(teacher: Teacher) -> None:
+    send(teacher)
+    job = teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="nod")["id"]
+    video = Path(teacher.jobs[-1].request.fields["video"])
+    with (teacher.folder / f"jobs/{job}.work/.running").open("wb") as claimed:
+        claim(claimed)
+        other = Teacher(teacher.folder)
+    assert other.tick().job is None
+    assert video.read_bytes() == b"video" and other.ask("job", job=job)["state"] == "running"
+    teacher.ask("cancel", job=job)
+    assert not video.exists() and other.ask("job", job=job)["state"] == "cancelled"
+
+
+def test_marks_that_use_an_examples_name_again_are_left_as_they_are(teacher: Teacher) -> None:
+    stream = Stream().repeat(WAVES[:2])
+    (one, other), later_ns = stream.truths, 10**9
+    bounds = [[later_ns + at * FRAME_NS for at in truth] for truth in (one, other)]
+    path = teacher.folder / "sets/kitchen/live.mcap"
+    with Recorder(path, person="anna", source="test") as recorder:
+        for message in stream.skeletons(first_ns=later_ns):
+            recorder.write(message)
+        for start_ns, end_ns in bounds:
+            for each in segment_marks(start_ns, end_ns, "kinect0", "live-1", "nod"):
+                recorder.write(each)
+    teacher.ask("relabel", set="kitchen", example="live/live-1", label="bow")
+    teacher.ask("delete", set="kitchen", example="live/live-1")
+    assert [message.stamp_ns for message in Recording(path).messages((keys.SEGMENT,))] == bounds[1]

@@ -13,7 +13,7 @@ from actum.node import SECOND_NS
 from actum.recording import Recording, RecordingError
 from actum.rewriting import unchanged
 from actum_command.commands.plain_help import LISTS, ListingGroup, PlainTyper
-from actum_command.commands.recording_options import RecordingFile, change_recording, refuse_length, tell_unread
+from actum_command.commands.recording_options import RecordingFile, change_recording, in_ns, refuse_length, tell_unread
 from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
 from actum_command.cut_lines import cut_lines
 from actum_command.labelled_segments import (
@@ -131,7 +131,7 @@ def add(
     """Add a segment."""
     recording, segments, first_ns = _opened(file)
     refuse_length(label)
-    start_ns, end_ns = (first_ns + round(seconds * SECOND_NS) for seconds in (start, end))
+    start_ns, end_ns = (first_ns + in_ns(seconds) for seconds in (start, end))
     try:
         sensor = only_sensor(recording)
         refuse_outside(recording, sensor, start_ns, end_ns)

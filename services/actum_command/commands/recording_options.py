@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from actum.messages import Message
+from actum.node import SECOND_NS
 from actum.recorder import TakenError, refuse_taken
 from actum.recording import Recording, RecordingError
 from actum.rewriting import Change, rewrite
@@ -63,6 +64,14 @@ def refuse_length(label: str) -> None:
     """Fail where a label is empty, or too long for a mark."""
     if not 0 < len(label) <= LONGEST_LABEL:
         fail(f"a label has 1 to {LONGEST_LABEL} characters")
+
+
+def in_ns(seconds: float) -> int:
+    """Return a time in nanoseconds, or fail where it is beyond all numbers."""
+    try:
+        return round(seconds * SECOND_NS)
+    except (ValueError, OverflowError):
+        fail(f"{seconds:g} is no time in seconds: give one such as 12.3")
 
 
 def change_recording(

@@ -17,6 +17,7 @@ from actum_command.commands.recording_options import (
     RecordingFile,
     change_recording,
     chosen,
+    in_ns,
     refuse_length,
     tell_unread,
 )
@@ -102,7 +103,7 @@ def trim(
         fail(f"{segment_id} would start at {start:g} s and end at {until_s:g} s of its {duration_s:g} s")
     if start_ns + start * SECOND_NS < 0:
         fail(f"{segment_id} would start before its sensor's clock does: at the most {start_ns / SECOND_NS:g} s earlier")
-    _shift(file, marked, round(start * SECOND_NS), round((until_s - duration_s) * SECOND_NS))
+    _shift(file, marked, in_ns(start), in_ns(until_s - duration_s))
     say(f"{segment_id} lasts {until_s - start:.2f} s, and lasted {duration_s:.2f} s before, in {file}")
 
 

@@ -47,7 +47,7 @@ class JobCommands:
         self._changes = changes
         self._start_process = start
         self._date = date
-        self._job = next(iter(jobs.all()[::-1]), None)
+        self._job = jobs.newest()
         self._running: RunningJob | None = None
 
     @property

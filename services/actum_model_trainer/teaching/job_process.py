@@ -9,12 +9,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
+from actum.atomic_file import claim
 from actum.runtime.parent import PARENT
 
 END_S = 2.0
 """How long (s) a job may take to end when it is told to, before it is killed."""
 FORMS = ({"stage", "done"}, {"result"}, {"error"})
 """The fields of a job's lines."""
+CLAIM = ".running"
+"""The file in a job's folder that its service has claimed while the job runs."""
 LAST_WORDS = 400
 """Characters of what a job printed at the end, for one that died."""
 
@@ -68,6 +71,8 @@ class JobProcess:
     def __init__(self, request: JobRequest) -> None:
         self._errors = request.folder / "errors.txt"
         told = json.dumps({"kind": request.kind, "folder": str(request.folder), **request.fields})
+        self._claimed = (request.folder / CLAIM).open("wb")
+        claim(self._claimed)
         with self._errors.open("wb") as errors:
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "actum_model_trainer.teaching.job", told],
@@ -101,7 +106,7 @@ class JobProcess:
 
     def _read(self) -> None:
         assert self._process.stdout is not None
-        with self._process.stdout as lines:
+        with self._claimed, self._process.stdout as lines:
             for line in lines:
                 try:
                     told = json.loads(line, parse_constant=lambda _: None)  # no number: no reply can hold it

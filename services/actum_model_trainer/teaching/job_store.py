@@ -10,6 +10,8 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat
 
 from actum.atomic_file import clear_unfinished, write_whole
 from actum.commands import Refusal
+from actum.recorder import is_being_written
+from actum_model_trainer.teaching.job_process import CLAIM
 from actum_model_trainer.teaching.small_files import small_file
 
 MOST_JOBS = 50
@@ -62,17 +64,21 @@ class JobStore:
         self._folder = folder
         folder.mkdir(parents=True, exist_ok=True)
         for left in folder.iterdir():
-            if left.suffix == WORK and JOB_ID.fullmatch(left.stem):
+            if left.suffix == WORK and JOB_ID.fullmatch(left.stem) and not self._runs_elsewhere(left.stem):
                 shutil.rmtree(left, ignore_errors=True)
         clear_unfinished(folder)
         for job in self.all():
-            if job.state == "running":
+            if job.state == "running" and not self._runs_elsewhere(job.id):
                 self.keep(job.model_copy(update={"state": "cancelled", "message": INTERRUPTED}))
 
     def all(self) -> list[Job]:
         """List the jobs, the oldest first; a file that is none is left out."""
         jobs = [_read(path) for path in self._folder.glob("job-*.json") if JOB_ID.fullmatch(path.stem)]
         return sorted((job for job in jobs if job is not None), key=lambda job: number_of(job.id))
+
+    def newest(self) -> Job | None:
+        """Return the newest job that has ended; None before the first."""
+        return next((job for job in reversed(self.all()) if job.state != "running"), None)
 
     def get(self, job_id: str) -> Job:
         """Return a job.
@@ -110,6 +116,10 @@ class JobStore:
     def clear(self, job_id: str) -> None:
         """Delete the folder in which a job wrote."""
         shutil.rmtree(self._folder / f"{job_id}{WORK}", ignore_errors=True)
+
+    def _runs_elsewhere(self, job_id: str) -> bool:
+        """Tell whether another trainer runs a job: one of another sensor, in the same folder."""
+        return is_being_written(self._folder / f"{job_id}{WORK}" / CLAIM)
 
 
 def number_of(job_id: str) -> int:

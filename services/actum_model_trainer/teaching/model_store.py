@@ -56,7 +56,7 @@ class ModelStore:
     @property
     def before(self) -> list[str]:
         """The models that were in use before and are still there, in order."""
-        there = [each for each in self._history if self._path(each).exists()]
+        there = [each for each in self._history if os.path.exists(self._path(each))]  # noqa: PTH110 - without access it is not there, which is no error
         while there and there[-1] == self._active:
             there.pop()
         return there

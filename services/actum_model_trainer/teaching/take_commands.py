@@ -149,20 +149,20 @@ class TakeCommands:
             self._take = None
             self._changes.revision += 1
             name, examples = added.id, len(added.examples)
-            doubts += self._remove_replaced(take.state.set) if examples else []
+            doubts += self._remove_replaced(take.state.set) if examples and self._replaced is not None else []
         doubts = [doubt[:LONGEST_DOUBT] for doubt in doubts]
         self.state = take.state.model_copy(update={"phase": "done", "counted": examples, "doubts": doubts})
         return TakeReply(take=name, examples=examples, doubts=doubts)
 
     def _remove_replaced(self, name: str) -> list[str]:
         """Delete the example that was recorded anew, if it is still there; return why it stays where it has to."""
-        for take in self._sets.get(name).takes:
-            for example in take.examples:
-                if example.id == self._replaced:
-                    try:
+        try:
+            for take in self._sets.get(name).takes:
+                for example in take.examples:
+                    if example.id == self._replaced:
                         self._remove(take, [example])
-                    except (OSError, RecordingError) as error:
-                        return [f"{example.id}, which it replaces, could not be deleted: {encodable(str(error))}"]
+        except LOSING as error:
+            return [f"{self._replaced}, which it replaces, could not be deleted: {encodable(str(error))}"]
         return []
 
     def _give_up(self) -> None:

@@ -4,12 +4,13 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from math import inf
 from pathlib import Path
 from typing import Literal
 
 from actum import keys
 from actum.codec import encodable
-from actum.messages import CUT, MANUAL, Hand, Segment
+from actum.messages import CUT, MANUAL, Action, Event, Hand, Segment
 from actum.node import SECOND_NS
 from actum.recorder import Recorder
 from actum.recording import Recording
@@ -20,6 +21,8 @@ from actum_model_trainer.segment_edits import DOUBTS, OF_THE_TAKE, TEXTS, Naming
 
 KIND, CREATED = "kind", "created"
 """Fields of a take's metadata, beside those that say something about its examples: kind and date."""
+AGAIN = "again"
+"""The start mark with which a segment's name is used again, among its marks by kind."""
 UNREAD = "skipped while it was read: "
 """How the doubt about what was skipped begins; it is found anew each time, and never stored."""
 
@@ -34,6 +37,7 @@ class Example:
         mirrored: whether left and right have been exchanged.
         doubts: what may be wrong with it, in sentences.
         hand: which hand acts; None where the mark does not say so.
+        until_ns: from when on its name is used again, for another segment, which is no example.
     """
 
     take: str
@@ -48,6 +52,7 @@ class Example:
     mirrored: bool
     doubts: tuple[str, ...]
     hand: Hand | None = None
+    until_ns: float = inf
 
     @property
     def id(self) -> str:
@@ -56,7 +61,10 @@ class Example:
 
     def has(self, message: Naming) -> bool:
         """Tell whether a message names it."""
-        return (message.sensor, message.segment_id) == (self.sensor, self.segment_id)
+        if (message.sensor, message.segment_id) != (self.sensor, self.segment_id):
+            return False
+        at_ns = message.start_ns if isinstance(message, Action | Event) else message.stamp_ns
+        return at_ns is None or at_ns < self.until_ns
 
     def overlaps(self, start_ns: int, end_ns: int) -> bool:
         """Tell whether it shares time with a span."""
@@ -94,7 +102,7 @@ def read_take(path: Path) -> Take:
     marks, stamps_ns = _marks_and_stamps(recording)
     doubts, mirrored = field_of(recording, DOUBTS, TEXTS, {}), mirrored_ids(recording)
     examples = [
-        _example(encodable(path.stem), recording.person, pair["start"], pair["end"], doubts, mirrored)
+        _example(encodable(path.stem), recording.person, pair, doubts, mirrored)
         for pair in marks.values()
         if {"start", "end"} <= pair.keys() and pair["start"].label is not None
     ]
@@ -148,7 +156,9 @@ def _marks_and_stamps(recording: Recording) -> tuple[dict[tuple[str, str], dict[
     stamps_ns: list[int] = []
     for message in recording.messages((keys.SKELETON, keys.SEGMENT)):
         if isinstance(message, Segment):
-            marks.setdefault((message.sensor, message.segment_id), {}).setdefault(message.kind, message)
+            pair = marks.setdefault((message.sensor, message.segment_id), {})
+            again = message.kind == "start" and "end" in pair
+            pair.setdefault(AGAIN if again else message.kind, message)
         else:
             stamps_ns.append(message.stamp_ns)
     return marks, stamps_ns
@@ -163,11 +173,11 @@ def _unread(recording: Recording) -> list[str]:
 def _example(
     take: str,
     person: str,
-    start: Segment,
-    end: Segment,
+    pair: Mapping[str, Segment],
     doubts: Mapping[str, Sequence[str]],
     mirrored: Iterable[str],
 ) -> Example:
+    start, end, again = pair["start"], pair["end"], pair.get(AGAIN)
     assert start.stamp_ns is not None and end.stamp_ns is not None
     return Example(
         take,
@@ -182,4 +192,5 @@ def _example(
         start.segment_id in mirrored,
         tuple(doubts.get(start.segment_id, ())),
         start.hand,
+        inf if again is None or again.stamp_ns is None else again.stamp_ns,
     )
