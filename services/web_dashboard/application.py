@@ -114,6 +114,7 @@ class Connection:
             for task in ended:
                 task.result()  # a bug ends the connection and is logged; the page connects anew
         finally:
+            self._orders.leave(self)
             self._hub.leave(self._mailbox)
             for task in (*tasks, *self._waiting):
                 task.cancel()
@@ -143,7 +144,7 @@ class Connection:
             task.add_done_callback(self._waiting.discard)
 
     async def _carry_out(self, order: str) -> None:
-        answer = await self._orders.carry_out(order)
+        answer = await self._orders.carry_out(order, self)
         with suppress(WebSocketDisconnect, RuntimeError):
             await self._socket.send_text(answer)
 

@@ -10,6 +10,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from actum import keys
+from actum.commands import Refusal
+from actum.limits import MOST_OPEN_SEGMENTS
 from actum.messages import MANUAL, Segment
 from actum.runtime import Client, NotAnsweredError
 from web_dashboard.encoding import text
@@ -81,11 +83,12 @@ class Orders:
         self.client: Client | None = None
         self.refused = refused
         self._sensor = sensor
+        self._open: dict[str, tuple[object, Mark]] = {}  # by segment, of the browser that has marked its start
         self._asking = ThreadPoolExecutor(AT_ONCE, "asking")
         self._marking = ThreadPoolExecutor(1, "marking")  # one, so that no end overtakes its start
 
-    async def carry_out(self, received: str) -> str:
-        """Carry out one message from a browser, and return the answer as JSON."""
+    async def carry_out(self, received: str, browser: object = None) -> str:
+        """Carry out one message from a browser, and return the answer as JSON; `leave` ends what that browser marks."""
         try:
             order = Order.model_validate_json(received)
         except ValidationError as error:
@@ -93,26 +96,48 @@ class Orders:
         loop = asyncio.get_running_loop()
         try:
             if order.mark is not None:
-                return await loop.run_in_executor(self._marking, self._mark, order.id, order.mark)
+                return await loop.run_in_executor(self._marking, self._mark, order.id, order.mark, browser)
             assert order.ask is not None
             return await loop.run_in_executor(self._asking, self._ask, order.id, order.ask)
+        except Refusal as refusal:
+            return self.refuse(order.id, str(refusal), refused=True)
         except (ValueError, NotAnsweredError) as error:
             return self.refuse(order.id, str(error))
         except Exception:
             log.exception("a bug, met while carrying out an order")
             return self.refuse(order.id, "the page's service failed: its log says why")
 
-    def refuse(self, number: int | None, refusal: str) -> str:
-        """Count a refusal, and return it as an answer."""
+    def refuse(self, number: int | None, refusal: str, refused: bool = False) -> str:
+        """Count a refusal, and return it as an answer; `refused` says that the service itself does not do it."""
         self.refused.append(refusal)
-        return text(id=number, error=refusal)
+        return text(id=number, error=refusal, refused=refused)
 
-    def _mark(self, number: int, mark: Mark) -> str:
+    def leave(self, browser: object) -> None:
+        """End the segments that a browser has left open: nobody else would."""
+        self._marking.submit(self._end_marks, browser)
+
+    def _end_marks(self, browser: object) -> None:
+        for mark in [mark for owner, mark in self._open.values() if owner is browser]:
+            del self._open[mark.segment_id]
+            try:
+                self._put(self._connected(), mark.model_copy(update={"kind": "end"}))
+            except Exception as error:
+                self.refused.append(f"{mark.segment_id} was left open by a page that has gone: {error}")
+
+    def _mark(self, number: int, mark: Mark, browser: object) -> str:
         client = self._connected()
         if mark.kind == "start" and not client.wait_for_subscriber(keys.SEGMENT, CLASSIFIER_S):
             raise ValueError("nobody listens for marks: is the classifier running?")
-        client.put(Segment(sensor=self._sensor, origin=MANUAL, **mark.model_dump()))
+        self._put(client, mark)
+        self._open.pop(mark.segment_id, None)
+        if mark.kind == "start":
+            self._open[mark.segment_id] = browser, mark
+            for oldest in list(self._open)[:-MOST_OPEN_SEGMENTS]:
+                del self._open[oldest]
         return text(id=number, reply={})
+
+    def _put(self, client: Client, mark: Mark) -> None:
+        client.put(Segment(sensor=self._sensor, origin=MANUAL, **mark.model_dump()))
 
     def _ask(self, number: int, ask: Ask) -> str:
         return text(id=number, reply=self._connected().ask(ask.service, ask.command, **ask.fields))

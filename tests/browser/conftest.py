@@ -12,6 +12,8 @@ from page_scenes import Scene, maps
 
 Open = Callable[..., Any]
 WITHOUT_3D = ["--disable-software-rasterizer", "--disable-gpu"]
+BUGS = ("Content Security", "a bug in the page")
+"""What the console says where the page is wrong."""
 PATIENCE_MS = 60_000
 """Where a browser draws in software, beside other tests."""
 
@@ -62,7 +64,7 @@ def opener(browser: Any) -> Iterator[Open]:
         page = contexts[-1].new_page()
         page.set_default_timeout(PATIENCE_MS)
         page.on("pageerror", lambda error: errors.append(str(error)))
-        page.on("console", lambda said: errors.append(said.text) if "Content Security" in said.text else None)
+        page.on("console", lambda said: errors.append(said.text) if any(bug in said.text for bug in BUGS) else None)
         page.goto(address)
         return page
 

@@ -13,6 +13,7 @@ from actum.commands import Refusal
 from actum.messages import Segment
 from actum.runtime.client import NotAnsweredError
 from dashboards import Colleague, Served, answered, heard, served
+from live import wait_until
 from web_dashboard.orders import LONGEST_ORDER_BYTES
 
 
@@ -47,6 +48,33 @@ def test_a_mark_that_nobody_listens_for_is_refused(page: Served) -> None:
         refused = answered(browser, {"id": 1, "mark": {"kind": "start", "segment_id": "a"}})
     page.colleague.listened = True
     assert "is the classifier running?" in refused["error"]
+
+
+def test_a_browser_that_goes_ends_the_segments_that_it_has_left_open_and_no_others() -> None:
+    with served(Colleague(service)) as page, page.browser() as other:
+        with page.browser() as browser:
+            for number, name in enumerate(("left", "ended", "taken over")):
+                assert "reply" in answered(browser, {"id": number, "mark": {"kind": "start", "segment_id": name}})
+            assert "reply" in answered(browser, {"id": 3, "mark": {"kind": "end", "segment_id": "ended"}})
+            assert "reply" in answered(other, {"id": 4, "mark": {"kind": "start", "segment_id": "other's"}})
+            assert "reply" in answered(other, {"id": 5, "mark": {"kind": "end", "segment_id": "taken over"}})
+        marks = page.colleague.put_messages
+        wait_until(lambda: [mark.segment_id for mark in marks if mark.kind == "end"][2:] == ["left"], "it is ended", 5)
+
+
+def test_a_segment_that_cannot_be_ended_is_counted() -> None:
+    with served(Colleague(service)) as page:
+        with page.browser() as browser:
+            assert "reply" in answered(browser, {"id": 1, "mark": {"kind": "start", "segment_id": "left"}})
+            page.colleague.router = False
+        wait_until(lambda: page.rejects() == {"refused_browser": 1}, "it is counted", 5)
+
+
+def test_only_what_a_service_itself_refuses_is_called_refused(page: Served) -> None:
+    with page.browser() as browser:
+        for name, command, refused in (("som_classifier", "refuse", True), ("model_trainer", "list", False)):
+            answer = answered(browser, {"id": 1, "ask": {"service": name, "command": command}})
+            assert answer["refused"] is refused
 
 
 def test_a_command_is_answered_by_its_service(page: Served) -> None:

@@ -2,6 +2,7 @@
 
 import { attempt, button, outcome, say } from "./asking.js";
 import { element, percent } from "./elements.js";
+import { guarded } from "./guarded.js";
 import { trainer } from "./trainer.js";
 
 const KINDS = { train: "Training", evaluate: "Testing", import: "Reading the video" };
@@ -9,7 +10,7 @@ const KINDS = { train: "Training", evaluate: "Testing", import: "Reading the vid
 // Shows jobs of some kinds while they run; calls `ended(job)`, with its result, once for each that has ended.
 export class JobView {
   constructor(kinds, ended) {
-    Object.assign(this, { kinds, ended, running: null, over: new Set() });
+    Object.assign(this, { kinds, ended: guarded(ended), running: null, over: new Set() });
     this.bar = element("progress", { max: 1, value: 0, "aria-label": "How much of this stage is done" });
     this.stage = element("span", { class: "stage" });
     this.cancel = button("Cancel", () => this.stop());
@@ -22,6 +23,7 @@ export class JobView {
   // Starts a job, such as `train`; says so where it is refused.
   async start(command, fields) {
     const job = await attempt(this.line, () => trainer.ask(command, fields));
+    this.over.delete(job?.id);  // its end may have been told before this reply: it is told again
     if (job) this.show(job);
     return job;
   }
@@ -35,24 +37,30 @@ export class JobView {
   }
 
   show(job) {
-    if (!job || !this.kinds.includes(job.kind)) return (this.going.hidden = true);
-    const isRunning = job.state === "running";
-    this.going.hidden = !isRunning;
+    if (this.running && this.running !== job?.id) this.end(this.running);  // another came after it between two messages
+    const isOurs = this.kinds.includes(job?.kind);
+    this.going.hidden = !isOurs || job.state !== "running";
+    if (!isOurs) return;
     this.bar.value = job.done;
     this.stage.textContent = `${KINDS[job.kind]}: ${job.stage}, ${percent(job.done)}`;
-    if (isRunning) this.running = job.id;
-    else if (!this.over.has(job.id)) this.end(job);
+    if (job.state === "running") this.running = job.id;
+    else this.end(job.id);
   }
 
   // Also of a job that had ended before the page was opened: its result is still there.
-  async end({ id, state, message }) {
+  async end(id) {
+    if (this.over.has(id)) return;
     this.over.add(id);
-    say(this.line, state === "done" ? message : `${state}: ${message}`, state === "failed");
+    let job = { id, state: "failed", result: null };
     try {
-      this.ended(await trainer.ask("job", { job: id }));
+      job = await trainer.ask("job", { job: id });
     } catch (error) {
-      say(this.line, error.message, true);
-      this.ended({ id, result: null });
+      if (!error.refused) return this.over.delete(id);  // the next message has it asked again
+      job.message = error.message;
     }
+    if (job.state === "running") return this.over.delete(id);  // the message was older than the job
+    if (this.running === id) this.running = null;
+    say(this.line, job.state === "done" ? job.message : `${job.state}: ${job.message}`, job.state === "failed");
+    this.ended(job);
   }
 }

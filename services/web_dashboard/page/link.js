@@ -1,9 +1,12 @@
 // The one module that knows the WebSocket: messages come by `on`, commands go by `ask`, marks by `mark`.
 
+import { guarded } from "./guarded.js";
+
 const SILENT_MS = 2500;       // the service pulses twice a second
 const GIVEN_UP_MS = 6000;     // a network that is gone leaves the socket open and silent: it is opened anew
 const RETRY_MS = [300, 700, 1500, 3000];
 const WATCH_MS = 500;
+const ANSWER_MS = 60_000;     // the page's service gives up a service after 11 s, and asks eight at a time
 const QUEUED = new Set(["segment", "event", "training", "info", "hello", "pulse"]);
 
 class Link {
@@ -30,12 +33,14 @@ class Link {
   // Calls back with each message of a type, such as "skeleton" or "event"; "state" with each change of the link's state,
   // "frame" once for each drawn frame in which something came. Returns a function that ends it.
   on(type, callback) {
+    const kept = guarded(callback);
     if (!this.callbacks.has(type)) this.callbacks.set(type, new Set());
-    this.callbacks.get(type).add(callback);
-    return () => this.callbacks.get(type).delete(callback);
+    this.callbacks.get(type).add(kept);
+    return () => this.callbacks.get(type).delete(kept);
   }
 
-  // Asks a service to carry out a command; resolves to its reply, rejects with its refusal as an Error.
+  // Asks a service to carry out a command; resolves to its reply, rejects with an Error: `refused` is true where the
+  // service itself refused, false where nobody knows what became of it. Every order settles, within ANSWER_MS at most.
   ask(service, command, fields = {}) {
     return this.order({ ask: { service, command, fields } });
   }
@@ -52,7 +57,7 @@ class Link {
     const most = this.state.hello?.longest_order_bytes ?? Infinity;
     if (new Blob([text]).size >= most) return Promise.reject(new Error(`too long: at most ${most} bytes can be sent`));
     return new Promise((resolve, reject) => {
-      this.answers.set(id, { resolve, reject });
+      this.answers.set(id, { resolve, reject, sentAt: performance.now() });
       this.socket.send(text);
     });
   }
@@ -79,10 +84,7 @@ class Link {
   }
 
   lost() {
-    for (const { reject } of this.answers.values()) reject(new Error("the connection was lost before an answer came"));
-    this.answers.clear();
-    this.change({ connected: false, router: false });
-    clearTimeout(this.retry);
+    this.leave();
     this.retry = setTimeout(() => this.reopen(), RETRY_MS[Math.min(this.tries++, RETRY_MS.length - 1)]);
     this.findRefusal();
   }
@@ -98,13 +100,17 @@ class Link {
   }
 
   reopen() {
-    clearTimeout(this.retry);
-    if (this.socket.readyState <= WebSocket.OPEN) {
-      this.socket.onclose = null;
-      this.socket.close();
-      this.change({ connected: false, router: false });
-    }
+    this.leave();
     this.open();
+  }
+
+  // Leaves the socket, and with it the orders that nobody answers any more.
+  leave() {
+    clearTimeout(this.retry);
+    this.socket.onclose = null;
+    this.socket.close();
+    this.rejectAll("the connection was lost before an answer came");
+    this.change({ connected: false, router: false });
   }
 
   watch() {
@@ -112,6 +118,9 @@ class Link {
     const slept = now - this.watchedAt > 3 * WATCH_MS;  // the tab was stalled: what came meanwhile is not yet read
     this.watchedAt = now;
     if (slept || !this.state.connected) return;
+    for (const [id, { sentAt }] of this.answers) {
+      if (now - sentAt > ANSWER_MS) this.answer({ id, error: `no answer came within ${ANSWER_MS / 1000} s: see 'actum doctor'` });
+    }
     if (now - this.heardAt > GIVEN_UP_MS) this.reopen();
     else this.change({ silent: now - this.heardAt > SILENT_MS });
   }
@@ -141,12 +150,16 @@ class Link {
     this.tell("frame");
   }
 
-  answer({ id, reply, error }) {
+  answer({ id, reply, error, refused = false }) {
+    if (id === null) return this.rejectAll(error);  // which one was refused is not known
     const waiting = this.answers.get(id);
     this.answers.delete(id);
     if (error === undefined) waiting?.resolve(reply);
-    else if (waiting) waiting.reject(new Error(error));
-    else this.tell("refusal", { error });
+    else waiting?.reject(Object.assign(new Error(error), { refused }));
+  }
+
+  rejectAll(text) {
+    for (const id of [...this.answers.keys()]) this.answer({ id, error: text });
   }
 
   change(changes) {

@@ -1,5 +1,6 @@
 // The trainer as the page knows it: what it does now, which sets and models there are, and which set is chosen.
 
+import { guarded } from "./guarded.js";
 import { link } from "./link.js";
 
 const SILENT_MS = 3500;   // it tells its state each second
@@ -13,7 +14,7 @@ class Trainer {
 
   // Calls back with each change of its state, of the list, or of the choice.
   on(callback) {
-    this.callbacks.add(callback);
+    this.callbacks.add(guarded(callback));
   }
 
   ask(command, fields = {}) {

@@ -1,5 +1,6 @@
 // What is remembered of each segment: its marks, its early answers, its final action, its event.
 
+import { guarded } from "../guarded.js";
 import { link } from "../link.js";
 
 const MOST = 300;          // segments
@@ -54,7 +55,7 @@ function tell(segment) {
 
 // Calls back with each segment of which something new is known.
 export function onSegment(callback) {
-  callbacks.add(callback);
+  callbacks.add(guarded(callback));
 }
 
 export function allSegments() {

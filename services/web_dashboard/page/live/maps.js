@@ -28,28 +28,32 @@ export function maps() {
 
 class Maps {
   constructor(canvases, captions, traces) {
-    Object.assign(this, { captions, traces, model: null, postures: null, actions: null, way: [], told: null, smooth: null, answer: null });
+    Object.assign(this, { captions, traces, running: null, model: null, without: undefined, postures: null, actions: null, way: [], told: null, smooth: null, answer: null });
     this.drawPostures = drawn(canvases.postures, (context, width, height) => this.draw(context, width, height, this.postures, "postures"));
     this.drawActions = drawn(canvases.actions, (context, width, height) => this.draw(context, width, height, this.actions, "actions"));
     link.on("frame", () => this.follow());
     link.on("action", (action) => action.final && isShown(action.agent) && this.take(action));
-    link.on("info", ({ model }) => model && model !== this.model && this.ask());
-    link.on("state", ({ router }) => router && !this.postures && this.ask());
+    link.on("info", ({ model }) => {
+      if (!model) return;
+      this.running = model;
+      if (model !== this.model) this.ask();
+    });
+    link.on("state", () => !this.postures && this.ask());
     traces.addEventListener("click", () => this.askForTraces());
     setInterval(() => !this.postures && this.ask(), ASK_MS);
   }
 
+  // Asks for the maps, of a model that the classifier refuses to describe only once.
   async ask() {
-    if (this.asking || !link.state.router) return;
+    if (this.asking || !link.state.router || this.running === this.without) return;
     this.asking = true;
-    try {
-      const { model, posture_map: postures, action_map: actions } = await link.ask("som_classifier", "maps");
-      if (!postures) throw new Error("the classifier has no model");
-      this.use(model, postures, actions);
-    } catch (error) {
-      this.captions.postures.textContent = this.captions.actions.textContent = `No maps: ${error.message}`;
-    }
+    const { running } = this;
+    const asked = link.ask("som_classifier", "maps").catch(({ message, refused }) => ({ message, refused }));
+    const { model = null, posture_map: postures, action_map: actions, message = "the classifier has no model", refused } = await asked;
     this.asking = false;
+    this.without = refused ? running : undefined;
+    if (postures || refused) this.use(model, postures ?? null, actions ?? null);
+    if (!postures) this.captions.postures.textContent = this.captions.actions.textContent = refused ? message : `No maps: ${message}`;
   }
 
   async askForTraces() {
@@ -63,9 +67,9 @@ class Maps {
 
   use(model, postures, actions) {
     Object.assign(this, { model, postures, actions, way: [], answer: null, backgrounds: {} });
-    learn(new Set(actions.labels.filter(Boolean)));
+    const labels = [...new Set(actions?.labels.filter(Boolean))].sort();
+    learn(labels);
     this.captions.postures.textContent = "Bodies are the postures that the units there stand for; the line is the way of the last seconds.";
-    const labels = [...new Set(actions.labels.filter(Boolean))].sort();
     this.captions.actions.replaceChildren(...labels.map((label) =>
       element("span", { class: "key" }, element("i", { class: "swatch", style: { "--action": colourOf(label) } }), label)));
     this.drawPostures();

@@ -11,7 +11,7 @@ const GONE_MS = 3000;
 
 export function picture() {
   const canvas = element("canvas", { role: "img", "aria-label": "The camera's picture with joints and objects" });
-  const none = element("p", { class: "none" }, "No colour images are put.");
+  const none = element("p", { class: "none" });
   const overlay = element("input", { type: "checkbox", checked: true });
   const control = element("label", { class: "check" }, overlay, "Overlay");
   new Picture(canvas, none, overlay);
@@ -20,7 +20,7 @@ export function picture() {
 
 class Picture {
   constructor(canvas, none, overlay) {
-    Object.assign(this, { canvas, none, overlay, skeletons: [], objects: [], busy: false });
+    Object.assign(this, { canvas, none, overlay, skeletons: [], objects: [], busy: false, isDecoded: true });
     this.redraw = drawn(canvas, (context, width) => this.draw(context, width));
     link.on("skeleton", (skeleton) => {
       this.skeletons.unshift(skeleton);
@@ -36,22 +36,21 @@ class Picture {
   async take(image) {
     if (this.busy) return;
     this.busy = true;
-    try {
-      const bitmap = await bitmapOf(image);
-      this.bitmap?.close();
-      Object.assign(this, { bitmap, image });
-      this.canvas.style.aspectRatio = `${image.width} / ${image.height}`;
-      this.redraw();
-    } catch {
-      this.none.textContent = "The picture cannot be decoded.";
-    }
-    this.busy = false;
+    const bitmap = await bitmapOf(image).catch(() => null);
+    Object.assign(this, { busy: false, isDecoded: bitmap !== null });
+    this.tellAbsence();
+    if (!bitmap) return;
+    this.bitmap?.close();
+    Object.assign(this, { bitmap, image });
+    this.canvas.style.aspectRatio = `${image.width} / ${image.height}`;
+    this.redraw();
   }
 
   tellAbsence() {
     const gone = link.silentMs("image/color") > GONE_MS;
-    this.none.hidden = !gone;
-    this.canvas.hidden = gone;
+    this.none.textContent = gone ? "No colour images are put." : "The picture cannot be decoded.";
+    this.none.hidden = !gone && this.isDecoded;
+    this.canvas.hidden = !this.none.hidden;
   }
 
   draw(context, width) {

@@ -4,6 +4,7 @@ import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { dark, theme } from "../colours.js";
 import { card, element } from "../elements.js";
+import { guarded } from "../guarded.js";
 import { link } from "../link.js";
 import { Bodies } from "./bodies3d.js";
 import { Things } from "./things3d.js";
@@ -67,7 +68,7 @@ class Stage {
     this.furnish();
     this.listen();
     this.reset();
-    this.renderer.setAnimationLoop((nowMs) => this.draw(nowMs));
+    this.renderer.setAnimationLoop(guarded((nowMs) => this.draw(nowMs)));
   }
 
   furnish() {

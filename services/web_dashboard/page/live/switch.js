@@ -6,6 +6,8 @@ import { newName } from "../names.js";
 import { people } from "./people.js";
 
 const TAP_MS = 350;   // a shorter press switches on, and the next one off
+const ANSWER_S = 6;   // 2 s for the classifier's late frames, 2 s for the fusion's late objects, and a margin
+const NO_ANSWER = `No answer within ${ANSWER_S} s. Services, on Live, shows what does not run or has no model; 'actum doctor' says why.`;
 
 export function markSwitch(id = "switch", title = "Switch") {
   const button = element("button", { type: "button", class: "switch", "aria-pressed": "false" }, "Hold to mark");
@@ -26,6 +28,7 @@ class Switch {
     addEventListener("blur", () => this.segment && this.end());
     link.on("event", (event) => this.answered(event));
     link.on("skeleton", () => this.offer());
+    link.on("state", ({ connected }) => connected || !this.segment || this.cut());
     setInterval(() => this.segment && (this.button.offsetParent ? this.tell() : this.end()), 100); // unseen, nobody ends it
     this.offer();
   }
@@ -75,6 +78,13 @@ class Switch {
     this.off();
   }
 
+  // The page's service ends the marks of a connection that ends.
+  cut() {
+    this.waiting = this.segment.segment_id;
+    this.told.textContent = "The connection was lost: the mark ends with it.";
+    this.off();
+  }
+
   off() {
     this.segment = null;
     this.button.setAttribute("aria-pressed", "false");
@@ -85,7 +95,9 @@ class Switch {
     const { segment_id: id } = this.segment;
     try {
       await link.mark({ ...this.segment, kind });
-      if (told && this.waiting === id) this.told.textContent = told;
+      if (!told || this.waiting !== id) return;
+      this.told.textContent = told;
+      setTimeout(() => this.waiting === id && (this.told.textContent = NO_ANSWER), 1000 * ANSWER_S);
     } catch (error) {
       if (this.waiting === id) this.waiting = null;
       if (this.segment?.segment_id === id) this.off();

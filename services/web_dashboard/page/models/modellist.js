@@ -1,6 +1,6 @@
 // All models, and what is done with them: into use, back, compared, deleted.
 
-import { attempt, button, dated, outcome } from "../asking.js";
+import { attempt, button, dated, outcome, say } from "../asking.js";
 import { confirmed } from "../dialogs.js";
 import { card, element, percent } from "../elements.js";
 import { trainer } from "../trainer.js";
@@ -54,8 +54,9 @@ async function removed(id, name, line) {
 
 async function compare(id, line, compared) {
   const reply = await attempt(line, () => trainer.ask("compare", { model: id }));
-  compared.hidden = !reply;
-  if (!reply) return;
+  compared.hidden = !reply?.other;
+  if (reply && !reply.other) say(line, "no model is in use to compare it with", true);
+  if (compared.hidden) return;
   const { model, other, added, missing } = reply;
   const facts = [
     ["Examples", model.samples, other.samples],

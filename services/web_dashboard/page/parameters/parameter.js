@@ -54,7 +54,8 @@ export class Parameter {
       await this.set(value);
       say(this.line, "set");
     } catch (error) {
-      this.refuse(`refused: ${error.message}; it is still ${asText(this.told.value) || "unset"}`);
+      const still = asText(this.told.value) || "unset";
+      this.refuse(error.refused ? `refused: ${error.message}; it is still ${still}` : `perhaps not set: ${error.message}; 'Read again' shows what it is`);
     }
   }
 

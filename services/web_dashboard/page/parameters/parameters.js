@@ -1,6 +1,6 @@
 // The panel of parameters: each service's settings that may be changed while it runs.
 
-import { button, outcome, say } from "../asking.js";
+import { attempt, button, outcome } from "../asking.js";
 import { card, element } from "../elements.js";
 import { link } from "../link.js";
 import { Parameter } from "./parameter.js";
@@ -14,13 +14,16 @@ export const parameters = {
     const none = element("p", { class: "missing wide", role: "status" }, "No service with parameters has been seen yet.");
     const services = new Map();
     section.append(none);
-    link.on("info", ({ service, commands }) => {
-      if (services.has(service) || !commands.includes("set_parameters")) return;
+    const add = (service) => {
       none.hidden = true;
       services.set(service, new Service(service));
       const rank = (name) => (ORDER.includes(name) ? ORDER.indexOf(name) : ORDER.length);
       const sorted = [...services.keys()].sort((one, other) => rank(one) - rank(other));
       section.append(...sorted.map((name) => services.get(name).card));
+    };
+    link.on("info", ({ service, instance, commands }) => {
+      if (!services.has(service) && commands.includes("set_parameters")) add(service);
+      services.get(service)?.isThere(instance);
     });
     addEventListener("hashchange", () => location.hash === "#parameters" && services.forEach((each) => each.read()));
   },
@@ -28,19 +31,22 @@ export const parameters = {
 
 class Service {
   constructor(name) {
-    Object.assign(this, { name, line: outcome(), list: element("div", { class: "parameters" }), rows: new Map() });
+    Object.assign(this, { name, instance: null, line: outcome(), list: element("div", { class: "parameters" }), rows: new Map() });
     const again = button("Read again", () => this.read(), { label: `Read the parameters of ${name} again`, kind: "small" });
     this.card = card(`parameters-${name}`, name, { controls: [again] }, this.line, this.list);
+  }
+
+  // Reads the parameters of a process that has not been read yet: the first, and each that is started in its place.
+  isThere(instance) {
+    if (instance === this.instance) return;
+    this.instance = instance;
     this.read();
   }
 
   async read() {
-    try {
-      this.show(await link.ask(this.name, "parameters"));
-      say(this.line, "");
-    } catch (error) {
-      say(this.line, error.message, true);
-    }
+    const reply = await attempt(this.line, () => link.ask(this.name, "parameters"));
+    if (reply) this.show(reply);
+    else this.instance = null;  // it is read again once it is heard of
   }
 
   show({ parameters: told }) {

@@ -15,7 +15,7 @@ const TRIES = 5;          // the classifier takes a new model within a second or
 
 export class Example {
   constructor(set, listed, line) {
-    Object.assign(this, { set, listed, line, trace: null, map: null, refusal: null });
+    Object.assign(this, { set, listed, line, trace: null, map: null, refusal: null, number: 0 });
     const film = element("canvas", { class: "film", role: "img" });
     this.trail = element("canvas", { class: "trail", role: "img", hidden: true });
     this.about = element("p", { class: "caption" });
@@ -30,14 +30,19 @@ export class Example {
 
   // Names it by its number among the examples of its action: ids are long.
   call(number) {
-    const { label, person, origin, mirrored, start_ns: start, end_ns: end } = this.listed;
-    this.name = `${label} ${number}`;
-    const about = [number, person, seconds((end - start) / 1e9), ORIGINS[origin] ?? origin, mirrored && "mirrored", this.refusal];
-    this.about.textContent = about.filter(Boolean).join(" · ");
+    this.number = number;
+    this.name = `${this.listed.label} ${number}`;
+    this.describe();
     this.element.setAttribute("aria-label", this.name);
     this.film.canvas.setAttribute("aria-label", `Film of ${this.name}`);
     this.trail.setAttribute("aria-label", `Way of ${this.name} over the map of postures`);
     for (const each of this.buttons) each.setAttribute("aria-label", `${each.textContent} ${this.name}`);
+  }
+
+  describe() {
+    const { person, origin, mirrored, start_ns: start, end_ns: end } = this.listed;
+    const about = [this.number, person, seconds((end - start) / 1e9), ORIGINS[origin] ?? origin, mirrored && "mirrored", this.refusal];
+    this.about.textContent = about.filter(Boolean).join(" · ");
   }
 
   mending() {
@@ -50,17 +55,25 @@ export class Example {
     ];
   }
 
+  // Shows its film; resolves to whether it is to be asked for again, as the trainer may have been busy.
   async load() {
-    if (!this.element.isConnected) return;
+    if (!this.element.isConnected) return false;
+    let film = null;
     try {
-      const film = await trainer.ask("film", { set: this.set, example: this.listed.id });
-      this.film.show(film);
-      this.trace = film.trace;
-      if (film.trace?.length) this.findMap(TRIES);
+      film = await trainer.ask("film", { set: this.set, example: this.listed.id });
+      this.refusal = null;
     } catch (error) {
       this.refusal = `no film: ${error.message}`;
-      this.about.textContent += ` · ${this.refusal}`;
     }
+    this.describe();
+    if (film) this.show(film);
+    return !film;
+  }
+
+  show(film) {
+    this.film.show(film);
+    this.trace = film.trace;
+    if (film.trace?.length) this.findMap(TRIES);
   }
 
   async findMap(tries) {

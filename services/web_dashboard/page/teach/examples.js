@@ -1,12 +1,16 @@
 // The examples of the chosen set, action by action, as films that can be mended.
 
-import { attempt, button, counted, outcome } from "../asking.js";
+import { attempt, button, counted, outcome, say } from "../asking.js";
 import { colourOf } from "../colours.js";
 import { confirmed } from "../dialogs.js";
 import { card, element } from "../elements.js";
+import { reportBug } from "../guarded.js";
 import { trainer } from "../trainer.js";
 import { Example } from "./example.js";
 import { arePlaying, play } from "./film.js";
+
+const AGAIN_MS = 1000;          // until a film that was refused is asked for again: twice as long after each refusal
+const LONGEST_AGAIN_MS = 60_000;
 
 export function examples() {
   return new Examples().card;
@@ -16,12 +20,13 @@ class Examples {
   constructor() {
     Object.assign(this, { shown: "", tiles: new Map(), films: Promise.resolve() });
     this.line = outcome();
-    this.redo = button("Redo the last", () => this.redoLast());
+    this.trouble = outcome();
+    this.redo = button("Redo the last", () => trainer.set && this.redoLast());
     this.list = element("div", { class: "groups" });
     const playing = element("input", { type: "checkbox", checked: arePlaying() });
     playing.addEventListener("change", () => play(playing.checked));
     const controls = [element("label", { class: "check" }, playing, "Play the films"), this.redo];
-    this.card = card("examples", "3 · Examples", { wide: true, controls }, this.line, this.list);
+    this.card = card("examples", "3 · Examples", { wide: true, controls }, this.trouble, this.line, this.list);
     trainer.on(() => this.look());
   }
 
@@ -32,13 +37,12 @@ class Examples {
     this.redo.disabled = !Object.keys(trainer.set?.actions ?? {}).length;
     if (wanted === this.shown || !trainer.all) return;
     this.shown = wanted;
-    try {
-      const { examples: listed } = set ? await trainer.ask("examples", { set }) : { examples: [] };
-      if (this.shown === wanted) this.show(set, listed);
-    } catch (error) {
-      if (this.shown === wanted) this.shown = "";
-      this.line.textContent = error.message;
-    }
+    const asked = set ? trainer.ask("examples", { set }) : Promise.resolve({ examples: [] });
+    const { examples: listed, message = "" } = await asked.catch(({ message }) => ({ message }));
+    if (this.shown !== wanted) return;
+    say(this.trouble, message, true);
+    if (listed) this.show(set, listed);
+    else this.shown = "";
   }
 
   show(set, listed) {
@@ -61,8 +65,14 @@ class Examples {
 
   tile(set, listed) {
     const tile = new Example(set, listed, this.line);
-    this.films = this.films.then(() => tile.load());  // one after the other: the trainer reads a take for each
+    this.load(tile, AGAIN_MS);
     return tile;
+  }
+
+  // Loads one film after the other: the trainer reads a take for each.
+  load(tile, againMs) {
+    const again = () => setTimeout(() => this.load(tile, Math.min(2 * againMs, LONGEST_AGAIN_MS)), againMs);
+    this.films = this.films.then(() => tile.load()).then((isMissing) => isMissing && again()).catch(reportBug);
   }
 
   group(set, label, listed) {

@@ -3,13 +3,16 @@
 import { drawFigure, fromInFront } from "../body.js";
 import { theme } from "../colours.js";
 import { drawn } from "../elements.js";
+import { guarded } from "../guarded.js";
 
 const REST_MS = 500;      // between the end and the next start
 const playing = new Set();
 let wanted = !matchMedia("(prefers-reduced-motion: reduce)").matches;
 
+const stepOf = guarded((film, nowMs) => film.step(nowMs));
+
 function step(nowMs) {
-  for (const film of playing) film.step(nowMs);
+  for (const film of playing) stepOf(film, nowMs);
   if (playing.size) requestAnimationFrame(step);
 }
 

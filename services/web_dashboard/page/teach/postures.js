@@ -16,8 +16,8 @@ async function fetched(model) {
     const { model: there, posture_map: map } = await link.ask("som_classifier", "maps");
     if (there !== model) throw new Error("the classifier has another model");
     return map;
-  } catch {
-    asked.model = null;  // it may have it a moment later
+  } catch (error) {
+    if (!error.refused) asked.model = null;  // it may have it a moment later
     return null;
   }
 }

@@ -12,8 +12,8 @@ export function sets() {
   const name = element("input", { type: "text", value: "my actions", autocomplete: "off", spellcheck: "false" });
   const line = outcome();
   const holds = element("div", { class: "holds" });
-  const rename = button("Rename", () => renamed(line));
-  const remove = button("Delete set", () => deleted(line));
+  const rename = button("Rename", () => trainer.set && renamed(trainer.set.name, line));
+  const remove = button("Delete set", () => trainer.set && deleted(trainer.set, line));
   const make = element("form", { class: "row", on: { submit: (event) => made(event, name, line) } },
     field("Name of a new set", name), element("button", {}, "Make set"));
   trainer.on(() => show(holds, [rename, remove]));
@@ -48,16 +48,14 @@ async function made(event, name, line) {
   await attempt(line, make, "made");
 }
 
-async function renamed(line) {
-  const set = trainer.set.name;
+async function renamed(set, line) {
   const name = await typed(`Rename ${set}`, "New name", set, [], "Rename");
   if (name === null) return;
   const rename = () => trainer.ask("rename_set", { set, name }).then(() => trainer.chooseNew(name.normalize("NFC")));
   await attempt(line, rename, "renamed");
 }
 
-async function deleted(line) {
-  const { name, actions } = trainer.set;
+async function deleted({ name, actions }, line) {
   const number = Object.values(actions).reduce((sum, each) => sum + each, 0);
   if (await confirmed(`Delete ${name} with ${counted(number, "example")}?`, "Delete set")) {
     await attempt(line, () => trainer.ask("delete_set", { set: name }), "deleted");
