@@ -8,7 +8,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
 LOCKS := deploy/requirements
 
-.PHONY: install demo simulated-model up test fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
+.PHONY: install demo first-event simulated-model up test fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -32,6 +32,9 @@ $(STAMP): $(RUNS)
 
 demo: $(RUNS)  ## simulated people act in continuous scenes, and live processes find what they do; two minutes
 	$(BIN)/actum demo
+
+first-event:  ## seconds from a clone in an empty folder to the demo's first event; installs everything there
+	$(PYTHON) benchmarks/first_event.py
 
 up: $(RUNS)  ## router and all services, until Ctrl-C
 	$(BIN)/actum up
