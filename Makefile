@@ -1,21 +1,26 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
+RUNS := $(VENV)/.runs
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 
 LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
 LOCKS := deploy/requirements
 
-.PHONY: install demo up test fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
+.PHONY: install demo first-event simulated-model up test fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
 
-$(STAMP): pyproject.toml
+$(RUNS): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit("actum needs Python 3.11 or newer: make PYTHON=python3.12 …" if sys.version_info < (3, 11) else 0)'
-	@echo "everything goes into $(VENV), which takes a minute or more"
 	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[actum-command]"
+	touch $@
+
+$(STAMP): $(RUNS)
+	@echo "everything goes into $(VENV), which takes a minute or more"
 	@# PEP 517: without it an older pip warns of how openni is built
 	$(BIN)/pip install --quiet --disable-pip-version-check --use-pep517 -e ".[dev]"
 	@$(BIN)/pip install --quiet --disable-pip-version-check -e ".[camera]" \
@@ -25,10 +30,13 @@ $(STAMP): pyproject.toml
 	$(BIN)/pip install --quiet --disable-pip-version-check --force-reinstall --no-deps opencv-python-headless
 	touch $@
 
-demo: $(STAMP)  ## simulated people act in continuous scenes, and live processes find what they do; eight minutes
+demo: $(RUNS)  ## simulated people act in continuous scenes, and live processes find what they do; two minutes
 	$(BIN)/actum demo
 
-up: $(STAMP)  ## router and all services, until Ctrl-C
+first-event:  ## seconds from a clone in an empty folder to the demo's first event; installs everything there
+	$(PYTHON) benchmarks/first_event.py
+
+up: $(RUNS)  ## router and all services, until Ctrl-C
 	$(BIN)/actum up
 
 test: check  ## static checks, then every test but the long ones
@@ -145,6 +153,9 @@ pages: $(STAMP)  ## write what the pages show of the code anew
 
 docs: $(STAMP)  ## the pages as a site, in site/index.html; fails on a broken link
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going --fresh-env --quiet -c docs . site
+
+simulated-model: $(STAMP)  ## train the model of the simulated scene anew that comes with actum; about a minute
+	$(BIN)/python -c 'from actum_command.simulated_model import SIMULATED_MODEL, trained; from actum_model_trainer.progress import silent; trained(silent).save(SIMULATED_MODEL)'
 
 schemas: $(STAMP)  ## write the JSON Schemas anew
 	$(BIN)/python -m actum.schemas

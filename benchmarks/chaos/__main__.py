@@ -11,8 +11,7 @@ from pathlib import Path
 
 from actum.settings import ServiceSettings
 from actum_command import processes
-from actum_command.unmarked_experiment import train_on_streams
-from actum_model_trainer.progress import silent
+from actum_command.simulated_model import SIMULATED_MODEL
 
 from .faults import drawn
 from .hosts import TwoHosts
@@ -34,7 +33,7 @@ def main() -> int:
     given = _arguments()
     folder = given.folder or Path(tempfile.mkdtemp(prefix="actum-chaos-"))
     folder.mkdir(parents=True, exist_ok=True)
-    model = given.model or _trained(folder)
+    model = given.model
     actions = planned(given.seed, given.segments + SPARE)
     span_s = (actions[given.segments - 1].end_ns - actions[0].start_ns) / 1e9
     faults = drawn(given.seed, given.faults, span_s, given.only)
@@ -62,16 +61,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--faults", type=int, default=FAULTS)
     parser.add_argument("--segments", type=int, default=SEGMENTS, help="how many actions are done, marked or not")
     parser.add_argument("--only", default="", help="only such faults, as 'killed', 'link' or 'som_classifier paused'")
-    parser.add_argument("--model", type=Path, help="a trained model; default: one is trained, which takes a minute")
+    parser.add_argument("--model", type=Path, default=SIMULATED_MODEL, help="default: the simulated scene's")
     parser.add_argument("--folder", type=Path, help="for log, model and states; default: a new one")
     return parser.parse_args()
-
-
-def _trained(folder: Path) -> Path:
-    model = folder / "model.npz"
-    print(f"trains {model}", flush=True)
-    train_on_streams(folder, model, silent)
-    return model
 
 
 def _say(line: str) -> None:

@@ -42,6 +42,9 @@ OF_SEGMENTS: Mapping[str, Problem] = {
     "too many open segments: … at the most": Problem(
         "32 segments were open when this one started.", "Put the ends of those; see the reject `too_many_segments`."
     ),
+    "marks are not used: the classifier's setting segments is auto": Problem(
+        "The classifier answers only what it finds by itself.", "Set `--segments both` to use marks as well."
+    ),
     "segment_id reused": Problem("The name belongs to a segment that was answered.", "Give each action a new name."),
     "frames lost: none came for … s of the segment": Problem(
         "For so long within the segment frames were captured that never came: a service before the classifier was"

@@ -34,6 +34,9 @@ OLD_MODEL = "model not renewed"
 """The prefix of the state of a classifier whose model file was replaced by one that cannot be used."""
 
 
+MARKS_IGNORED = "marks_ignored"
+"""What a classifier counts whose settings leave marks out."""
+
 LIMIT = "too_many_"
 """The prefix of the kinds of rejects that count what a service had no room for."""
 
@@ -171,6 +174,8 @@ def _remarks(name: str, status: Status) -> Iterator[str]:
     met = [f"{kind} {n}" for kind, n in status.rejects.items() if kind.startswith(LIMIT)]
     if met:
         yield f"{name} has met its limits: {', '.join(met)}; something puts more than it can take, see docs/messages.md"
+    if ignored := status.counts.get(MARKS_IGNORED):
+        yield f"{name} rejected {ignored} marks, since its setting segments is auto: --segments both uses marks as well"
     if status.state.startswith(AND):
         yield from (f"{name}: {remark}" for remark in status.state.removeprefix(AND).split("; "))
 

@@ -86,9 +86,9 @@ class LiveTest:
                 supervisor.start(program)
             with Client(self._here, READY_S) as client:
                 self._wait_until_ready(client, listened)
-                self._tell(f"router, {', '.join(processes.SERVICES)} and scene_simulator run as processes of their own")
                 if processes.PAGE in {program.name for program in programs}:
                     self._tell_page(client)
+                self._tell(f"router, {', '.join(processes.SERVICES)} and scene_simulator run as processes of their own")
                 listening = client.listen(keys.everything(self._here.sensor))
                 for appearance in appearances:
                     simulator = processes.simulator(self._here, appearance.arguments)

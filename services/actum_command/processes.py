@@ -12,6 +12,7 @@ from actum.settings import PROCESS_ENVIRONMENT, ServiceSettings
 from actum_command.service_settings import TRAINER, Given, arguments_of
 from actum_command.supervising import Program
 from actum_model_trainer.settings import Settings
+from marker_tracker.settings import Settings as TrackerSettings
 from scene_simulator.parameters import load_parameters
 
 SERVICES = ("pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
@@ -34,8 +35,9 @@ def system(
     if source == "simulator":
         marking = [] if given.get("segments") == ["auto"] else [scene(settings)]
         sensor = simulator(settings, arguments_of("scene_simulator", given))
+        own_scene = "scene" in given or TrackerSettings().scene is not None
         return [
-            *services(settings, watched, simulated_objects(), given),
+            *services(settings, watched, {} if own_scene else simulated_objects(), given),
             trainer(settings, watched, given),
             sensor,
             *marking,

@@ -6,43 +6,19 @@ from pathlib import Path
 
 from actum import keys
 from actum.node import SECOND_NS
-from actum.recording import Recording
 from actum.settings import ServiceSettings
 from actum_command import processes
 from actum_command.live_test import Appearance, LiveTest
 from actum_command.performance import Doing, Performance
-from actum_command.scene_marks import write_examples
-from actum_command.simulated_experiment import ACTOR, TEST_SEED, TRAINING_SEED
+from actum_command.simulated_experiment import TEST_SEED
+from actum_command.simulated_model import PAUSES
 from actum_command.unmarked_score import PersonWitness
-from actum_model_trainer.progress import Progress
-from actum_model_trainer.samples import samples_from
-from actum_model_trainer.training import train_to_spot
-from scene_simulator.everyday import Pauses, chosen
+from scene_simulator.everyday import chosen
 from scene_simulator.programme import ACTIONS, balanced_programme
 from scene_simulator.simulated_scene import Scene
-from som_classifier.presets import DEFAULT
 
-TRAINERS = (ACTOR, *range(1001, 1009))
-"""Actors of the training: numbers that no test of up to 900 people has."""
 FIRST_UNSEEN = 101
 """The first actor of the test: people that no choice was made on, as how many teach and how often was on 1 to 9."""
-TRAINING_REPETITIONS = 2
-"""Of each action by each of them: many people teach more than many repetitions, and half a minute is enough."""
-PAUSES: Pauses = "short"
-"""At most one everyday doing between two actions: the test of nine people then takes seven minutes, not fifteen."""
-
-
-def train_on_streams(folder: Path, model_file: Path, progress: Progress) -> str:
-    """Train on continuous recordings of several people, written to a folder; return what was learnt from, in words."""
-    recordings = []
-    for actor in TRAINERS:
-        file = folder / f"training-{actor}.mcap"
-        write_examples(file, TRAINING_REPETITIONS, actor, TRAINING_SEED, "familiar", pauses=PAUSES)
-        recordings.append(Recording(file))
-    samples = samples_from(recordings, progress)
-    train_to_spot(samples.usable, samples.streams, DEFAULT, 0, progress).save(model_file)
-    minutes = sum(int(stream.stamps_ns[-1] - stream.stamps_ns[0]) for stream in samples.streams) / (60 * SECOND_NS)
-    return f"{minutes:.0f} minutes of {len(TRAINERS)} simulated people with {len(samples.usable)} actions"
 
 
 def run_unmarked(

@@ -26,6 +26,8 @@ POLL_TICKS = 5
 """Ticks between two checks of the model file, half a second: a new model seems to be used at once."""
 
 
+MARKS_OFF = "marks are not used: the classifier's setting segments is auto"
+"""Why marks are rejected where only found segments are wanted."""
 LIVE = (
     "segments", "false_alarms_per_min", "shortest_pause_s", "cooldown_s", "enabled_actions", "disabled_actions",
     "publish_maps",
@@ -110,7 +112,7 @@ class SomClassifier:
             return []
         if self._segmentation.segments == "auto":
             self.counters.counts["marks_ignored"] += 1
-            return []
+            return [self._final(closed) for closed in self._segmenter.decline(mark, MARKS_OFF)]
         return [self._final(closed) for closed in self._segmenter.mark(mark)]
 
     def _tick(self, tick: Tick) -> list[Message]:

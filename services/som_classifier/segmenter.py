@@ -87,6 +87,17 @@ class Segmenter:
             return [OpenSegment.of(mark, self._streams.newest_ns).rejected(UNPLACED)]
         return self._start(mark) if mark.kind == "start" else self._end(mark)
 
+    def decline(self, mark: Segment, reason: str) -> list[ClosedSegment]:
+        """Reject a segment at its first mark, unless it is open already; return the segments that this closes."""
+        if mark.segment_id in self._open:
+            return self.mark(mark)
+        if self._answered.has(mark):
+            return []
+        self._answered.remember(mark.segment_id, None, None)
+        return [
+            OpenSegment.of(mark, self._streams.newest_ns if mark.stamp_ns is None else mark.stamp_ns).rejected(reason)
+        ]
+
     def tick(self, tick: Tick) -> list[ClosedSegment]:
         """Close the segments that have waited too long: 2 s for the last frames, a longest segment for an end mark."""
         self._flow.tick(tick.monotonic_ns)

@@ -418,15 +418,15 @@ def _handlers() -> Iterator[None]:
 
 @pytest.mark.usefixtures("_handlers")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-@pytest.mark.parametrize(("way", "learning"), [([], "_train_to_spot"), (["--marked"], "_train")])
-def test_a_demo_ends_where_it_is_while_it_learns_and_leaves_no_files(
-    number: signal.Signals, way: list[str], learning: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("way", "step"), [([], "learned_from"), (["--marked"], "_train")])
+def test_a_demo_ends_where_it_is_and_leaves_no_files(
+    number: signal.Signals, way: list[str], step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setattr(demo_command, "refuse_taken", lambda _: None)
-    monkeypatch.setattr(demo_command, learning, lambda *_: signal.raise_signal(number))
-    for step in ("nearest_neighbour_baseline", "run_unmarked"):
-        monkeypatch.setattr(demo_command, step, lambda *_: pytest.fail("it went on"))
+    monkeypatch.setattr(demo_command, step, lambda *_: signal.raise_signal(number))
+    for later in ("nearest_neighbour_baseline", "run_unmarked"):
+        monkeypatch.setattr(demo_command, later, lambda *_: pytest.fail("it went on"))
     interrupted = CliRunner().invoke(app, ["demo", *way])
     assert isinstance(interrupted.exception, SystemExit), interrupted.exception
     assert interrupted.exit_code == 128 + number

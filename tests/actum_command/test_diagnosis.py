@@ -235,6 +235,13 @@ def test_what_was_found_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "counted" not in output
 
 
+def test_marks_that_are_not_used_are_told() -> None:
+    (remark,) = examined(counts={"marks_ignored": 4}).remarks
+    assert remark == (
+        "som_classifier rejected 4 marks, since its setting segments is auto: --segments both uses marks as well"
+    )
+
+
 def test_beside_the_page_which_reads_everything_the_table_stays_readable() -> None:
     """A hundred characters wide: what people and services have in common is one rate, and no word is broken."""
     leaves = [

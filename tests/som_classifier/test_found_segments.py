@@ -18,7 +18,7 @@ from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from recognisers import tiny_model
 from som_classifier.model import Model
-from som_classifier.node import POLL_TICKS, SomClassifier
+from som_classifier.node import MARKS_OFF, POLL_TICKS, SomClassifier
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.segmentation import CANNOT, DEFAULT, NO_BACKGROUND, Segmentation
 from som_classifier.settings import Settings
@@ -291,11 +291,25 @@ def test_with_marks_alone_nothing_is_searched() -> None:
     assert node.counters.state == "running"
 
 
-def test_with_auto_alone_marks_are_not_taken() -> None:
+def test_with_auto_alone_a_marked_segment_is_rejected_at_once_and_hides_nothing() -> None:
     node = SomClassifier(finding(tiny_model(), LIFT), segmentation=Segmentation("auto"))
     put = put_by(node, [mark("start", 5), mark("end", 35), *stream()])
-    assert found(put) == [bounds(LIFT)]
+    (rejected,) = [m for m in put if isinstance(m, Action) and not m.valid]
+    assert put.index(rejected) == 0
+    assert (rejected.segment_id, rejected.reason) == (mark("start", 5).segment_id, MARKS_OFF)
+    assert found([m for m in put if m is not rejected]) == [bounds(LIFT)]
     assert node.counters.counts == {"marks_ignored": 2, "found": 1, "told": 1}
+
+
+def test_a_segment_that_is_open_when_marks_are_switched_off_is_answered_by_its_end() -> None:
+    node = SomClassifier.configured(Settings())
+    first, *rest = (message for message in stream())
+    node.handle(first)
+    node.handle(mark("start", 5))
+    (change,) = [each for each in node.commands if each.name == "set_parameters"]
+    change.obey({"values": {"segments": "auto"}})
+    answers = [answer for message in (*rest, mark("end", 35)) for answer in node.handle(message)]
+    assert [answer.reason for answer in answers if isinstance(answer, Action) and answer.final] == ["no model"]
 
 
 def likely(model: Model, segment: SpottedSegment) -> str:

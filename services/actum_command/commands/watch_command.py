@@ -33,10 +33,10 @@ def watch(
     On a terminal, events and actions stand above a line for each person: what they are doing and how far it is. With
     --from it prints what was recorded, also by 'actum record --events' in a file that is still being written.
     """
-    unknown = [name for name in topics or [] if name not in WATCHABLE]
-    if unknown:
-        fail(f"no topic {unknown[0]!r}: use any of {', '.join(WATCHABLE)}")
-    wanted = [WATCHABLE[name] for name in topics] if topics else BY_DEFAULT
+    named = {name: WATCHABLE.get(name) or WATCHABLE.get(name.removesuffix("s")) for name in topics or []}
+    for name in (name for name, topic in named.items() if topic is None):
+        fail(f"no topic {name!r}: use any of {', '.join(WATCHABLE)}")
+    wanted = [topic for topic in named.values() if topic is not None] or BY_DEFAULT
     if recorded:
         _show_recorded(recorded, wanted, as_json)
         return

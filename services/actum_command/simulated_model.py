@@ -1,0 +1,39 @@
+"""The model of the simulated scene that comes with actum, and how it is trained."""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from actum.recording import Recording
+from actum_command.scene_marks import write_examples
+from actum_command.simulated_experiment import ACTOR, TRAINING_SEED
+from actum_model_trainer.progress import Progress
+from actum_model_trainer.samples import samples_from
+from actum_model_trainer.training import train_to_spot
+from scene_simulator.everyday import Pauses
+from som_classifier.model import Model
+from som_classifier.presets import DEFAULT
+
+SIMULATED_MODEL = Path(__file__).with_name("simulated_model.npz")
+"""The model's file, which `make simulated-model` writes."""
+TRAINERS = (ACTOR, *range(1001, 1009))
+"""Actors of the training: numbers that no test of up to 900 people has."""
+TRAINING_REPETITIONS = 2
+"""Of each action by each of them: many people teach more than many repetitions, and half a minute is enough."""
+PAUSES: Pauses = "short"
+"""At most one everyday doing between two actions, in training and in the demo: a test of nine people then takes seven
+minutes, not fifteen."""
+
+
+def trained(progress: Progress) -> Model:
+    """Train the model on a continuous recording of each person, about a minute and a half long."""
+    with TemporaryDirectory(prefix="actum-simulated-") as folder:
+        files = [Path(folder) / f"training-{actor}.mcap" for actor in TRAINERS]
+        for actor, file in zip(TRAINERS, files, strict=True):
+            write_examples(file, TRAINING_REPETITIONS, actor, TRAINING_SEED, "familiar", pauses=PAUSES)
+        samples = samples_from(list(map(Recording, files)), progress)
+    return train_to_spot(samples.usable, samples.streams, DEFAULT, 0, progress)
+
+
+def learned_from(model: Model) -> str:
+    """Return what a model was trained on, in words."""
+    return f"{model.metadata.samples} actions of {len(model.metadata.persons)} simulated people"
