@@ -1,5 +1,7 @@
 """The container files, read as Compose reads them."""
 
+import subprocess
+from ipaddress import ip_network
 from pathlib import Path
 from typing import Any
 
@@ -23,3 +25,10 @@ _Loader.add_multi_constructor("!", _untagged)
 
 def services_of(file: Path) -> dict[str, dict[str, Any]]:
     return yaml.load(file.read_text(), _Loader)["services"]
+
+
+def gateway_of_bridge() -> str:
+    """The engine's host as its containers see it: the bridge's first address, which not every engine names."""
+    command = ["docker", "network", "inspect", "bridge", "--format", "{{(index .IPAM.Config 0).Subnet}}"]
+    subnet = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+    return str(next(ip_network(subnet).hosts()))

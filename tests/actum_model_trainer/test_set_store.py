@@ -3,7 +3,11 @@
 from itertools import count
 from pathlib import Path
 
-from actum_model_trainer.teaching.set_store import MAKING, SetStore
+import pytest
+
+from actum.messages import segment_marks
+from actum.recording import RecordingError
+from actum_model_trainer.teaching.set_store import MAKING, SetStore, take_number
 from empty_messages import skeleton
 
 
@@ -36,3 +40,34 @@ def test_a_take_of_a_set_is_not_overwritten(tmp_path: Path) -> None:
         ("take-0001", "anna"),
         ("take-0002", "carl"),
     ]
+
+
+def test_a_newer_take_has_a_higher_number_also_where_one_is_missing_or_the_clock_was_set_back(tmp_path: Path) -> None:
+    times = iter([400, 301, 302, 201, 202, 101, 102])
+    store = SetStore(tmp_path, lambda: next(times))
+    store.create("waves")
+    for person in ("anna", "carl", "dora"):
+        with store.recorder(person, "action") as recorder:
+            recorder.write(skeleton(1))
+        if store.add("waves", recorder.path).person == "carl":
+            (tmp_path / "waves/take-0001.mcap").unlink()
+    takes = store.get("waves").takes
+    assert [(take.id, take.person) for take in takes] == [("take-0002", "carl"), ("take-0003", "dora")]
+    assert max(takes, key=lambda take: take_number(take.id)).person == "dora"
+
+
+def test_a_take_with_more_examples_than_can_be_changed_at_once_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("actum_model_trainer.teaching.take_files.MOST_EXAMPLES", 1)
+    store = SetStore(tmp_path, lambda: 1)
+    store.create("waves")
+    with store.recorder("anna", "action") as recorder:
+        for message in [skeleton(stamp_ns) for stamp_ns in range(1, 9)]:
+            recorder.write(message)
+        for number in (1, 2):
+            for each in segment_marks(2 * number, 2 * number + 1, "kinect0", f"wave-{number}", "wave"):
+                recorder.write(each)
+    with pytest.raises(RecordingError, match="2 marked actions, at most 1 are taken; split it"):
+        store.add("waves", recorder.path)
+    assert "2 marked actions" in store.get("waves").unreadable[0]

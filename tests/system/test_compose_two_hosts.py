@@ -15,7 +15,7 @@ from actum import keys
 from actum.messages import Event
 from actum.runtime import Client
 from actum.settings import ServiceSettings
-from compose_files import DEPLOY
+from compose_files import DEPLOY, gateway_of_bridge
 from live import collect, free_endpoint, wait_until
 from marked_scene import ACTIONS, SCENE, SCENE_S, Told, mark, on_one_host, told
 from tcp_proxy import TcpProxy
@@ -75,7 +75,7 @@ def hosts(tmp_path_factory: pytest.TempPathFactory, scene_model: Path) -> Iterat
     ports = [int(free_endpoint().rpartition(":")[2]) for _ in range(3)]
     sensor_file = f"-f {DEPLOY}/compose.kinect-host.yml -f {scene}"
     sensor = Host("actum-sensor-test", sensor_file, {"ACTUM_ROUTER_PORT": str(ports[0])}, ports[0])
-    gateway = docker("network", "inspect", "bridge", "--format", "{{(index .IPAM.Config 0).Gateway}}").strip()
+    gateway = gateway_of_bridge()
     with TcpProxy(sensor.port, host=gateway, seed=1) as link:
         environment = {
             "ACTUM_CONNECT": f"tcp/{gateway}:{link.port}",

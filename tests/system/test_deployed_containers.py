@@ -15,7 +15,7 @@ from actum import keys
 from actum.messages import Event
 from actum.runtime import Client
 from actum.settings import ServiceSettings
-from compose_files import MAIN
+from compose_files import MAIN, gateway_of_bridge
 from live import collect, free_endpoint, wait_until
 from marked_scene import ACTIONS, SCENE, SCENE_S, mark, on_one_host, told
 
@@ -58,7 +58,7 @@ class Taken:
 def taken(tmp_path_factory: pytest.TempPathFactory, scene_model: Path) -> Iterator[Taken]:
     """Both hosts on this machine, up, with a model; gone afterwards."""
     docker("compose", "--file", str(MAIN), "build", "--quiet")
-    address = docker("network", "inspect", "bridge", "--format", "{{(index .IPAM.Config 0).Gateway}}").strip()
+    address = gateway_of_bridge()
     ports = {host: int(free_endpoint().rpartition(":")[2]) for host in ("camera", "compute")}
     made = Taken(tmp_path_factory.mktemp("deployment"), address, ports)
     hosts = ",".join(f"{host}={address}:{port}" for host, port in ports.items())

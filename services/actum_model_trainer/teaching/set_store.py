@@ -30,6 +30,8 @@ LEAVING = ".leaving-"
 """Beginning of the name of a folder that is being deleted."""
 SUFFIX = ".mcap"
 """Ending of takes."""
+TAKE = re.compile(r"take-([0-9]{4,9})")
+"""The names of takes that are made here."""
 LEFT = re.compile(rf"{re.escape(LEAVING)}[0-9]+")
 """The names of such folders."""
 
@@ -178,7 +180,8 @@ class SetStore:
             Refusal: there is no set of that name.
         """
         folder = self.folder(name)
-        for target in (folder / f"take-{number:04}{SUFFIX}" for number in count(1)):
+        newest = max((take_number(path.stem) for path in folder.iterdir()), default=0)
+        for target in (folder / f"take-{number:04}{SUFFIX}" for number in count(newest + 1)):
             with suppress(FileExistsError):
                 give_name(path, target)
                 break
@@ -198,6 +201,12 @@ class SetStore:
         if known is None or known[0] != version:
             known = self._read[path] = version, read_take(path)
         return known[1]
+
+
+def take_number(stem: str) -> int:
+    """Return the number of a take that was made here, by which the newest is the highest; 0 for any other recording."""
+    made_here = TAKE.fullmatch(stem)
+    return int(made_here[1]) if made_here else 0
 
 
 def date_of(time_ns: int) -> str:

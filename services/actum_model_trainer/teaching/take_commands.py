@@ -15,7 +15,7 @@ from actum_model_trainer.segment_edits import OF_THE_TAKE
 from actum_model_trainer.teaching.changes import Changes
 from actum_model_trainer.teaching.replies import Done, TakeReply
 from actum_model_trainer.teaching.requests import OfSet, Record
-from actum_model_trainer.teaching.set_store import SetStore
+from actum_model_trainer.teaching.set_store import SetStore, take_number
 from actum_model_trainer.teaching.take_files import Example, Take, finish_take
 from actum_model_trainer.teaching.take_in_progress import TakeInProgress
 
@@ -103,7 +103,7 @@ class TakeCommands:
         takes = [take for take in self._sets.get(request.set).takes if take.examples]
         if not takes:
             raise Refusal(f"{request.set} has no example yet: record some")
-        newest = max(takes, key=lambda take: (take.created, take.id))
+        newest = max(takes, key=lambda take: (take_number(take.id), take.created, take.id))
         example = newest.examples[-1]
         try:
             anew = Record(set=request.set, label=example.label, person=newest.person, count=1)

@@ -13,7 +13,7 @@ from actum.codec import encodable
 from actum.messages import CUT, MANUAL, Action, Event, Hand, Segment
 from actum.node import SECOND_NS
 from actum.recorder import Recorder
-from actum.recording import Recording
+from actum.recording import Recording, RecordingError
 from actum.rewriting import rewrite, unchanged
 from actum_model_trainer.cutting.marks import free_names, marks_of
 from actum_model_trainer.cutting.repetitions import Cuts
@@ -23,6 +23,8 @@ KIND, CREATED = "kind", "created"
 """Fields of a take's metadata, beside those that say something about its examples: kind and date."""
 AGAIN = "again"
 """The start mark with which a segment's name is used again, among its marks by kind."""
+MOST_EXAMPLES = 2000
+"""Most examples of a take, some hours of actions: a change of one looks at all others, while the service waits."""
 UNREAD = "skipped while it was read: "
 """How the doubt about what was skipped begins; it is found anew each time, and never stored."""
 
@@ -96,7 +98,7 @@ def read_take(path: Path) -> Take:
     """Read a take.
 
     Raises:
-        RecordingError: the file is no recording, or damaged.
+        RecordingError: the file is no recording, damaged, or has too many examples.
     """
     recording = Recording(path)
     marks, stamps_ns = _marks_and_stamps(recording)
@@ -106,6 +108,8 @@ def read_take(path: Path) -> Take:
         for pair in marks.values()
         if {"start", "end"} <= pair.keys() and pair["start"].label is not None
     ]
+    if len(examples) > MOST_EXAMPLES:
+        raise RecordingError(path, f"{len(examples)} marked actions, at most {MOST_EXAMPLES} are taken", "split it")
     return Take(
         encodable(path.stem),
         path,
