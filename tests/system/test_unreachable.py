@@ -29,7 +29,7 @@ def said(running: System, connect: str, credentials: Path | None = None) -> str:
     assert ended.returncode == 1
     prefix = f"actum: no router answers at {connect}: "
     line = " ".join(ended.stderr.split())
-    assert line.startswith(prefix), line
+    assert line.startswith(prefix), ended.stdout + line
     return line.removeprefix(prefix)
 
 
