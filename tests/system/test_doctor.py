@@ -70,7 +70,7 @@ def test_a_recording_that_is_played_too_slowly(running: System, tmp_path: Path) 
         running.start("actum_command", "play", str(tmp_path / "reaches.mcap"), "--speed", "0.4")
         wait_until(lambda: skeletons.take() is not None, "it is played")
         found = said(running)
-        assert re.search("1[0-4] skeletons come in a second, and by their stamps there are 30", found), found
+        assert "12 skeletons come in a second, and by their stamps there are 30" in found, found
 
 
 def test_a_service_of_another_version(running: System) -> None:
