@@ -8,8 +8,9 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from itertools import count
 from pathlib import Path
 
 from actum.messages import Info, Message
@@ -24,12 +25,21 @@ from actum.runtime import serve_router, stop_on_signals
 serve_router(sys.argv[1], Path(sys.argv[2]) if sys.argv[2:] else None, stop_on_signals())
 """
 """The embedded router without the command line around it, which takes longer to start."""
+WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+"""Which of the processes that run tests side by side this is."""
+FIRST_PORT, PORTS_EACH = 12_000, 1_250
+"""The ports of each of up to 16: below those that Linux gives to outgoing connections, from 32768 on."""
+NUMBERS = count(os.getpid())
+"""Where in these this process begins: the tests of another checkout may run as well."""
 
 
 def free_endpoint() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    """An endpoint that nothing listens on, and that no other test or outgoing connection takes meanwhile."""
+    while True:
+        port = FIRST_PORT + PORTS_EACH * WORKER + next(NUMBERS) % PORTS_EACH
+        with socket.socket() as probe, suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return f"tcp/127.0.0.1:{port}"
 
 
 def wait_until(condition: Callable[[], bool], what: str, patience_s: float = PATIENCE_S) -> None:
