@@ -7,6 +7,7 @@ import { card, element } from "../elements.js";
 import { guarded } from "../guarded.js";
 import { link } from "../link.js";
 import { Bodies } from "./bodies3d.js";
+import { Labels } from "./labels.js";
 import { Things } from "./things3d.js";
 import { newestPosture, newestSkeleton, people, shownAgent } from "./people.js";
 
@@ -62,6 +63,7 @@ class Stage {
     this.renderer.setPixelRatio(this.slow ? 1 : Math.min(devicePixelRatio, 2));
     box.append(this.renderer.domElement);
     this.renderer.domElement.setAttribute("aria-hidden", "true");
+    this.labels = new Labels(box);
     this.camera = new THREE.PerspectiveCamera(40, 1, 0.05, 60);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => (this.changed = true));
@@ -223,6 +225,17 @@ class Stage {
     Object.assign(this, { changed: false, drawnAt: nowMs });
     this.things.fade();
     this.renderer.render(this.scene, this.camera);
+    this.label();
+  }
+
+  // Names what is in view.
+  label() {
+    const { clientWidth: width, clientHeight: height } = this.box;
+    const labels = [...this.bodies.labels, ...this.things.labels].map(({ at: place, ...label }) => {
+      const { x, y, z } = place.project(this.camera);
+      return { ...label, x: ((x + 1) / 2) * width, y: ((1 - y) / 2) * height, isInView: Math.max(Math.abs(x), Math.abs(y), Math.abs(z)) < 1 };
+    });
+    this.labels.show(labels.filter(({ isInView }) => isInView));
   }
 }
 
