@@ -19,10 +19,9 @@ export function acting() {
     ask({ actions: Array(times).fill(label) }, `Requested: ${label}, ${counted(times, "time")}.`);
   };
   const everyday = button("Everyday movements", () => ask({ everyday_s: EVERYDAY_S }, `Requested: ${EVERYDAY_S} s of everyday movements.`));
-  const form = element("form", { on: { submit: act } },
-    element("div", { class: "fields" }, field("What to do", action), field("How often", count)),
-    element("div", { class: "buttons" }, element("button", { class: "primary" }, "Do it"), everyday));
-  const made = card("acting", "Simulated person", {}, form, line);
+  const form = element("form", { class: "row", on: { submit: act } },
+    field("What to do", action), field("How often", count), element("button", { class: "primary" }, "Do it"), everyday);
+  const made = card("acting", "Simulated person", { wide: true }, form, line);
   made.hidden = true;
   offer(made, action);
   return made;
