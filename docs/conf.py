@@ -22,21 +22,9 @@ root_doc = "README"
 PAGES = [
     f"docs/{page}"
     for page in (
-        *(
-            "start",
-            "cameras",
-            "objects",
-            "teaching",
-            "messages",
-            "spotting",
-            "som",
-            "operating",
-            "page",
-            "ros2",
-            "viewers",
-        ),
-        "measured",
-        *("paper", "architecture"),
+        *("start", "cameras", "objects", "teaching", "spotting", "page", "messages", "words"),
+        *("operating", "settings", "commands", "two-machines", "containers", "restarts"),
+        *("ros2", "viewers", "som", "measured", "paper", "architecture"),
     )
 ]
 RESULTS = {
