@@ -39,6 +39,7 @@ RESULTS = {
     "Webcam, found live": "benchmarks/camera/continuous",
     "Webcam: what was tried": "benchmarks/camera/README",
     "The paper": "benchmarks/paper/results",
+    "The paper: what was tried": "benchmarks/paper/README",
     "Marker tracker": "benchmarks/tracker/results",
     "Maps": "benchmarks/som",
 }
