@@ -15,7 +15,6 @@ const NOWHERE = new THREE.Matrix4().makeScale(0, 0, 0);
 
 export class Bodies {
   constructor(world) {
-    this.world = world;
     this.bones = instanced(new THREE.CylinderGeometry(1, 1, 1, 14), MOST * BONES.length);
     this.joints = instanced(new THREE.SphereGeometry(1, 20, 14), MOST * 15);
     this.trails = [JOINT.leftHand, JOINT.rightHand].map((joint) => new Trail(world, joint));

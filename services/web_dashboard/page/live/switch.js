@@ -133,7 +133,7 @@ class Switch {
   answered({ segment_id: id, valid, sentence, reason }) {
     if (id !== this.waiting) return;
     this.waiting = null;
-    if (marks.areOff && isTaking()) this.told.textContent = "Marked: the take has it.";
+    if (marks.areOff && isTaking()) this.told.textContent = "Marked: the example belongs to the take.";
     else this.told.textContent = valid ? `Answer: ${sentence}` : `No answer: ${reason}`;
   }
 }
