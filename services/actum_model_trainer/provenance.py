@@ -24,7 +24,10 @@ def actions_of(samples: Sequence[SegmentSample]) -> list[str]:
     """
     labels = sorted({sample.label for sample in samples})
     if len(labels) < 2:
-        raise TrainingError(f"samples of at least two actions are needed; these are of {labels or 'none'}")
+        there = f"there is only {labels[0]!r}" if labels else "there is none"
+        raise TrainingError(
+            f"a model needs examples of at least two actions, to tell them apart, and {there}: record another action"
+        )
     return labels
 
 

@@ -66,7 +66,7 @@ class MixedMirroringError(ValueError):
         mirrored, plain = (one, other) if one.mirrored else (other, one)
         super().__init__(
             f"{mirrored.segment_id} is mirrored and {plain.segment_id} is not, so they cannot share frames: "
-            "bound them apart, or mirror one of them first"
+            "trim them until they do not overlap, or mirror one of them first"
         )
 
 

@@ -60,7 +60,9 @@ def train_upper(
     action_map, activities = _trained_action_map(scores, targets, preset, progress)
     inputs = action_map.centred(activities).astype(np.float64)
     if not inputs.any():
-        raise TrainingError("all samples move alike: their actions cannot be told apart")
+        raise TrainingError(
+            "all examples show the same movement, so their actions cannot be told apart: record them again"
+        )
     layer3 = SupervisedLayer.of_means(inputs, targets, actions).train(
         inputs, targets, preset.beta, preset.epochs, rng, partial(progress, "neurons")
     )
