@@ -226,6 +226,10 @@ OF_BRIDGE: Mapping[str, Problem] = {
 }
 
 OF_TRAINER: Mapping[str, Problem] = {
+    "bad_model": Problem(
+        "The model file that was named for use has changed and cannot be read; the model before stays in use.",
+        "Train it anew: `actum train`. The latest error names the file.",
+    ),
     "lost_take": Problem(
         "The take that was being recorded is lost: it could not be written, its set is gone, or the sensor's clock has"
         " begun anew or leaps.",

@@ -15,5 +15,8 @@ class Settings(ServiceSettings):
         description="the folder of sets, models and jobs of those who teach",
     )
     model: Path | None = Field(
-        None, description="the file that the classifier watches; default: model.npz in that folder"
+        None, description="the model in use: the file that the classifier watches; default: model.npz in that folder"
+    )
+    original_model: Path | None = Field(
+        None, description="a model file that is only read: it is copied to the model in use whenever it changes"
     )
