@@ -6,6 +6,9 @@ from pydantic import Field
 
 from actum.settings import ServiceSettings, data_folder
 
+MODEL = "model.npz"
+"""The file, in the trainer's folder, of the model that was put into use last."""
+
 
 class Settings(ServiceSettings):
     """What the trainer can be told beside what every service can."""

@@ -79,7 +79,7 @@ def test_marks_from_the_command_line_are_answered(running: System, scene_model: 
 def test_up_runs_everything_that_watch_shows_restarts_what_dies_and_leaves_nothing(
     running: System, scene_model: Path
 ) -> None:
-    up = running.start("actum_command", "up", "--model", str(scene_model))
+    up = running.start("actum_command", "up", "--model", str(scene_model), "--marked")
     with running.client() as client:
         running.wait_for_services(client, *SERVICES)
         events = client.listen(keys.pattern(keys.EVENT, client.sensor))

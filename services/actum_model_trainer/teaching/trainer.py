@@ -10,7 +10,7 @@ from actum.atomic_file import PRIVATE_FOLDER
 from actum.commands import Command, NoFields
 from actum.messages import Message, Segment, Skeleton, Training
 from actum.node import SECOND_NS, Counters, Tick
-from actum_model_trainer.settings import Settings
+from actum_model_trainer.settings import MODEL, Settings
 from actum_model_trainer.teaching.changes import Changes, refusing
 from actum_model_trainer.teaching.example_commands import ExampleCommands
 from actum_model_trainer.teaching.job_commands import JobCommands, Start
@@ -29,8 +29,6 @@ TELL_NS = SECOND_NS // 5
 """Shortest time between two messages (ns): a page that counts along needs no more."""
 REPEAT_NS = SECOND_NS
 """Longest time between two messages (ns): who comes late waits no longer."""
-MODEL = "model.npz"
-"""The file, in the trainer's folder, of the model that was put into use last."""
 LOOK_NS = SECOND_NS
 """Interval (ns) at which it is looked whether somebody else has replaced the model in use."""
 
