@@ -105,6 +105,10 @@ OF_FRAMES: Mapping[str, Problem] = {
     "it cannot be opened": Problem(
         "No such device, stream or file, or another program has it.", "Check `ACTUM_CAMERA`."
     ),
+    "it cannot be opened: …": Problem(
+        "No such device, or another program has it; the cameras of this machine follow.",
+        "Name one of them in `--camera` (`ACTUM_CAMERA`).",
+    ),
     "it gives no more pictures": Problem("A device or stream has stopped.", "Look at cable and network."),
     "it was closed": Problem("The gateway is stopping.", "Nothing."),
     "no picture for … s": Problem("The device opened and is silent.", "Unplug it and plug it in again."),
