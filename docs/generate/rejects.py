@@ -126,11 +126,14 @@ OF_PREPROCESSOR: Mapping[str, Problem] = {
     ),
 }
 
-OF_CLASSIFIER: Mapping[str, Problem] = {
+OF_MODELS: Mapping[str, Problem] = {
     "bad_model": Problem(
         "The model file cannot be read, or was made by another version; the model before stays in use.",
         "Train it anew: `actum train`.",
     ),
+}
+
+OF_CLASSIFIER: Mapping[str, Problem] = {
     "rejected_segment": Problem(
         "A segment was answered without a recognition; the event has `valid: false`.",
         "See the event's `reason`, below.",
@@ -226,10 +229,6 @@ OF_BRIDGE: Mapping[str, Problem] = {
 }
 
 OF_TRAINER: Mapping[str, Problem] = {
-    "bad_model": Problem(
-        "The model file that was named for use has changed and cannot be read; the model before stays in use.",
-        "Train it anew: `actum train`. The latest error names the file.",
-    ),
     "lost_take": Problem(
         "The take that was being recorded is lost: it could not be written, its set is gone, or the sensor's clock has"
         " begun anew or leaps.",
@@ -278,6 +277,7 @@ COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((GATEWAY, TRACKER), OF_IMAGES),
     ((GATEWAY,), OF_GATEWAY),
     ((PREPROCESSOR,), OF_PREPROCESSOR),
+    ((CLASSIFIER, TRAINER), OF_MODELS),
     ((CLASSIFIER,), OF_CLASSIFIER),
     ((TRACKER,), OF_TRACKER),
     ((FUSION,), OF_FUSION),
