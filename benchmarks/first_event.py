@@ -42,7 +42,13 @@ def lines_of(command: list[str], folder: Path) -> Iterator[Iterator[str]]:
     environment = {name: value for name, value in os.environ.items() if not name.startswith("ACTUM_")}
     environment |= {"PYTHONUNBUFFERED": "1", "XDG_DATA_HOME": str(folder / "data")}  # a newcomer has taught nothing
     process = subprocess.Popen(
-        command, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True, start_new_session=True
+        command,
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
     )
     assert process.stdout is not None
     try:
