@@ -34,7 +34,7 @@ $(STAMP): $(RUNS)
 demo: $(RUNS)  ## simulated people act in continuous scenes, and live processes find what they do; two minutes
 	$(BIN)/actum demo
 
-first-event:  ## seconds from a clone in an empty folder to the demo's first event; installs everything there
+first-event:  ## seconds from a clone in an empty folder to the first event of the demo, and of the README's Run
 	$(PYTHON) benchmarks/first_event.py
 
 up: $(RUNS)  ## router and all services, until Ctrl-C

@@ -27,6 +27,7 @@ from actum.messages import Status
 from actum.runtime import Client, Listening
 from actum.settings import ServiceSettings
 from actum_command import processes
+from actum_command.model_in_use import ModelInUse
 from actum_command.service_settings import Given
 from actum_command.simulated_experiment import train_model
 from actum_command.supervising import Supervisor
@@ -63,7 +64,8 @@ def live(folder: Path) -> Iterator[tuple[Client, str]]:
     with Supervisor(folder / "log") as supervisor:
         supervisor.start(processes.router(SETTINGS))
         with Client(SETTINGS, wait_s=30.0) as client:
-            for program in processes.with_page(SETTINGS, processes.system(SETTINGS, "simulator", None, model, SCENE)):
+            system = processes.system(SETTINGS, "simulator", None, ModelInUse(model), SCENE)
+            for program in processes.with_page(SETTINGS, [*system, processes.scene(SETTINGS)]):
                 supervisor.start(program)
             while not (pages := [info.page for info in client.infos() if info.page]):
                 time.sleep(0.1)

@@ -20,6 +20,7 @@ from playwright.sync_api import Browser, sync_playwright
 from actum.runtime import Client
 from actum.settings import ServiceSettings
 from actum_command import processes
+from actum_command.model_in_use import ModelInUse
 from actum_command.service_settings import Given
 from actum_command.simulated_experiment import train_model
 from actum_command.supervising import Supervisor
@@ -32,8 +33,8 @@ PICTURES: dict[str, dict[str, Any]] = {
     "page-dark.png": WIDE | {"color_scheme": "dark"},
     "page-phone.png": PHONE | {"color_scheme": "light"},
 }
-MARKED: Given = {"everyday": ["all"], "pauses": ["short"]}
-"""How the simulated person behaves: actions are marked, and everyday doings come between."""
+EVERYDAY: Given = {"everyday": ["all"], "pauses": ["short"]}
+"""How the simulated person behaves: everyday doings come between the actions."""
 PATIENCE_MS = 60_000
 MOMENT_MS = 300
 """Until everything that belongs to an answer is drawn."""
@@ -50,20 +51,22 @@ def main(folder: Path) -> None:
         model = Path(scratch) / "model.npz"
         train_model(Path(scratch) / "training.mcap", model, silent)
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"))
-        with live_page(model, MARKED) as address:
+        with live_page(model, EVERYDAY, marked=True) as address:
             for name, options in PICTURES.items():
                 take(browser, address, folder / name, options)
         browser.close()
 
 
 @contextmanager
-def live_page(model: Path | None, given: Given) -> Iterator[str]:
-    """Run the whole system of the simulated scene, and yield the page's address."""
+def live_page(model: Path, given: Given, marked: bool) -> Iterator[str]:
+    """Run the whole system of the simulated scene, which marks its actions or does not; yield the page's address."""
     here = ServiceSettings(connect=f"tcp/127.0.0.1:{_free_port()}")
     with Supervisor(Path("/dev/null")) as supervisor:
         supervisor.start(processes.router(here))
         with Client(here, wait_s=30.0) as client:
-            for program in processes.with_page(here, processes.system(here, "simulator", None, model, given)):
+            system = processes.system(here, "simulator", None, ModelInUse(model), given)
+            system += [processes.scene(here)] if marked else []
+            for program in processes.with_page(here, system, given):
                 supervisor.start(program)
             while not (pages := [info.page for info in client.infos() if info.page]):
                 time.sleep(0.1)

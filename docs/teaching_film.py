@@ -72,7 +72,7 @@ def main(file: Path) -> None:
     with TemporaryDirectory() as folder, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"))
         given = {"driven": True, "segments": ["auto"], "trainer_data": [folder]}
-        with live_page(None, given) as address:
+        with live_page(Path(folder) / "model.npz", given, marked=False) as address:
             page = browser.new_context(**VIEW).new_page()
             page.set_default_timeout(PATIENCE_MS)
             page.goto(f"{address}#teach")

@@ -8,6 +8,7 @@ from typing import Any
 from actum.messages import Message, Segment, Skeleton, Training
 from actum.node import SECOND_NS, TICK_NS, Tick
 from actum_model_trainer.teaching.job_process import Ended, JobRequest, Progressing
+from actum_model_trainer.teaching.original_model import OriginalModel
 from actum_model_trainer.teaching.trainer import ModelTrainer
 from people import FRAME_NS
 from repeating import GOGGLES, WAVE, Stream, eased, held, moved, rest
@@ -35,7 +36,7 @@ class Teacher:
     """Asks a trainer as a program would, and acts before its camera."""
 
     def __init__(self, folder: Path, start: Callable[[JobRequest], Any] | None = None) -> None:
-        self.folder, self.model = folder, folder / "in-use.npz"
+        self.folder, self.model, self.original = folder, folder / "in-use.npz", folder / "mine" / "model.npz"
         self.jobs: list[ScriptedJob] = []
         self.told: list[Training] = []
         self._stamp_ns = SECOND_NS
@@ -45,7 +46,14 @@ class Teacher:
 
     def begin(self) -> None:
         """Start the trainer anew."""
-        self.trainer = ModelTrainer(self.folder, self.model, "kinect0", self._start, lambda: 1_700_000_000 * SECOND_NS)
+        self.trainer = ModelTrainer(
+            self.folder,
+            self.model,
+            "kinect0",
+            self._start,
+            lambda: 1_700_000_000 * SECOND_NS,
+            OriginalModel(self.original, self.model),
+        )
         self._commands = {command.name: command for command in self.trainer.commands}
 
     def _scripted(self, request: JobRequest) -> ScriptedJob:

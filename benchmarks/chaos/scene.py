@@ -9,7 +9,7 @@ from benchmarks.chain import Chain
 
 from actum.messages import Event, Segment, Truth
 from actum.node import SECOND_NS, Source
-from actum_command.simulated_experiment import ACTOR
+from actum_command.simulated_model import ACTOR
 from scene_simulator.endless_simulator import simulator_of
 from scene_simulator.settings import Settings
 from som_classifier.model_loading import load_model

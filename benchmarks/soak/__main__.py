@@ -23,6 +23,7 @@ from actum.recording import Recording
 from actum.runtime import Client
 from actum.settings import ServiceSettings
 from actum_command import processes
+from actum_command.model_in_use import ModelInUse
 from actum_command.scene_marks import write_examples
 from actum_command.supervising import Program, Supervisor
 from actum_model_trainer.samples import samples_from
@@ -93,7 +94,7 @@ def programs(folder: Path) -> list[Program]:
     given = {"trainer_data": [str(folder / "teaching")], "page_port": [str(PAGE_PORT)]}
     model, objects = folder / "model.npz", processes.simulated_objects()
     common = processes.common(SETTINGS)
-    services = [*processes.services(SETTINGS, model, objects), processes.trainer(SETTINGS, model, given)]
+    services = [*processes.services(SETTINGS, model, objects), processes.trainer(SETTINGS, ModelInUse(model), given)]
     return [
         processes.router(SETTINGS),
         *processes.with_page(SETTINGS, services, given),

@@ -115,6 +115,10 @@ OF_FRAMES: Mapping[str, Problem] = {
     "it cannot be opened": Problem(
         "The device, stream or file does not exist, or another program uses it.", "Check `ACTUM_CAMERA`."
     ),
+    "it cannot be opened: …": Problem(
+        "The device does not exist, or another program uses it; the cameras of this machine follow.",
+        "Name one of them in `--camera` (`ACTUM_CAMERA`).",
+    ),
     "it gives no more pictures": Problem("A device or stream has stopped.", "Check cable and network."),
     "it was closed": Problem("The gateway is stopping.", "Nothing."),
     "no picture for … s": Problem("The device opened, but is silent.", "Unplug it and plug it in again."),

@@ -132,11 +132,14 @@ OF_PREPROCESSOR: Mapping[str, Problem] = {
     ),
 }
 
-OF_CLASSIFIER: Mapping[str, Problem] = {
+OF_MODELS: Mapping[str, Problem] = {
     "bad_model": Problem(
         "The model file cannot be read, or another version made it; the previous model stays in use.",
         "Train it again with `actum train`.",
     ),
+}
+
+OF_CLASSIFIER: Mapping[str, Problem] = {
     "rejected_segment": Problem(
         "A segment was answered without a recognition; its event has `valid: false`.",
         "See the event's `reason`, below.",
@@ -279,6 +282,7 @@ COUNTED_BY: Sequence[tuple[tuple[str, ...], Mapping[str, Problem]]] = (
     ((GATEWAY, TRACKER), OF_IMAGES),
     ((GATEWAY,), OF_GATEWAY),
     ((PREPROCESSOR,), OF_PREPROCESSOR),
+    ((CLASSIFIER, TRAINER), OF_MODELS),
     ((CLASSIFIER,), OF_CLASSIFIER),
     ((TRACKER,), OF_TRACKER),
     ((FUSION,), OF_FUSION),

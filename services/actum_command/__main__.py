@@ -29,6 +29,7 @@ with needs_extra("actum-command"):
     )
     from actum_command.commands.picture_commands import add_picture_commands
     from actum_command.commands.plain_help import PlainTyper
+    from actum_command.commands.router_flags import with_router_flags
     from actum_command.commands.terminal import say
 
 app = PlainTyper(
@@ -55,12 +56,12 @@ def _actum(
     """Take what goes before every command."""
 
 
-app.command("demo")(demo_command.demo)
-app.command("up")(system_commands.up)
+app.command("demo")(with_router_flags(demo_command.demo))
+app.command("up")(with_router_flags(system_commands.up))
 app.command("router")(system_commands.router)
 app.add_typer(segment_commands.app, name="segment")
-app.command("record")(recording_commands.record)
-app.command("play")(recording_commands.play)
+app.command("record")(with_router_flags(recording_commands.record))
+app.command("play")(with_router_flags(recording_commands.play))
 app.add_typer(takes_commands.app, name="takes")
 app.add_typer(label_commands.app, name="label")
 add_picture_commands(app)
@@ -70,14 +71,14 @@ app.command("evaluate")(training_commands.evaluate_command)
 app.command("tune")(tune_command.tune)
 app.command("inspect")(inspect_command.inspect)
 app.command("simulate")(scene_commands.simulate)
-app.command("scene")(scene_commands.scene)
-app.command("watch")(watch_command.watch)
-app.command("ros2")(ros2_command.ros2)
-app.command("view")(view_command.view)
-app.command("foxglove")(foxglove_commands.foxglove)
+app.command("scene")(with_router_flags(scene_commands.scene))
+app.command("watch")(with_router_flags(watch_command.watch))
+app.command("ros2")(with_router_flags(ros2_command.ros2))
+app.command("view")(with_router_flags(view_command.view))
+app.command("foxglove")(with_router_flags(foxglove_commands.foxglove))
 app.command("export")(foxglove_commands.export)
 app.add_typer(deploy_commands.app, name="deploy")
-app.command("doctor")(doctor_command.doctor)
+app.command("doctor")(with_router_flags(doctor_command.doctor))
 
 
 def main() -> None:

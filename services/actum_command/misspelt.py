@@ -2,10 +2,10 @@
 
 import tomllib
 from collections.abc import Iterator, Mapping
-from difflib import get_close_matches
 from pathlib import Path
 
 from actum_command.service_settings import SETTINGS
+from actum_command.spelling import nearest
 
 PREFIX = "ACTUM_"
 FILE = PREFIX + "CONFIG"
@@ -33,5 +33,4 @@ def misspelt(environment: Mapping[str, str]) -> Iterator[str]:
 
 
 def _suggestion(name: str, prefix: str = "") -> str:
-    near = get_close_matches(name, KNOWN, n=1)
-    return "".join(f": is {prefix + (one.upper() if prefix else one)} meant?" for one in near)
+    return "".join(f": is {prefix + (one.upper() if prefix else one)} meant?" for one in nearest(name, KNOWN))

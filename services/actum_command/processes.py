@@ -9,9 +9,9 @@ from pathlib import Path
 from types import MappingProxyType
 
 from actum.settings import PROCESS_ENVIRONMENT, ServiceSettings
+from actum_command.model_in_use import ModelInUse
 from actum_command.service_settings import TRAINER, Given, arguments_of
 from actum_command.supervising import Program
-from actum_model_trainer.settings import Settings
 from marker_tracker.settings import Settings as TrackerSettings
 from scene_simulator.parameters import load_parameters
 
@@ -22,28 +22,14 @@ PAGE = "web_dashboard"
 """The service that shows all of it to browsers."""
 
 
-def system(
-    settings: ServiceSettings, source: str, path: Path | None, model: Path | None, given: Given
-) -> list[Program]:
-    """Return all programs of a system but its router: the four services, the trainer, and the sensor that is named.
-
-    Where no model is named, the classifier uses the one that was taught last, as soon as there is one.
-
-    The simulated scene's actions are marked, unless only those are wanted that the classifier finds by itself.
-    """
-    watched = model or taught_model(given)
+def system(settings: ServiceSettings, source: str, path: Path | None, model: ModelInUse, given: Given) -> list[Program]:
+    """Return all programs of a system but its router: the four services, the trainer, and the sensor that is named."""
+    own_scene = "scene" in given or TrackerSettings().scene is not None
+    objects = {} if own_scene or source != "simulator" else simulated_objects()
+    programs = [*services(settings, model.file, objects, given), trainer(settings, model, given)]
     if source == "simulator":
-        marking = [] if given.get("segments") == ["auto"] else [scene(settings)]
-        sensor = simulator(settings, arguments_of("scene_simulator", given))
-        own_scene = "scene" in given or TrackerSettings().scene is not None
-        return [
-            *services(settings, watched, {} if own_scene else simulated_objects(), given),
-            trainer(settings, watched, given),
-            sensor,
-            *marking,
-        ]
-    programs = [*services(settings, watched, {}, given), trainer(settings, watched, given)]
-    if source != "none":
+        programs.append(simulator(settings, arguments_of("scene_simulator", given)))
+    elif source != "none":
         play = ["--path", str(path)] if path else []
         programs.append(gateway(settings, ["--source", source, *play, *arguments_of("sensor_gateway", given)]))
     return programs
@@ -96,16 +82,11 @@ def services(
     return [Program(name, name, arguments_of(name, given), environment) for name in SERVICES]
 
 
-def taught_model(given: Given) -> Path:
-    """Return the file of the model that was taught last: in the trainer's folder, as that is set."""
-    folder = given.get("trainer_data")
-    named = folder[-1] if isinstance(folder, list) else Settings().trainer_data
-    return Path(named) / "model.npz"
-
-
-def trainer(settings: ServiceSettings, model: Path, given: Given) -> Program:
-    """Return the program of the trainer, which puts models into use as this file."""
-    environment = {**common(settings), "ACTUM_MODEL": str(model)}
+def trainer(settings: ServiceSettings, model: ModelInUse, given: Given) -> Program:
+    """Return the program of the trainer, which puts models into use and follows the original."""
+    environment = {**common(settings), "ACTUM_MODEL": str(model.file)}
+    if model.original is not None:
+        environment["ACTUM_ORIGINAL_MODEL"] = str(model.original)
     return Program(TRAINER, "actum_model_trainer", arguments_of(TRAINER, given), environment)
 
 

@@ -42,6 +42,9 @@ SETTINGS: Mapping[str, type[ServiceSettings]] = {
 }
 """The settings of every service, by the service's name."""
 
+SET_BY_UP = ("original_model",)
+"""Settings that are no flags of `actum up`: it sets them by its own."""
+
 Given = Mapping[str, bool | list[str]]
 """The settings that are given on the command line, by name."""
 

@@ -12,6 +12,7 @@ from actum_command import processes
 from actum_command.demo_score import Score, line
 from actum_command.live_test import Appearance, LiveTest
 from actum_command.scene_marks import write_examples
+from actum_command.simulated_model import ACTOR, TRAINING_SEED
 from actum_model_trainer.baseline import nearest_neighbour
 from actum_model_trainer.evaluation import Evaluation, evaluate
 from actum_model_trainer.progress import Progress
@@ -21,10 +22,8 @@ from scene_simulator.programme import ACTIONS
 from som_classifier.model_loading import load_model
 from som_classifier.presets import DEFAULT
 
-ACTOR = 0  # the actor of the training
 FIRST_TESTED = ACTOR + 1  # the first actor of the test; the others have the numbers that follow
 PEOPLE = 9  # actors of the test: the paper tests each action 9 times, here once with each actor
-TRAINING_SEED = 1
 TEST_SEED = 2  # another than in training, so that no repetition is the same as in training
 TRAINING_REPETITIONS = 12  # enough samples of each action that more no longer help
 LONGEST_SAMPLE_S = 4.5  # more than an action of the simulated scene takes with the pause after it

@@ -5,7 +5,6 @@ from tempfile import TemporaryDirectory
 
 from actum.recording import Recording
 from actum_command.scene_marks import write_examples
-from actum_command.simulated_experiment import ACTOR, TRAINING_SEED
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train_to_spot
@@ -15,6 +14,10 @@ from som_classifier.presets import DEFAULT
 
 SIMULATED_MODEL = Path(__file__).with_name("simulated_model.npz")
 """The model's file, which `make simulated-model` writes."""
+ACTOR = 0
+"""The actor of the training, where it has one alone."""
+TRAINING_SEED = 1
+"""Which repetitions the training has; tests have others."""
 TRAINERS = (ACTOR, *range(1001, 1009))
 """Actors of the training: numbers that no test of up to 900 people has."""
 TRAINING_REPETITIONS = 2

@@ -1,4 +1,4 @@
-"""Checks before a whole system starts: its source, its endpoint, its model."""
+"""Checks before a whole system starts: its source and its endpoint."""
 
 import socket
 import tempfile
@@ -10,7 +10,6 @@ from actum.runtime import Client, RouterUnreachableError
 from actum.settings import ServiceSettings, SettingsError, host_and_port
 from actum_command.processes import PAGE, SERVICES
 from actum_command.service_settings import DECLARED, TRAINER, Given, flag_of, service_of
-from som_classifier.model_loading import ModelError, load_model
 
 CHECK_S = 0.2  # interval of checks for the router: so short that nobody notices the wait
 ROUTER_S = 5.0  # a router is up within a second; services wait for it by themselves where it takes longer
@@ -27,11 +26,6 @@ WITHOUT_CAMERA = ("simulator", "recording")
 
 SENSORS = {"none": None, "simulator": "scene_simulator"}
 """The service that puts the sensor's streams, by source, where it is not the sensor gateway."""
-
-NO_MODEL = (
-    "no --model: every action is answered with 'no model'. For the simulated scene: "
-    "actum simulate examples.mcap; actum train examples.mcap -o model.npz; actum up --model model.npz"
-)
 
 
 def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
@@ -56,6 +50,18 @@ def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
     if path is not None and source in FILES_ELSEWHERE:
         raise SettingsError(f"source {source} takes no --path: to have {path} played, name {FILES_ELSEWHERE[source]}")
     return source
+
+
+def refuse_marks(marked: bool, source: str, segments: str) -> None:
+    """Check that the simulated scene's own marks are of use.
+
+    Raises:
+        SettingsError: the source is no simulated scene, or marks are not answered.
+    """
+    if marked and source != "simulator":
+        raise SettingsError(f"source {source} takes no --marked: only the simulated scene marks its own actions")
+    if marked and segments == "auto":
+        raise SettingsError("--segments auto answers no marks: leave --marked out, or name --segments both")
 
 
 def refuse_taken(endpoint: str) -> None:
@@ -98,19 +104,6 @@ def wait_for_router(here: ServiceSettings, stop: threading.Event) -> None:
                 return
         except RouterUnreachableError:
             continue
-
-
-def lack_of_model(model: Path | None) -> str | None:
-    """Return why no usable model is there yet; None where one is."""
-    if model is None:
-        return NO_MODEL
-    if not model.exists():
-        return f"no {model} yet: every action is answered with 'no model' until it is there"
-    try:
-        load_model(model)
-    except ModelError as error:
-        return str(error)
-    return None
 
 
 def log_file(name: str, here: ServiceSettings) -> Path:

@@ -92,8 +92,9 @@ def environment(deployment: Deployment, host: Host, program: Program, own_router
     if program.credentials:
         own["ACTUM_CREDENTIALS"] = program.credentials
     if program.role in (CLASSIFIER, TRAINER):
-        own["ACTUM_MODEL"] = f"{data.models}/model{several}.npz"
+        own["ACTUM_MODEL"] = f"{data.models}/in-use{several}.npz"
     if program.role is TRAINER:
+        own["ACTUM_ORIGINAL_MODEL"] = f"{data.models}/model{several}.npz"
         own["ACTUM_TRAINER_DATA"] = f"{data.models}/teaching{several}"
     if program.role in STATEFUL:
         own["ACTUM_STATE"] = data.state

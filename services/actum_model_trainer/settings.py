@@ -6,6 +6,9 @@ from pydantic import Field
 
 from actum.settings import ServiceSettings, data_folder
 
+MODEL = "model.npz"
+"""The file, in the trainer's folder, of the model that was put into use last."""
+
 
 class Settings(ServiceSettings):
     """What the trainer can be told beside what every service can."""
@@ -15,5 +18,8 @@ class Settings(ServiceSettings):
         description="the folder of sets, models and jobs of those who teach",
     )
     model: Path | None = Field(
-        None, description="the file that the classifier watches; default: model.npz in that folder"
+        None, description="the model in use: the file that the classifier watches; default: model.npz in that folder"
+    )
+    original_model: Path | None = Field(
+        None, description="a model file that is only read: it is copied to the model in use whenever it changes"
     )

@@ -19,7 +19,6 @@ from actum.recorder import Recorder
 from actum.recording import Recording
 from actum.runtime import RouterUnreachableError
 from actum.settings import ServiceSettings
-from actum_command import processes
 from actum_command.__main__ import app
 from actum_command.commands import (
     continuous_evaluation,
@@ -340,49 +339,6 @@ def test_a_mark_that_is_none_is_refused_without_a_router(arguments: list[str], c
     assert complaint in refused.stderr
 
 
-@pytest.fixture
-def supervised(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The programs that would run beside the router, by name, where none does."""
-    names: list[str] = []
-    monkeypatch.setattr(system_commands, "refuse_taken", lambda _: None)
-    monkeypatch.setattr(system_commands, "stop_on_signals", lambda: None)
-    monkeypatch.setattr(system_commands, "wait_for_router", lambda *_: None)
-    monkeypatch.setattr(system_commands, "supervise", lambda _, programs, __: names.extend(p.name for p in programs))
-    monkeypatch.setattr(system_commands.Supervisor, "start", lambda *_: None)
-    return names
-
-
-@pytest.mark.parametrize(
-    ("source", "beside", "told"),
-    [
-        (["simulator"], ["scene_simulator", "scene"], False),
-        (["simulator", "--segments", "both"], ["scene_simulator", "scene"], False),
-        (["simulator", "--segments", "auto"], ["scene_simulator"], True),
-        (["camera"], ["sensor_gateway"], True),
-        (["none"], [], True),
-    ],
-)
-def test_what_runs_beside_the_services_and_whether_somebody_marks(
-    source: list[str], beside: list[str], told: bool, supervised: list[str]
-) -> None:
-    started = CliRunner().invoke(app, ["up", "--source", *source])
-    assert supervised == [*processes.SERVICES, "model_trainer", *beside, processes.PAGE]
-    assert ("nobody marks actions here" in started.stdout) == told
-
-
-@pytest.mark.usefixtures("supervised")
-def test_a_system_that_has_no_model_says_so_when_it_starts(tmp_path: Path) -> None:
-    (tmp_path / "foreign.npz").write_text("nothing of the kind")
-    for arguments, said in (
-        ([], "no --model"),
-        (["--model", "none.npz"], "no none.npz yet"),
-        (["--model", str(tmp_path / "foreign.npz")], "foreign.npz: no actum model"),
-    ):
-        started = CliRunner().invoke(app, ["up", *arguments], env={"ACTUM_MODEL": None})
-        assert started.exit_code == 0
-        assert said in started.stdout
-
-
 def test_a_switch_that_is_left_leaves_the_line_to_the_shell(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(segment_commands, "connect", lambda: nullcontext(None))
     monkeypatch.setattr(segment_commands, "Answers", lambda _: None)
@@ -475,3 +431,15 @@ def test_a_number_that_is_not_finite_is_refused_as_argument_and_as_option(value:
 
 def test_every_command_holds_its_numbers_to_that() -> None:
     assert all(isinstance(command, PlainCommand) for command in leaves(typer.main.get_command(app)))
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [("recrod", "record"), ("eval", "evaluate"), ("scnee", "scene"), ("nonsense", None), ("tools", None), ("x", None)],
+)
+def test_a_command_is_suggested_only_where_one_is_like_what_was_typed(typed: str, meant: str | None) -> None:
+    refused = CliRunner().invoke(app, [typed])
+    assert refused.exit_code == 2
+    assert f"No such command '{typed}'." in refused.stderr
+    assert ("Did you mean" in refused.stderr) == (meant is not None)
+    assert meant is None or f"Did you mean '{meant}'?" in refused.stderr

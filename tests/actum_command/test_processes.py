@@ -8,10 +8,11 @@ import typer
 from actum.settings import ServiceSettings
 from actum_command import processes
 from actum_command.commands.watch_command import watch
+from actum_command.model_in_use import ModelInUse
 
 
 def environment_of_tracker(given: dict[str, bool | list[str]]) -> dict[str, str]:
-    programs = processes.system(ServiceSettings(), "simulator", None, None, given)
+    programs = processes.system(ServiceSettings(), "simulator", None, ModelInUse(Path("model.npz")), given)
     (tracker,) = [program for program in programs if program.name == "marker_tracker"]
     return dict(tracker.environment)
 

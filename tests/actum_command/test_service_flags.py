@@ -1,5 +1,7 @@
 """What the services can be told can be told to `actum up`, which starts them."""
 
+from pathlib import Path
+
 import pytest
 from typer.testing import CliRunner
 
@@ -8,20 +10,21 @@ from actum.settings import ServiceSettings
 from actum_command import processes
 from actum_command.__main__ import app
 from actum_command.commands import system_commands
-from actum_command.service_settings import DECLARED
+from actum_command.service_settings import DECLARED, SET_BY_UP
 from actum_command.supervising import Program
 
 BY_NAME = dict[str, list[str]]
 
 
 @pytest.fixture
-def started(monkeypatch: pytest.MonkeyPatch) -> BY_NAME:
+def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> BY_NAME:
     """The arguments of the programs that would run, by name, where none does."""
     arguments: BY_NAME = {}
 
-    def supervise(_: object, programs: list[Program], __: object) -> None:
+    def supervise(_: object, programs: list[Program], *_others: object) -> None:
         arguments.update({program.name: list(program.arguments) for program in programs})
 
+    monkeypatch.setenv("ACTUM_TRAINER_DATA", str(tmp_path))
     monkeypatch.setattr(system_commands, "refuse_taken", lambda _: None)
     monkeypatch.setattr(system_commands, "stop_on_signals", lambda: None)
     monkeypatch.setattr(system_commands, "wait_for_router", lambda *_: None)
@@ -91,7 +94,7 @@ def test_what_nobody_would_heed_is_refused(arguments: tuple[str, ...], reason: s
 
 def test_without_any_the_simulated_scene_is_started(started: BY_NAME) -> None:
     up()
-    assert set(started) == {"scene_simulator", *processes.SERVICES, "model_trainer", "scene", processes.PAGE}
+    assert set(started) == {"scene_simulator", *processes.SERVICES, "model_trainer", processes.PAGE}
     assert started["scene_simulator"] == []
 
 
@@ -112,5 +115,5 @@ def test_every_setting_of_every_service_stands_in_the_help() -> None:
     shown = CliRunner().invoke(app, ["up", "--help"], env={"COLUMNS": "200"}).output
     for service, settings in DECLARED.items():
         assert f"Settings of {service}" in shown
-        for name in settings.model_fields.keys() - ServiceSettings.model_fields.keys():
+        for name in settings.model_fields.keys() - ServiceSettings.model_fields.keys() - {*SET_BY_UP}:
             assert f"--{name.replace('_', '-')} " in shown

@@ -14,8 +14,11 @@ import typer
 
 from actum.runtime.serving import TAKEN, UNUSABLE
 from actum_command.commands.system_commands import supervise
+from actum_command.model_in_use import ModelInUse, Reminder
 from actum_command.supervising import ELSEWHERE_S, Program, Supervisor, UnusableError
 from live import free_endpoint, wait_until
+
+NOTHING_MISSING = Reminder(ModelInUse(Path("model.npz")), 0.0)
 
 
 @pytest.fixture
@@ -79,7 +82,7 @@ def test_a_system_ends_with_the_line_of_the_program_that_cannot_be_used(
     ending: type[Program], capfd: pytest.CaptureFixture[str]
 ) -> None:
     with Supervisor() as supervisor, pytest.raises(typer.Exit) as ended:
-        supervise(supervisor, [ending("worker", "ending", [str(UNUSABLE)])], threading.Event())
+        supervise(supervisor, [ending("worker", "ending", [str(UNUSABLE)])], threading.Event(), NOTHING_MISSING)
     told = capfd.readouterr()
     assert ended.value.exit_code == 1
     assert told.out == "mode: no such thing\n"

@@ -58,6 +58,9 @@ def test_only_the_classifier_is_in_anothers_group_that_of_its_own_trainer(lab: P
             [model] = setting(unit, 'Environment="ACTUM_MODEL')
             [folder] = setting(trainer, "StateDirectory")
             assert model.startswith(f"/var/lib/{folder}/")
+            assert setting(trainer, 'Environment="ACTUM_MODEL') == [model]
+            [original] = setting(trainer, 'Environment="ACTUM_ORIGINAL_MODEL')
+            assert original.startswith(f"/var/lib/{folder}/model") and original != model, "it is only read"
         else:
             assert groups == []
 

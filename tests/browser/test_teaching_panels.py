@@ -313,6 +313,14 @@ def test_a_model_is_trained_put_into_use_compared_undone_and_deleted(room: Lesso
     row.get_by_text("in use").wait_for()
     assert room.teacher.model.exists()
     assert models.get_by_role("button", name="Back to the previous model").is_disabled()
+    says(models, "model-list", f"In use: model {name}, trained on the set {SET}.")
+
+
+def test_a_model_that_somebody_named_is_said_to_be_only_read(room: Lesson, models: Any) -> None:
+    says(models, "model-list", "No model is in use.")
+    room.teacher.original.parent.mkdir()
+    tiny_model().save(room.teacher.original)
+    says(models, "model-list", f"In use: {room.teacher.original}. This file is only read")
 
 
 def test_a_job_is_cancelled(room: Lesson, models: Any) -> None:

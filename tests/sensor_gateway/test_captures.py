@@ -1,5 +1,6 @@
 """Pictures of files and devices: their stamps, their pace, and that a device's old ones are left out."""
 
+import sys
 from pathlib import Path
 
 import cv2
@@ -12,8 +13,10 @@ from camera_videos import write_video
 from live import wait_until
 from sensor_gateway.cameras import capture_of
 from sensor_gateway.captured_picture import Picture
+from sensor_gateway.devices import webcam
 from sensor_gateway.devices.capture import CameraLostError, CaptureEndedError
 from sensor_gateway.devices.file_capture import FileCapture
+from sensor_gateway.devices.present_cameras import present_cameras
 from sensor_gateway.devices.video import VideoError, pictures_of
 from sensor_gateway.devices.webcam import LiveCapture
 
@@ -118,6 +121,24 @@ def test_a_device_gives_its_newest_picture_and_what_came_before_is_left_out(tmp_
     assert isinstance(newest, Picture)
     assert round(float(newest.image_bgr.mean())) == pytest.approx(20 + 10 * 19, abs=2)
     with pytest.raises(CameraLostError, match="no more pictures"):
+        capture.next(0.0)
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux lists its cameras")
+def test_a_device_that_cannot_be_opened_is_lost_with_the_cameras_that_there_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for number, index in ((0, 0), (1, 1), (10, 0), (2, 0)):
+        device = tmp_path / f"video{number}"
+        device.mkdir()
+        (device / "name").write_text(f"Camera {number}\n")
+        (device / "index").write_text(f"{index}\n")
+    assert present_cameras(tmp_path) == "the cameras here are 0 (Camera 0), 2 (Camera 2), 10 (Camera 10)"
+    assert present_cameras(tmp_path / "none") == "this machine has no camera"
+    monkeypatch.setattr(webcam, "present_cameras", lambda: present_cameras(tmp_path))
+    capture = LiveCapture(99)
+    wait_until(lambda: capture.over, "it has been tried")
+    with pytest.raises(CameraLostError, match="it cannot be opened: the cameras here are 0 "):
         capture.next(0.0)
 
 

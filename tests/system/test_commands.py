@@ -4,6 +4,7 @@ import re
 import signal
 import subprocess
 from pathlib import Path
+from shutil import copyfile
 
 import pytest
 
@@ -11,10 +12,12 @@ from actum import keys
 from actum.messages import Action, Event, Segment, Skeleton, Status
 from actum.recording import Recording
 from actum.runtime import Listening
+from actum_command.simulated_model import SIMULATED_MODEL
 from live import PATIENCE_S, System, collect, wait_until
 from people import FRAME_NS, reaches
 from scene_simulator.programme import Task
 from scene_simulator.simulator import Simulator
+from som_classifier.model_loading import load_model
 
 pytestmark = pytest.mark.system
 QUICK_DEMO = Path(__file__).parents[1] / "quick_demo.py"
@@ -79,7 +82,7 @@ def test_marks_from_the_command_line_are_answered(running: System, scene_model: 
 def test_up_runs_everything_that_watch_shows_restarts_what_dies_and_leaves_nothing(
     running: System, scene_model: Path
 ) -> None:
-    up = running.start("actum_command", "up", "--model", str(scene_model))
+    up = running.start("actum_command", "up", "--model", str(scene_model), "--marked")
     with running.client() as client:
         running.wait_for_services(client, *SERVICES)
         events = client.listen(keys.pattern(keys.EVENT, client.sensor))
@@ -98,6 +101,32 @@ def test_up_runs_everything_that_watch_shows_restarts_what_dies_and_leaves_nothi
     up.process.send_signal(signal.SIGINT)
     assert up.process.wait(timeout=PATIENCE_S) == 0
     wait_until(lambda: pids_of(running) == set(), "no process is left")
+
+
+def test_what_is_put_into_use_beside_up_never_writes_the_named_model_which_is_followed(
+    running: System, scene_model: Path
+) -> None:
+    named, other = running.folder / "mine.npz", load_model(SIMULATED_MODEL).id
+    copyfile(scene_model, named)
+    (running.folder / "teaching" / "models").mkdir(parents=True)
+    copyfile(SIMULATED_MODEL, running.folder / "teaching" / "models" / "other.npz")
+    running.start("actum_command", "up", "--model", str(named), "--source", "none", "--no-page")
+    with running.client() as client:
+        running.wait_for_services(client, "som_classifier", "model_trainer")
+
+        def classifies_by(model: str) -> None:
+            wait_until(
+                lambda: [info.model for info in client.infos() if info.service == "som_classifier"] == [model],
+                f"the classifier uses {model}",
+            )
+
+        classifies_by(load_model(named).id)
+        assert client.ask("model_trainer", "state")["model_file"] == str(named)
+        client.ask("model_trainer", "activate", model=other)
+        classifies_by(other)
+        assert named.read_bytes() == scene_model.read_bytes()
+        copyfile(scene_model, named)  # as 'actum train -o mine.npz' beside it
+        classifies_by(load_model(scene_model).id)
 
 
 def test_up_that_is_killed_leaves_nothing(running: System) -> None:

@@ -114,8 +114,8 @@ def test_the_tracker_knows_the_objects_of_the_simulated_scene(services, monkeypa
     assert len(told.objects) == len(settings().objects)
 
 
-def test_the_trainer_writes_the_model_that_the_classifier_reads(services):
-    model = services["som_classifier"]["environment"]["ACTUM_MODEL"]
+def test_the_demo_model_is_written_where_the_one_who_teaches_takes_it_from(services):
+    model = services[TRAINER]["environment"]["ACTUM_ORIGINAL_MODEL"]
     assert services["trainer"]["command"][0].endswith(f"-o {model}")
     assert services["trainer"]["volumes"] == ["models:/models"]
     assert "models:/models:ro" in services["som_classifier"]["volumes"]
@@ -124,6 +124,7 @@ def test_the_trainer_writes_the_model_that_the_classifier_reads(services):
 def test_what_is_taught_is_put_where_the_classifier_reads_it_and_stays(services):
     trainer, classifier = services[TRAINER], services["som_classifier"]
     assert trainer["environment"]["ACTUM_MODEL"] == classifier["environment"]["ACTUM_MODEL"]
+    assert trainer["environment"]["ACTUM_MODEL"] != trainer["environment"]["ACTUM_ORIGINAL_MODEL"], "it is only read"
     assert trainer["environment"]["ACTUM_TRAINER_DATA"].startswith("/models/")
     assert trainer["volumes"] == ["models:/models"]
     assert trainer["entrypoint"] == ["python", "-m", "actum_model_trainer"]
@@ -147,6 +148,7 @@ def test_two_hosts_together_run_the_six_services_and_each_a_router():
 
 def test_where_the_sensors_host_has_the_only_router_all_others_connect_to_it():
     compute = services_of(DEPLOY / "compose.compute-host.yml")
+    assert compute["som_classifier"]["environment"]["ACTUM_MODEL"] == "/models/model.npz", "where no trainer runs"
     changed = services_of(DEPLOY / "compose.one-router.yml")
     assert changed.keys() == compute.keys()
     assert changed["router"] == {"profiles": ["unused"]}

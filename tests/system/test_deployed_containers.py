@@ -87,7 +87,7 @@ def put_model(taken: Taken, model: Path) -> None:
             trainer,
             "sh",
             "-c",
-            "cat > /models/new && mv /models/new $ACTUM_MODEL",
+            "cat > /models/new && mv /models/new $ACTUM_ORIGINAL_MODEL",
         ]
         subprocess.run(command, stdin=content, check=True)
 

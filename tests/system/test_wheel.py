@@ -114,7 +114,7 @@ def test_a_stranger_installs_it_learns_and_recognises(programs: Path, wheel: Pat
     run(tmp_path, actum, "train", "examples.mcap", "-o", "model.npz")
     here = {"ACTUM_CONNECT": free_endpoint()}
     with (
-        running(tmp_path, actum, "up", "--model", "model.npz", **here),
+        running(tmp_path, actum, "up", "--model", "model.npz", "--marked", **here),
         running(tmp_path, actum, "watch", "--json", **here) as watch,
     ):
         assert watch.stdout

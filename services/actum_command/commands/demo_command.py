@@ -5,7 +5,6 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from shutil import copyfile
 from typing import Annotated
 
 import typer
@@ -55,9 +54,7 @@ def demo(
     try:
         refuse_taken(here.connect)
         signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))  # ends the training at once, as Ctrl-C does
-        with tempfile.TemporaryDirectory(prefix="actum-demo-") as folder:
-            experiment = _marked if marked else _unmarked
-            lack = experiment(here, Path(folder), people, repetitions)
+        lack = (_marked if marked else _unmarked)(here, people, repetitions)
     except TerminatedError:
         sys.exit(TERMINATED)
     except (ExperimentError, RouterUnreachableError, SettingsError, UnusableError) as error:
@@ -67,25 +64,26 @@ def demo(
     log_file("demo", here).unlink(missing_ok=True)
 
 
-def _marked(here: ServiceSettings, folder: Path, people: int, repetitions: int) -> str | None:
+def _marked(here: ServiceSettings, people: int, repetitions: int) -> str | None:
     """Run the paper's experiment and print its results; return what is missing, None where nothing is."""
-    training, model, actors = folder / "training.mcap", folder / "model.npz", tested_actors(FIRST_TESTED, people)
-    learned = _train(training, model)
-    baseline = nearest_neighbour_baseline(training, folder, actors, repetitions)
-    score = run_marked(_live(here), here, model, actors, repetitions)
+    actors = tested_actors(FIRST_TESTED, people)
+    with tempfile.TemporaryDirectory(prefix="actum-demo-") as name:
+        folder = Path(name)
+        training, model = folder / "training.mcap", folder / "model.npz"
+        learned = _train(training, model)
+        baseline = nearest_neighbour_baseline(training, folder, actors, repetitions)
+        score = run_marked(_live(here), here, model, actors, repetitions)
     console.print(table(score))
     console.print(summary(score, learned, baseline, people), soft_wrap=True)
     return f"only {len(score.events)} of {score.expected} events came" if len(score.events) < score.expected else None
 
 
-def _unmarked(here: ServiceSettings, folder: Path, people: int, repetitions: int) -> str | None:
+def _unmarked(here: ServiceSettings, people: int, repetitions: int) -> str | None:
     """Run the experiment without marks and print its results; return what is missing, None where nothing is."""
     actors = tested_actors(FIRST_UNSEEN, people)
     console.print(introduction(len(actors)), soft_wrap=True)
-    model = folder / SIMULATED_MODEL.name  # a copy: the page's "use this model" writes there
-    copyfile(SIMULATED_MODEL, model)
-    learned = learned_from(load_model(model))
-    performances = run_unmarked(_live(here), here, model, actors, repetitions)
+    learned = learned_from(load_model(SIMULATED_MODEL))
+    performances = run_unmarked(_live(here), here, SIMULATED_MODEL, actors, repetitions)
     console.print(unmarked_table(performances))
     console.print(unmarked_summary(performances, learned, people), soft_wrap=True)
     unfinished = [performance.person for performance in performances if not performance.over]

@@ -10,6 +10,8 @@ from typing import Any, TypeVar
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from actum_command.spelling import nearest
+
 F = TypeVar("F", bound=Callable[..., Any])
 WORDS = {"str": "TEXT", "path": "PATH", "file": "PATH", "int": "INTEGER", "float": "NUMBER", "bool": ""}
 """The placeholder that is shown for each of Python's types."""
@@ -42,7 +44,18 @@ class PlainCommand(_Plain, TyperCommand):
 
 
 class PlainGroup(_Plain, TyperGroup):
-    """A group of commands with plain help."""
+    """A group of commands with plain help, which suggests a command only where one is really like what was typed."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self.suggest_commands = False  # Typer's own suggestions are too bold
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Return the command that is named; fail where there is none, with the one that may be meant."""
+        name = args[0]
+        if name not in self.commands and (meant := nearest(name, self.commands)):
+            ctx.fail(f"No such command '{name}'. Did you mean '{meant[0]}'?")
+        return super().resolve_command(ctx, args)
 
 
 LISTS = "list"

@@ -12,6 +12,7 @@ from actum.messages import MANUAL, Segment
 from actum.runtime import Client
 from actum_command.answers import Answers
 from actum_command.commands.plain_help import PlainTyper
+from actum_command.commands.router_flags import with_router_flags
 from actum_command.commands.terminal import connect, console, fail, say, settings
 
 WAIT_S = 5.0  # how long to wait for a classifier that is starting to subscribe
@@ -26,6 +27,7 @@ StampOption = Annotated[int | None, typer.Option(min=0, help="capture time (ns) 
 
 
 @app.command()
+@with_router_flags
 def start(
     segment_id: Id,
     agent: AgentOption = None,
@@ -40,6 +42,7 @@ def start(
 
 
 @app.command()
+@with_router_flags
 def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
     """Mark the end of an action."""
     mark = _mark("end", segment_id, stamp_ns=stamp_ns)
@@ -48,6 +51,7 @@ def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
 
 
 @app.command()
+@with_router_flags
 def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOption = None) -> None:
     """Switch by keyboard: Enter starts, Enter ends and shows the answer, Ctrl-D leaves."""
     with connect() as client:

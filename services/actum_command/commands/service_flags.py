@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 from actum.command_line import explained, placeholder
 from actum.settings import ServiceSettings
 from actum_command.search_settings import CLASSIFIER, SEARCH_SETTINGS
-from actum_command.service_settings import BRIDGE, DECLARED, HISTORY, SETTINGS, flag_of, negated_flag_of
+from actum_command.service_settings import BRIDGE, DECLARED, HISTORY, SET_BY_UP, SETTINGS, flag_of, negated_flag_of
 
 
 def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
@@ -39,7 +39,8 @@ def with_search_flags(command: Callable[..., None]) -> Callable[..., None]:
 
 def _own(service: str) -> list[tuple[str, str]]:
     """List a service's settings beside those that all have, each with the service."""
-    return [(service, name) for name in SETTINGS[service].model_fields if name not in ServiceSettings.model_fields]
+    common = {*ServiceSettings.model_fields, *SET_BY_UP}
+    return [(service, name) for name in SETTINGS[service].model_fields if name not in common]
 
 
 def _with_flags(command: Callable[..., None], settings: Iterable[tuple[str, str]]) -> Callable[..., None]:

@@ -2,29 +2,28 @@
 
 import logging
 import threading
+import time
 from pathlib import Path
 from typing import Annotated, get_args
 
 import typer
+from pydantic import ValidationError
 
 from actum.installing import adding
 from actum.runtime import serve_router, stop_on_signals
-from actum.settings import DEFAULT_ENDPOINT, SettingsError, host_and_port
+from actum.settings import DEFAULT_ENDPOINT, ServiceSettings, SettingsError, complaint, host_and_port
 from actum_command import processes
 from actum_command.commands.service_flags import with_service_flags
 from actum_command.commands.terminal import fail, say, settings
+from actum_command.introduction import how_found, lack_of_model, segments_of, source_of
+from actum_command.model_in_use import ModelInUse, Reminder, model_in_use
 from actum_command.service_settings import Given
-from actum_command.startup import CHECK_S, chosen_source, lack_of_model, refuse_taken, wait_for_router
+from actum_command.startup import CHECK_S, chosen_source, refuse_marks, refuse_taken, wait_for_router
 from actum_command.supervising import Program, Supervisor, UnusableError
 from sensor_gateway.settings import SourceName
 
 SOURCES = [name for name in get_args(SourceName) if name != "marker-camera"]
 """The sources of the gateway that `actum up` can start: a marker camera runs only beside another source."""
-
-NO_MARKS = (
-    "nobody marks actions here, so those are told that the model finds by itself; to mark: 'actum segment toggle', "
-    "or 'actum play' beside --source none"
-)
 
 
 def router(
@@ -61,8 +60,16 @@ def up(
     ] = None,
     path: Annotated[Path | None, typer.Option(help="what a source from files plays")] = None,
     model: Annotated[
-        Path | None, typer.Option(help="the model; it may come or change later", envvar="ACTUM_MODEL")
+        Path | None,
+        typer.Option(
+            help="the model, which is only read and may come or change later; default: the one that was put into use "
+            "last, at first, for the simulated scene, the one that ships",
+            envvar="ACTUM_MODEL",
+        ),
     ] = None,
+    marked: Annotated[
+        bool, typer.Option("--marked", help="the simulated scene marks its own actions, as a switch would")
+    ] = False,
     page: Annotated[bool, typer.Option("--page/--no-page", help="serve the web page, whose address is printed")] = True,
     *,
     given: Given,
@@ -73,34 +80,52 @@ def up(
         fail("everything of 'actum up' runs on this machine and shows no credentials: leave ACTUM_CREDENTIALS unset")
     try:
         source = chosen_source(source, given, path)
+        segments = segments_of(given)
+        refuse_marks(marked, source, segments)
         refuse_taken(here.connect)
-        programs = processes.system(here, source, path, model, given)
-        say(f"actum starts on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
-        if processes.scene(here) not in programs:
-            say(NO_MARKS)
-        if page:
-            programs = processes.with_page(here, programs, given)
-            if programs[-1].name != processes.PAGE:
-                say(f"no web page: {adding('web-dashboard')}", style="yellow")
-        taught = processes.taught_model(given)
-        if (lack := lack_of_model(taught if model is None and taught.exists() else model)) is not None:
-            say(lack, style="yellow")
-        stop = stop_on_signals()
-        with Supervisor() as supervisor:
-            supervisor.start(processes.router(here))
-            wait_for_router(here, stop)
-            supervise(supervisor, programs, stop)
-    except SettingsError as error:
-        fail(str(error))
+        with model_in_use(model, source, given) as chosen:
+            programs = processes.system(here, source, path, chosen, given)
+            programs += [processes.scene(here)] if marked else []
+            say(f"actum starts on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
+            _introduce(chosen, segments, marked)
+            run(here, _with_page(here, programs, given) if page else programs, chosen)
+    except (SettingsError, ValidationError) as error:
+        fail(complaint(error))
 
 
-def supervise(supervisor: Supervisor, programs: list[Program], stop: threading.Event) -> None:
+def _introduce(model: ModelInUse, segments: str, marked: bool) -> None:
+    """Print how actions are found, which model is used, and what is missing."""
+    say(how_found(segments, marked))
+    if (model.original or model.file).exists():
+        say(f"model: {source_of(model)}")
+    if (lack := lack_of_model(model, segments, marked)) is not None:
+        say(lack, style="bold yellow")
+
+
+def _with_page(here: ServiceSettings, programs: list[Program], given: Given) -> list[Program]:
+    """Return the programs with the page; print how to install it where it is not."""
+    showing = processes.with_page(here, programs, given)
+    if showing[-1].name != processes.PAGE:
+        say(f"no web page: {adding('web-dashboard')}", style="yellow")
+    return showing
+
+
+def run(here: ServiceSettings, programs: list[Program], model: ModelInUse) -> None:
+    """Run a router and programs until stopped."""
+    stop = stop_on_signals()
+    with Supervisor() as supervisor:
+        supervisor.start(processes.router(here))
+        wait_for_router(here, stop)
+        supervise(supervisor, programs, stop, Reminder(model, time.monotonic()))
+
+
+def supervise(supervisor: Supervisor, programs: list[Program], stop: threading.Event, reminder: Reminder) -> None:
     """Keep programs running until stopped; fail where one cannot be used as it is set."""
     for program in programs:
         supervisor.start(program)
     try:
         while not stop.wait(CHECK_S):
-            for line in supervisor.restart_ended():
+            for line in (*supervisor.restart_ended(), *reminder.lines(time.monotonic())):
                 say(line, style="yellow")
     except UnusableError as error:
         fail(str(error))

@@ -2,17 +2,16 @@
 
 import json
 import os
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 from pydantic import TypeAdapter
 
-from actum.atomic_file import clear_unfinished, replaced, write_whole
+from actum.atomic_file import clear_unfinished, write_whole
 from actum.codec import encodable
 from actum.commands import Refusal
 from actum_model_trainer.teaching.set_store import date_of
-from actum_model_trainer.teaching.small_files import small_file
+from actum_model_trainer.teaching.small_files import copy, small_file
 from actum_model_trainer.teaching.stored_model import ID, About, StoredModel, described, stored
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
@@ -28,16 +27,18 @@ IDS = TypeAdapter(list[str])
 class ModelStore:
     """The models in a folder, and the file that the classifier watches.
 
-    A model that somebody else has put there is kept as one more, so that it can be returned to.
+    A model that somebody else has put there is kept as one more, so that it can be returned to. What is put into use
+    here is also stored as `taught`, where the next run finds it.
     """
 
-    def __init__(self, folder: Path, watched: Path, now_ns: Callable[[], int]) -> None:
+    def __init__(self, folder: Path, watched: Path, taught: Path, now_ns: Callable[[], int]) -> None:
         self._folder = folder
-        self._watched = watched
+        self._watched, self._taught = watched, taught
         self._now_ns = now_ns
         self._version: tuple[int, int] | None = None
         self._active: str | None = None
         self._loaded: Model | None = None
+        self._set: str | None = None
         self._history = _read_history(folder / HISTORY)
         folder.mkdir(parents=True, exist_ok=True)
         clear_unfinished(folder)
@@ -52,6 +53,11 @@ class ModelStore:
     def loaded(self) -> Model | None:
         """That model itself."""
         return self._loaded
+
+    @property
+    def set(self) -> str | None:
+        """The set that it was trained on; None where that is not known."""
+        return self._set
 
     @property
     def before(self) -> list[str]:
@@ -96,7 +102,7 @@ class ModelStore:
         """
         model = load_model(file)
         self._describe(model, set_name, scores)
-        _copy(file, self._path(model.id))
+        copy(file, self._path(model.id))
         return self.get(model.id)
 
     def activate(self, model_id: str) -> None:
@@ -106,10 +112,7 @@ class ModelStore:
             Refusal: there is none of that id.
             OSError: the file cannot be written.
         """
-        path = self._usable(model_id)
-        if self._active is not None and self._active != model_id:
-            self._remember([*self.before, self._active])
-        self._put(path)
+        self._put(self._usable(model_id))
 
     def undo(self) -> str:
         """Return to the model that was in use before, and return its id.
@@ -160,7 +163,10 @@ class ModelStore:
         if version == self._version:
             return False
         self._version = version
+        before = self._active
         self._take_in()
+        if before is not None and before != self._active:
+            self._remember([*self.before, before])
         return True
 
     def _take_in(self) -> None:
@@ -168,40 +174,56 @@ class ModelStore:
         try:
             self._loaded = load_model(self._watched)
         except ModelError:
-            self._loaded, self._active = None, None
+            self._loaded = self._active = self._set = None
             return
         self._active = self._loaded.id
-        self._keep_copy(self._active)
+        self._keep_copy(self._watched, self._active)
+        about = described(self._path(self._active))
+        self._set = (about and about.set) or None
 
-    def _keep_copy(self, model_id: str) -> None:
-        """Keep a copy of the watched file, which is a model of that id, where there is none.
+    def _keep_copy(self, file: Path, model_id: str) -> None:
+        """Keep a copy of a file, which is a model of that id, where there is none.
 
         Raises:
             OSError: it cannot be kept.
         """
         if not self._path(model_id).exists():
             try:
-                self.add(self._watched, "", {})
+                self.add(file, "", {})
             except (ModelError, Refusal) as error:  # it was replaced meanwhile, or nothing can be read here
                 raise OSError(str(error)) from None
 
     def _put(self, path: Path) -> None:
-        """Put a model in the place of the watched file, of which a copy stays.
+        """Put a model in the place of the one in use and of the one that was taught last, of which copies stay.
 
         Raises:
-            Refusal: that is none that could be returned to.
-            OSError: the file cannot be written, or no copy of it be kept.
+            Refusal: one of them is none that could be returned to.
+            OSError: a file cannot be written, or no copy of it be kept.
         """
         self.look()
-        if self._active is not None:
-            self._keep_copy(self._active)
-        elif os.path.lexists(self._watched):
-            raise Refusal(
-                f"{self._watched} is no model that can be read, and would be lost: move it away, and ask again"
-            )
-        self._watched.parent.mkdir(parents=True, exist_ok=True)
-        _copy(path, self._watched)
+        places = dict.fromkeys((self._taught, self._watched))
+        for place in places:
+            self._spare(place)
+        for place in places:
+            copy(path, place)
         self.look()
+
+    def _spare(self, place: Path) -> None:
+        """Keep a copy of the model in a file that is to be replaced.
+
+        Raises:
+            Refusal: it is none that could be returned to.
+            OSError: no copy can be kept.
+        """
+        if not os.path.lexists(place):
+            return
+        try:
+            model_id = load_model(place).id
+        except ModelError:
+            raise Refusal(
+                f"{place} is no model that can be read, and would be lost: move it away, and ask again"
+            ) from None
+        self._keep_copy(place, model_id)
 
     def _remember(self, ids: list[str]) -> None:
         write_whole(self._folder / HISTORY, json.dumps(ids[-MOST_BEFORE:]).encode())
@@ -243,8 +265,3 @@ def _read_history(path: Path) -> list[str]:
     except (OSError, ValueError):
         return []
     return [each for each in ids if ID.fullmatch(each)]
-
-
-def _copy(source: Path, target: Path) -> None:
-    with source.open("rb") as read, replaced(target) as written:
-        shutil.copyfileobj(read, written)

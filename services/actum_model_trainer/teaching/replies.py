@@ -210,6 +210,11 @@ class State(Reply):
     """Whether there is a model that was in use before it."""
     revision: int
     """A number that rises with each change of the sets and models."""
+    model_set: str | None
+    """The set that the model was trained on; null where that is not known."""
+    model_file: str | None
+    """The file that the model was copied from: the one that somebody named for use, or the one that ships with actum;
+    null where the model was put into use by the trainer."""
 
 
 class Uploaded(Reply):

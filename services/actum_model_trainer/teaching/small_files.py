@@ -1,6 +1,9 @@
-"""Reads the small files beside takes, models and jobs; anybody may have put something else in their place."""
+"""Reads and copies files of the trainer's folder; anybody may have put something else in their place."""
 
+import shutil
 from pathlib import Path
+
+from actum.atomic_file import replaced
 
 LARGEST_BYTES = 10_000_000
 """Largest such file (bytes): the result of a cross-validation of thousands of examples."""
@@ -20,3 +23,14 @@ def small_file(path: Path) -> bytes:
     if len(content) > LARGEST_BYTES:
         raise ValueError(f"{path} has more than {LARGEST_BYTES} bytes")
     return content
+
+
+def copy(source: Path, target: Path) -> None:
+    """Copy a file in place of another one, as a whole or not at all.
+
+    Raises:
+        OSError: the one cannot be read, or the other not be written.
+    """
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with source.open("rb") as read, replaced(target) as written:
+        shutil.copyfileobj(read, written)

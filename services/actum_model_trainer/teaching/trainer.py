@@ -10,7 +10,7 @@ from actum.atomic_file import PRIVATE_FOLDER
 from actum.commands import Command, NoFields
 from actum.messages import Message, Segment, Skeleton, Training
 from actum.node import SECOND_NS, Counters, Tick
-from actum_model_trainer.settings import Settings
+from actum_model_trainer.settings import MODEL, Settings
 from actum_model_trainer.teaching.changes import Changes, refusing
 from actum_model_trainer.teaching.example_commands import ExampleCommands
 from actum_model_trainer.teaching.job_commands import JobCommands, Start
@@ -18,6 +18,7 @@ from actum_model_trainer.teaching.job_process import JobProcess
 from actum_model_trainer.teaching.job_store import JobStore
 from actum_model_trainer.teaching.model_commands import ModelCommands
 from actum_model_trainer.teaching.model_store import ModelStore
+from actum_model_trainer.teaching.original_model import OriginalModel
 from actum_model_trainer.teaching.replies import State
 from actum_model_trainer.teaching.set_commands import SetCommands
 from actum_model_trainer.teaching.set_store import SetStore, date_of
@@ -38,12 +39,22 @@ class ModelTrainer:
     name = "model_trainer"
     inputs = (keys.SKELETON, keys.SEGMENT)
 
-    def __init__(self, folder: Path, model: Path, sensor: str, start: Start, now_ns: Callable[[], int]) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        model: Path,
+        sensor: str,
+        start: Start,
+        now_ns: Callable[[], int],
+        original: OriginalModel | None = None,
+    ) -> None:
         self.counters = Counters()
+        self._original = original
+        self._copy_original()
         self._sensor = sensor
         self._changes = Changes()
         sets = SetStore(folder / "sets", now_ns)
-        self._models = ModelStore(folder / "models", model, now_ns)
+        self._models = ModelStore(folder / "models", model, folder / MODEL, now_ns)
         self._examples = ExampleCommands(sets, self._models, self._changes)
         self._takes = TakeCommands(sets, self._changes, self._examples.remove)
         self._jobs = JobCommands(
@@ -71,7 +82,9 @@ class ModelTrainer:
         folder = settings.trainer_data
         try:
             folder.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
-            return cls(folder, settings.model or folder / "model.npz", settings.sensor, JobProcess, time.time_ns)
+            model = settings.model or folder / MODEL
+            original = OriginalModel(settings.original_model, model) if settings.original_model else None
+            return cls(folder, model, settings.sensor, JobProcess, time.time_ns, original)
         except OSError as error:
             raise ValueError(f"{folder} cannot be used ({error}): name another in ACTUM_TRAINER_DATA") from None
 
@@ -110,9 +123,17 @@ class ModelTrainer:
 
     def _look_at_model(self) -> None:
         try:
+            self._copy_original()
             self._changes.revision += self._models.look()
         except OSError as error:
             self.counters.reject("lost_model", f"no copy of the model in use could be kept: {error}")
+        if self._original is not None:
+            self.counters.state = self._original.state(self._models.active is not None)
+
+    def _copy_original(self) -> None:
+        """Put the user's own model file into use where it has changed."""
+        if self._original is not None and (problem := self._original.copy_changed()) is not None:
+            self.counters.reject("bad_model", problem)
 
     def _tell(self, _: NoFields) -> State:
         """Tell what is recorded, which job runs, and which model is in use."""
@@ -127,4 +148,6 @@ class ModelTrainer:
             model=self._models.active,
             can_undo=bool(self._models.before),
             revision=self._changes.revision,
+            model_set=self._models.set,
+            model_file=None if self._original is None else self._original.source_of(self._models.active),
         )

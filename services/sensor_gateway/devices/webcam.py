@@ -8,6 +8,7 @@ import numpy as np
 from actum import steady_clock
 from sensor_gateway.captured_picture import Picture
 from sensor_gateway.devices.capture import CameraLostError
+from sensor_gateway.devices.present_cameras import present_cameras
 from sensor_gateway.devices.silence import OPENING_S, Silence
 
 CLOSING_S = 0.5
@@ -76,7 +77,8 @@ class LiveCapture:
     def _read_all(self, capture: cv2.VideoCapture) -> str:
         """Keep the newest picture until no more come, and return the reason."""
         if not capture.isOpened():
-            return "it cannot be opened"
+            there = present_cameras() if is_device(self._device) else None
+            return "it cannot be opened" if there is None else f"it cannot be opened: {there}"
         while not self._closed:
             done, image = capture.read()
             if not done:
@@ -100,6 +102,11 @@ class LiveCapture:
             self._newest = picture
             self._silence.heard()
             self._changed.notify_all()
+
+
+def is_device(camera: int | str) -> bool:
+    """Return whether a camera is named as a device of this machine, not as a stream or a file."""
+    return isinstance(camera, int) or camera.startswith("/dev/")
 
 
 def timeouts_of(device: int | str) -> list[int]:

@@ -63,3 +63,8 @@ class Training(Message):
     """Whether there is a model that was in use before it."""
     revision: Count
     """A number that rises with each change of the sets and models: list them anew."""
+    model_set: Name | None = None
+    """The set that the model was trained on; null where that is not known."""
+    model_file: Reason | None = None
+    """The file that the model was copied from: the one that somebody named for use, or the one that ships with actum;
+    null where the model was put into use by the trainer."""

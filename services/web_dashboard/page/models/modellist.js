@@ -6,6 +6,7 @@ import { card, element, percent } from "../elements.js";
 import { trainer } from "../trainer.js";
 
 const HEADS = ["Model", "Created", "Set", "Actions", "People", "Examples", "Accuracy, held out", "Do"];
+const SHIPPED = /actum_command[\\/]simulated_model\.npz$/;
 const SHORT = 8;          // characters of a model's id: enough to tell a hundred apart
 
 export function modelList() {
@@ -18,9 +19,11 @@ export function modelList() {
   const table = element("table", {}, element("caption", { class: "unseen" }, "Models"), head, body);
   const scrolled = element("div", { class: "scrolled", tabindex: "0", role: "region", "aria-label": "Table of models" }, table);
   const wrong = element("div");
+  const live = element("p", { class: "caption live-model" });
   let shown = null;
   trainer.on(() => {
     undo.disabled = !trainer.now?.can_undo;
+    live.textContent = trainer.now ? liveModel(trainer.now) : "";
     if (!trainer.all || shown === trainer.all) return;
     shown = trainer.all;
     scrolled.hidden = !shown.models.length;
@@ -28,7 +31,14 @@ export function modelList() {
     wrong.replaceChildren(...(shown.unreadable ?? []).map((text) => element("p", { class: "doubt" }, text)));
     body.replaceChildren(...shown.models.toReversed().map((model) => row(model, line, compared)));
   });
-  return card("model-list", "Models", { wide: true, controls: [undo] }, none, scrolled, wrong, line, compared);
+  return card("model-list", "Models", { wide: true, controls: [undo] }, live, none, scrolled, wrong, line, compared);
+}
+
+function liveModel({ model, model_set: set, model_file: file }) {
+  if (!model) return "No model is in use.";
+  if (file && SHIPPED.test(file)) return "In use: the model for the simulated scene that ships with actum.";
+  if (file) return `In use: ${file}. This file is only read: what is put into use here replaces a copy of it.`;
+  return `In use: model ${model.slice(0, SHORT)}${set ? `, trained on the set ${set}` : ""}.`;
 }
 
 function row(model, line, compared) {

@@ -1,0 +1,140 @@
+"""What `actum up` starts, which model it uses, and what it prints about both."""
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from actum_command import processes
+from actum_command.__main__ import app
+from actum_command.commands import system_commands
+from actum_command.model_in_use import REMINDER_S, ModelInUse, Reminder, model_in_use
+from actum_command.simulated_model import SIMULATED_MODEL
+from recognisers import tiny_model
+from som_classifier.model_loading import load_model
+
+
+@pytest.fixture
+def supervised(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
+    """The programs that would run beside the router, by name, where none does."""
+    names: list[str] = []
+    monkeypatch.setenv("ACTUM_TRAINER_DATA", str(tmp_path / "teaching"))
+    monkeypatch.setattr(system_commands, "refuse_taken", lambda _: None)
+    monkeypatch.setattr(system_commands, "stop_on_signals", lambda: None)
+    monkeypatch.setattr(system_commands, "wait_for_router", lambda *_: None)
+    monkeypatch.setattr(
+        system_commands, "supervise", lambda _, programs, *others: names.extend(p.name for p in programs)
+    )
+    monkeypatch.setattr(system_commands.Supervisor, "start", lambda *_: None)
+    return names
+
+
+def printed_by(*arguments: str, code: int = 0) -> str:
+    done = CliRunner().invoke(app, ["up", *arguments], env={"ACTUM_MODEL": None})
+    assert done.exit_code == code, done.output
+    return " ".join((done.stdout + done.stderr).split())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "beside", "told"),
+    [
+        ([], ["scene_simulator"], "actions are found by the model, or marked by you: 'actum segment toggle'"),
+        (["--segments", "both"], ["scene_simulator"], "or marked by you: 'actum segment toggle'"),
+        (["--segments", "auto"], ["scene_simulator"], "marks are refused, and --segments both takes them as well"),
+        (["--segments", "marks"], ["scene_simulator"], "only marked actions are recognised, and nobody marks here"),
+        (["--marked"], ["scene_simulator", "scene"], "the simulated scene marks its own actions"),
+        (["--marked", "--segments", "marks"], ["scene_simulator", "scene"], "the simulated scene marks its own"),
+        (["--source", "camera"], ["sensor_gateway"], "or marked by you: 'actum segment toggle'"),
+        (["--source", "none"], [], "or marked by you: 'actum segment toggle'"),
+    ],
+)
+def test_what_runs_beside_the_services_and_how_actions_are_found(
+    arguments: list[str], beside: list[str], told: str, supervised: list[str]
+) -> None:
+    assert told in printed_by(*arguments)
+    assert supervised == [*processes.SERVICES, "model_trainer", *beside, processes.PAGE]
+
+
+def test_the_advice_about_marks_follows_the_environment_too(
+    supervised: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ACTUM_SEGMENTS", "auto")
+    assert "marks are refused" in printed_by()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["--source", "camera", "--marked"], "only the simulated scene marks its own actions"),
+        (["--segments", "auto", "--marked"], "--segments auto answers no marks"),
+    ],
+)
+def test_marks_of_the_scene_that_nobody_could_use_are_refused(
+    arguments: list[str], reason: str, supervised: list[str]
+) -> None:
+    assert reason in printed_by(*arguments, code=1)
+    assert supervised == []
+
+
+@pytest.mark.usefixtures("supervised")
+def test_the_simulated_scene_starts_with_the_model_that_ships_until_another_was_put_into_use(tmp_path: Path) -> None:
+    assert "model: the one for the simulated scene that ships with actum" in printed_by()
+    tiny_model().save(tmp_path / "teaching" / "model.npz")
+    assert "model: the one that was put into use last" in printed_by()
+
+
+@pytest.mark.usefixtures("supervised")
+def test_a_camera_does_not_start_with_the_model_of_the_simulated_scene() -> None:
+    printed = printed_by("--source", "camera")
+    assert "no model yet, so every action is answered with 'no model'. Teach one on the page; or record" in printed
+    assert "simulat" not in printed
+
+
+@pytest.mark.usefixtures("supervised")
+def test_a_model_that_is_missing_or_cannot_be_used_is_named_with_what_may_be_meant(tmp_path: Path) -> None:
+    (tmp_path / "foreign.npz").write_text("nothing of the kind")
+    tiny_model().save(tmp_path / "model.npz")
+    for name, told in (
+        ("nomodel.npz", f"'no model'; is {tmp_path / 'model.npz'} meant?"),
+        ("nomodel.npz", f"there is no {tmp_path / 'nomodel.npz'}: until it is there, every action is answered with"),
+        ("foreign.npz", "foreign.npz: no actum model"),
+        ("model.npz", "model.npz finds no actions by itself, since it was trained without continuous recordings"),
+    ):
+        assert told in printed_by("--model", str(tmp_path / name))
+
+
+def test_a_model_that_is_missing_is_named_again_until_it_is_there(tmp_path: Path) -> None:
+    file = tmp_path / "later.npz"
+    reminder = Reminder(ModelInUse(tmp_path / "in-use.npz", file), 0.0)
+    assert reminder.lines(REMINDER_S - 1) == []
+    assert reminder.lines(REMINDER_S) == reminder.lines(2 * REMINDER_S) != []
+    file.touch()
+    assert reminder.lines(2 * REMINDER_S + 1) == [f"{file} is there now and is used"]
+    assert reminder.lines(4 * REMINDER_S) == []
+
+
+def test_a_named_model_is_copied_into_the_trainers_folder_for_one_run(tmp_path: Path) -> None:
+    named, given = tmp_path / "mine.npz", {"trainer_data": [str(tmp_path / "teaching")]}
+    tiny_model().save(named)
+    with model_in_use(named, "camera", given) as model, model_in_use(named, "camera", given) as other:
+        assert model.original == named
+        assert model.file.read_bytes() == named.read_bytes()
+        assert model.file.is_relative_to(tmp_path / "teaching")
+        assert model.file != other.file, "two systems do not share a model"
+    assert list((tmp_path / "teaching").iterdir()) == []
+
+
+def test_the_model_that_ships_is_never_what_a_camera_starts_with(tmp_path: Path) -> None:
+    given = {"trainer_data": [str(tmp_path)]}
+    (tmp_path / "model.npz").write_bytes(SIMULATED_MODEL.read_bytes())  # as after undoing to it
+    with model_in_use(None, "camera", given) as model:
+        assert (model.original, model.file.exists()) == (None, False)
+    with model_in_use(None, "simulator", given) as model:
+        assert model.original == SIMULATED_MODEL
+        assert load_model(model.file).id == load_model(SIMULATED_MODEL).id
+
+
+def test_a_folder_that_cannot_be_used_is_named(tmp_path: Path, supervised: list[str]) -> None:
+    (tmp_path / "teaching").write_text("a file")
+    assert "teaching cannot be used" in printed_by(code=1)
+    assert supervised == []
