@@ -16,9 +16,11 @@ from .parts import (
     EMPTY_PEOPLE,
     FIRST_IN_CONTACT,
     FIRST_PERSON,
+    FIRST_RETURNING,
     IMAGE_HZ,
     PARTS,
     POINTING_PEOPLE,
+    RETURNING_PEOPLE,
     STILL_IMAGE_HZ,
 )
 
@@ -37,11 +39,13 @@ times a second with a Kinect's noise. Fusion is told which action was done, and 
 but the object's side is measured. `proximity` is the plain smallest distance, `joint` the default; both judge the same
 sightings."""
     yield f"""Protocol: every threshold was chosen on persons 101 to 170, 200 to 479 and 5000 to 5235, on OptiTrack
-recordings, or from anatomy; the persons here, {FIRST_IN_CONTACT} and up for
-push, pull, put and lift, {FIRST_PERSON} and up for the rest, had no part in it; how many of them point, and that the
+recordings, or from anatomy, and what is judged where the hand comes back on persons 5300 to 5326 and 5400 to 5423; the
+persons here, {FIRST_IN_CONTACT} and up for push, pull, put and lift, {FIRST_RETURNING} and up from rest to rest,
+{FIRST_PERSON} and up for the rest, had no part in it; how many of them point, and that the
 nearest pantomimes stand by themselves, was settled after a first look at them. Each row has persons of its own:
 {CONTACT_PEOPLE} for each condition and distance between the objects, {POINTING_PEOPLE} for each distance to point
-from, and for pantomimes {EMPTY_PEOPLE} for each nearness, condition (`plain` and `together`) and distance between the
+from, {RETURNING_PEOPLE} for each way back and condition (`plain` and `together`) from rest to rest, and for pantomimes
+{EMPTY_PEOPLE} for each nearness, condition (`plain` and `together`) and distance between the
 objects (10 and 20 cm). Intervals are Wilson's, 95 %."""
     yield """Conditions: `cluttered`, 60 shapes and false squares on wall and table; `blurred`, out of focus by 0.8
 pixels and the shutter open for 16 ms; `unread`, each marker by itself illegible in 30 % of the images; `covered`, the

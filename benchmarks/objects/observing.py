@@ -47,7 +47,7 @@ class Scene:
             tail_s=TAIL_S,
             conditions=self.conditions,
         )
-        stream = list(_observed(simulator))
+        stream = list(observed(simulator))
         events = {name: events_of(stream, settings) for name, settings in MEASURES.items()}
         unmarked = told_unmarked(stream, events[OURS], MEASURES[OURS])
         ends = [message for message in stream if isinstance(message, Truth) and message.kind == "end"]
@@ -64,15 +64,15 @@ def _trial(
 ) -> Trial:
     return Trial(
         truth=end,
-        displacement_m=_own_displacement(simulator, number, end),
+        displacement_m=own_displacement(simulator, number, end),
         line_right=_line_right(simulator, number),
-        seen_left=_seen_left(simulator, stream, number, end),
+        seen_left=seen_left(simulator, stream, number, end),
         events={measure: of_measure[number] for measure, of_measure in events.items()},
         unmarked=unmarked[number],
     )
 
 
-def _observed(simulator: Simulator) -> Iterator[Message]:
+def observed(simulator: Simulator) -> Iterator[Message]:
     """Yield postures, objects and truth, and at each end the action as if it were recognised."""
     tracker, started = MarkerTracker(_tracker_settings(simulator)), {}
     preprocessor = PosePreprocessor(PoseSettings.defaults())
@@ -113,7 +113,7 @@ def _recognised(end: Truth, start_ns: int) -> Action:
     )
 
 
-def _own_displacement(simulator: Simulator, number: int, end: Truth) -> np.ndarray | None:
+def own_displacement(simulator: Simulator, number: int, end: Truth) -> np.ndarray | None:
     """Turn the true displacement into the person's own directions."""
     if end.displacement_m is None:
         return None
@@ -137,7 +137,7 @@ def _line_right(simulator: Simulator, number: int) -> bool:
     return False
 
 
-def _seen_left(simulator: Simulator, stream: Sequence[Message], number: int, end: Truth) -> bool:
+def seen_left(simulator: Simulator, stream: Sequence[Message], number: int, end: Truth) -> bool:
     """Tell whether the object is seen in the segment where it is left, or held to its end."""
     states = [state for state in simulator.scene.states(TAIL_S) if state.segment == number]
     target = states[-1].target

@@ -12,6 +12,7 @@ from scene_simulator.conditions import Conditions, load_conditions
 from scene_simulator.programme import NO_OBJECT, Task
 
 from .observing import MEASURES, Scene
+from .rest_to_rest import WAYS, Way, trials_from_rest_to_rest
 from .trials import OURS, Trial, share
 
 CONTACT = ("push", "pull", "put", "lift")
@@ -29,8 +30,10 @@ IMAGE_HZ = 15
 STILL_IMAGE_HZ = 2
 """Nothing moves that is pointed at."""
 
-FIRST_PERSON, FIRST_IN_CONTACT = 1001, 2001
-CONTACT_PEOPLE, POINTING_PEOPLE, EMPTY_PEOPLE = 6, 40, 3
+RETURNING_CONDITIONS = ("plain", "together")
+
+FIRST_PERSON, FIRST_IN_CONTACT, FIRST_RETURNING = 1001, 2001, 3001
+CONTACT_PEOPLE, POINTING_PEOPLE, EMPTY_PEOPLE, RETURNING_PEOPLE = 6, 40, 3, 3
 
 QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 """Of the errors of bounds: from the earliest to the latest."""
@@ -73,6 +76,23 @@ def pantomimes() -> Iterator[str]:
         yield f"| {what} | {' | '.join(shares)} |"
 
 
+def rest_to_rest() -> Iterator[str]:
+    """Let everybody do the actions, and come to rest again before the segment ends."""
+    yield """The segment begins 0.2 s before the hand leaves its rest and ends 0.2 s after it is back. Meanwhile the
+object is left there, goes back by itself as where actions are taught in the simulated scene, or is taken back by the
+hand on the same way. True is what the action did, which for things that are pointed at is nothing."""
+    yield ""
+    yield "| | object | displacement | with direction | outcome |"
+    yield "|---|---|---|---|---|"
+    ways = {way: [t for name in RETURNING_CONDITIONS for t in _returnings(name, way)] for way in WAYS}
+    conditions = {name: [t for way in WAYS for t in _returnings(name, way)] for name in RETURNING_CONDITIONS}
+    everything = list(chain(*ways.values()))
+    actions = {action: [t for t in everything if t.truth.action == action] for action in (*CONTACT, "point")}
+    for what, trials in {**ways, **conditions, **actions, "**all**": everything}.items():
+        rights = (_object_right, Trial.displacement_right, Trial.direction_right, Trial.outcome_right)
+        yield f"| {what} | {' | '.join(share(trials, right) for right in rights)} |"
+
+
 def unmarked() -> Iterator[str]:
     """Put beside each other what is told of all these actions with marks and without."""
     yield """Fusion is told what the classifier finds by itself. *Alarms* are events that tell of no action. *Lost* are
@@ -98,6 +118,7 @@ PARTS: Mapping[str, tuple[str, Table]] = {
     "contact": ("Push, pull, put, lift: all conditions", contact_in_all_conditions),
     "pointing": ("Pointing, objects 20 cm apart", pointing),
     "pantomimes": ("Pantomimes: push, pull, put, lift where nothing is", pantomimes),
+    "rest_to_rest": ("From rest to rest: the hand is back before the segment ends", rest_to_rest),
     "unmarked": ("The same actions, found without marks", unmarked),
 }
 
@@ -176,6 +197,24 @@ def _pantomimes(empty_m: float) -> list[Trial]:
         for spacing_m in EMPTY_SPACINGS_M
         for _ in range(EMPTY_PEOPLE)
     )
+
+
+@cache
+def _returnings(name: str, way: Way) -> list[Trial]:
+    """Return the trials of some people, in rows of each spacing; a lifted thing cannot be left where it is."""
+    cell = len(WAYS) * RETURNING_CONDITIONS.index(name) + WAYS.index(way)
+    actions = [action for action in (*CONTACT, "point") if (action, way) != ("lift", WAYS[0])]
+    trials = []
+    for number in range(RETURNING_PEOPLE):
+        person = FIRST_RETURNING + RETURNING_PEOPLE * cell + number
+        conditions = load_conditions()[name].model_copy(update={"spacing_m": SPACINGS_M[number % len(SPACINGS_M)]})
+        programme = [Task(action, IDS[(person + i) % 3]) for i, action in enumerate(actions)]
+        trials += trials_from_rest_to_rest(programme, person, conditions, way)
+    return trials
+
+
+def _object_right(trial: Trial) -> bool:
+    return trial.object_right(OURS)
 
 
 def _empty(name: str, spacing_m: float, empty_m: float) -> Conditions:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from action_fusion.displacement import UNMOVED
 from actum.messages import Event, Truth
 from actum_model_trainer.evaluation import wilson_interval
 from scene_simulator.programme import NO_OBJECT
@@ -69,8 +70,9 @@ class Trial:
         return self._is_near(lambda d: d)
 
     def outcome_right(self) -> bool:
-        """Whether what became of the object is what the action was to do."""
-        return self.events[OURS].agrees is True
+        """Whether what became of the object is what the action was to do: where it was pointed at, nothing."""
+        event = self.events[OURS]
+        return event.outcome == UNMOVED if self.truth.action == "point" else event.agrees is True
 
     def _is_near(self, seen: Callable[[np.ndarray], np.ndarray]) -> bool:
         """Whether the displacement, looked at in some way, is right to 2 cm, or to a tenth of it."""

@@ -24,7 +24,9 @@ STEEPEST_SURFACE = 0.25
 """Largest rise along a surface, as a share of the path: a table seen by a tilted camera is flatter."""
 
 
-def described(displacement_m: Array, moved_m: float, has_front: bool, expected: str | None) -> dict[str, Any]:
+def described(
+    displacement_m: Array, moved_m: float, has_front: bool, expected: str | None, turn_ns: int | None = None
+) -> dict[str, Any]:
     """Return an event's fields `motion`, `result`, `outcome` and `agrees` (with the expected outcome).
 
     The result tells the direction in which the object was displaced most, e.g. "0.21 m away", or "unmoved".
@@ -34,11 +36,12 @@ def described(displacement_m: Array, moved_m: float, has_front: bool, expected: 
         moved_m: a shorter displacement counts as unmoved.
         has_front: whether forward is the actor's facing direction; if not, horizontal directions are "sideways".
         expected: the outcome expected of the action; None where none is.
+        turn_ns: the stamp up to which the displacement is measured; None if up to the segment's end.
     """
     name = outcome(displacement_m, moved_m, has_front)
     direction = _direction(displacement_m, moved_m, has_front)
     return {
-        "motion": Motion(displacement_m=displacement_m.tolist(), direction=direction),
+        "motion": Motion(displacement_m=displacement_m.tolist(), direction=direction, turn_ns=turn_ns),
         "result": UNMOVED if direction is None else f"{float(np.abs(displacement_m).max()):.2f} m {direction}",
         "outcome": name,
         "agrees": _agrees(name, expected),

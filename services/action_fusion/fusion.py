@@ -114,13 +114,18 @@ def _tracks(
 
 
 def _outcome(action: Action, choice: Choice, actor: Actor, settings: Settings) -> dict[str, Any]:
-    """Return the event's fields of motion and outcome, in the actor's level frame at the segment's start."""
+    """Return the event's fields of motion and outcome, in the actor's level frame at the segment's start.
+
+    They are those of the object's turn where it came back within the segment.
+    """
     level_from_camera = None if choice.track is None else actor.level_from_camera()
     if choice.track is None or level_from_camera is None:
         return {"motion": None, "result": None, "outcome": None, "agrees": None}
-    displacement_m = level_from_camera @ choice.track.displacement_m()
+    displacement_m = level_from_camera @ choice.track.displacement_m(settings.moved_m)
+    turn = choice.track.turn(settings.moved_m)
+    turn_ns = None if turn is None else action.start_ns + int(choice.track.stamps_ns[turn])
     expected = settings.expected_outcomes.get(str(action.action))
-    return described(displacement_m, settings.moved_m, bool(actor.has_front[0]), expected)
+    return described(displacement_m, settings.moved_m, bool(actor.has_front[0]), expected, turn_ns)
 
 
 def _lost(postures: Sequence[PostureSample]) -> int:

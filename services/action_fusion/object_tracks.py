@@ -6,11 +6,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from action_fusion.stream_samples import ObjectsSample
+from action_fusion.turns import SETTLED_SAMPLES, turn
 from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
-
-SETTLED_SAMPLES = 3
-"""Number of sightings whose median is an object's position at the start or end: one outlier does no harm."""
 
 SETTLED_NS = SECOND_NS // 4
 """Nanoseconds from the start or end within which sightings are taken: the object may move in more."""
@@ -53,14 +51,23 @@ class ObjectTrack:
         axes = [np.interp(stamps_ns, self.stamps_ns, axis) for axis in self.positions_m.T]
         return np.stack(axes, axis=1)
 
-    def displacement_m(self) -> Array:
-        """Measure the displacement (3,) from the segment's start to the last position, camera frame."""
-        displacement_m: Array = self.end_m() - self._start_m()
+    def turn(self, moved_m: float) -> int | None:
+        """Find the index of the position at which the object turned back in the segment; None where it did not."""
+        inside = np.flatnonzero(self.stamps_ns >= 0)
+        index = turn(self.positions_m[inside], self._start_m(), self.end_m(), moved_m)
+        return None if index is None else int(inside[index])
+
+    def displacement_m(self, moved_m: float) -> Array:
+        """Measure the displacement (3,) from the segment's start to the turn or, without one, the end; camera frame."""
+        index = self.turn(moved_m)
+        half = SETTLED_SAMPLES // 2
+        reached_m = self.end_m() if index is None else _median(self.positions_m[index - half : index + half + 1])
+        displacement_m: Array = reached_m - self._start_m()
         return displacement_m
 
     def is_displaced(self, moved_m: float) -> bool:
         """Whether the object is displaced by `moved_m` or more."""
-        return float(np.linalg.norm(self.displacement_m())) >= moved_m
+        return float(np.linalg.norm(self.displacement_m(moved_m))) >= moved_m
 
     def end_m(self) -> Array:
         """Estimate the last position (3,): the median of the last sightings or, if occluded, the mean of the rest."""

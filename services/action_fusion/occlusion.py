@@ -9,7 +9,7 @@ from action_fusion.comotion import comotion
 from action_fusion.hand_tracks import HandTrack
 from action_fusion.object_tracks import SETTLED_NS, ObjectTrack
 from action_fusion.settings import Settings
-from action_fusion.stops import RESTING_M_PER_S
+from action_fusion.stops import RESTING_M_PER_S, SAME_PLACE_M, stops
 from actum.arrays import Array
 from actum.node import SECOND_NS
 
@@ -106,7 +106,7 @@ def _lost_in_hand(
     """Find the object that this hand has grasped and that is not seen any more, the nearest of several."""
     unseen = [track for track in tracks if end_ns - track.stamps_ns[-1] >= SHORTEST_GAP_NS]
     grasps = [(_grasp(track, len(track.stamps_ns) - 1, hand, float(end_ns), settings), track) for track in unseen]
-    lost = [(grasp, track) for grasp, track in grasps if grasp is not None]
+    lost = [(_left_behind(grasp, track, settings), track) for grasp, track in grasps if grasp is not None]
     if not lost:
         return None
     pairs = [comotion(hand, track, settings.reach_m, settings.moved_m) for track in tracks]
@@ -114,6 +114,18 @@ def _lost_in_hand(
     transported = {pair.track.id for pair in in_hand if pair.is_transported(settings.moved_m)}
     candidates = [(grasp, track) for grasp, track in lost if not transported or track.id in transported]
     return min(candidates, key=lambda candidate: candidate[0].distance_m, default=None)
+
+
+def _left_behind(grasp: Grasp, track: ObjectTrack, settings: Settings) -> Grasp:
+    """Release a displaced object at the last stop of a hand that rests again where it was at the segment's start.
+
+    An object that was not displaced up to that stop may have been brought along.
+    """
+    stopped = stops(grasp.hand)
+    released = int(np.flatnonzero(stopped.last)[-1]) if stopped.returned else grasp.taken
+    moved_m = np.linalg.norm(grasp.hand.positions_m[released] - grasp.hand.positions_m[grasp.taken])
+    displaced = moved_m > SAME_PLACE_M or track.is_displaced(settings.moved_m)
+    return replace(grasp, released=released) if released > grasp.taken and displaced else grasp
 
 
 def _grasp(track: ObjectTrack, sighting: int, hand: HandTrack, until_ns: float, settings: Settings) -> Grasp | None:

@@ -7,13 +7,14 @@ import numpy as np
 
 from action_fusion.actors import Actor
 from action_fusion.choice import NO_HAND, OFF_THE_LINE, Choice
+from action_fusion.hand_tracks import FURTHEST_SHARE
 from action_fusion.object_tracks import ObjectTrack
 from action_fusion.settings import Settings
-from actum.arrays import Array, Indices
+from actum.arrays import Array
 from actum.messages import Hand, Pointing
 
 HOLDING_SHARE = 1 / 3
-"""Last share of a pointing action, in which the arm is stretched out."""
+"""Last share of a pointing action before the way back, in which the arm is stretched out."""
 
 POINTING_M = 0.08
 """Largest distance of the ray's tip from its median in that last share while the arm is out: thrice a joint's noise."""
@@ -68,7 +69,7 @@ def pointing_angle(object_ego: Array, tip_ego: Array, origin_ego: Array) -> floa
     if not len(known):
         return np.inf
     to_tip, to_object = tip_ego[known] - origin_ego[known], object_ego[known] - origin_ego[known]
-    last = np.median(to_tip[-len(_last_part(known)) :], axis=0)
+    last = np.median(to_tip[_holding(to_tip)], axis=0)
     out = np.linalg.norm(to_tip - last, axis=1) <= POINTING_M
     a, b = (np.median(to_tip[out], axis=0), np.median(to_object[out], axis=0)) if out.any() else (last, to_object[-1])
     length = float(np.linalg.norm(a) * np.linalg.norm(b))
@@ -92,13 +93,19 @@ def _angles(tracks: Sequence[ObjectTrack], actor: Actor, side: Hand) -> list[flo
 def _outstretched_m(actor: Actor, side: Hand) -> float:
     """Measure how far the finger is from the line of hips and head; minus infinity where it is never known."""
     tip, head = fingertip_m(actor, side), actor.joint_m("head")
-    last = _last_part(np.flatnonzero(np.isfinite(tip + head).all(axis=1)))
-    if not len(last):
+    known = np.flatnonzero(np.isfinite(tip + head).all(axis=1))
+    if not len(known):
         return -np.inf
+    last = known[_holding((tip - head)[known])]
     aside = np.linalg.norm(np.cross(tip[last], head[last]), axis=1)
     return float(np.median(aside / np.maximum(np.linalg.norm(head[last], axis=1), SMALLEST_M)))
 
 
-def _last_part(known: Indices) -> Indices:
-    """Take the last third of the known instants (n,), at least one if there is one."""
-    return known[-max(1, round(len(known) * HOLDING_SHARE)) :]
+def _holding(to_tip: Array) -> slice:
+    """Select the last third of the rays (n, 3) up to the way back, at least one: there the arm is stretched out.
+
+    The way back begins after the last ray whose tip is about as far from its first place as it ever is.
+    """
+    away_m = np.linalg.norm(to_tip - to_tip[0], axis=1)
+    until = int(np.flatnonzero(away_m >= FURTHEST_SHARE * away_m.max())[-1]) + 1
+    return slice(until - max(1, round(until * HOLDING_SHARE)), until)

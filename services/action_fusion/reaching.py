@@ -8,6 +8,7 @@ from action_fusion.comotion import Comotion
 from action_fusion.hand_tracks import HandTrack, last_instants_away
 from action_fusion.settings import Settings
 from action_fusion.stops import stops
+from action_fusion.turns import noise_m
 from actum.arrays import Array, Indices, Mask
 
 REACH_STEP_M = 0.05
@@ -18,12 +19,6 @@ NUDGE_M = 0.001
 
 NUDGE_TO_NOISE = 5.0
 """Least ratio of a nudge to the noise's standard deviation."""
-
-FEWEST_POSITIONS = 10
-"""Fewest positions from which the noise can be estimated."""
-
-MAD_TO_STD = 0.6745
-"""Median absolute deviation of a Gaussian, in standard deviations."""
 
 TOUCHED_M = 0.13
 """Largest distance of a hand that touches an object, required of a hand that has acted elsewhere before: from the palm
@@ -68,17 +63,11 @@ def misses_m(hand: HandTrack, pairs: Sequence[Comotion], settings: Settings) -> 
 
 
 def nudge_m(pair: Comotion) -> float:
-    """Measure an object's motion within the segment (m, root mean square); 0 where it may be noise.
-
-    The noise is estimated from second differences, whose standard deviation is sqrt(6) times as large.
-    """
+    """Measure an object's motion within the segment (m, root mean square); 0 where it may be noise."""
     positions_m = pair.object_m[pair.hand.in_segment]
-    if len(positions_m) < FEWEST_POSITIONS:
-        return 0.0
-    deviations_m = np.median(np.abs(np.diff(positions_m, 2, axis=0)), axis=0)
-    noise_m = float(np.linalg.norm(deviations_m)) / (MAD_TO_STD * np.sqrt(6))
-    nudged_m = float(np.linalg.norm(positions_m.std(axis=0)))
-    return nudged_m if nudged_m >= max(NUDGE_M, NUDGE_TO_NOISE * noise_m) else 0.0
+    least_m = max(NUDGE_M, NUDGE_TO_NOISE * noise_m(positions_m))
+    nudged_m = float(np.linalg.norm(positions_m.std(axis=0))) if np.isfinite(least_m) else 0.0
+    return nudged_m if nudged_m >= least_m else 0.0
 
 
 def _closing(hand: HandTrack, pair: Comotion, since: Indices) -> Array:

@@ -24,11 +24,13 @@ HESITATION_M = 0.10
 class Stops:
     """The stops of a hand: `last` (n,) marks the instants at which it rests in the place of its last stop.
 
-    `acted_before` is whether it had stopped elsewhere before, apart from its place at the segment's start.
+    `acted_before` is whether it had stopped elsewhere before, apart from its place at the segment's start; `returned`
+    is whether it rests in that place again afterwards.
     """
 
     last: Mask
     acted_before: bool
+    returned: bool = False
 
 
 def stops(hand: HandTrack) -> Stops:
@@ -44,7 +46,8 @@ def stops(hand: HandTrack) -> Stops:
     last_m = hand.positions_m[away[-1]]
     last = np.zeros_like(resting)
     last[stopped[_distances_m(hand, stopped, last_m) <= SAME_PLACE_M]] = True
-    return Stops(last, acted_before=bool((_distances_m(hand, away, last_m) > HESITATION_M).any()))
+    acted_before = bool((_distances_m(hand, away, last_m) > HESITATION_M).any())
+    return Stops(last, acted_before, returned=bool(stopped[-1] > away[-1]))
 
 
 def _distances_m(hand: HandTrack, instants: Indices, position_m: Array) -> Array:

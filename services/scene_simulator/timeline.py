@@ -101,19 +101,23 @@ def acting(parameters: Parameters, trial: Trial, segment: int, column: int) -> E
 
 
 def resetting(parameters: Parameters, done: Episode, following: Layout, seconds: float, return_s: float) -> Episode:
-    """Return the episode of a pause: within `return_s` hands and objects move to the layout of what follows."""
+    """Return the episode of a pause: within `return_s` hands and objects move to the layout of what follows.
+
+    Objects that change place hop there; the others stand still.
+    """
     goal = still(parameters, following, seconds)
     time = np.arange(1, len(goal) + 1) / parameters.camera.frame_rate_hz
     share = elapsed_share(time, 0.0, return_s)
     opened = 1 - minimum_jerk(elapsed_share(share, 0.0, OPENING_SHARE))
     hop = bump(share)[:, None, None] * np.array([0.0, -parameters.pause.hop_m, 0.0])
+    changes = (following.positions_m != done.positions_m[-1]).any(axis=1)
     return replace(
         goal,
         trial=done.trial,
         pelvis_m=interpolated(done.pelvis_m[-1], goal.pelvis_m, share),
         heading_rad=interpolated(done.heading_rad[-1], goal.heading_rad, share),
         hands_m=interpolated(done.hands_m[-1], goal.hands_m, share) + 2 * hop,
-        positions_m=interpolated(done.positions_m[-1], goal.positions_m, share) + hop,
+        positions_m=interpolated(done.positions_m[-1], goal.positions_m, share) + hop * changes[:, None],
         yaw_rad=interpolated(done.yaw_rad[-1], goal.yaw_rad, share),
         riser_tops_m=interpolated(done.riser_tops_m[-1], goal.riser_tops_m, share),
         grip=done.grip[-1] * opened,

@@ -147,3 +147,10 @@ def test_the_same_seeds_give_the_same_scene_and_others_another() -> None:
 def test_an_empty_programme_is_refused() -> None:
     with pytest.raises(ValueError, match="programme is empty"):
         Scene([], 0, 0)
+
+
+def test_an_object_that_keeps_its_place_does_not_move_while_the_hand_returns() -> None:
+    states = list(Scene([Task("lift", 1)], 0, 0).states())
+    ended = next(i for i, state in enumerate(states) if state.mark == "end")
+    moved = [np.ptp([state.positions_m[row] for state in states[ended:]], axis=0).max() for row in range(3)]
+    assert [way_m > 1e-9 for way_m in moved] == [True, False, False]

@@ -164,8 +164,9 @@ class ActedObject(Model):
     last_seen_ns: Stamp | None = None
     """When it was seen last, up to the segment's end (ns); null where it was not."""
     pose: ObjectPose | None = None
-    """Where it is at the segment's end, in the camera frame of the skeletons: where it was seen last, or in the hand
-    that has covered it since; null where the sender does not tell."""
+    """Where it is at the segment's end, in the camera frame of the skeletons: where it was seen last, or where the hand
+    that has covered it since has it or has left it; null where the sender does not tell. An object that came back is at
+    its first place again, though `motion` is measured at the turn."""
     fixed_pose: ObjectPose | None = None
     """The same in the fixed frame that `action_fusion` was told of; null where it was told of none."""
 
@@ -189,13 +190,17 @@ class Pointing(Model):
 
 
 class Motion(Model):
-    """How the object moved over the segment, in the level frame of its first posture: right, up, forward."""
+    """How the object moved in the segment, in the level frame of its first posture: right, up, forward."""
 
     displacement_m: FinitePoint
-    """From its place at the segment's start to that at its end (m): right, up, forward of the person."""
+    """From its place at the segment's start to that at its end or, where it came back, at `turn_ns` (m): right, up,
+    forward of the person."""
     direction: Name | None = None
     """The word for the axis on which it moved most: right, left, up, down, away, towards, or sideways where the
     person's forward is not known; null where it did not move."""
+    turn_ns: Stamp | None = None
+    """When the object was furthest from its place at the segment's start, if it came back from there in the segment,
+    as a cup that is lifted and set down again (ns); null where it did not come back."""
 
 
 class Event(Message):
@@ -245,7 +250,8 @@ class Event(Message):
     pointing: Pointing | None = None
     """How well the arm points at the object; null where nothing is pointed at."""
     outcome: Name | None = None
-    """What became of the object: lifted, put down, pushed, pulled, moved or unmoved; null where there is none."""
+    """What became of the object by `motion`: lifted, put down, pushed, pulled, moved or unmoved; null where there is
+    none."""
     agrees: bool | None = None
     """Whether `outcome` is what the action is to do; null where it is not to do something of the kind, or where what
     was to be pushed or pulled went sideways."""
