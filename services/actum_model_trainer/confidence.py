@@ -22,8 +22,8 @@ from som_classifier.movement import movement_m
 from som_classifier.presets import Prior, PyramidPreset
 
 LEAST_MOVEMENT_SHARE = 0.5
-"""Share of an action's usual movement below which another person hardly does it: chosen so that on each of four public
-sets, taught by one person or by all but one, about one action in 200 at most moves less."""
+"""Share of an action's usual movement below which another person hardly does it. Of the actions of four public sets, at
+most one in a hundred moves less, and in most of them one in 250; see `benchmarks.recognition.stillness`."""
 
 
 def inverse_temperatures(
