@@ -26,6 +26,7 @@ from .ours import OURS
 from .peers import DTW_BAND, DTW_INSTANTS, INSTANTS
 from .sets import errors_over_sets
 from .splits import SEED
+from .stillness import stillness
 from .unknown import unknown_actions
 
 PAGE = Path(__file__).with_name("results.md")
@@ -38,6 +39,7 @@ PARTS: Mapping[str, tuple[str, Callable[[Bench], Iterator[str]]]] = {
     "authors": ("The paper's protocol: the same people in training and test", authors),
     "early": ("Early recognition", early),
     "unknown": ("Actions that were never trained", unknown_actions),
+    "stillness": ("Standing still, marked as an action", stillness),
     "calibration": ("Calibration", calibration),
     "missing": ("Missing joints", missing_joints),
     "sets": ("Errors over all development sets", errors_over_sets),

@@ -19,6 +19,7 @@ from actum_dataset_importer.importing import (
     Progress,
     import_msr_action3d,
     import_msrc12,
+    import_msrc12_trimmed,
     import_utkinect,
 )
 from actum_model_trainer.samples import SegmentSample, samples_from, select
@@ -122,6 +123,12 @@ class Datasets:
         return self._recordings("msrc12", import_msrc12)
 
     @cached_property
+    def msrc12_trimmed(self) -> list[Recording]:
+        """The same streams, in which segments hold the gestures alone: between them people stand."""
+        import_msrc12_trimmed(self.folder / "msrc12", self._imported / "msrc12_trimmed", lambda done, total: None)
+        return select([self._imported / "msrc12_trimmed"])
+
+    @cached_property
     def florence(self) -> list[Example]:
         """The RGB clips of Florence 3D Actions, people 1 to 6, seen by the pose model that ACTUM_POSE_MODEL names."""
         return examples_of(self._recordings("florence3d_rgb", import_florence))
@@ -166,11 +173,12 @@ def drawn(samples: Sequence[SegmentSample], at_most: int, seed: int) -> list[Seg
 
 def with_joints(samples: Sequence[SegmentSample], recordings: Sequence[Recording]) -> list[Example]:
     """Put beside each sample its joints in camera axes, from the recordings that it was cut out of."""
-    by_file = {str(recording.path): _by_stamp(recording) for recording in recordings}
+    by_file = {str(recording.path): joints_by_stamp(recording) for recording in recordings}
     return [Example(sample, _camera_m(sample, by_file[sample.file])) for sample in samples]
 
 
-def _by_stamp(recording: Recording) -> dict[int, Array]:
+def joints_by_stamp(recording: Recording) -> dict[int, Array]:
+    """Return the joints (15, 3; m, camera axes, NaN where missing) of the first person at each stamp (ns)."""
     skeletons: Iterable[Skeleton] = (
         message for message in recording.messages((keys.SKELETON,)) if isinstance(message, Skeleton)
     )

@@ -61,7 +61,8 @@ def describe_action(action: Action) -> str:
         return f"[yellow]{escape(action.segment_id)} rejected: {escape(action.reason or '')}[/yellow]"
     kind = "final" if action.final else "so far"
     done = "" if action.completeness is None else f" {_progress(action.completeness)}"
-    answer = f"{escape(str(action.action))}{done} {action.confidence:.2f}, {action.frames} frames"
+    named = f"unknown, most like {action.action}" if action.unknown else str(action.action)
+    answer = f"{escape(named)}{done} {action.confidence:.2f}, {action.frames} frames"
     return f"{escape(action.segment_id)} {kind}: {answer}"
 
 

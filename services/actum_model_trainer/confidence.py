@@ -1,11 +1,13 @@
-"""Calibration of a model: inverse temperatures for its confidence, a familiarity threshold for unknown actions.
+"""Calibration of a model: inverse temperatures for its confidence, thresholds for unknown actions and for stillness.
 
-Both are estimated on cross-validated scores, which show how well the model does on people it was not trained on. Few
-people show little of that, a single one nothing. Therefore each estimate is averaged with the value for models of
-other people's actions (`som_classifier.presets.Prior`), which counts as much as `Prior.people` further people.
+The first two are estimated on cross-validated scores, which show how well the model does on people it was not trained
+on. Few people show little of that, a single one nothing. Therefore each estimate is averaged with the value for models
+of other people's actions (`som_classifier.presets.Prior`), which counts as much as `Prior.people` further people.
 """
 
+from collections import defaultdict
 from collections.abc import Sequence
+from statistics import median
 from typing import Any
 
 import numpy as np
@@ -16,7 +18,12 @@ from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.temperature_scaling import matched_inverse_temperature
 from actum_model_trainer.upper_layers import UpperLayers
 from som_classifier.first_layer import FirstMaps
+from som_classifier.movement import movement_m
 from som_classifier.presets import Prior, PyramidPreset
+
+LEAST_MOVEMENT_SHARE = 0.5
+"""Share of an action's usual movement below which another person hardly does it. Of the actions of four public sets, at
+most one in a hundred moves less, and in most of them one in 250; see `benchmarks.recognition.stillness`."""
 
 
 def inverse_temperatures(
@@ -86,6 +93,18 @@ def expected_log_errors(first: FirstMaps, postures: Sequence[Floats], targets: I
     log_errors = np.array([first.log_errors(frames, first.winners(frames)).mean() for frames in postures])
     above_mean = np.bincount(targets, weights=log_errors - log_errors.mean()) / (np.bincount(targets) + 1)
     return [float(prior.log_error + difference) for difference in above_mean]
+
+
+def least_movement_m(samples: Sequence[SegmentSample]) -> float:
+    """Return the movement (m) below which a segment may be none of the trained actions.
+
+    It is a share of that of the action that moves least, so that holding still can be taught, and that of an action is
+    the median over its samples, so that a single one marked in the wrong place does not decide.
+    """
+    movements: defaultdict[str, list[float]] = defaultdict(list)
+    for sample in samples:
+        movements[sample.label].append(movement_m(sample.stamps_ns, sample.postures))
+    return round(LEAST_MOVEMENT_SHARE * min(median(of_action) for of_action in movements.values()), 4)
 
 
 def _averaged_with_prior(estimate: Any, expected: Any, prior: Prior, people: int) -> Any:

@@ -11,7 +11,12 @@ from actum.arrays import Floats, Indices
 from actum.node import SECOND_NS
 from actum.som import Som
 from actum_model_trainer.augmentation import Variant, augmentation_for, variants
-from actum_model_trainer.confidence import expected_log_errors, familiarity_threshold, inverse_temperatures
+from actum_model_trainer.confidence import (
+    expected_log_errors,
+    familiarity_threshold,
+    inverse_temperatures,
+    least_movement_m,
+)
 from actum_model_trainer.discriminants import FittedStage, fit_discriminants, folds_of
 from actum_model_trainer.hand_preference import people_prefer_one_hand
 from actum_model_trainer.median_distances import median_quantization_error2
@@ -144,6 +149,7 @@ def _confidence_parameters(
     return {
         "gains": inverse_temperatures(fitted, upper, preset.prior, people, depth_inferred),
         "familiar": familiarity_threshold(complete, samples, preset),
+        "least_movement_m": least_movement_m(samples),
     }
 
 

@@ -28,6 +28,8 @@ class PyramidMetadata(ModelMetadata):
         familiar: the open-set threshold: with a lower familiarity an action may be none of those trained.
         usual_log_errors: for each action, the mean log(d²) of its postures from the map of postures that a person not
             trained on may well reach, d in metres over all joints of a standard body.
+        least_movement_m: the least movement of an action: with less a segment may be none of those trained; 0 in files
+            of versions that did not measure it, for which stillness is an action like others.
         spotting: of the search for actions without marks; None where the model was not trained for that.
     """
 
@@ -46,6 +48,7 @@ class PyramidMetadata(ModelMetadata):
     gains: list[Positive]
     familiar: Finite
     usual_log_errors: list[Finite]
+    least_movement_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
     spotting: SpottingMetadata | None = None
 
     def problem(self) -> str | None:

@@ -1,7 +1,7 @@
 """The default recogniser: posture, velocity and arm maps, a temporal pyramid, linear discriminants, an action map."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import mul
 from typing import Any
@@ -26,6 +26,7 @@ from som_classifier.frame_activity import (
 from som_classifier.frames import Frame
 from som_classifier.map_activity import soft_activity
 from som_classifier.model import Arrays, Model
+from som_classifier.movement import movement_m
 from som_classifier.ordered_vector import without_repeats
 from som_classifier.pyramid import PrefixSums, Pyramid
 from som_classifier.pyramid_metadata import PyramidMetadata
@@ -127,7 +128,7 @@ class PyramidModel(Model):
         winner = int(cosines.argmax())
         inverse_temperature = sum(map(mul, stages, self.metadata.gains))
         familiarity = self.familiarity(activities, scores)
-        return Recognition(
+        recognition = Recognition(
             label=self.labels[winner],
             confidence=_probability(cosines, winner, inverse_temperature * known_joint_share(activities)),
             activations=dict(zip(self.labels, cosines.tolist(), strict=True)),
@@ -135,6 +136,7 @@ class PyramidModel(Model):
             familiarity=familiarity,
             unknown=complete and familiarity < self.metadata.familiar,
         )
+        return self._doubted_if_still(recognition, frames) if complete else recognition
 
     @property
     def background_s(self) -> float | None:
@@ -195,6 +197,19 @@ class PyramidModel(Model):
     def scores(self, activities: Sequence[FrameActivity], stages: Sequence[float]) -> NDArray[np.float32]:
         """Return the actions' scores on the discriminants, weighted by stage, shape (actions,)."""
         return self.stages.scores(self.pyramid.vector(self.prefix_sums(activities)), stages)
+
+    def _doubted_if_still(self, recognition: Recognition, frames: Sequence[Frame]) -> Recognition:
+        """Return the answer as it is or, where a segment moves less than any action, as unknown and as much less sure.
+
+        Scores alone do not show that: every action begins and ends at rest, so that rest scores like a part of one.
+        """
+        postures = np.array([frame.kinematics.posture for frame in frames if frame.kinematics is not None])
+        moved_m = movement_m(np.array([frame.stamp_ns for frame in frames]), postures)
+        if moved_m >= self.metadata.least_movement_m:
+            return recognition
+        share = moved_m / self.metadata.least_movement_m
+        familiarity = min(recognition.familiarity or 0.0, self.metadata.familiar) - (1 - share)
+        return replace(recognition, confidence=share * recognition.confidence, familiarity=familiarity, unknown=True)
 
     def _number_problem(self) -> str | None:
         """Return the first array whose numbers are not of the kind they have to be, None where there is none."""

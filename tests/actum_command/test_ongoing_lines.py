@@ -57,3 +57,8 @@ def test_a_line_goes_with_the_answer_and_when_nothing_more_is_heard() -> None:
 def test_a_partial_action_in_a_line_of_its_own_says_how_far_it_is_too() -> None:
     assert describe(going(1.3)) == "auto-1 so far: lift 100 % ▆▆▆▆▆ 0.87, 1 frames"
     assert describe(going(None)) == "auto-1 so far: lift 0.87, 1 frames"
+
+
+def test_a_final_action_that_may_be_none_of_those_trained_is_said_to_be_unknown() -> None:
+    said = describe(action(1, 2, "s").model_copy(update={"action": "lift", "confidence": 0.41, "unknown": True}))
+    assert said == "s final: unknown, most like lift 0.41, 1 frames"

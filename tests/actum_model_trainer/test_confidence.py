@@ -13,6 +13,7 @@ from actum_model_trainer.confidence import (
     expected_log_errors,
     familiarity_threshold,
     inverse_temperatures,
+    least_movement_m,
 )
 from actum_model_trainer.discriminants import Discriminants, FittedStage
 from actum_model_trainer.progress import silent
@@ -125,3 +126,26 @@ def test_frames_without_any_joint_do_not_fail() -> None:
     first = FirstMaps(still[0], still[1], still[2], (1.0, 1.0, 1.0), (0.4, 0.1))
     nothing, still_m = np.full((2, 15, 3), np.nan), np.zeros((2, 15, 3))
     assert expected_log_errors(first, [nothing, still_m], np.array([0, 1]), PRIOR) == [PRIOR.log_error] * 2
+
+
+def moving(label: str, way_m: float) -> SegmentSample:
+    """A sample in which all joints go that far."""
+    one = tiny_samples()[0]
+    postures = np.zeros_like(one.postures)
+    postures[..., 1] = np.linspace(0, way_m, len(postures))[:, None]
+    return replace(one, label=label, postures=postures)
+
+
+def test_the_least_movement_is_that_of_the_action_that_moves_least() -> None:
+    wide, small = moving("lift", 0.4), moving("point", 0.2)
+    assert least_movement_m([wide, small]) == pytest.approx(least_movement_m([small]), abs=1e-4)
+    assert 0 < least_movement_m([small]) < least_movement_m([wide])
+
+
+def test_one_sample_that_was_marked_while_nothing_was_done_does_not_decide() -> None:
+    samples = [moving("lift", way_m) for way_m in (0.3, 0.3, 0.3, 0.0)]
+    assert least_movement_m(samples) == least_movement_m(samples[:1])
+
+
+def test_standing_still_can_be_taught() -> None:
+    assert least_movement_m([moving("lift", 0.4), moving("lift", 0.5), moving("stand", 0.01)]) < 0.01

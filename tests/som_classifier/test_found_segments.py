@@ -82,7 +82,8 @@ def test_a_found_segment_is_marked_by_start_and_end_and_then_answered_as_any_mar
     ]
     assert start.segment_id == end.segment_id == action.segment_id
     marks = [m.model_copy(update={"origin": None}) for m in (start, end)]
-    (marked,) = [m for m in put_by(SomClassifier(tiny_model()), [*stream(), *marks]) if isinstance(m, Action)]
+    by_marks = SomClassifier(finding(tiny_model(), LIFT), segmentation=Segmentation("marks"))
+    (marked,) = [m for m in put_by(by_marks, [*stream(), *marks]) if isinstance(m, Action)]
     assert without_seq([action]) == without_seq([marked])
     assert (action.valid, action.final, node.counters.rejects) == (True, True, {})
     assert node.counters.counts == {"found": 1, "told": 1}

@@ -14,6 +14,7 @@ from actum.som import Som
 from handmade import KINDS, model_of, paper_model, pyramid_model
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
+from som_classifier.pyramid_model import PyramidModel
 
 each_kind = pytest.mark.parametrize("kind", KINDS)
 
@@ -239,6 +240,8 @@ OF_PYRAMID: list[tuple[dict[str, object], str]] = [
     ({"familiar": NAN}, "familiar"),
     ({"usual_log_errors": [0.0, NAN]}, "usual_log_errors"),
     ({"usual_log_errors": [0.0]}, "do not fit"),
+    ({"least_movement_m": -0.1}, "least_movement_m"),
+    ({"least_movement_m": NAN}, "least_movement_m"),
     ({"labels": ["lift", "pull", "push"]}, "not"),
 ]
 
@@ -258,6 +261,15 @@ def test_metadata_that_do_not_fit_are_named(tmp_path: Path, kind: str, changes: 
 @each_kind
 def test_metadata_of_later_versions_are_ignored(tmp_path: Path, kind: str) -> None:
     assert load_model(with_metadata(saved(tmp_path, kind), later="field")).labels == ["pull", "push"]
+
+
+def test_a_file_of_a_version_that_did_not_measure_movement_takes_any_for_enough(tmp_path: Path) -> None:
+    path = saved(tmp_path, "pyramid")
+    with np.load(path) as file:
+        about = json.loads(str(file["metadata"]))
+    del about["least_movement_m"]
+    loaded = load_model(altered(path, metadata=np.array(json.dumps(about))))
+    assert isinstance(loaded, PyramidModel) and loaded.metadata.least_movement_m == 0.0
 
 
 @each_kind

@@ -17,6 +17,7 @@ from som_classifier.attention import PART_NAMES, attended_part
 from som_classifier.frame_activity import FrameActivity, known_joint_share
 from som_classifier.frames import Frame
 from som_classifier.handedness import mirrored
+from som_classifier.movement import movement_m
 from som_classifier.pyramid import SCALE, Pyramid
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.recognition import Recognition
@@ -182,6 +183,33 @@ def test_only_a_whole_segment_is_unknown(familiar: float, unknown: bool) -> None
     frames = encoded(strict, SAMPLES[0])
     assert strict.recognise(frames, True).unknown is unknown
     assert not strict.recognise(frames, False).unknown
+
+
+def with_least_movement(least_m: float) -> PyramidModel:
+    return replace(model(), metadata=model().metadata.model_copy(update={"least_movement_m": least_m}))
+
+
+@each_sample
+def test_who_moves_half_as_far_as_the_least_is_unknown_and_half_as_sure(sample: SegmentSample) -> None:
+    usual = answer(model(), encoded(model(), sample))
+    moved_m = movement_m(sample.stamps_ns, sample.postures)
+    found = answer(strict := with_least_movement(2 * moved_m), encoded(strict, sample))
+    assert found.unknown and (found.familiarity or 0) <= strict.metadata.familiar - 0.5
+    assert found.confidence == pytest.approx(usual.confidence / 2)
+    assert (found.label, found.activations, found.part) == (usual.label, usual.activations, usual.part)
+
+
+@each_sample
+def test_who_moves_as_far_as_the_least_is_answered_as_ever(sample: SegmentSample) -> None:
+    enough = with_least_movement(movement_m(sample.stamps_ns, sample.postures))
+    unmeasured = with_least_movement(0.0)
+    frames = encoded(enough, sample)
+    assert enough.recognise(frames, True) == unmeasured.recognise(frames, True)
+
+
+def test_an_action_that_has_only_begun_may_have_moved_little() -> None:
+    frames = encoded(model(), SAMPLES[0])
+    assert with_least_movement(9.0).recognise(frames, False) == with_least_movement(0.0).recognise(frames, False)
 
 
 def test_a_stranger_movement_is_less_familiar() -> None:
