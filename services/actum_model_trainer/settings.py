@@ -12,8 +12,8 @@ class Settings(ServiceSettings):
 
     trainer_data: Path = Field(
         default_factory=lambda: data_folder() / "teaching",
-        description="the folder of sets, models and jobs of those who teach",
+        description="the folder in which the trainer keeps sets, models and jobs",
     )
     model: Path | None = Field(
-        None, description="the file that the classifier watches; default: model.npz in that folder"
+        None, description="the model file that the classifier watches; default: model.npz in the trainer's folder"
     )

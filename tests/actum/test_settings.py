@@ -40,7 +40,7 @@ def test_what_is_no_endpoint_is_refused_by_name_with_the_form(endpoint: str, mon
     monkeypatch.setenv("ACTUM_CONNECT", endpoint)
     with pytest.raises(ValidationError) as refused:
         ServiceSettings()
-    assert complaint(refused.value).startswith(f"settings: connect: {endpoint!r} is no endpoint: use tcp/host:port")
+    assert complaint(refused.value).startswith(f"settings: connect: {endpoint!r} is not an endpoint: use tcp/host:port")
 
 
 def test_the_file_that_is_named_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

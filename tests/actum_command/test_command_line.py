@@ -282,10 +282,10 @@ def test_where_nothing_can_be_written_nothing_is_trained_or_evaluated(
     ("name", "value", "complaint"),
     [
         ("ACTUM_SENSOR", "Kinect0", "settings: sensor: "),
-        ("ACTUM_CONNECT", "127.0.0.1:7551", "'127.0.0.1:7551' is no endpoint: use tcp/host:port"),
-        ("ACTUM_CONNECT", "foo", "'foo' is no endpoint: use tcp/host:port"),
+        ("ACTUM_CONNECT", "127.0.0.1:7551", "'127.0.0.1:7551' is not an endpoint: use tcp/host:port"),
+        ("ACTUM_CONNECT", "foo", "'foo' is not an endpoint: use tcp/host:port"),
         ("ACTUM_ZENOH_CONFIG", "/nowhere.json5", "/nowhere.json5 is no Zenoh configuration"),
-        ("ACTUM_CONFIG", "/nowhere.toml", "/nowhere.toml, which is no file"),
+        ("ACTUM_CONFIG", "/nowhere.toml", "/nowhere.toml, which is not a file"),
     ],
 )
 @pytest.mark.parametrize("command", ["doctor", "watch", "scene", "segment end a"])
@@ -310,7 +310,7 @@ def served(monkeypatch: pytest.MonkeyPatch) -> list[str | None]:
 
 @pytest.mark.parametrize("endpoint", ["udp7551", "tcp/127.0.0.1:99999", "7552", "tcp/127.0.0.1"])
 def test_a_router_refuses_what_is_no_endpoint(endpoint: str, served: list[str | None]) -> None:
-    assert f"'{endpoint}' is no endpoint: use tcp/host:port" in refusal("router", "--listen", endpoint)
+    assert f"'{endpoint}' is not an endpoint: use tcp/host:port" in refusal("router", "--listen", endpoint)
     assert served == []
 
 

@@ -144,8 +144,8 @@ def test_tokens_go_with_their_process(running: System) -> None:
         (["sensor_gateway", "--source", "camera", "--pose-model", "/nowhere"], "'actum models fetch'"),
         (["marker_tracker", "--dictionary", "DICT_NONE"], "dictionary: "),
         (["pose_preprocessor", "--sensor", "Kinect 0"], "sensor: "),
-        (["pose_preprocessor", "--connect", "127.0.0.1:7551"], "'127.0.0.1:7551' is no endpoint: use tcp/host:port"),
-        (["scene_simulator", "--connect", "foo"], "'foo' is no endpoint: use tcp/host:port"),
+        (["pose_preprocessor", "--connect", "127.0.0.1:7551"], "'127.0.0.1:7551' is not an endpoint: use tcp/host:port"),
+        (["scene_simulator", "--connect", "foo"], "'foo' is not an endpoint: use tcp/host:port"),
         (["action_fusion", "--zenoh-config", "/nowhere.json5"], "/nowhere.json5 is no Zenoh configuration"),
         (["action_fusion", "--state", __file__], f"state: the folder {__file__} cannot be made"),
         (["action_fusion", "--zenoh-config", __file__], f"{__file__} is no Zenoh configuration"),
@@ -165,7 +165,7 @@ def test_a_configuration_file_that_is_not_there_is_no_defaults(
     monkeypatch.setenv("ACTUM_CONFIG", "/nowhere.toml")
     service = running.start("pose_preprocessor")
     assert service.process.wait(timeout=30) == 2
-    named = "ACTUM_CONFIG names /nowhere.toml, which is no file: correct or unset it"
+    named = "ACTUM_CONFIG names /nowhere.toml, which is not a file: correct or unset ACTUM_CONFIG"
     assert service.said() == f"pose_preprocessor: {named}\n"
 
 
