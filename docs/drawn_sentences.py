@@ -4,7 +4,7 @@ import argparse
 import ast
 import random
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +28,7 @@ DRAWN = {"errors": 15, "helps": 20, "paragraphs": 10}
 
 def errors() -> set[str]:
     """Collect the texts of errors, warnings and findings; a name in braces stands for a value."""
-    sources = Sources(PACKAGES, _hole)
+    sources: Sources = Sources(PACKAGES, lambda part: _hole(part, sources.constants))
     found: set[str] = set()
     for path, node in sources.nodes():
         for expression in _expressions(node, Path(path).stem in FINDINGS):
@@ -49,9 +49,11 @@ def _expressions(node: ast.AST, finding: bool) -> list[ast.expr]:
             return []
 
 
-def _hole(part: ast.expr) -> str:
-    """Name the value in a text's hole by the last name in its expression."""
+def _hole(part: ast.expr, constants: Mapping[str, str]) -> str:
+    """Return a constant that fills a text's hole, or the last name in the hole's expression, in braces."""
     names = [getattr(node, "attr", getattr(node, "id", "")) for node in ast.walk(part)]
+    if len(names) > 1 and names[1] in constants:
+        return constants[names[1]]
     return "{" + next((name.strip("_") for name in names if name), "…") + "}"
 
 

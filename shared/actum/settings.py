@@ -120,7 +120,7 @@ class ServiceSettings(BaseSettings):
     )
     zenoh_config: Path | None = Field(
         None,
-        description="a JSON5 file with Zenoh settings, such as TLS and users, which take precedence over actum's own",
+        description="a JSON5 file of Zenoh settings, such as TLS and users, on which actum's own are laid",
     )
     credentials: Path | None = Field(
         None,

@@ -57,7 +57,7 @@ def test_a_mark_without_a_classifier_ends_with_code_1_and_says_why(running: Syst
 def test_without_a_router_a_command_says_what_to_do(running: System) -> None:
     asked = running.actum("doctor")
     assert asked.returncode == 1
-    assert "start one with 'actum router' or set ACTUM_CONNECT" in " ".join(asked.stderr.split())
+    assert "start a router with 'actum router', or set ACTUM_CONNECT" in " ".join(asked.stderr.split())
 
 
 def test_marks_from_the_command_line_are_answered(running: System, scene_model: Path) -> None:
@@ -120,7 +120,7 @@ def test_up_refuses_a_zenoh_configuration_that_cannot_be_used(running: System, m
     monkeypatch.setenv("ACTUM_ZENOH_CONFIG", "/nowhere.json5")
     refused = running.actum("up")
     assert refused.returncode == 1
-    assert "actum: zenoh-config: /nowhere.json5 is no Zenoh configuration" in refused.stderr
+    assert "actum: zenoh-config: /nowhere.json5 is not a Zenoh configuration" in refused.stderr
     assert "Traceback" not in refused.stderr
     assert pids_of(running) == set()
 

@@ -109,7 +109,7 @@ def test_it_is_a_service_that_says_how_it_does(running: System, tmp_path: Path) 
         assert finished[-1].state == "running"
         second = started(running, tmp_path / "elsewhere")
         assert second.process.wait(timeout=PATIENCE_S) == 3
-        assert "another event_recorder runs for sensor kinect0" in second.said()
+        assert "another event_recorder already runs for sensor kinect0" in second.said()
     assert not (tmp_path / "elsewhere").exists()
 
 
