@@ -114,7 +114,7 @@ def test_a_file_that_would_be_named_as_another_kind_is_refused_with_the_right_na
 
 
 def test_a_folder_that_would_be_named_as_a_picture_is_refused(tmp_path: Path) -> None:
-    assert "name the folder" in refusal("inspect", "model.npz", "-o", str(tmp_path / "map.png"))
+    assert "name a folder" in refusal("inspect", "model.npz", "-o", str(tmp_path / "map.png"))
 
 
 def test_a_folder_without_recordings_is_refused(tmp_path: Path) -> None:
@@ -134,7 +134,7 @@ def test_a_file_that_is_no_model_is_refused_without_advice_to_load_it_unsafely(t
 
 
 def test_a_model_alone_is_nothing_to_evaluate() -> None:
-    assert "name a model and then recordings" in refusal("evaluate", "m.npz")
+    assert "name a model and recordings" in refusal("evaluate", "m.npz")
 
 
 @pytest.mark.parametrize(
@@ -165,7 +165,7 @@ def test_an_unknown_preset_is_refused_with_the_known_ones(tmp_path: Path) -> Non
         (("paper", "attention=arms"), "no attention=arms"),
         (("paper", "beta=1"), "no beta=1"),
         (("paper", "axes"), "no axes="),
-        (("pyramid", "attention=all"), "pyramid has nothing to set"),
+        (("pyramid", "attention=all"), "preset pyramid has no settings"),
     ],
 )
 def test_a_setting_that_a_preset_does_not_know_is_refused_with_the_known_ones(
@@ -263,7 +263,7 @@ def test_training_and_evaluating_name_the_recording_that_breaks_off(broken_off: 
     for command in (["train", str(broken_off), "-o", model], ["evaluate", model, str(broken_off)]):
         done = CliRunner().invoke(app, command)
         assert done.exit_code == 0
-        assert f"{broken_off} breaks off" in done.stdout
+        assert f"{broken_off} is truncated" in done.stdout
 
 
 @pytest.mark.parametrize("place", ["nowhere/x.json", "folder", "file/x.json"])
@@ -388,7 +388,7 @@ def test_a_switch_that_is_left_leaves_the_line_to_the_shell(monkeypatch: pytest.
     monkeypatch.setattr(segment_commands, "Answers", lambda _: None)
     left = CliRunner().invoke(app, ["segment", "toggle"], input="")
     assert left.exit_code == 0
-    assert left.stdout == "Enter starts action 1, Ctrl-D leaves \n"
+    assert left.stdout == "press Enter to start action 1, Ctrl-D to quit \n"
 
 
 def test_who_waits_for_a_router_says_so_once(
@@ -445,7 +445,7 @@ def test_why_nothing_could_be_learnt_is_said_before_that_it_could_not(tmp_path: 
             recorder.write(message)
     done = CliRunner().invoke(app, ["train", str(tmp_path), "-o", str(tmp_path / "model.npz")])
     assert done.exit_code == 1
-    assert "left out s1 of " in done.stdout
+    assert "s1 of " in done.stdout and "was not used" in done.stdout
     assert "2 usable frames, at least 3 are needed" in done.stdout
     assert "samples of at least two actions are needed" in done.stderr
 
@@ -469,7 +469,7 @@ def test_a_number_that_is_not_finite_is_refused_as_argument_and_as_option(value:
 
     for arguments in ([value], ["1", "--seconds", value]):
         refused = CliRunner().invoke(measuring, arguments, standalone_mode=False).exception
-        assert isinstance(refused, typer.BadParameter) and "is no finite number" in refused.message
+        assert isinstance(refused, typer.BadParameter) and "is not a finite number" in refused.message
     assert not measured
 
 

@@ -79,7 +79,7 @@ def test_a_file_with_another_digest_is_not_kept_and_the_old_one_stays(tmp_path: 
 
 
 def test_a_server_without_the_file_is_told(tmp_path: Path) -> None:
-    with serving(b"", status=404) as url, pytest.raises(FetchError, match="the server says 404"):
+    with serving(b"", status=404) as url, pytest.raises(FetchError, match="the server answers 404"):
         fetch(published(url), tmp_path / "pose.task", nothing)
 
 

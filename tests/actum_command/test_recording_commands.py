@@ -291,7 +291,7 @@ def test_a_recording_that_breaks_off_is_named(live: Live, tmp_path: Path) -> Non
     path = cut(written(tmp_path / "a.mcap", skeleton(1), skeleton(2)))
     played = actum("play", path)
     assert played.exit_code == 0
-    assert f"{path} breaks off" in played.stdout
+    assert f"{path} is truncated" in played.stdout
 
 
 def test_what_a_play_passes_over_is_counted(live: Live, tmp_path: Path) -> None:
@@ -336,7 +336,7 @@ class TestUnfinishedInAFolder:
         watched = actum("watch", "segment", "--json", "--from", folder)
         assert [json.loads(line)["segment_id"] for line in watched.stdout.splitlines()] == ["done"] * 2 + ["newest"] * 2
         self.told_of(watched.stderr, folder)
-        assert f"{folder / 'b.mcap.part'} breaks off" in watched.stderr
+        assert f"{folder / 'b.mcap.part'} is truncated" in watched.stderr
 
     def test_a_file_that_is_named_is_read_or_refused(self, folder: Path) -> None:
         assert "newest" in actum("watch", "segment", "--from", folder / "b.mcap.part").stdout

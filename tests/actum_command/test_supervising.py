@@ -55,7 +55,7 @@ def test_what_runs_elsewhere_is_tried_again_now_and_then(
 ) -> None:
     with Supervisor(tmp_path / "log") as supervisor:
         supervisor.start(ending("worker", "ending", [str(TAKEN)]))
-        assert outcome(supervisor) == ["worker runs elsewhere, and here again once it has ended there"]
+        assert outcome(supervisor) == ["worker already runs elsewhere: it starts here when that instance ends"]
         now_s = time.monotonic()
         monkeypatch.setattr(time, "monotonic", lambda: now_s + ELSEWHERE_S - 5)
         assert supervisor.restart_ended() == []
@@ -69,7 +69,9 @@ def test_what_runs_elsewhere_is_tried_again_now_and_then(
 def test_what_cannot_be_used_as_it_is_set_is_not_started_again(ending: type[Program], tmp_path: Path) -> None:
     with Supervisor(tmp_path / "log") as supervisor:
         supervisor.start(ending("worker", "ending", [str(UNUSABLE)]))
-        with pytest.raises(UnusableError, match=f"worker cannot run as it is set: it says why in {tmp_path / 'log'}"):
+        with pytest.raises(
+            UnusableError, match=f"worker cannot run with its settings: see the reason in {tmp_path / 'log'}"
+        ):
             outcome(supervisor)
     assert (tmp_path / "log").read_text() == "mode: no such thing\n"
 

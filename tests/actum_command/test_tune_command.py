@@ -86,7 +86,7 @@ def test_settings_that_cannot_be_used_are_refused(desk: Desk, options: tuple[str
 
 def test_settings_of_the_search_are_refused_where_nothing_is_searched(desk: Desk) -> None:
     said = refused("evaluate", desk.model, desk.third, "--shortest-pause-s", "1")
-    assert "--shortest-pause-s is for what is found without marks: add --continuous" in said
+    assert "--shortest-pause-s applies to actions found without marks: add --continuous" in said
 
 
 def test_what_cannot_be_tuned_is_refused_before_the_work(desk: Desk, tmp_path: Path) -> None:

@@ -38,7 +38,7 @@ def test_who_may_not_look_is_told_that(deployment: Deployed) -> None:
         wait_until(lambda: len(client.infos()) == 1, "it runs")
         found = said(deployment, "gateway.kinect0")
     preprocessor.terminate()
-    assert found.startswith("services run, and the router's access control tells this program nothing of them")
+    assert found.startswith("services run, but the router's access control denies this program permission")
     assert "viewer, in ACTUM_CREDENTIALS" in found
 
 

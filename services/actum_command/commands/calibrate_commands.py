@@ -94,7 +94,7 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     marker_mm: MarkerMm = 26.0,
     family: Family = "DICT_5X5_100",
 ) -> None:
-    """Find where the camera that sees people sees the one that sees markers, from 6 to 10 pairs of pictures.
+    """Find the transform from the camera that sees the markers to the one that sees the people, from 6 to 10 pairs.
 
     Writes the marker camera's calibration with skeleton_from_image in it.
     """

@@ -23,7 +23,7 @@ def up(
         Path | None, typer.Argument(exists=True, dir_okay=False, help="a recording to use in place of the live stream")
     ] = None,
 ) -> None:
-    """Find how a tilted camera is tilted: one person stands upright and still before it, arms down, for two seconds."""
+    """Find the tilt of a camera from one person who stands upright and still before it, arms down, for two seconds."""
     frames = _live() if recording is None else _recorded(recording)
     estimator, instruction, instructed_ns = UpDirectionEstimator(), "", -PAUSE_NS
     for frame in frames:
