@@ -24,7 +24,9 @@ def actions_of(samples: Sequence[SegmentSample]) -> list[str]:
     """
     labels = sorted({sample.label for sample in samples})
     if len(labels) < 2:
-        raise TrainingError(f"samples of at least two actions are needed; these are of {labels or 'none'}")
+        raise TrainingError(
+            f"samples of at least two actions are needed, but these are of {labels or 'none'}: label another action"
+        )
     return labels
 
 

@@ -60,7 +60,9 @@ def train_upper(
     action_map, activities = _trained_action_map(scores, targets, preset, progress)
     inputs = action_map.centred(activities).astype(np.float64)
     if not inputs.any():
-        raise TrainingError("all samples move alike: their actions cannot be told apart")
+        raise TrainingError(
+            "the samples of all actions move alike, so the actions cannot be told apart: check their labels"
+        )
     layer3 = SupervisedLayer.of_means(inputs, targets, actions).train(
         inputs, targets, preset.beta, preset.epochs, rng, partial(progress, "neurons")
     )

@@ -129,7 +129,7 @@ def test_a_foreign_model_is_refused_with_the_remedy(tmp_path: Path) -> None:
 def test_a_file_that_is_no_model_is_refused_without_advice_to_load_it_unsafely(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_text("a recording, named where the model is to stand")
     refused = refusal("evaluate", str(tmp_path / "a.mcap"), str(tmp_path))
-    assert "a.mcap: no actum model" in refused
+    assert "a.mcap: not a model of actum" in refused
     assert "pickle" not in refused
 
 
@@ -199,7 +199,7 @@ def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
 def test_a_model_that_cannot_find_actions_by_itself_says_what_to_do(examples: Path, tmp_path: Path) -> None:
     model = str(tmp_path / "m.npz")
     assert CliRunner().invoke(app, ["train", str(examples), "-o", model, "--preset", "paper"]).exit_code == 0
-    assert "cannot find actions without marks; train it anew" in refusal(
+    assert "cannot find actions without marks: train it again" in refusal(
         "evaluate", "--continuous", model, str(examples)
     )
 
@@ -376,7 +376,7 @@ def test_a_system_that_has_no_model_says_so_when_it_starts(tmp_path: Path) -> No
     for arguments, said in (
         ([], "no --model"),
         (["--model", "none.npz"], "no none.npz yet"),
-        (["--model", str(tmp_path / "foreign.npz")], "foreign.npz: no actum model"),
+        (["--model", str(tmp_path / "foreign.npz")], "foreign.npz: not a model of actum"),
     ):
         started = CliRunner().invoke(app, ["up", *arguments], env={"ACTUM_MODEL": None})
         assert started.exit_code == 0

@@ -158,7 +158,7 @@ def test_an_mcap_of_a_later_version_is_refused(recording: Path, tmp_path: Path) 
 
 
 def no_model(path: Path) -> str:
-    with pytest.raises(ModelError, match=f"^{path}: .*; train a model with: actum train REC… -o MODEL$") as error:
+    with pytest.raises(ModelError, match=f"^{path}: .*; train a model with 'actum train REC… -o MODEL'$") as error:
         load_model(path)
     return str(error.value)
 

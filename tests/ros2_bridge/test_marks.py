@@ -57,7 +57,7 @@ def test_a_mark_may_say_when_who_with_which_hand_and_what() -> None:
         (text('{"kind": "start"'), "no JSON"),
         (text("[" * 5000), "no JSON"),
         (text("[]"), "a list, not an object with kind, segment_id, stamp_ns"),
-        (text('{"kind": "start", "segment": "a"}'), "'segment' is no field of a mark: use kind, segment_id"),
+        (text('{"kind": "start", "segment": "a"}'), "'segment' is not a field of a mark: use kind, segment_id"),
         (text('{"kind": "start", "segment_id": "a", "origin": "auto"}'), "'origin' is no field"),
         (text('{"kind": "stop", "segment_id": "a"}'), "kind: "),
         (text('{"kind": "start", "segment_id": ""}'), "segment_id: "),

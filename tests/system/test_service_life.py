@@ -138,7 +138,7 @@ def test_tokens_go_with_their_process(running: System) -> None:
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (["sensor_gateway"], "name a --source (ACTUM_SOURCE)"),
+        (["sensor_gateway"], "set --source (ACTUM_SOURCE)"),
         (["sensor_gateway", "--source", "recording"], "needs --path"),
         (["sensor_gateway", "--source", "recording", "--path", "/nowhere"], "/nowhere"),
         (["sensor_gateway", "--source", "camera", "--pose-model", "/nowhere"], "'actum models fetch'"),
