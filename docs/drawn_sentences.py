@@ -4,6 +4,7 @@ import argparse
 import ast
 import random
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -28,7 +29,8 @@ DRAWN = {"errors": 15, "helps": 20, "paragraphs": 10}
 
 def errors() -> set[str]:
     """Collect the texts of errors, warnings and findings; a name in braces stands for a value."""
-    sources: Sources = Sources(PACKAGES, lambda part: _hole(part, sources.constants))
+    sources: Sources = Sources(PACKAGES, lambda part: _hole(part, constants))
+    constants = _unambiguous(sources)
     found: set[str] = set()
     for path, node in sources.nodes():
         for expression in _expressions(node, Path(path).stem in FINDINGS):
@@ -47,6 +49,18 @@ def _expressions(node: ast.AST, finding: bool) -> list[ast.expr]:
             return [value]
         case _:
             return []
+
+
+def _unambiguous(sources: Sources) -> dict[str, str]:
+    """Return the text constants whose names stand in one module only."""
+    named = Counter(
+        getattr(target, "id", "")
+        for tree in sources.modules.values()
+        for node in tree.body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+    )
+    return {name: text for name, text in sources.constants.items() if named[name] == 1}
 
 
 def _hole(part: ast.expr, constants: Mapping[str, str]) -> str:

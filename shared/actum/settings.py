@@ -120,7 +120,7 @@ class ServiceSettings(BaseSettings):
     )
     zenoh_config: Path | None = Field(
         None,
-        description="a JSON5 file of Zenoh settings, such as TLS and users, on which actum's own are laid",
+        description="a JSON5 file of Zenoh settings, such as TLS and users; actum's own settings override it",
     )
     credentials: Path | None = Field(
         None,

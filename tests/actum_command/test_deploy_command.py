@@ -81,7 +81,7 @@ def test_certificates_do_not_outlast_their_authority(days: str, tmp_path: Path) 
 def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
     assert run("init", tmp_path, *HOSTS, "--open").exit_code == 0
     assert not list(tmp_path.rglob("*.pem"))
-    assert "trusted with everything" in (tmp_path / "camera" / "README.md").read_text()
+    assert "access control are disabled" in (tmp_path / "camera" / "README.md").read_text()
     assert "has no credentials" in run("rotate", tmp_path).stderr
 
 

@@ -115,7 +115,7 @@ def test_a_system_that_is_well_is_said_to_be(monkeypatch: pytest.MonkeyPatch) ->
 def test_another_version_is_a_problem_though_it_has_the_same_schemas(monkeypatch: pytest.MonkeyPatch) -> None:
     code, output = diagnosed(monkeypatch, System(status("som_classifier"), version="0.0.1"))
     assert code == 1
-    assert f"som_classifier is version 0.0.1, this is {__version__}" in output
+    assert f"som_classifier is version 0.0.1, but this program is version {__version__}" in output
     assert "of one version" not in output
 
 
@@ -189,7 +189,7 @@ def test_two_of_one_identity_are_a_problem_that_names_both(monkeypatch: pytest.M
     code, output = diagnosed(monkeypatch, system)
     assert code == 1
     assert "pose_preprocessor runs more than once, so that every segment is answered more than once" in output
-    assert f"stop all but one of a on lab, {second} on lab" in output
+    assert f"stop all instances but one of a on lab, {second} on lab" in output
 
 
 def test_where_there_is_no_room_for_a_table_there_are_lines_of_whole_words() -> None:
