@@ -146,7 +146,7 @@ def test_each_person_is_watched_by_a_model_of_all_others(
 
 
 def test_one_person_cannot_be_left_out(three_people: list[Recording]) -> None:
-    with pytest.raises(TrainingError, match="at least two persons"):
+    with pytest.raises(TrainingError, match="at least two people"):
         found_without_each(three_people[:1], lambda *_: tiny_model())
 
 

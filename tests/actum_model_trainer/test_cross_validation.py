@@ -130,5 +130,5 @@ def test_an_action_of_one_person_alone_is_never_recognised(three_people: list[Re
 
 
 def test_one_person_cannot_be_left_out(three_people: list[Recording]) -> None:
-    with pytest.raises(TrainingError, match="at least two persons"):
+    with pytest.raises(TrainingError, match="at least two people"):
         leave_one_person_out(three_people[:1], TINY)

@@ -105,7 +105,7 @@ def joints(frame: Skeleton) -> np.ndarray:
 
 
 def test_a_model_without_a_search_is_refused(recordings: list[Recording]) -> None:
-    with pytest.raises(NoSpotterError, match="train it anew"):
+    with pytest.raises(NoSpotterError, match="train it again"):
         tuned(tiny_model(), recordings)
 
 

@@ -89,7 +89,7 @@ def test_two_actions_that_are_mixed_up_are_named_with_what_to_record(
 ) -> None:
     (warning,) = warnings_of(examples(ENOUGH), held_out)
     assert warning.startswith(said)
-    assert warning.endswith("do them more differently or give them one name.")
+    assert warning.endswith("perform the actions more differently, or give both the same label.")
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,7 @@ BAD = {
     GOOD + "  1: {name: box}\n": "line 5: 1 occurs twice: remove one",
     GOOD + "  01: {name: box}\n": "line 5: 1 occurs twice: remove one",
     GOOD + "  2: box\n": "line 5: objects.2: has to have fields, such as {name: cup}",
-    "family: 4X4_50\nobjects: [cup]\n": "line 2: objects: needs ids with what they are",
+    "family: 4X4_50\nobjects: [cup]\n": "line 2: objects: has to map ids to objects",
     GOOD + "  2: {name: box, markers: [{id: 2, object_from_marker: {translation_m: [0, 0, 35]}}]}\n": "equal to 5",
     GOOD
     + "  2: {name: box, markers: [{id: 1}]}\n": "marker 1 of DICT_4X4_50 is already on object 1: give object 2 anoth",
@@ -68,7 +68,8 @@ BAD = {
     "a: 2026-13-45": "is not YAML",
     "[" * 3000: "is not YAML",
     "objects: &all\n  1: *all\n": "refers to itself",
-    "a0: &a0 [x]\n" + "".join(f"a{n + 1}: &a{n + 1} [{f'*a{n}, ' * 9}]\n" for n in range(9)): "a0: no such field",
+    "a0: &a0 [x]\n"
+    + "".join(f"a{n + 1}: &a{n + 1} [{f'*a{n}, ' * 9}]\n" for n in range(9)): "a0: there is no such field",
 }
 
 
