@@ -155,16 +155,16 @@ def test_a_file_is_not_passed_over_by_a_source_that_plays_none(
 def test_an_unknown_preset_is_refused_with_the_known_ones(tmp_path: Path) -> None:
     assert CliRunner().invoke(app, ["simulate", str(tmp_path / "a.mcap"), "--repetitions", "1"]).exit_code == 0
     message = refusal("train", str(tmp_path), "-o", str(tmp_path / "m.npz"), "--preset", "best")
-    assert "no preset" in message
+    assert "is not a preset" in message
     assert "paper" in message
 
 
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        (("paper", "attention=arms"), "no attention=arms"),
-        (("paper", "beta=1"), "no beta=1"),
-        (("paper", "axes"), "no axes="),
+        (("paper", "attention=arms"), "has no setting attention=arms"),
+        (("paper", "beta=1"), "has no setting beta=1"),
+        (("paper", "axes"), "has no setting axes="),
         (("pyramid", "attention=all"), "preset pyramid has no settings"),
     ],
 )

@@ -118,4 +118,4 @@ def test_the_command_fails_with_what_went_wrong(tmp_path: Path) -> None:
     with serving(CONTENT) as url:
         failed = CliRunner().invoke(app, ["models", "fetch", "--url", url, "-o", str(tmp_path / "pose.task")])
     assert failed.exit_code == 1
-    assert "broke off" in " ".join(failed.stderr.split())
+    assert "the download stopped" in " ".join(failed.stderr.split())

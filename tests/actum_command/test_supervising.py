@@ -34,7 +34,7 @@ def outcome(supervisor: Supervisor) -> list[str]:
 def test_what_ends_is_announced_and_started_again(ending: type[Program], tmp_path: Path) -> None:
     with Supervisor(tmp_path / "log") as supervisor:
         supervisor.start(ending("worker", "ending", ["1"]))
-        assert outcome(supervisor) == ["worker ended with code 1: restart in 0.5 s"]
+        assert outcome(supervisor) == ["worker ended with code 1 and restarts in 0.5 s"]
 
 
 def test_what_is_killed_is_another_process_afterwards(tmp_path: Path) -> None:
@@ -85,7 +85,7 @@ def test_a_system_ends_with_the_line_of_the_program_that_cannot_be_used(
     told = capfd.readouterr()
     assert ended.value.exit_code == 1
     assert told.out == "mode: no such thing\n"
-    assert "worker cannot run as it is set" in told.err
+    assert "worker cannot run with its settings" in told.err
 
 
 SUPERVISING = """

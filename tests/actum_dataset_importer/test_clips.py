@@ -128,7 +128,7 @@ def test_a_broken_clip_and_an_empty_folder_are_named(tmp_path: Path) -> None:
     with pytest.raises(DatasetError, match="holds no video"):
         imported(tmp_path, tmp_path / "out")
     (tmp_path / "wave_anna.mp4").write_text("no video")
-    with pytest.raises(DatasetError, match=r"wave_anna\.mp4: no video"):
+    with pytest.raises(DatasetError, match=r"wave_anna\.mp4 is not a video"):
         imported(tmp_path, tmp_path / "out")
 
 

@@ -57,7 +57,7 @@ def test_a_missing_model_is_told_with_the_command_that_gets_it(tmp_path: Path) -
     [
         (PermissionError("Unable to open file at pose.task"), "cannot be read by this user"),
         (FileNotFoundError("No file with name: pose_detector.tflite"), "is not a pose model .*'actum models fetch'"),
-        (OSError("libGLESv2.so.2: cannot open shared object file"), "'apt install libegl1 libgles2'"),
+        (OSError("libGLESv2.so.2: cannot open shared object file"), "apt install libegl1 libgles2"),
     ],
 )
 def test_why_the_model_cannot_be_opened_is_told(

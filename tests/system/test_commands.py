@@ -91,7 +91,7 @@ def test_up_runs_everything_that_watch_shows_restarts_what_dies_and_leaves_nothi
         assert "waiting for it" not in up.said(), "the router is there first"
         wait_until(lambda: re.search(r"the page: http://127.0.0.1:\d+/", up.said()) is not None, "it names the page")
         subprocess.run(["pkill", "-KILL", "-P", str(up.process.pid), "-f", "action_fusion"], check=True)
-        wait_until(lambda: "action_fusion ended with code -9: restart" in up.said(), "the supervisor notices")
+        wait_until(lambda: "action_fusion ended with code -9 and restarts" in up.said(), "the supervisor notices")
         assert_recognised(events)
         wait_until(lambda: re.search(r"(push|pull|put|lift|point)", watch.said()) is not None, "watch prints an event")
     watch.terminate()

@@ -194,7 +194,7 @@ def test_a_service_of_which_a_part_has_a_bug_ends_and_says_so_instead_of_going_o
 
         wait_until(ended, "the process ends", 15.0)
     assert service.process.returncode == 1
-    assert "a bug, met" in service.said() and where in service.said()
+    assert "a bug occurred" in service.said() and where in service.said()
 
 
 def test_a_router_goes_on_where_its_health_file_cannot_be_written(running: System) -> None:

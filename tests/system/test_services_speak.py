@@ -95,7 +95,7 @@ def test_the_end_of_a_recording_is_told_with_its_name(running: System, tmp_path:
     gateway = running.start("sensor_gateway", *recording(tmp_path / "a.mcap", *reaches(3)))
     ended = f"source ended (file {tmp_path / 'a.mcap'} (recording))"
     wait_for_line(gateway, ended)
-    assert f"sensor_gateway: {ended}; start it again for more" in diagnosed(running)
+    assert f"sensor_gateway: {ended}; start it again to play once more" in diagnosed(running)
     assert STATUS_S > 1.0, "doctor heard two reports meanwhile"
     wait_for_line(gateway, ended)
 

@@ -58,7 +58,7 @@ class Commander:
                     self._counters.reject("refused_command", str(refusal))
                 query.reply_err(packed({"error": str(refusal)}, encoding), encoding=encoding)
             except Exception:
-                log.exception("a defect in the code that handles the command %s", query.key_expr)
+                log.exception("a bug occurred while handling the command %s", query.key_expr)
                 query.reply_err(packed({"error": "the service failed: its log says why"}, encoding), encoding=encoding)
                 self._failed()
 
