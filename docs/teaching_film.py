@@ -87,8 +87,8 @@ def main(file: Path) -> None:
 def teach(film: Film) -> None:
     """Record three actions: the first is filmed, then the examples of all."""
     page = film.page
-    press(page, "Make set")
-    page.get_by_text("made", exact=True).locator("visible=true").wait_for()
+    press(page, "Create set")
+    page.get_by_text("created.").locator("visible=true").wait_for()
     page.get_by_role("combobox", name="Person").fill("anna")
     for letters in range(len(ACTIONS[0]) + 1):
         action(page).fill(ACTIONS[0][:letters])

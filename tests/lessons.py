@@ -74,7 +74,7 @@ class Class(Colleague):
                 self._teacher.see([message])
 
     def infos(self) -> list[Message]:
-        offered = {"pose_preprocessor": sorted(self._commands), "sensor_gateway": ["perform"]}
+        offered = {"pose_preprocessor": sorted(self._commands), "sensor_gateway": ["perform", "repertoire"]}
         return [
             Info(
                 stamp_ns=1, sensor="kinect0", service=service, instance="x", version=__version__, schemas=[],
@@ -90,6 +90,8 @@ class Class(Colleague):
             if service == "pose_preprocessor":
                 return self._commands[command].obey(fields)
         if service == "sensor_gateway":
+            if command == "repertoire":
+                return {"actions": ["push", "lift"]}
             self.performed.append(fields)
             return {"waiting": 1}
         raise Refusal(f"{service} is not in this room")

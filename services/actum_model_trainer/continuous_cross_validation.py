@@ -52,7 +52,9 @@ def found_without_each(
     """
     people = sorted({recording.person for recording in recordings})
     if len(people) < 2:
-        raise TrainingError(f"recordings of at least two people are needed, but these are of {people or 'none'}")
+        raise TrainingError(
+            f"recordings of at least two people are needed; these are of {', '.join(people) or 'nobody with a name'}"
+        )
     found: dict[str, Found] = {}
     for person in people:
         model = model_without(person, _prefixed(f"without {person or 'unnamed'}: ", progress))

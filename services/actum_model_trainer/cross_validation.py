@@ -30,7 +30,9 @@ def leave_one_person_out(
     """
     people = sorted({recording.person for recording in recordings})
     if len(people) < 2:
-        raise TrainingError(f"recordings of at least two people are needed, but these are of {people or 'none'}")
+        raise TrainingError(
+            f"recordings of at least two people are needed; these are of {', '.join(people) or 'nobody with a name'}"
+        )
     samples = samples_from(recordings, progress)
     segments: dict[tuple[str, str, str], SegmentSample | Unusable] = {}
     for segment in samples.segments:

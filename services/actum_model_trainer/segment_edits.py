@@ -65,8 +65,8 @@ class MixedMirroringError(ValueError):
     def __init__(self, one: Marked, other: Marked) -> None:
         mirrored, plain = (one, other) if one.mirrored else (other, one)
         super().__init__(
-            f"{mirrored.segment_id} is mirrored and {plain.segment_id} is not, so they cannot share frames: make "
-            "them not overlap, or mirror one of them first"
+            f"{mirrored.segment_id} is mirrored and {plain.segment_id} is not, so they cannot share frames: "
+            "trim them until they do not overlap, or mirror one of them first"
         )
 
 

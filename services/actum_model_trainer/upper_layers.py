@@ -61,7 +61,7 @@ def train_upper(
     inputs = action_map.centred(activities).astype(np.float64)
     if not inputs.any():
         raise TrainingError(
-            "the samples of all actions move alike, so the actions cannot be told apart: check their labels"
+            "all examples show the same movement, so their actions cannot be told apart: record them again"
         )
     layer3 = SupervisedLayer.of_means(inputs, targets, actions).train(
         inputs, targets, preset.beta, preset.epochs, rng, partial(progress, "neurons")

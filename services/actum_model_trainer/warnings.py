@@ -99,6 +99,11 @@ def _no_background(counts: Mapping[str, int]) -> Iterator[str]:
         )
 
 
+def counted(number: int, one: str, several: str = "") -> str:
+    """Return a number with its noun: 1 example, 2 examples."""
+    return f"{number} {one if number == 1 else several or f'{one}s'}"
+
+
 def listed(parts: Iterator[str]) -> str:
     """Join one or more parts in words: a, b and c."""
     *others, last = parts

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel, Field
 
-from actum.commands import Command, Refusal, Request
+from actum.commands import Command, NoFields, Refusal, Request
 from scene_simulator.everyday import FAMILIAR, Everyday, EverydayPerson
 from scene_simulator.programme import ACTIONS, Task, object_ids
 from scene_simulator.random_streams import random_stream
@@ -48,6 +48,13 @@ class Performances(BaseModel):
 
     waiting: int
     """Performances that have not begun."""
+
+
+class Repertoire(BaseModel):
+    """What the person can be asked to do."""
+
+    actions: list[str]
+    """The actions, each of which `perform` takes."""
 
 
 class DrivenScene(Scene):
@@ -131,8 +138,15 @@ class DrivenSimulator(Simulator):
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:
-        """The command `perform`."""
-        return (Command("perform", Perform, Performances, self._perform),)
+        """The commands `perform` and `repertoire`."""
+        return (
+            Command("perform", Perform, Performances, self._perform),
+            Command("repertoire", NoFields, Repertoire, self._list_actions),
+        )
+
+    def _list_actions(self, _: NoFields) -> Repertoire:
+        """List the actions that the simulated person can do."""
+        return Repertoire(actions=list(ACTIONS))
 
     def _perform(self, request: Perform) -> Performances:
         """Have the simulated person do actions, or everyday things, as soon as the ones before are done."""

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from actum import keys
-from actum.commands import Refusal
+from actum.commands import Refusal, problems
 from actum.limits import MOST_OPEN_SEGMENTS
 from actum.messages import MANUAL, Segment
 from actum.runtime import Client, NotAnsweredError
@@ -92,7 +92,7 @@ class Orders:
         try:
             order = Order.model_validate_json(received)
         except ValidationError as error:
-            return self.refuse(_number_of(received), _complaint(error))
+            return self.refuse(_number_of(received), problems(error))
         loop = asyncio.get_running_loop()
         try:
             if order.mark is not None:
@@ -155,8 +155,3 @@ def _number_of(received: str) -> int | None:
     except (ValueError, TypeError, KeyError, RecursionError):
         return None
     return number if isinstance(number, int) else None
-
-
-def _complaint(error: ValidationError) -> str:
-    first = error.errors(include_input=False, include_url=False, include_context=False)[0]
-    return f"{'.'.join(map(str, first['loc'])) or 'the message'}: {first['msg'].removeprefix('Value error, ')}"

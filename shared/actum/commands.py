@@ -8,6 +8,7 @@ from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 import msgpack
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails
 
 from actum.codec import MOST_VALUES, UNPACK_ERRORS, Unpacking, encodable, with_different_names
 
@@ -78,7 +79,7 @@ class Command(Generic[Q, A]):
         try:
             request = self.request.model_validate(fields)
         except ValidationError as error:
-            raise Refusal(f"{self.name}: {_problems(error)}") from None
+            raise Refusal(problems(error)) from None
         return self.handler(request).model_dump()
 
 
@@ -199,7 +200,22 @@ def _inner(value: Any) -> Iterator[Any]:
             raise Refusal(f"the request holds a {type(value).__name__}: use the types of JSON, or bytes")
 
 
-def _problems(error: ValidationError) -> str:
-    problems = error.errors(include_url=False, include_input=False)
-    named = [f"{'.'.join(map(str, each['loc'])) or 'fields'}: {each['msg']}" for each in problems[:MOST_PROBLEMS]]
-    return "; ".join(named + [f"and {len(problems) - len(named)} more"] * (len(problems) > len(named)))
+def problems(error: ValidationError) -> str:
+    """Say in words what is wrong with fields, naming at most `MOST_PROBLEMS` of them."""
+    found = error.errors(include_url=False, include_input=False)
+    named = [_sentence(each) for each in found[:MOST_PROBLEMS]]
+    return "; ".join(named + [f"and {len(found) - len(named)} more"] * (len(found) > len(named)))
+
+
+def _sentence(problem: ErrorDetails) -> str:
+    """Say what is wrong with one field: in pydantic's words about it, or in those of our own check, which name it."""
+    place = ".".join(map(str, problem["loc"])) or "the request"
+    match problem["type"]:
+        case "missing":
+            return f"{place} is missing"
+        case "extra_forbidden":
+            return f"there is no field {place}"
+        case "value_error":
+            return str(problem["ctx"]["error"])
+    subject, should, rest = problem["msg"].partition(" should ")
+    return f"{place} should {rest}" if should else f"{place}: {subject}"

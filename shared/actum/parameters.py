@@ -5,8 +5,8 @@ from typing import Any, Generic, TypeVar
 
 from pydantic import BaseModel, Field, ValidationError
 
-from actum.commands import Command, NoFields, Refusal, Request
-from actum.settings import ServiceSettings, complaint
+from actum.commands import Command, NoFields, Refusal, Request, problems
+from actum.settings import ServiceSettings
 
 S = TypeVar("S", bound=ServiceSettings)
 UNITS = {"_per_min": "1/min", "_m": "m", "_s": "s", "_deg": "°", "_hz": "Hz"}
@@ -105,7 +105,7 @@ class LiveParameters(Generic[S]):
             try:
                 type(changed).__pydantic_validator__.validate_assignment(changed, name, value)
             except ValidationError as error:
-                raise Refusal(complaint(error)) from None
+                raise Refusal(problems(error)) from None
         return changed
 
 

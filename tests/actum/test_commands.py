@@ -45,9 +45,9 @@ def test_a_command_answers_its_reply_s_fields() -> None:
 @pytest.mark.parametrize(
     ("fields", "why"),
     [
-        ({}, "greet: name: Field required"),
-        ({"name": "somebody"}, "at most 5 characters"),
-        ({"name": "you", "loud": True}, "loud: Extra inputs are not permitted"),
+        ({}, "^name is missing$"),
+        ({"name": "somebody"}, "^name should have at most 5 characters$"),
+        ({"name": "you", "loud": True}, "there is no field loud"),
         ({"name": "me"}, "greet somebody else"),
     ],
 )

@@ -447,7 +447,7 @@ def test_why_nothing_could_be_learnt_is_said_before_that_it_could_not(tmp_path: 
     assert done.exit_code == 1
     assert "s1 of " in done.stdout and "was not used" in done.stdout
     assert "2 usable frames, at least 3 are needed" in done.stdout
-    assert "samples of at least two actions are needed" in done.stderr
+    assert "a model needs examples of at least two actions" in done.stderr
 
 
 def leaves(command: Any) -> Iterator[Any]:

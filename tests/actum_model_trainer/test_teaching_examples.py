@@ -1,5 +1,6 @@
 """Sets and examples: names, listing, films, mending; and what is refused."""
 
+import re
 import shutil
 from pathlib import Path
 
@@ -102,15 +103,58 @@ def test_everything_is_listed_with_dates_and_people(teacher: Teacher) -> None:
     assert listed["models"] == [] and listed["active"] is None and listed["presets"][0] == "pyramid"
 
 
+@pytest.mark.parametrize("name", ["con", "NUL", "com1.old", "Aux"])
+def test_a_set_is_not_called_as_a_device_of_windows_but_an_action_may_be(teacher: Teacher, name: str) -> None:
+    with pytest.raises(Refusal, match="is the name of a device on Windows"):
+        teacher.ask("create_set", set=name)
+    with pytest.raises(Refusal, match="is the name of a device on Windows"):
+        teacher.ask("rename_set", set="kitchen", name=name)
+    teacher.ask("relabel", set="kitchen", example=teacher.examples()[0]["id"], label=name)
+    assert name in teacher.ask("list")["sets"][0]["actions"]
+
+
+@pytest.mark.parametrize(
+    ("label", "why"),
+    [
+        ("idle", "'idle' would be learned as an action, and reported whenever people do nothing in particular: name"),
+        ("Background", "'Background' would be learned as an action"),
+        ("none", "'none' is what the system answers where it recognises no action"),
+        ("unknown", "'unknown' is what the system answers"),
+    ],
+)
+def test_no_action_is_called_as_what_is_none(teacher: Teacher, label: str, why: str) -> None:
+    example = teacher.examples()[0]["id"]
+    with pytest.raises(Refusal, match=f"^{why}"):
+        teacher.ask("record", set="kitchen", label=label)
+    with pytest.raises(Refusal, match="record what is none of the actions as background$"):
+        teacher.ask("relabel", set="kitchen", example=example, label=label)
+    with pytest.raises(Refusal, match=f"^{why}"):
+        teacher.ask("import_video", set="kitchen", upload="clip", label=label)
+    teacher.ask("record", set="kitchen", kind="background")
+    teacher.ask("discard")
+
+
+def test_a_name_that_is_refused_is_refused_in_a_sentence_without_the_command_or_the_field(teacher: Teacher) -> None:
+    rule = "use letters, digits, spaces, '_', '-' and '.', begin with a letter or digit"
+    for name in ("../x", "a/b", "<b>", ".hidden", "end "):
+        with pytest.raises(Refusal, match=f"^{re.escape(repr(name))} cannot be a name: {rule}"):
+            teacher.ask("create_set", set=name)
+    with pytest.raises(Refusal, match="^the name is empty: type one$"):
+        teacher.ask("create_set", set="")
+    with pytest.raises(Refusal, match="^a name has at most 64 characters, and this one has 65: shorten it$"):
+        teacher.ask("create_set", set="x" * 65)
+
+
 def test_a_set_is_a_folder_that_can_be_copied_renamed_and_deleted(teacher: Teacher) -> None:
     shutil.copytree(teacher.folder / "sets" / "kitchen", teacher.folder / "sets" / "garden")
     assert [each["name"] for each in teacher.ask("list")["sets"]] == ["garden", "kitchen"]
-    with pytest.raises(Refusal, match="there is a set 'garden' already"):
+    with pytest.raises(Refusal, match="there is already a set 'garden'"):
         teacher.ask("rename_set", set="kitchen", name="garden")
-    with pytest.raises(Refusal, match="already"):
-        teacher.ask("create_set", set="Garden")
+    with pytest.raises(Refusal, match="there is already a set 'garden'"):
+        teacher.ask("create_set", set="GARDEN")
     teacher.ask("delete_set", set="garden")
-    teacher.ask("rename_set", set="kitchen", name="Küche")
+    teacher.ask("rename_set", set="kitchen", name="Kitchen")
+    teacher.ask("rename_set", set="Kitchen", name="Küche")
     assert [each["name"] for each in teacher.ask("list")["sets"]] == ["Küche"]
     assert len(teacher.examples("Küche")) == 10
 
@@ -217,7 +261,7 @@ def test_a_file_that_cannot_be_written_changes_nothing(teacher: Teacher, monkeyp
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("os.fsync", full)
-    with pytest.raises(Refusal, match="No space left on device; everything is as it was"):
+    with pytest.raises(Refusal, match="No space left on device; nothing was changed"):
         teacher.ask("relabel", set="kitchen", example=example["id"], label="greet")
     monkeypatch.undo()
     assert first(teacher) == example

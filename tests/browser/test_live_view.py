@@ -49,7 +49,7 @@ def test_a_skeleton_moves(scene: Scene, open_in_3d: Open) -> None:
     first = page.locator(".scene").screenshot()
     page.wait_for_timeout(400)
     assert page.locator(".scene").screenshot() != first
-    assert page.locator(".counts").text_content() == "1 person · 1 of 1 objects in sight"
+    assert page.locator(".counts").text_content() == "1 person · 1 of 1 object in sight"
 
 
 @pytest.mark.long
@@ -149,7 +149,7 @@ def test_a_name_that_a_source_uses_again_once_it_is_started_anew_is_of_another_s
     times = {"stamp_ns": scene.stamp_ns, "start_ns": scene.stamp_ns - SECOND_NS // 2, "end_ns": None}
     early = action("one", times, final=False).model_copy(update={"session_id": "anew", "action": "wave"})
     scene.page.give(early)
-    page.locator("#now .kicker", has_text="It seems").wait_for()
+    page.locator("#now .kicker", has_text="So far it looks like").wait_for()
 
 
 def test_a_mark_that_is_refused_is_told(scene: Scene, open_page: Open) -> None:
@@ -259,5 +259,5 @@ def test_every_control_is_reached_by_the_tabulator_and_has_a_name(scene: Scene, 
 def test_without_3d_it_says_so_and_shows_the_rest(scene: Scene, open_page: Open) -> None:
     page = open_page(scene.page.address)
     wait_for_state(page, "live")
-    assert "draws no 3-D" in page.locator("#scene").text_content()
+    assert "cannot draw 3-D" in page.locator("#scene").text_content()
     assert colours(page, "#picture canvas") > 2

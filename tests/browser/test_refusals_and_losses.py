@@ -202,7 +202,7 @@ def test_what_a_busy_service_did_not_answer_is_asked_for_again(room: Lesson, ope
     refuse_first(room.page.colleague, "set_parameters")
     reach.fill("7.5")
     reach.press("Enter")
-    page.get_by_text("perhaps not set: pose_preprocessor does not answer").wait_for()
+    page.get_by_text("Perhaps not set: pose_preprocessor does not answer").wait_for()
 
 
 def test_the_parameters_of_a_service_that_was_started_anew_are_read_anew(room: Lesson, open_page: Open) -> None:
@@ -262,7 +262,7 @@ def test_a_model_without_maps_is_asked_for_them_once_and_the_next_one_again(
         page.wait_for_timeout(1000)
         assert len(asked) <= 2, "before and after the classifier has named its model"
         running[0] = "with"
-        page.locator("#postures").get_by_text("Bodies are the postures").wait_for(timeout=10_000)
+        page.locator("#postures").get_by_text("Each figure is the posture").wait_for(timeout=10_000)
         page.wait_for_timeout(500)
         assert asked.count("with") == 1
 
@@ -302,7 +302,7 @@ def test_what_has_gone_when_a_button_is_pressed_is_told_in_words(room: Lesson, o
     room.page.colleague.answer = asked
     page = live(open_page(f"{room.page.address}#models"))
     page.get_by_role("button", name="Compare model 01234567").click()
-    page.locator("#model-list").get_by_text("no model is in use to compare it with").wait_for()
+    page.locator("#model-list").get_by_text("No model is in use, so there is none to compare it with.").wait_for()
     page.get_by_text("Have the simulated person do it").evaluate("it => it.click()")
     page.locator("#record").get_by_text("no take is being recorded: press Record first").wait_for(state="attached")
     page.evaluate(

@@ -113,7 +113,7 @@ def test_one_is_stopped_another_dropped_and_background_recorded(room: Lesson, te
     says(teach, "record", "2 of swing recorded")
     press(teach, "Record")
     press(teach, "Discard")
-    says(teach, "record", "dropped")
+    says(teach, "record", "Discarded: nothing was kept.")
     press(teach, "Record background")
     says(teach, "record", "0.0 s")
     room.see(Stream().then(rest(12)).skeletons(first_ns=2 * 10**12))
@@ -219,14 +219,14 @@ def test_an_action_and_a_set_are_deleted_once_that_is_confirmed(room: Lesson, te
     press(teach, "Delete all", teach.get_by_role("dialog"))
     examples_of(teach, "wave", 0)
     press(teach, "Delete set")
-    press(teach, "Delete set", teach.get_by_role("dialog", name=f"Delete {SET} with 5 examples?"))
-    teach.get_by_text("Make a set first.").wait_for()
+    press(teach, "Delete set", teach.get_by_role("dialog", name=f"Delete the set {SET} with 5 examples?"))
+    teach.get_by_text("Create a set first.").wait_for()
     assert room.teacher.ask("list")["sets"] == []
 
 
 def test_sets_are_made_chosen_and_renamed(room: Lesson, teach: Any) -> None:
     teach.get_by_role("textbox", name="Name of a new set").fill("Küche 2")
-    press(teach, "Make set")
+    press(teach, "Create set")
     choice = teach.get_by_role("combobox", name="Set", exact=True).locator("visible=true")
     wait_until(lambda: choice.input_value() == "Küche 2", "the new set is chosen")
     press(teach, "Rename")
@@ -261,7 +261,7 @@ def test_a_video_is_sent_whole_and_read_as_a_job(room: Lesson, teach: Any, tmp_p
     room.teacher.jobs[0].news = Progressing("finding the person", 0.4)
     says(teach, "video", "Reading the video: finding the person, 40 %")
     room.end_job(None, "wave 2.mp4 is no video")
-    says(teach, "video", "failed: wave 2.mp4 is no video")
+    says(teach, "video", "Failed: wave 2.mp4 is no video")
 
 
 DROP = """([name, rounds]) => {
@@ -279,7 +279,7 @@ def test_two_tabs_send_files_of_one_name_beside_each_other(room: Lesson, teach: 
     for page, content in ((teach, b"one"), (other, b"another")):
         (tmp_path / "wave.mp4").write_bytes(content)
         page.get_by_label("Drop a video anywhere").set_input_files(tmp_path / "wave.mp4")
-        says(page, "video", "wave.mp4 sent")
+        says(page, "video", "wave.mp4 sent.")
     files = room.teacher.folder.rglob("*-wave.mp4")  # one lies in the folder of the job that imports it
     assert {file.read_bytes() for file in files} == {b"one", b"another"}
 
@@ -304,7 +304,7 @@ def test_a_model_is_trained_put_into_use_compared_undone_and_deleted(room: Lesso
     room.teacher.jobs[0].news = Progressing("training the maps", 0.25)
     says(models, "training", "Training: training the maps, 25 %")
     room.end_job(trained())
-    says(models, "training", "90 % right of examples that were left out in turn.")
+    says(models, "training", "90 % of the examples recognised correctly, each by a model trained without it.")
     says(models, "training", f"{MARKUP} and wave are confused: record 3 more of each from another person.")
     assert models.locator("#training img").count() == 0
     press(models, "Use this model")
@@ -312,7 +312,7 @@ def test_a_model_is_trained_put_into_use_compared_undone_and_deleted(room: Lesso
     row = models.get_by_role("row", name=name)
     row.get_by_text("in use").wait_for()
     assert room.teacher.model.exists()
-    assert models.get_by_role("button", name="Undo: back to the model before").is_disabled()
+    assert models.get_by_role("button", name="Back to the previous model").is_disabled()
 
 
 def test_a_job_is_cancelled(room: Lesson, models: Any) -> None:
@@ -320,7 +320,7 @@ def test_a_job_is_cancelled(room: Lesson, models: Any) -> None:
     wait_until(lambda: bool(room.teacher.jobs), "it is trained")
     room.teacher.jobs[0].news = Progressing("training the maps", 0.25)
     press(models, "Cancel")
-    says(models, "training", "cancelled: it was cancelled")
+    says(models, "training", "cancelled")
     assert room.teacher.jobs[0].ended
 
 
@@ -333,7 +333,7 @@ def test_a_confusion_matrix_is_a_table_that_is_read_by_row_and_column(room: Less
             "false_alarms_per_min": 1.25, "found": {"recall": 0.8}, "advice": ["Record 33 s more of background."],
         }
     )  # fmt: skip
-    table = models.get_by_role("table", name="How often each action was answered with which")
+    table = models.get_by_role("table", name="How often each action (row) was recognised as which (column)")
     table.wait_for()
     wave = table.get_by_role("row").filter(has=models.get_by_role("rowheader", name="wave", exact=True))
     assert wave.get_by_role("cell").all_text_contents() == ["120 %", "480 %"]
@@ -353,11 +353,11 @@ def test_parameters_have_range_unit_and_default_and_a_refusal_stands_beside_them
     says(
         page,
         "parameters-pose_preprocessor",
-        "refused: settings: reach_limit_m: Input should be greater than 0; it is still 10",
+        "Refused: reach_limit_m should be greater than 0. The value is still 10.",
     )
     reach.fill("<b>x</b>")
     reach.press("Enter")
-    says(page, "parameters-pose_preprocessor", "<b>x</b> is no number")
+    says(page, "parameters-pose_preprocessor", "<b>x</b> is not a valid number.")
     reach.fill("7.5")
     reach.press("Enter")
     says(page, "parameters-pose_preprocessor", "set")
@@ -370,18 +370,18 @@ def test_parameters_have_range_unit_and_default_and_a_refusal_stands_beside_them
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        (MARKUP, "a name has letters"),
-        ("../../etc", "a name has letters"),
-        ("a/b", "a name has letters"),
+        (MARKUP, "cannot be a name"),
+        ("../../etc", "cannot be a name"),
+        ("a/b", "cannot be a name"),
         ("x" * 300, "at most 256 characters"),
         ("x" * 10_000_000, "too long: at most 1000000 bytes"),
-        ("", "a name has letters"),
+        ("", "the name is empty"),
     ],
     ids=["markup", "way up", "folder", "long", "ten megabytes", "empty"],
 )
 def test_names_that_are_none_are_refused_and_that_is_shown(room: Lesson, teach: Any, name: str, said: str) -> None:
     teach.get_by_role("textbox", name="Name of a new set").evaluate(SET_VALUE, name)
-    press(teach, "Make set")
+    press(teach, "Create set")
     says(teach, "set", said)
     teach.get_by_role("combobox", name="Action").locator("visible=true").evaluate(
         "(it, name) => { it.value = name }", name
@@ -397,7 +397,7 @@ def test_what_is_no_name_in_a_file_dropped_is_replaced(room: Lesson, teach: Any)
     wait_until(lambda: (room.teacher.folder / "uploads/.sent").exists() and any(sent(room)), "it is sent")
     (name,) = [path.name for path in sent(room)]
     assert re.fullmatch(r"\w+-img src_x onerror_alert_1__\.mp4", name)
-    says(teach, "video", "import_video: label")
+    says(teach, "video", "cannot be a name")
 
 
 def sent(room: Lesson) -> list[Path]:
@@ -406,7 +406,7 @@ def sent(room: Lesson) -> list[Path]:
 
 def test_a_page_whose_trainer_is_silent_says_so(open_page: Open, scene: Any) -> None:
     page = open_page(f"{scene.page.address}#teach")
-    page.get_by_role("status").filter(has_text="The trainer is silent").wait_for()
+    page.get_by_role("status").filter(has_text="The trainer does not answer").wait_for()
 
 
 @pytest.mark.parametrize("panel", ["teach", "models", "parameters"])

@@ -49,8 +49,8 @@ def start(running: System, open_page: Open, *sensor: str) -> Any:
     page = open_page(f"http://127.0.0.1:{port}/")
     page.set_default_timeout(PATIENCE_MS)
     page.get_by_role("link", name="Teach").click()
-    press(page, "Make set")
-    wait_for(page, "made")
+    press(page, "Create set")
+    wait_for(page, "created.")
     return page
 
 
@@ -141,7 +141,7 @@ def test_three_actions_are_taught_by_clicks_and_keys_and_recognised_without_mark
     page.get_by_role("region", name="Examples of push").wait_for(state="detached")
     second = train_and_use(page)
     assert second != first
-    press(page, "Undo: back to the model before")
+    press(page, "Back to the previous model")
     page.get_by_role("row", name=first).get_by_text("in use").wait_for()
     classifier_has(running, first)
 
@@ -158,7 +158,7 @@ def test_clips_dropped_on_the_page_teach_and_one_that_is_none_is_refused(
     no_video = tmp_path / "wave 0.mp4"
     no_video.write_bytes(b"<html>no video</html>")
     files.set_input_files(no_video)
-    wait_for(page.locator("#video"), "failed: ")
+    wait_for(page.locator("#video"), "Failed: ")
     for person in (1, 2):
         page.get_by_role("combobox", name="Person").fill(f"person {person}")
         files.set_input_files([clip(data, tmp_path, label, person) for label in CLIPS])

@@ -96,7 +96,7 @@ def test_a_command_is_answered_by_its_service(page: Served) -> None:
             "no command has a field timeout_s",
         ),
         ({"service": "som_classifier", "command": "maps", "fields": {"self": 1}}, "no command has a field self"),
-        ({"service": "som_classifier"}, "ask.command: Field required"),
+        ({"service": "som_classifier"}, "ask.command is missing"),
     ],
 )
 def test_a_command_that_is_wrong_is_refused_with_words(page: Served, ask: dict[str, Any], error: str) -> None:

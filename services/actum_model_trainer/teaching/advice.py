@@ -68,7 +68,7 @@ def _too_few_actions(contents: SetContents) -> Iterator[str]:
 def _doubted(contents: SetContents) -> Iterator[str]:
     if contents.doubted:
         named = listed(f"{n} of {label}" for label, n in sorted(contents.doubted.items()))
-        yield f"Some examples may be cut wrongly: look at {named}; trim, delete or redo them."
+        yield f"Some examples may be cut wrongly: check {named}, and trim, delete or redo them."
 
 
 def _confused(contents: SetContents, answers: Sequence[tuple[str, str]]) -> Iterator[str]:
@@ -84,13 +84,13 @@ def _confused(contents: SetContents, answers: Sequence[tuple[str, str]]) -> Iter
         if wrong >= CONFUSED_TIMES and wrong >= CONFUSED_SHARE * tested:
             yield (
                 f"{a} and {b} are confused ({wrong} of {tested}): record {MORE_EXAMPLES} more of each from {another}, "
-                "or do them more differently."
+                "or make them more different."
             )
 
 
 def _one_person(contents: SetContents) -> Iterator[str]:
     if len(contents.people) == 1:
-        who = next(iter(contents.people)) or "somebody without a name"
+        who = next(iter(contents.people)) or "one person, without a name"
         yield f"All examples are of {who}: record {MIN_EXAMPLES} of each action by a second person."
 
 
@@ -98,8 +98,8 @@ def _background(contents: SetContents) -> Iterator[str]:
     lacking_s = ENOUGH_BACKGROUND_S - contents.background_s
     if lacking_s > 0:
         yield (
-            f"Only {contents.background_s:.0f} s show what people do besides: record {lacking_s:.0f} s or more of "
-            "background, in which nobody does any of the actions."
+            f"There are only {contents.background_s:.0f} s of background: record at least {lacking_s:.0f} s more, in "
+            "which nobody does any of the actions."
         )
 
 
@@ -110,7 +110,7 @@ def _false_alarms(found: ContinuousScores) -> Iterator[str]:
     worst = max(false, key=lambda label: false[label])
     yield (
         f"{found.false_per_min:.1f} false alarms a minute, most often {worst}: record more background with movements "
-        f"like {worst} that are none."
+        f"that resemble {worst} but are something else."
     )
 
 
@@ -118,6 +118,6 @@ def _seldom_found(found: ContinuousScores) -> Iterator[str]:
     for label, score in found.per_action.items():
         if score.truths >= FEWEST_DONE and score.recall < LOW_RECALL:
             yield (
-                f"{label} is found in {score.right} of {score.truths} times only: record more of it, with a second of "
-                "rest before and after each."
+                f"{label} was found in only {score.right} of {score.truths} cases: record more examples of it, with a "
+                "second of rest before and after each."
             )

@@ -38,7 +38,7 @@ def on_disk() -> Iterator[None]:
     try:
         yield
     except (OSError, RecordingError) as error:
-        raise Refusal(f"{error}; everything is as it was") from None
+        raise Refusal(f"{plain(error)}; nothing was changed") from None
 
 
 def refusing(command: Command[Any, Any]) -> Command[Any, Any]:
@@ -49,6 +49,13 @@ def refusing(command: Command[Any, Any]) -> Command[Any, Any]:
         try:
             return command.handler(request)
         except (OSError, RecordingError) as error:
-            raise Refusal(f"{error}: see to that file or folder, and ask again") from None
+            raise Refusal(f"{plain(error)}: see to that file or folder, and try again") from None
 
     return replace(command, handler=handler)
+
+
+def plain(error: Exception) -> str:
+    """Say what is wrong with a file without the number of the system's error."""
+    if isinstance(error, OSError) and error.strerror:
+        return ": ".join([*([str(error.filename)] if error.filename else []), error.strerror])
+    return str(error)

@@ -65,7 +65,7 @@ class ExampleCommands:
         take, example = self._found(request)
         film = self._films_of(take).get(example.segment_id)
         if film is None:
-            raise Refusal(f"{example.id} has no frame that can be used: delete it")
+            raise Refusal(f"no frame of {example.id} can be used: delete the example")
         trace = None if film.trace is None else np.round(film.trace, 2).tolist()
         return FilmReply(stamps_ns=list(film.stamps_ns), joints=[_listed(body) for body in film.joints], trace=trace)
 
@@ -81,12 +81,16 @@ class ExampleCommands:
         take, example = self._found(request)
         start_ns, end_ns = request.start_ns, request.end_ns
         if end_ns - start_ns < SHORTEST_NS:
-            raise Refusal(f"it would end {(end_ns - start_ns) / 1e9:.2f} s after its start: at least 0.1 s are needed")
+            raise Refusal(f"the example would last {(end_ns - start_ns) / 1e9:.2f} s: at least 0.1 s are needed")
         if start_ns < take.first_ns or end_ns > take.last_ns:
-            raise Refusal(f"{take.id} lasts from {take.first_ns} to {take.last_ns} ns: stay within that")
+            within = [(ns - take.first_ns) / 1e9 for ns in (start_ns, end_ns, take.last_ns)]
+            raise Refusal(
+                "the example would reach from {:.2f} s to {:.2f} s of a take that lasts {:.2f} s: "
+                "stay within the take".format(*within)
+            )
         for other in take.examples:
             if other.segment_id != example.segment_id and other.overlaps(start_ns, end_ns):
-                raise Refusal(f"it would overlap {other.id} ({other.start_ns} to {other.end_ns} ns): trim that first")
+                raise Refusal(f"the example would overlap {other.id}, which is of {other.label}: trim that one first")
         try:
             with self._changes.change():
                 take_mending.trim(take, example, start_ns, end_ns)
@@ -125,7 +129,7 @@ class ExampleCommands:
             for example in take.examples:
                 if example.id == request.example:
                     return take, example
-        raise Refusal(f"{request.set} has no example {request.example!r}: ask for its 'examples'")
+        raise Refusal(f"{request.set} has no example {request.example!r}: 'examples' lists those there are")
 
     def _films_of(self, take: Take) -> dict[str, Film]:
         """Return the films of a take, of the file as it is now and by the model in use."""

@@ -16,6 +16,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from actum.commands import Refusal
+from actum.installing import adding
 from actum.mcap_file import RecordingError
 from actum.runtime.parent import end_with_parent
 from actum_model_trainer.continuous.watching import NoSpotterError
@@ -114,8 +115,10 @@ def main() -> None:
     }
     try:
         tell(result=jobs[told.kind](told, Teller()))
-    except (Refusal, TrainingError, RecordingError, NoSpotterError, OSError, ModuleNotFoundError) as error:
+    except (Refusal, TrainingError, RecordingError, NoSpotterError, OSError) as error:
         tell(error=str(error))
+    except ModuleNotFoundError as error:
+        tell(error=f"{error.name} is not installed: {adding('camera')}")
 
 
 def _samples(told: Told, teller: Teller) -> Samples:

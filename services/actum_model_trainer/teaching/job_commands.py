@@ -16,11 +16,14 @@ from actum_model_trainer.teaching.replies import Uploaded
 from actum_model_trainer.teaching.requests import ImportVideo, OfJob, OfSet, Train, Upload
 from actum_model_trainer.teaching.set_store import SetStore
 from actum_model_trainer.teaching.upload_store import UploadStore
+from actum_model_trainer.warnings import counted
 from som_classifier.model_loading import ModelError
 from som_classifier.presets import DEFAULT, PRESETS
 
 Start = Callable[[JobRequest], RunningJob]
 """Starts a job."""
+KINDS = {"train": "a training", "evaluate": "a test", "import": "the import of a video"}
+"""What a job is called, by its kind."""
 UPLOAD = "upload"
 """The folder, within a job's, of the video that it imports."""
 LONGEST_TEXT = 1000
@@ -109,7 +112,7 @@ class JobCommands:
     def _train(self, request: Train) -> Job:
         """Train a model on a set; 'activate' puts it into use."""
         if request.preset not in PRESETS:
-            raise Refusal(f"there is no preset {request.preset!r}: name one of {', '.join(PRESETS)}")
+            raise Refusal(f"there is no preset {request.preset!r}: use one of {', '.join(PRESETS)}")
         return self._start("train", request.set, {"preset": request.preset, "seed": request.seed})
 
     def _evaluate(self, request: OfSet) -> Job:
@@ -120,19 +123,19 @@ class JobCommands:
         """End a running job; it leaves nothing."""
         job = self._jobs.get(request.job)
         if self._running is None or self._job is None or self._job.id != job.id:
-            raise Refusal(f"{job.id} does not run: it is {job.state}")
+            raise Refusal(f"{job.id} is not running: it is {job.state}")
         self._running.end()
         self._running = None
-        return self._end(self._job.model_copy(update={"state": "cancelled", "message": "it was cancelled"}))
+        return self._end(self._job.model_copy(update={"state": "cancelled", "message": "cancelled"}))
 
     def _ask(self, request: OfJob) -> Job:
-        """Tell how far a job is, and its result."""
+        """Return how far a job is, and its result."""
         return self._job if self._job is not None and self._job.id == request.job else self._jobs.get(request.job)
 
     def _start(self, kind: str, set_name: str, fields: dict[str, Any], upload: str | None = None) -> Job:
         """Start a job; an upload goes into its folder, where nobody can replace it, and is deleted with that."""
         if self._running is not None and self._job is not None:
-            raise Refusal(f"{self._job.id} ({self._job.kind}) is running: wait for it, or 'cancel' it")
+            raise Refusal(f"{KINDS[self._job.kind]} is running ({self._job.id}): wait until it ends, or cancel it")
         takes = str(self._sets.folder(set_name))
         with on_disk():
             job = Job.model_validate(
@@ -179,10 +182,11 @@ class JobCommands:
         if job.kind == "train":
             stored = self._models.add(folder / MODEL, job.set, result["scores"])
             self._changes.revision += 1
-            return f"model {stored.id}: {stored.samples} examples of {len(stored.labels)} actions"
+            return f"model {stored.id}: {counted(stored.samples, 'example')} of {counted(len(stored.labels), 'action')}"
         if job.kind == "import":
             result["take"] = self._sets.add(job.set, folder / TAKE).id
             self._changes.revision += 1
-            return f"{result['examples']} examples cut out of the video"
-        by = "by people who were left out" if result["by"] == "people" else "of examples that were left out"
-        return f"{result['accuracy']:.0%} right {by}, {result['n']} in all"
+            return f"{counted(result['examples'], 'example')} cut out of the video"
+        part = "person" if result["by"] == "people" else "third"
+        tested = counted(result["n"], "example")
+        return f"{result['accuracy']:.0%} of {tested} recognised, each {part} left out of the training in turn"

@@ -92,7 +92,7 @@ class JobProcess:
         if "result" in newest or "error" in newest:
             return Ended(newest.get("result"), newest.get("error", "")) if ended else None
         if ended:
-            return Ended(None, f"it died ({self._how()}): {self._last_words()}")
+            return Ended(None, f"its process ended unexpectedly ({self._how()}): {self._last_words()}")
         return Progressing(newest["stage"], newest["done"]) if newest else None
 
     def end(self) -> None:
@@ -123,5 +123,5 @@ class JobProcess:
         try:
             words = self._errors.read_text(errors="replace").strip()[-LAST_WORDS:]
         except OSError as error:
-            return f"what it said cannot be read ({error.strerror})"
-        return words or "it said nothing"
+            return f"what it printed cannot be read ({error.strerror})"
+        return words or "it printed nothing"

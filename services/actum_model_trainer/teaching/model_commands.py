@@ -7,6 +7,7 @@ from actum_model_trainer.teaching.changes import Changes
 from actum_model_trainer.teaching.model_store import ModelStore
 from actum_model_trainer.teaching.replies import Comparison, Done, ModelListed
 from actum_model_trainer.teaching.requests import Compare, OfModel
+from actum_model_trainer.warnings import counted
 
 
 class ModelCommands:
@@ -48,7 +49,7 @@ class ModelCommands:
         """Set a model beside another, or beside the one in use."""
         other_id = request.with_ or self._models.active
         if other_id is None:
-            raise Refusal("no model is in use: name one to compare with")
+            raise Refusal("no model is in use: name the model to compare with")
         active = self._models.active
         one, other = (ModelListed.of(self._models.get(each), active) for each in (request.model, other_id))
         return Comparison(
@@ -62,10 +63,11 @@ class ModelCommands:
 
 def _sentence(one: ModelListed, other: ModelListed) -> str:
     """Say what the difference of two models comes to."""
-    parts = [f"{one.samples - other.samples:+} examples, {len(one.people) - len(other.people):+} people"]
+    people = counted(len(one.people), "person", "people")
+    parts = [f"{counted(one.samples, 'example')} by {people}, instead of {other.samples} by {len(other.people)}"]
     if one.labels != other.labels:
-        parts.append(f"{len(one.labels)} actions beside {len(other.labels)}")
+        parts.append(f"{counted(len(one.labels), 'action')} instead of {len(other.labels)}")
     name = "accuracy_held_out"
     if name in one.scores and name in other.scores:
-        parts.append(f"{one.scores[name]:.0%} right of examples left out beside {other.scores[name]:.0%}")
-    return f"{one.id} has beside {other.id}: {'; '.join(parts)}"
+        parts.append(f"{one.scores[name]:.0%} of examples left out recognised, instead of {other.scores[name]:.0%}")
+    return f"{one.id}, compared with {other.id}: {'; '.join(parts)}"

@@ -1,4 +1,4 @@
-"""Names that people give to sets, actions, people and files: they stand in file names, so that little is allowed."""
+"""Names that people give to sets, actions, people and files: some become file names, so that little is allowed."""
 
 import re
 import unicodedata
@@ -13,6 +13,11 @@ NAME = re.compile(r"[^\W_][\w .-]*")
 LONGEST_BYTES = 200
 """Bytes of a name as UTF-8: file systems allow 255 for a file name with its ending."""
 
+LEARNED = "would be learned as an action, and reported whenever people do nothing in particular"
+ANSWERED = "is what the system answers where it recognises no action"
+NO_ACTIONS = {"background": LEARNED, "idle": LEARNED, "none": ANSWERED, "unknown": ANSWERED}
+"""Names that no action is given, and what would come of it."""
+
 
 def checked_name(name: str) -> str:
     """Return a name in its composed Unicode form (NFC).
@@ -22,17 +27,37 @@ def checked_name(name: str) -> str:
     """
     composed = unicodedata.normalize("NFC", name)
     if len(composed) > LONGEST or len(composed.encode(errors="replace")) > LONGEST_BYTES:
-        raise ValueError(f"a name has at most {LONGEST} characters")
+        raise ValueError(f"a name has at most {LONGEST} characters, and this one has {len(composed)}: shorten it")
+    if not composed:
+        raise ValueError("the name is empty: type one")
     if not NAME.fullmatch(composed) or composed[-1] in " .":
         raise ValueError(
-            "a name has letters, digits, spaces, '_', '-' and '.', begins with a letter or digit, "
-            "and ends with neither a space nor a point"
+            f"{composed!r} cannot be a name: use letters, digits, spaces, '_', '-' and '.', begin with a letter or "
+            "digit, and end with neither a space nor a point"
         )
     return composed
 
 
+def checked_label(name: str) -> str:
+    """Return the name of an action in its composed Unicode form (NFC).
+
+    Raises:
+        ValueError: it is no name, or one that means that no action is done.
+    """
+    label = checked_name(name)
+    if consequence := NO_ACTIONS.get(label.casefold()):
+        raise ValueError(
+            f"{label!r} {consequence}: name the action differently, or record what is none of the actions as background"
+        )
+    return label
+
+
 Name = Annotated[str, Field(max_length=4 * LONGEST), AfterValidator(checked_name)]
 """A name, checked."""
+Label = Annotated[str, Field(max_length=4 * LONGEST), AfterValidator(checked_label)]
+"""The name of an action, checked. Names of devices, such as `con`, are allowed: labels stand in no file name."""
+LabelOrNone = Annotated[str, Field(max_length=4 * LONGEST), AfterValidator(lambda text: text and checked_label(text))]
+"""The name of an action, or an empty text for background."""
 NameOrNone = Annotated[str, Field(max_length=4 * LONGEST), AfterValidator(lambda text: text and checked_name(text))]
 """A name, or an empty text where nobody gave one."""
 Id = Annotated[str, Field(min_length=1, max_length=400)]

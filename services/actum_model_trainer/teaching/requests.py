@@ -8,11 +8,11 @@ from pydantic import BeforeValidator, ConfigDict, Field
 
 from actum import commands
 from actum_model_trainer.cutting.choice import MOST_REPETITIONS
-from actum_model_trainer.teaching.names import Id, Name, NameOrNone
+from actum_model_trainer.teaching.names import Id, Label, LabelOrNone, Name, NameOrNone
 from som_classifier.presets import DEFAULT
 
 USUAL_COUNT = 5
-"""Repetitions of an action where nobody says how many: fewer say little of how they differ."""
+"""Repetitions of an action unless a number is given: fewer say little about how they vary."""
 Stamp = Annotated[int, Field(ge=0, lt=2**62)]
 
 
@@ -25,7 +25,7 @@ def _bytes(data: object) -> object:
     try:
         return base64.b64decode(data, validate=True) if isinstance(data, str) else data
     except binascii.Error:
-        raise ValueError("data is to be base64 in JSON, bytes in MessagePack") from None
+        raise ValueError("data should be base64 in JSON, or bytes in MessagePack") from None
 
 
 class Request(commands.Request):
@@ -51,14 +51,14 @@ class RenameSet(OfSet):
 class Record(OfSet):
     """What is recorded."""
 
-    label: NameOrNone = ""
-    """What is done; may be empty for background."""
+    label: LabelOrNone = ""
+    """The action; may be empty for background."""
     person: NameOrNone = ""
-    """Who does it: a model is tested on people whom it was not taught by."""
+    """Who does it: a model is tested on people who were left out of its training."""
     count: Annotated[int, Field(ge=1, le=MOST_REPETITIONS)] = USUAL_COUNT
-    """How many repetitions there are to be; of no account for background."""
+    """The number of repetitions after which the take ends; ignored for background."""
     kind: Literal["action", "background"] = "action"
-    """Repetitions of one action, or what people do besides: background."""
+    """Repetitions of one action, or background: people who do none of the actions."""
     agent: Annotated[int, Field(ge=1, lt=2**31)] | None = None
     """Who is meant, by the number in `skeleton`; null for whoever repeats something, the nearest of several."""
 
@@ -73,8 +73,8 @@ class OfExample(OfSet):
 class Relabel(OfExample):
     """An example's other label."""
 
-    label: Name
-    """What is done in it."""
+    label: Label
+    """The action that is done in it."""
 
 
 class Trim(OfExample):
@@ -111,12 +111,12 @@ class ImportVideo(OfSet):
 
     upload: Name
     """The name under which it was sent by `upload`."""
-    label: Name
+    label: Label
     """The action that is repeated in it."""
     person: NameOrNone = ""
     """Who does it."""
     count: Annotated[int, Field(ge=1, le=MOST_REPETITIONS)] | None = None
-    """How often it is done; null where nobody knows."""
+    """How often it is done; null if that is not known."""
 
 
 class Train(OfSet):

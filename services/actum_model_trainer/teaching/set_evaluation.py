@@ -11,9 +11,10 @@ from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
 from actum_model_trainer.continuous.watching import found_by
 from actum_model_trainer.evaluation import Evaluation, Prediction
 from actum_model_trainer.progress import Progress, silent
+from actum_model_trainer.provenance import actions_of
 from actum_model_trainer.samples import SegmentSample, samples_from
 from actum_model_trainer.teaching.folds import Fold, folds_of
-from actum_model_trainer.training import TrainingError, train_to_spot
+from actum_model_trainer.training import train_to_spot
 from som_classifier.model import Model
 from som_classifier.presets import Preset
 from som_classifier.spotting.spotted import SpottingOptions
@@ -58,8 +59,7 @@ def evaluate_set(
         RecordingError: a file is damaged.
     """
     samples = samples_from(recordings, progress)
-    if len({sample.label for sample in samples.usable}) < 2:
-        raise TrainingError("examples of at least two actions are needed: record another action")
+    actions_of(samples.usable)
     by, folds = folds_of(samples)
     predictions: list[Prediction] = []
     found, finds = Found(), True

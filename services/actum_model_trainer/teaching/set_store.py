@@ -32,6 +32,8 @@ SUFFIX = ".mcap"
 """Ending of takes."""
 TAKE = re.compile(r"take-([0-9]{4,9})")
 """The names of takes that are made here."""
+DEVICES = frozenset({"con", "prn", "aux", "nul", *(f"{kind}{n}" for kind in ("com", "lpt") for n in range(1, 10))})
+"""Names that Windows keeps for devices, with any ending: a set of that name could not be copied there."""
 LEFT = re.compile(rf"{re.escape(LEAVING)}[0-9]+")
 """The names of such folders."""
 
@@ -104,9 +106,7 @@ class SetStore:
             problem = (
                 error.strerror or str(error) if isinstance(error, OSError) else "no JSON object with a date `created`"
             )
-            unreadable.append(
-                f"{folder / DESCRIPTION}: {problem}; move it away, and make the set anew with 'create_set'"
-            )
+            unreadable.append(f"{folder / DESCRIPTION}: {problem}; move it away, and create the set again")
         for path in sorted(each for each in folder.iterdir() if each.name.endswith(SUFFIX)):
             try:
                 takes.append(self._take(path))
@@ -122,16 +122,16 @@ class SetStore:
         """
         if name not in self.names():
             there = ", ".join(self.names()) or "none yet"
-            raise Refusal(f"there is no set {name!r}: name one of those there are ({there}) or create it")
+            raise Refusal(f"there is no set {name!r}: use one of those there are ({there}), or create it")
         return self._folder / name
 
     def create(self, name: str) -> None:
         """Make an empty set.
 
         Raises:
-            Refusal: there is one of that name.
+            Refusal: there is one of that name, or Windows has no folder of that name.
         """
-        self._refuse_taken(name)
+        self._refuse_unusable(name)
         folder = self._folder / name
         folder.mkdir(exist_ok=True)
         write_whole(folder / DESCRIPTION, json.dumps({"created": date_of(self._now_ns())}).encode())
@@ -141,10 +141,10 @@ class SetStore:
         """Give a set another name.
 
         Raises:
-            Refusal: there is none of that name, or one of the new name.
+            Refusal: there is none of that name, one of the new name, or Windows has no folder of that name.
         """
         folder = self.folder(name)
-        self._refuse_taken(new_name)
+        self._refuse_unusable(new_name, renamed=name)
         folder.rename(self._folder / new_name)
         store_names(self._folder)
 
@@ -187,9 +187,12 @@ class SetStore:
                 break
         return self._take(target)
 
-    def _refuse_taken(self, name: str) -> None:
-        if name.casefold() in map(str.casefold, self.names()):
-            raise Refusal(f"there is a set {name!r} already: choose another name, or delete or rename that one")
+    def _refuse_unusable(self, name: str, renamed: str | None = None) -> None:
+        if name.partition(".")[0].rstrip().casefold() in DEVICES:
+            raise Refusal(f"{name!r} is the name of a device on Windows, which has no such folder: choose another name")
+        for there in self.names():
+            if there.casefold() == name.casefold() and there != renamed:
+                raise Refusal(f"there is already a set {there!r}: choose another name, or delete or rename that set")
 
     def _take(self, path: Path) -> Take:
         """Read a take, or return what was read of it before where the file is still the same."""

@@ -11,7 +11,7 @@ const KINDS = { train: "Training", evaluate: "Testing", import: "Reading the vid
 export class JobView {
   constructor(kinds, ended) {
     Object.assign(this, { kinds, ended: guarded(ended), running: null, over: new Set() });
-    this.bar = element("progress", { max: 1, value: 0, "aria-label": "How much of this stage is done" });
+    this.bar = element("progress", { max: 1, value: 0, "aria-label": "Share of this stage that is done" });
     this.stage = element("span", { class: "stage" });
     this.cancel = button("Cancel", () => this.stop());
     this.line = outcome();
@@ -60,7 +60,7 @@ export class JobView {
     }
     if (job.state === "running") return this.over.delete(id);  // the message was older than the job
     if (this.running === id) this.running = null;
-    say(this.line, job.state === "done" ? job.message : `${job.state}: ${job.message}`, job.state === "failed");
+    say(this.line, { failed: `Failed: ${job.message}`, cancelled: "Cancelled." }[job.state] ?? job.message, job.state === "failed");
     this.ended(job);
   }
 }

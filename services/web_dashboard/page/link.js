@@ -31,7 +31,8 @@ class Link {
   }
 
   // Calls back with each message of a type, such as "skeleton" or "event"; "state" with each change of the link's state,
-  // "frame" once for each drawn frame in which something came. Returns a function that ends it.
+  // "frame" once for each drawn frame in which something came. Of a stream only the newest message of each drawn frame is
+  // passed on; "each skeleton" calls back with every one as it arrives. Returns a function that ends it.
   on(type, callback) {
     const kept = guarded(callback);
     if (!this.callbacks.has(type)) this.callbacks.set(type, new Set());
@@ -134,6 +135,7 @@ class Link {
       this.change({ router, connect, silentS, silent: false });
     }
     this.cameAt.set(message.type, performance.now());
+    this.tell(`each ${message.type}`, message);
     if (QUEUED.has(message.type) || message.final) return this.tell(message.type, message);
     this.newest.set(`${message.type}/${message.agent ?? message.service ?? ""}`, message);
     if (!this.drawing) {

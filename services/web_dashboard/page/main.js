@@ -5,6 +5,7 @@ import { link } from "./link.js";
 import { live } from "./live/live.js";
 import { models } from "./models/models.js";
 import { parameters } from "./parameters/parameters.js";
+import { takeNote } from "./takenote.js";
 import { teach } from "./teach/teach.js";
 import { waitedFor } from "./waiting.js";
 
@@ -41,10 +42,11 @@ function tellState() {
   const text = waiting?.text ?? "live";
   if (state.textContent !== text) state.textContent = text;
   state.className = waiting?.kind ?? "well";
-  document.body.classList.toggle("stale", waiting?.kind === "trouble");
+  for (const name of ["stale", "sensorless"]) document.body.classList.toggle(name, waiting?.stale === name);
 }
 
 build();
+state.before(takeNote());
 link.on("hello", ({ sensor }) => (document.getElementById("sensor").textContent = sensor));
 link.on("state", tellState);
 setInterval(tellState, 500);

@@ -4,7 +4,7 @@ import { element } from "./elements.js";
 import { trainer } from "./trainer.js";
 
 const LOOK_MS = 500;
-const TEXT = "The trainer is silent: is model_trainer running? 'actum up' starts it, 'python -m actum_model_trainer' does so alone.";
+const TEXT = "The trainer does not answer. Is model_trainer running? 'actum up' starts all services, 'python -m actum_model_trainer' only this one.";
 
 export function trainerMissing() {
   const line = element("p", { class: "missing wide", role: "status" });

@@ -3,18 +3,23 @@
 import { guarded } from "./guarded.js";
 import { link } from "./link.js";
 
-const SILENT_MS = 3500;   // it tells its state each second
+const SILENT_MS = 3500;   // it publishes its state each second
 
 class Trainer {
   constructor() {
     // now: its newest `training` message; all: its newest list of sets and models; both null before the first.
-    Object.assign(this, { now: null, all: null, chosen: null, callbacks: new Set(), listing: null });
+    Object.assign(this, { now: null, all: null, chosen: null, callbacks: new Set(), choosing: new Set(), listing: null });
     link.on("training", (training) => this.take(training));
   }
 
   // Calls back with each change of its state, of the list, or of the choice.
   on(callback) {
     this.callbacks.add(guarded(callback));
+  }
+
+  // Calls back when another set is shown: what was said of the one before no longer holds.
+  onChoice(callback) {
+    this.choosing.add(guarded(callback));
   }
 
   ask(command, fields = {}) {
@@ -43,11 +48,15 @@ class Trainer {
     this.tell();
   }
 
-  // Chooses a set that has just been made or renamed, once it is listed.
+  // Chooses a set that has just been created or renamed, once it is listed.
   async chooseNew(name) {
+    await this.listAnew();
+    this.choose(name);
+  }
+
+  async listAnew() {
     await this.listing;  // which may have been asked for before
     await this.list();
-    this.choose(name);
   }
 
   // Lists sets and models anew; where that fails, the next message has it asked again.
@@ -62,6 +71,10 @@ class Trainer {
   }
 
   tell() {
+    const shown = this.set?.name ?? null;
+    const isOther = this.shown !== undefined && this.shown !== shown;
+    if (this.all) this.shown = shown;
+    if (isOther) for (const callback of this.choosing) callback();
     for (const callback of this.callbacks) callback();
   }
 }

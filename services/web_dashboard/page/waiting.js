@@ -2,7 +2,7 @@
 
 import { link } from "./link.js";
 
-const STILL_MS = 2000;    // a sensor puts frames many times a second
+const STILL_MS = 2000;    // a sensor publishes frames many times a second
 const GONE_S = 3.5;       // services report each second
 const NEEDED = ["pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion"];
 
@@ -22,7 +22,13 @@ export function statusOf(service) {
   return status.get(service);
 }
 
-// {kind, text}: what is missing; null where nothing is. Kind `trouble` means that nothing on the page is current.
+// Whether the sensor publishes no frames now.
+export function isSensorStill() {
+  return link.silentMs("skeleton") > STILL_MS;
+}
+
+// {kind, text, stale}: what is missing; null where nothing is. `stale` says what is not current: everything on the page
+// (`stale`), or only what shows the sensor's frames (`sensorless`).
 export function waitedFor() {
   return unreached() ?? withoutSensor() ?? withoutService() ?? (people ? null : { kind: "idle", text: "live: nobody is in view" });
 }
@@ -32,17 +38,18 @@ function unreached() {
   if (refused === 401) return trouble("This page needs its token again: open it with ?token=…");
   if (!connected && performance.now() - began < 1000) return trouble("Connecting …");
   if (!connected) return trouble("Waiting for the page's service: is it running? Trying again …");
-  if (silent) return trouble("Nothing comes any more: waiting for the network …");
+  if (silent) return trouble("Nothing has arrived for a while: waiting for the network …");
   if (!router) return trouble(`Waiting for the router at ${connect}: 'actum up' starts one`);
   return null;
 }
 
 function withoutSensor() {
-  if (link.silentMs("skeleton") < STILL_MS) return null;
+  if (!isSensorStill()) return null;
   const { state } = (isThere("sensor_gateway") && statusOf("sensor_gateway")) || {};
-  if (!state) return trouble("Waiting for a sensor: no gateway and no simulated scene runs");
-  if (state.startsWith("camera lost") || state === "source ended") return trouble(`The sensor gives nothing: ${state}`);
-  return trouble("Waiting for a skeleton from the sensor …");
+  if (!state) return trouble("Waiting for a sensor: neither a gateway nor a simulated scene is running", "sensorless");
+  if (state === "source ended") return trouble("The video or recording has ended. Teaching from videos and training still work", "sensorless");
+  if (state.startsWith("camera lost")) return trouble(`The sensor sends nothing: ${state}`, "sensorless");
+  return trouble("Waiting for a skeleton from the sensor …", "sensorless");
 }
 
 function withoutService() {
@@ -53,6 +60,6 @@ function withoutService() {
   return null;
 }
 
-function trouble(text) {
-  return { kind: "trouble", text };
+function trouble(text, stale = "stale") {
+  return { kind: "trouble", text, stale };
 }

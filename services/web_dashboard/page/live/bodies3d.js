@@ -1,25 +1,24 @@
-// Skeletons in 3-D: a cylinder for each bone, a ball for each joint, a number above each head, a trail behind each hand.
+// Skeletons in 3-D: a cylinder for each bone, a ball for each joint, a trail behind each hand.
 
 import * as THREE from "three";
 import { theme } from "../colours.js";
 import { BONES, JOINT, sideOf, sideOfBone } from "../body.js";
-import { label } from "./label3d.js";
 
 const MOST = 8;                 // people drawn; a sensor sees six
 const TRAIL = 24;               // points of a hand's trail, the last 0.8 s at 30 Hz
 const BONE_M = 0.026;           // radii
 const JOINT_M = 0.036;
 const HEAD_M = 0.1;
+const LABEL_M = 0.24;           // of its label, above the head
 const UP = new THREE.Vector3(0, 1, 0);
 const NOWHERE = new THREE.Matrix4().makeScale(0, 0, 0);
 
 export class Bodies {
   constructor(world) {
-    this.world = world;
     this.bones = instanced(new THREE.CylinderGeometry(1, 1, 1, 14), MOST * BONES.length);
     this.joints = instanced(new THREE.SphereGeometry(1, 20, 14), MOST * 15);
     this.trails = [JOINT.leftHand, JOINT.rightHand].map((joint) => new Trail(world, joint));
-    this.numbers = new Map();
+    this.bodies = [];
     world.add(this.bones, this.joints);
   }
 
@@ -28,8 +27,6 @@ export class Bodies {
     for (let i = 0; i < MOST * 15; i++) this.joints.setColorAt(i, new THREE.Color(theme(sideOf(i % 15))));
     this.bones.instanceColor.needsUpdate = this.joints.instanceColor.needsUpdate = true;
     for (const trail of this.trails) trail.paint();
-    for (const number of this.numbers.values()) this.world.remove(number);
-    this.numbers.clear();
   }
 
   // bodies: [{agent, points}], fifteen points each (m, world), null where one is missing.
@@ -42,22 +39,14 @@ export class Bodies {
     this.bones.instanceMatrix.needsUpdate = this.joints.instanceMatrix.needsUpdate = true;
     const main = bodies.find(({ agent }) => agent === shown)?.points;
     for (const trail of this.trails) trail.add(main?.[trail.joint]);
-    this.showNumbers(bodies);
+    this.bodies = bodies;
   }
 
-  showNumbers(bodies) {
-    for (const number of this.numbers.values()) number.visible = false;
-    if (bodies.length < 2) return;
-    for (const { agent, points } of bodies) {
-      if (!points[JOINT.head]) continue;
-      if (!this.numbers.has(agent)) {
-        this.numbers.set(agent, label(`person ${agent}`));
-        this.world.add(this.numbers.get(agent));
-      }
-      const number = this.numbers.get(agent);
-      number.visible = true;
-      number.position.copy(points[JOINT.head]).y += 0.24;
-    }
+  // Which person each is, [{text, at}], where there are several.
+  get labels() {
+    const seen = this.bodies.filter(({ points }) => points[JOINT.head]);
+    if (seen.length < 2) return [];
+    return seen.map(({ agent, points }) => ({ text: `person ${agent}`, at: points[JOINT.head].clone().setY(points[JOINT.head].y + LABEL_M) }));
   }
 }
 

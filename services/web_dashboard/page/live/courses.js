@@ -12,9 +12,9 @@ const GAP_S = 0.3;       // early answers further apart are not joined by a line
 const HEIGHT_PX = 150;
 
 export function courses() {
-  const box = element("div", { class: "course", role: "img", "aria-label": "How sure each action was over the last 20 seconds" });
+  const box = element("div", { class: "course", role: "img", "aria-label": "Confidence of each action over the last 20 seconds" });
   new Courses(box);
-  return card("courses", "Early answers", {}, box, element("p", { class: "caption" }, "How sure the likeliest action is while it goes on, by colour; the dashed line is how much of it is done."));
+  return card("courses", "Early answers", {}, box, element("p", { class: "caption" }, "Confidence of the likeliest action while somebody moves; the colour is the action's. The dashed line is the share of the action that is done."));
 }
 
 class Courses {

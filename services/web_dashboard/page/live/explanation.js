@@ -1,5 +1,6 @@
-// What spoke for an answer: its neurons, how familiar it was, the objects' distances, and what was thought before its end.
+// The reasons for an answer: its neurons, how familiar it was, the objects' distances, and the early answers before its end.
 
+import { counted } from "../asking.js";
 import { card, element, percent, seconds } from "../elements.js";
 import { segmentOf } from "./answers.js";
 import { Bars } from "./neurons.js";
@@ -8,10 +9,10 @@ let view;
 let chosen = null;
 
 export function explanation() {
-  const newer = element("button", { type: "button", class: "small", hidden: true, on: { click: () => follow() } }, "Follow the newest");
-  const body = element("div", { class: "explained", "aria-live": "off" }, element("p", { class: "caption" }, "The newest answer is explained here, or the one you press in the timeline."));
+  const newer = element("button", { type: "button", class: "small", hidden: true, on: { click: () => follow() } }, "Show the newest answer");
+  const body = element("div", { class: "explained", "aria-live": "off" }, element("p", { class: "caption" }, "Shows the reasons for the newest answer, or for the one that you press in the timeline."));
   view = { newer, body };
-  return card("explanation", "What spoke for it", { controls: [newer] }, body);
+  return card("explanation", "Reasons for an answer", { controls: [newer] }, body);
 }
 
 // Explains one segment's answer until another is chosen.
@@ -34,11 +35,11 @@ function follow() {
 function show(segment) {
   const { event, action } = segment;
   const answer = event ?? action;
-  if (!answer) return view.body.replaceChildren(element("p", {}, "It has no answer yet."));
+  if (!answer) return view.body.replaceChildren(element("p", {}, "This segment has no answer yet."));
   const bars = element("ul", { class: "bars", "aria-label": "Activity of each action's neuron in this answer" });
   if (answer.valid && Object.keys(answer.activations).length) new Bars(bars).show(answer.activations, answer.action);
   view.body.replaceChildren(
-    element("p", { class: "sentence" }, answer.valid ? (event?.sentence ?? answer.action) : `not answered: ${answer.reason}`),
+    element("p", { class: "sentence" }, answer.valid ? (event?.sentence ?? answer.action) : `No answer: ${answer.reason}`),
     element("dl", {}, ...facts(segment).flatMap(([term, text]) => [element("dt", {}, term), element("dd", {}, text)])),
     bars,
   );
@@ -50,16 +51,16 @@ function facts(segment) {
   const answer = event ?? action;
   return [
     ["Segment", `${seconds((end - start) / 1e9)}, ${marked ? `marked (${origin ?? "a program"})` : "found by the classifier"}`],
-    ["Sure", `${percent(answer.confidence)}${margin(answer.activations)}`],
-    ["Familiar", action?.familiarity === null || !action ? null : `${action.familiarity.toFixed(2)}${action.unknown ? ": too little, so unknown" : ""}`],
-    ["Early", thoughtBefore(early, answer.action, start, end)],
+    ["Confidence", `${percent(answer.confidence)}${margin(answer.activations)}`],
+    ["Familiarity", action?.familiarity === null || !action ? null : `${action.familiarity.toFixed(2)}${action.unknown ? ", too low, so the action is unknown" : ""}`],
+    ["Early answers", earlier(early, answer.action, start, end)],
     ["Hand", event?.hand ?? action?.part?.replace("_", " ")],
     ["Object", ofObject(event)],
     ["Distances", event && Object.entries(event.distances_m).map(([id, m]) => `object ${id}: ${m.toFixed(2)} m`).join(", ")],
     ["Pointing", event?.pointing && `${event.pointing.angle_deg.toFixed(0)}° off the arm${event.pointing.margin_deg === null ? "" : `, the next object ${event.pointing.margin_deg.toFixed(0)}° further`}`],
-    ["Moved", event?.motion && `${event.result}${event.agrees === null ? "" : event.agrees ? ", as this action does" : ", which this action does not do"}`],
-    ["Why none", event?.why],
-    ["Rests on", `${answer.frames} frames${answer.missed ? `, ${answer.missed} lost` : ""}${answer.missing_joints.length ? `; without ${answer.missing_joints.join(", ").replaceAll("_", " ")}` : ""}`],
+    ["Moved", event?.motion && `${event.result}${event.agrees === null ? "" : event.agrees ? ", as expected of this action" : ", not as expected of this action"}`],
+    ["Why no object", event?.why],
+    ["Based on", `${counted(answer.frames, "frame")}${answer.missed ? `, ${answer.missed} lost` : ""}${answer.missing_joints.length ? `; without ${answer.missing_joints.join(", ").replaceAll("_", " ")}` : ""}`],
   ].filter(([, text]) => text);
 }
 
@@ -68,11 +69,11 @@ function margin(activations) {
   return second ? `; ${second[0]} is next, ${(first[1] - second[1]).toFixed(2)} behind` : "";
 }
 
-function thoughtBefore(early, label, start, end) {
+function earlier(early, label, start, end) {
   const first = early.findIndex((_, i) => early.slice(i).every((answer) => answer.label === label));
-  if (first < 0) return early.length ? `other actions seemed likelier until its end` : null;
+  if (first < 0) return early.length ? `another action was likelier until the end` : null;
   const after = (early[first].stamp - start) / 1e9;
-  return `${label} from ${seconds(Math.max(after, 0))} on, after ${percent(Math.min(Math.max((after * 1e9) / (end - start), 0), 1))} of it`;
+  return `${label} from ${seconds(Math.max(after, 0))} after the start, ${percent(Math.min(Math.max((after * 1e9) / (end - start), 0), 1))} of the segment`;
 }
 
 function ofObject(event) {
@@ -81,8 +82,8 @@ function ofObject(event) {
   const other = event.candidates.filter((candidate) => candidate.id !== id).map((candidate) => `${candidate.name} ${candidate.id}`);
   return [
     `${name} ${id}, ${distance.toFixed(2)} m from the hand`,
-    along && "it went as the hand went",
-    carried && "covered by the hand for a while",
-    other.length && `as likely: ${other.join(", ")}`,
+    along && "moved along with the hand",
+    carried && "hidden by the hand for a while",
+    other.length && `equally likely: ${other.join(", ")}`,
   ].filter(Boolean).join("; ");
 }

@@ -1,5 +1,6 @@
 // The live panel: everything that goes on now, and what led to it.
 
+import { acting } from "./acting.js";
 import { courses } from "./courses.js";
 import { explanation } from "./explanation.js";
 import { health } from "./health.js";
@@ -15,6 +16,6 @@ export const live = {
   name: "live",
   title: "Live",
   mount(section) {
-    section.append(scene(), now(), picture(), neurons(), courses(), markSwitch(), timeline(), explanation(), ...maps(), health());
+    section.append(scene(), now(), picture(), neurons(), courses(), markSwitch(), acting(), timeline(), explanation(), ...maps(), health());
   },
 };

@@ -69,7 +69,7 @@ class Maps {
     Object.assign(this, { model, postures, actions, way: [], answer: null, backgrounds: {} });
     const labels = [...new Set(actions?.labels.filter(Boolean))].sort();
     learn(labels);
-    this.captions.postures.textContent = "Bodies are the postures that the units there stand for; the line is the way of the last seconds.";
+    this.captions.postures.textContent = "Each figure is the posture that a unit of the map stands for. The line is the path of the last seconds.";
     this.captions.actions.replaceChildren(...labels.map((label) =>
       element("span", { class: "key" }, element("i", { class: "swatch", style: { "--action": colourOf(label) } }), label)));
     this.drawPostures();

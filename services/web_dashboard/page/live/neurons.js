@@ -13,7 +13,7 @@ export function neurons() {
   link.on("action", ({ agent, segment_id: id, activations, action, final }) => {
     const isLate = !final && segmentOf(id)?.action;
     if (!isShown(agent) || isLate || !Object.keys(activations).length) return;
-    caption.textContent = final ? `Of the last answer, ${action ?? "none"}.` : "Of what goes on now.";
+    caption.textContent = final ? `The last answer: ${action ?? "none"}.` : "The movement that is going on now.";
     bars.show(activations, action);
   });
   return card("neurons", "Output neurons", {}, list, caption);

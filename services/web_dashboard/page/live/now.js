@@ -13,11 +13,11 @@ export function now() {
     kicker: element("p", { class: "kicker" }),
     action: element("p", { class: "action" }),
     object: element("p", { class: "object" }),
-    done: element("div", { class: "done", role: "progressbar", "aria-label": "How much of the action is done", "aria-valuemin": "0", "aria-valuemax": "100" }, element("span")),
+    done: element("div", { class: "done", role: "progressbar", "aria-label": "Share of the action that is done", "aria-valuemin": "0", "aria-valuemax": "100" }, element("span")),
     spoken: element("p", { class: "spoken", "aria-live": "polite" }),
   };
   new Now(parts);
-  return element("section", { id: "now", class: "card", "aria-label": "What is done" }, ...Object.values(parts));
+  return element("section", { id: "now", class: "card", "aria-label": "The action" }, ...Object.values(parts));
 }
 
 class Now {
@@ -44,19 +44,19 @@ class Now {
     const early = this.early && performance.now() - this.early.at < GOING_ON_MS && !this.over.has(nameOf(this.early));
     if (early && this.early.action) this.showEarly(this.early);
     else if (this.event) this.showEvent(this.event);
-    else this.tell("Recognised", "–", "Nothing yet", null, null);
+    else this.tell("Recognised", "–", "No action yet", null, null);
   }
 
   showEarly({ action, confidence, completeness }) {
-    const share = completeness === null ? "" : `, ${percent(completeness)} of it done`;
-    this.tell("It seems", action, `${percent(confidence)} sure${share}`, action, completeness);
+    const share = completeness === null ? "" : `, ${percent(completeness)} of the action done`;
+    this.tell("So far it looks like", action, `${percent(confidence)} sure${share}`, action, completeness);
   }
 
   showEvent(event) {
     const ago = Math.max(0, (nowNs() - event.end_ns) / 1e9);
     const when = ago < RECENT_S ? "Just now" : ago < 90 ? `${Math.round(ago)} s ago` : `${Math.round(ago / 60)} min ago`;
     const who = event.agent ? `, person ${event.agent}` : "";
-    if (!event.valid) return this.tell(`${when}${who}`, "not answered", event.reason, null, null);
+    if (!event.valid) return this.tell(`${when}${who}`, "no answer", event.reason, null, null);
     const what = event.unknown ? "unknown" : event.action;
     this.tell(`${when}${who}, ${percent(event.confidence)} sure`, what, objectOf(event), event.action, null);
   }

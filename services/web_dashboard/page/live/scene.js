@@ -2,11 +2,14 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { counted } from "../asking.js";
 import { dark, theme } from "../colours.js";
 import { card, element } from "../elements.js";
 import { guarded } from "../guarded.js";
 import { link } from "../link.js";
+import { isSensorStill } from "../waiting.js";
 import { Bodies } from "./bodies3d.js";
+import { Labels } from "./labels.js";
 import { Things } from "./things3d.js";
 import { newestPosture, newestSkeleton, people, shownAgent } from "./people.js";
 
@@ -18,6 +21,7 @@ const SQUARE_M = 0.25;
 const STRAYS_M = 0.3;         // how far a person may walk from the middle before the view follows
 const FOLLOWS = 0.04;         // share of the way that the view follows in one frame
 const FLOOR_FOLLOWS = 0.05;   // share of a step of the lowest foot that the floor takes up in one frame
+const LOOK_MS = 500;          // whether the sensor still sends frames
 const SLOW_MS = 100;          // between two pictures where the processor draws them: it has other things to do
 const UP = new THREE.Vector3(0, 1, 0);
 
@@ -34,7 +38,7 @@ export function scene() {
   try {
     new Stage(box, frames, counts);
   } catch (error) {
-    box.append(element("p", { class: "none" }, `This browser draws no 3-D (${error.message}); the picture shows the same.`));
+    box.append(element("p", { class: "none" }, `This browser cannot draw 3-D (${error.message}). The picture shows the same people and objects.`));
   }
   offerPeople(who);
   return view;
@@ -62,6 +66,7 @@ class Stage {
     this.renderer.setPixelRatio(this.slow ? 1 : Math.min(devicePixelRatio, 2));
     box.append(this.renderer.domElement);
     this.renderer.domElement.setAttribute("aria-hidden", "true");
+    this.labels = new Labels(box);
     this.camera = new THREE.PerspectiveCamera(40, 1, 0.05, 60);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => (this.changed = true));
@@ -109,6 +114,7 @@ class Stage {
     });
     link.on("event", (event) => this.things.acted(event));
     link.on("frame", () => this.place());
+    setInterval(() => isSensorStill() && this.place(), LOOK_MS);
     this.frames.addEventListener("change", () => this.reset());
     dark.addEventListener("change", () => this.paint());
     new ResizeObserver(() => this.fit()).observe(this.box);
@@ -117,8 +123,8 @@ class Stage {
 
   // Puts everything where the newest messages say.
   place() {
-    const { agents, up_in_camera: up } = newestSkeleton();
-    const shown = shownAgent();
+    const { agents: seen, up_in_camera: up } = newestSkeleton();
+    const [agents, shown] = [isSensorStill() ? [] : seen, shownAgent()];
     const worldFromCamera = this.worldFromCamera(up, newestPosture(shown));
     const joints = agents.map(({ agent, joints: points }) => ({ agent, points: points.map((point) => point && at(point, worldFromCamera)) }));
     this.bodies.show(joints, shown);
@@ -141,6 +147,7 @@ class Stage {
   // Lays the floor under the lowest foot, and at first looks at the person.
   stand(points) {
     const there = (points ?? []).filter(Boolean);
+    this.shade.visible = there.length > 0;
     if (!there.length) return;
     const lowest = Math.min(...there.map(({ y }) => y)) - 0.06;
     this.floor = this.floor === null ? lowest : this.floor + FLOOR_FOLLOWS * (lowest - this.floor);
@@ -173,7 +180,8 @@ class Stage {
 
   tellCounts(present) {
     const seen = this.objects.filter(({ seen: now }) => now).length;
-    const text = `${present} ${present === 1 ? "person" : "people"} · ${seen} of ${this.objects.length} objects in sight`;
+    const who = present ? counted(present, "person", "people") : "Nobody is seen";
+    const text = `${who} · ${seen} of ${counted(this.objects.length, "object")} in sight`;
     if (this.counts.textContent !== text) this.counts.textContent = text;
   }
 
@@ -223,6 +231,17 @@ class Stage {
     Object.assign(this, { changed: false, drawnAt: nowMs });
     this.things.fade();
     this.renderer.render(this.scene, this.camera);
+    this.label();
+  }
+
+  // Names what is in view.
+  label() {
+    const { clientWidth: width, clientHeight: height } = this.box;
+    const labels = [...this.bodies.labels, ...this.things.labels].map(({ at: place, ...label }) => {
+      const { x, y, z } = place.project(this.camera);
+      return { ...label, x: ((x + 1) / 2) * width, y: ((1 - y) / 2) * height, isInView: Math.max(Math.abs(x), Math.abs(y), Math.abs(z)) < 1 };
+    });
+    this.labels.show(labels.filter(({ isInView }) => isInView));
   }
 }
 

@@ -1,25 +1,32 @@
 // The switch: hold it, or press it for the start and again for the end; the space bar does the same.
 
+import { attempt, button as pressable, outcome } from "../asking.js";
 import { card, element, seconds } from "../elements.js";
 import { link } from "../link.js";
 import { newName } from "../names.js";
+import { trainer } from "../trainer.js";
+import { marks } from "./marks.js";
 import { people } from "./people.js";
 
 const TAP_MS = 350;   // a shorter press switches on, and the next one off
 const ANSWER_S = 6;   // 2 s for the classifier's late frames, 2 s for the fusion's late objects, and a margin
-const NO_ANSWER = `No answer within ${ANSWER_S} s. Services, on Live, shows what does not run or has no model; 'actum doctor' says why.`;
+const HINT = "Hold the switch or the space bar while somebody acts. Or press it briefly at the start, and again at the end.";
+const NO_ANSWER = `No answer within ${ANSWER_S} s. The table Services, on Live, shows which service is missing or has no model; 'actum doctor' says why.`;
+const OFF = "Marks are off: the classifier answers only the actions that it finds by itself, because its setting 'segments' is 'auto'.";
 
 export function markSwitch(id = "switch", title = "Switch") {
   const button = element("button", { type: "button", class: "switch", "aria-pressed": "false" }, "Hold to mark");
   const who = element("select", { "aria-label": "Whose action is marked" });
-  const told = element("p", { class: "caption", role: "status" }, "Hold it, or the space bar, while somebody acts. A short press starts, the next one ends.");
-  new Switch(button, who, told);
-  return card(id, title, { controls: [who] }, button, told);
+  const told = element("p", { class: "caption", role: "status" }, HINT);
+  const line = outcome();
+  const turnOn = pressable("Turn marks on", () => attempt(line, () => marks.turnOn(), "The classifier now uses marks too."));
+  new Switch(button, who, told, turnOn);
+  return card(id, title, { controls: [who] }, button, told, turnOn, line);
 }
 
 class Switch {
-  constructor(button, who, told) {
-    Object.assign(this, { button, who, told, segment: null, pressedAt: 0, offered: null });
+  constructor(button, who, told, turnOn) {
+    Object.assign(this, { button, who, told, turnOn, segment: null, pressedAt: 0, offered: null });
     button.addEventListener("pointerdown", (event) => this.press(event));
     addEventListener("pointerup", () => this.release());
     addEventListener("pointercancel", () => this.release());
@@ -30,7 +37,19 @@ class Switch {
     link.on("skeleton", () => this.offer());
     link.on("state", ({ connected }) => connected || !this.segment || this.cut());
     setInterval(() => this.segment && (this.button.offsetParent ? this.tell() : this.end()), 100); // unseen, nobody ends it
+    marks.on(() => this.allow());
+    trainer.on(() => this.allow());
+    this.allow();
     this.offer();
+  }
+
+  // Marks that nobody takes cannot be made: neither the classifier nor a take that is being recorded.
+  allow() {
+    const isOff = marks.areOff && !isTaking() && !this.segment;
+    if (isOff === this.isOff) return;
+    this.isOff = this.button.disabled = isOff;
+    this.turnOn.hidden = !isOff;
+    this.told.textContent = isOff ? OFF : HINT;
   }
 
   offer() {
@@ -49,6 +68,7 @@ class Switch {
   }
 
   press(event) {
+    if (this.button.disabled) return;
     event.preventDefault();
     this.button.focus({ preventScroll: true });
     if (this.held) return;
@@ -113,6 +133,13 @@ class Switch {
   answered({ segment_id: id, valid, sentence, reason }) {
     if (id !== this.waiting) return;
     this.waiting = null;
-    this.told.textContent = valid ? `Answer: ${sentence}` : `Not answered: ${reason}`;
+    if (marks.areOff && isTaking()) this.told.textContent = "Marked: the example belongs to the take.";
+    else this.told.textContent = valid ? `Answer: ${sentence}` : `No answer: ${reason}`;
   }
+}
+
+// Whether a take is being recorded, whose examples may be marked by hand.
+function isTaking() {
+  const take = trainer.now?.recording;
+  return take?.kind === "action" && take.phase !== "done";
 }

@@ -1,10 +1,10 @@
-// Objects in 3-D: a box and a label each, and for a while an arrow along which an event says that one was moved.
+// Objects in 3-D: a box each, and for a while an arrow along the way that an event says one was moved.
 
 import * as THREE from "three";
 import { theme } from "../colours.js";
-import { label } from "./label3d.js";
 
 const SIZE_M = 0.09;            // no message says how large an object is
+const LABEL_M = 0.13;           // of its label, above its middle
 const TOLD_MS = 4000;           // for how long an event's object stands out
 const SHORTEST_M = 0.03;        // less is no movement to point at
 const REMEMBERED_NS = 60e9;     // the longest segment
@@ -36,12 +36,20 @@ export class Things {
       const thing = this.thingOf(object);
       const turned = new THREE.Quaternion(...object.quaternion_xyzw);
       const inCamera = new THREE.Matrix4().compose(new THREE.Vector3(...object.position_m), turned, new THREE.Vector3(1, 1, 1));
-      thing.visible = true;
+      Object.assign(thing, { visible: true, seen: object.seen });
       thing.box.matrix.multiplyMatrices(worldFromCamera, inCamera);
-      thing.tag.position.setFromMatrixPosition(thing.box.matrix).y += 0.13;
       thing.box.children[0].material.opacity = object.seen ? 1 : 0.35;
     }
     this.worldFromCamera = worldFromCamera;
+  }
+
+  // What each is, [{text, at, faint}].
+  get labels() {
+    const shown = [...this.things].filter(([, { visible }]) => visible);
+    return shown.map(([text, { box, seen }]) => {
+      const at = new THREE.Vector3().setFromMatrixPosition(box.matrix);
+      return { text, at: at.setY(at.y + LABEL_M), faint: !seen };
+    });
   }
 
   thingOf({ id, name }) {
@@ -53,9 +61,8 @@ export class Things {
       solid.add(new THREE.LineSegments(new THREE.EdgesGeometry(shape), new THREE.LineBasicMaterial({ color: theme("ink") })));
       thing.box = new THREE.Group().add(solid);
       thing.box.matrixAutoUpdate = false;
-      thing.tag = label(key);
       thing.number = id;
-      thing.add(thing.box, thing.tag);
+      thing.add(thing.box);
       this.world.add(thing);
       this.things.set(key, thing);
     }

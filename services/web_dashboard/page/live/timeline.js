@@ -16,7 +16,7 @@ export function timeline() {
   span.value = "60";
   const lanes = element("div", { class: "lanes" });
   const axis = element("div", { class: "axis", "aria-hidden": "true" });
-  const none = element("p", { class: "caption" }, "Nothing was marked or found yet. Each answer stands here as a button; press it to see what spoke for it.");
+  const none = element("p", { class: "caption" }, "No action yet. Each answer appears here as a button: press it to see the reasons.");
   new Timeline(span, lanes, axis, none);
   return card("timeline", "Timeline", { controls: [span], wide: true }, lanes, axis, none);
 }

@@ -1,18 +1,18 @@
-// All models, and what is done with them: into use, back, compared, deleted.
+// All models: put into use, compared, deleted, and the way back to the previous one.
 
 import { attempt, button, dated, outcome, say } from "../asking.js";
 import { confirmed } from "../dialogs.js";
 import { card, element, percent } from "../elements.js";
 import { trainer } from "../trainer.js";
 
-const HEADS = ["Model", "Made", "Set", "Actions", "People", "Examples", "Right, held out", "Do"];
+const HEADS = ["Model", "Created", "Set", "Actions", "People", "Examples", "Accuracy, held out", "Do"];
 const SHORT = 8;          // characters of a model's id: enough to tell a hundred apart
 
 export function modelList() {
   const body = element("tbody");
   const line = outcome();
   const compared = element("section", { class: "compared", "aria-label": "Comparison", hidden: true });
-  const undo = button("Undo: back to the model before", () => attempt(line, () => trainer.ask("undo"), "back: the model before is in use"));
+  const undo = button("Back to the previous model", () => attempt(line, () => trainer.ask("undo"), "The previous model is in use again."));
   const none = element("p", { class: "none" }, "No model yet.");
   const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
   const table = element("table", {}, element("caption", { class: "unseen" }, "Models"), head, body);
@@ -40,7 +40,7 @@ function row(model, line, compared) {
   const mark = active ? element("small", { class: "in-use" }, "in use") : null;
   const named = (verb) => ({ label: `${verb} model ${name}`, kind: "small" });
   const actions = active ? [] : [
-    button("Use", () => attempt(line, () => trainer.ask("activate", { model: id }), `${name} is in use`), named("Use")),
+    button("Use", () => attempt(line, () => trainer.ask("activate", { model: id }), `Model ${name} is in use.`), named("Use")),
     button("Compare", () => compare(id, line, compared), { label: `Compare model ${name} with the one in use`, kind: "small" }),
     button("Delete", () => removed(id, name, line), named("Delete")),
   ];
@@ -49,20 +49,20 @@ function row(model, line, compared) {
 }
 
 async function removed(id, name, line) {
-  if (await confirmed(`Delete model ${name}?`, "Delete model")) await attempt(line, () => trainer.ask("delete_model", { model: id }), `${name} deleted`);
+  if (await confirmed(`Delete model ${name}?`, "Delete model")) await attempt(line, () => trainer.ask("delete_model", { model: id }), `Model ${name} deleted.`);
 }
 
 async function compare(id, line, compared) {
   const reply = await attempt(line, () => trainer.ask("compare", { model: id }));
   compared.hidden = !reply?.other;
-  if (reply && !reply.other) say(line, "no model is in use to compare it with", true);
+  if (reply && !reply.other) say(line, "No model is in use, so there is none to compare it with.", true);
   if (compared.hidden) return;
   const { model, other, added, missing } = reply;
   const facts = [
     ["Examples", model.samples, other.samples],
     ["People", model.people.join(", ") || "–", other.people.join(", ") || "–"],
-    ["Right, held out", ...[model, other].map(({ scores }) => (scores.accuracy_held_out === undefined ? "–" : percent(scores.accuracy_held_out)))],
-    ["Only it knows", added.join(", ") || "–", missing.join(", ") || "–"],
+    ["Accuracy, held out", ...[model, other].map(({ scores }) => (scores.accuracy_held_out === undefined ? "–" : percent(scores.accuracy_held_out)))],
+    ["Actions of this one only", added.join(", ") || "–", missing.join(", ") || "–"],
   ];
   const head = ["", model.id.slice(0, SHORT), `${other.id.slice(0, SHORT)}, in use`].map((text) => element("th", { scope: "col" }, text));
   const rows = facts.map(([name, ...values]) => element("tr", {}, element("th", { scope: "row" }, name), ...values.map((value) => element("td", {}, String(value)))));

@@ -4,14 +4,14 @@ import { button, counted, dated } from "../asking.js";
 import { card, element } from "../elements.js";
 import { trainer } from "../trainer.js";
 
-const HEADS = ["Set", "Made", "Actions", "People", "Takes", "Background", "Do"];
+const HEADS = ["Set", "Created", "Actions", "People", "Takes", "Background", "Do"];
 
 export function setList() {
   const body = element("tbody");
   const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
   const table = element("table", {}, element("caption", { class: "unseen" }, "Sets of examples"), head, body);
   const scrolled = element("div", { class: "scrolled", tabindex: "0", role: "region", "aria-label": "Table of sets" }, table);
-  const none = element("p", { class: "none" }, "No set yet: make one on the panel Teach.");
+  const none = element("p", { class: "none" }, "No set yet: create one on the panel Teach.");
   let shown = null;
   trainer.on(() => {
     const wanted = `${trainer.all?.revision}/${trainer.set?.name}`;

@@ -24,6 +24,14 @@ class Training {
       element("div", { class: "fields" }, field("Set", setChoice()), field("Training parameters", this.preset)),
       element("div", { class: "buttons" }, element("button", { class: "primary" }, "Train")));
     trainer.on(() => this.offer());
+    trainer.onChoice(() => this.forget());
+  }
+
+  forget() {
+    this.model = null;
+    this.job.quiet();
+    this.line.textContent = "";
+    this.advice.tell();
   }
 
   offer() {
@@ -34,9 +42,7 @@ class Training {
 
   async submitted(event) {
     event.preventDefault();
-    this.model = null;
-    this.line.textContent = "";
-    this.advice.tell();
+    this.forget();
     await this.job.start("train", { set: trainer.set?.name ?? "", preset: this.preset.value });
     this.offer();
   }
@@ -46,14 +52,14 @@ class Training {
     const { model, scores, left_out: leftOut, advice: sentences } = result;
     this.model = model;
     const held = scores.accuracy_held_out;
-    const right = held === undefined ? [] : [`${percent(held)} right of examples that were left out in turn.`];
-    const lost = leftOut.length ? [`Left out as they cannot be used: ${leftOut.join("; ")}.`] : [];
+    const right = held === undefined ? [] : [`${percent(held)} of the examples recognised correctly, each by a model trained without it.`];
+    const lost = leftOut.length ? [`Examples that cannot be used, with the reason: ${leftOut.join("; ")}.`] : [];
     this.line.textContent = [...right, ...lost].join(" ");
     this.advice.tell(sentences);
     this.offer();
   }
 
   activate() {
-    return attempt(this.line, () => trainer.ask("activate", { model: this.model }), "in use: the classifier takes it within a second or two");
+    return attempt(this.line, () => trainer.ask("activate", { model: this.model }), "In use: the classifier loads it within two seconds.");
   }
 }

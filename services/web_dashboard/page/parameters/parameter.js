@@ -44,7 +44,7 @@ export class Parameter {
     try {
       value = this.control.type === "checkbox" ? this.control.checked : asValue(this.control.value, this.told);
     } catch {
-      return this.refuse(`${this.control.value} is no ${this.told.type}`);
+      return this.refuse(`${this.control.value} is not a valid ${this.told.type}.`);
     }
     return this.put(value);
   }
@@ -52,10 +52,10 @@ export class Parameter {
   async put(value) {
     try {
       await this.set(value);
-      say(this.line, "set");
+      say(this.line, "Set.");
     } catch (error) {
       const still = asText(this.told.value) || "unset";
-      this.refuse(error.refused ? `refused: ${error.message}; it is still ${still}` : `perhaps not set: ${error.message}; 'Read again' shows what it is`);
+      this.refuse(error.refused ? `Refused: ${error.message}. The value is still ${still}.` : `Perhaps not set: ${error.message}. Press 'Read again' to see the value.`);
     }
   }
 

@@ -1,4 +1,4 @@
-// One example: its film, its way over the map, what may be wrong with it, and what can be done about that.
+// One example: its film, its path over the map of postures, what may be wrong with it, and how to mend it.
 
 import { attempt, button } from "../asking.js";
 import { colourOf } from "../colours.js";
@@ -9,7 +9,7 @@ import { drawTrace, Film } from "./film.js";
 import { postureMap } from "./postures.js";
 import { trimmed } from "./trimming.js";
 
-const ORIGINS = { cut: "cut by itself", manual: "marked by hand" };
+const ORIGINS = { cut: "cut automatically", manual: "marked by hand" };
 const RETRY_MS = 1000;
 const TRIES = 5;          // the classifier takes a new model within a second or two
 
@@ -35,7 +35,7 @@ export class Example {
     this.describe();
     this.element.setAttribute("aria-label", this.name);
     this.film.canvas.setAttribute("aria-label", `Film of ${this.name}`);
-    this.trail.setAttribute("aria-label", `Way of ${this.name} over the map of postures`);
+    this.trail.setAttribute("aria-label", `Path of ${this.name} over the map of postures`);
     for (const each of this.buttons) each.setAttribute("aria-label", `${each.textContent} ${this.name}`);
   }
 
@@ -50,8 +50,8 @@ export class Example {
     return [
       button("Trim", () => this.trim()),
       button("Relabel", () => this.relabel()),
-      button("Mirror", () => attempt(this.line, () => trainer.ask("mirror", given), "left and right exchanged")),
-      button("Delete", () => attempt(this.line, () => trainer.ask("delete", given), `${this.name} deleted`)),
+      button("Mirror", () => attempt(this.line, () => trainer.ask("mirror", given), `Left and right of ${this.name} exchanged.`)),
+      button("Delete", () => attempt(this.line, () => trainer.ask("delete", given), `${this.name} deleted.`)),
     ];
   }
 
@@ -87,12 +87,12 @@ export class Example {
     const labels = Object.keys(trainer.set?.actions ?? {});
     const label = await typed(`Relabel ${this.name}`, "Action", this.listed.label, labels, "Relabel");
     if (label === null || label === this.listed.label) return;
-    await attempt(this.line, () => trainer.ask("relabel", { set: this.set, example: this.listed.id, label: label.trim() }), `now ${label}`);
+    await attempt(this.line, () => trainer.ask("relabel", { set: this.set, example: this.listed.id, label: label.trim() }), `${this.name} is now labelled ${label}.`);
   }
 
   async trim() {
     const bounds = await trimmed(this.name, this.listed, this.film.film);
     if (!bounds) return;
-    await attempt(this.line, () => trainer.ask("trim", { set: this.set, example: this.listed.id, ...bounds }), "trimmed");
+    await attempt(this.line, () => trainer.ask("trim", { set: this.set, example: this.listed.id, ...bounds }), `${this.name} trimmed.`);
   }
 }

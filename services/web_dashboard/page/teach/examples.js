@@ -28,6 +28,7 @@ class Examples {
     const controls = [element("label", { class: "check" }, playing, "Play the films"), this.redo];
     this.card = card("examples", "3 · Examples", { wide: true, controls }, this.trouble, this.line, this.list);
     trainer.on(() => this.look());
+    trainer.onChoice(() => say(this.line, ""));
   }
 
   // Lists the examples anew where the set, or what is in it, has changed.
@@ -50,7 +51,7 @@ class Examples {
     this.tiles = new Map(listed.map((each) => [keyOf(set, each), before.get(keyOf(set, each)) ?? this.tile(set, each)]));
     const labels = [...new Set(listed.map(({ label }) => label))].sort();
     const groups = labels.map((label) => this.group(set, label, listed.filter((each) => each.label === label)));
-    const none = element("p", { class: "none" }, set ? "None yet: record an action, or drop a video." : "Make a set first.");
+    const none = element("p", { class: "none" }, set ? "No examples yet: record an action, or drop a video." : "Create a set first.");
     const focused = document.activeElement?.closest?.(".example")?.dataset.example;
     this.list.replaceChildren(...(groups.length ? groups : [none]));
     this.refocus(focused);
@@ -86,11 +87,11 @@ class Examples {
 
   async deleteAction(set, label, number) {
     if (!(await confirmed(`Delete ${counted(number, "example")} of ${label}?`, "Delete all"))) return;
-    await attempt(this.line, () => trainer.ask("delete_action", { set, label }), `${label} deleted`);
+    await attempt(this.line, () => trainer.ask("delete_action", { set, label }), `All examples of ${label} deleted.`);
   }
 
   redoLast() {
-    return attempt(this.line, () => trainer.ask("redo_last", { set: trainer.set.name }), "do it once more: it takes the place of the last");
+    return attempt(this.line, () => trainer.ask("redo_last", { set: trainer.set.name }), "Do the action once more. The new example replaces the last one.");
   }
 }
 

@@ -52,12 +52,13 @@ class Recording {
     const begin = element("form", { on: { submit: (event) => this.submitted(event) } },
       this.form.element, element("div", { class: "buttons" }, record, background));
     this.begins = element("div", { class: "begins" }, begin,
-      element("p", { class: "caption" }, "Do it, stand still for a second or two, do it again. Background is what you do besides: none of the actions."));
+      element("p", { class: "caption" }, "Do the action, stand still for a second or two, do it again. Background is everything else that people do: none of the actions."));
     this.stops = element("div", { class: "buttons" }, button("Stop", () => this.stop(), { kind: "primary" }), button("Discard", () => this.discard()), simulatedPerson());
     this.going = element("div", { class: "begins", hidden: true }, this.stops, this.mark);
     const left = element("div", { class: "left" }, this.begins, this.going, this.line, this.doubts);
     this.card = card("record", "2 · Record", {}, element("div", { class: "record" }, left, this.view.element));
     trainer.on(() => this.show(trainer.now?.recording));
+    trainer.onChoice(() => this.forget());
   }
 
   submitted(event) {
@@ -67,7 +68,7 @@ class Recording {
 
   async begin(kind) {
     const fields = this.form.fields;
-    if (!fields.set) return say(this.line, "Make a set first, on the left.", true);
+    if (!fields.set) return say(this.line, "Create a set first, in the card before this one.", true);
     const { label, count, ...others } = fields;
     const wanted = kind === "background" ? others : { ...others, label, count };
     await attempt(this.line, () => trainer.ask("record", { ...wanted, kind }), "");
@@ -78,7 +79,7 @@ class Recording {
   }
 
   discard() {
-    return attempt(this.line, () => trainer.ask("discard"), "dropped: nothing was kept");
+    return attempt(this.line, () => trainer.ask("discard"), "Discarded: nothing was kept.");
   }
 
   show(take) {
@@ -93,9 +94,13 @@ class Recording {
     this.view.show(take);
   }
 
-  began(isFocused) {
+  forget() {
     this.doubts.replaceChildren();
     say(this.line, "");
+  }
+
+  began(isFocused) {
+    this.forget();
     if (isFocused) (this.mark.hidden ? this.stops : this.mark).querySelector("button").focus({ preventScroll: true });
   }
 

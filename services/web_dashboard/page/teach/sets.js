@@ -1,6 +1,6 @@
-// The set of examples that is taught: chosen, made, renamed, deleted.
+// The set of examples that is taught: chosen, created, renamed, deleted.
 
-import { attempt, button, counted, field, outcome } from "../asking.js";
+import { attempt, button, counted, field, outcome, say } from "../asking.js";
 import { colourOf } from "../colours.js";
 import { confirmed, typed } from "../dialogs.js";
 import { card, element } from "../elements.js";
@@ -15,8 +15,9 @@ export function sets() {
   const rename = button("Rename", () => trainer.set && renamed(trainer.set.name, line));
   const remove = button("Delete set", () => trainer.set && deleted(trainer.set, line));
   const make = element("form", { class: "row", on: { submit: (event) => made(event, name, line) } },
-    field("Name of a new set", name), element("button", {}, "Make set"));
+    field("Name of a new set", name), element("button", {}, "Create set"));
   trainer.on(() => show(holds, [rename, remove]));
+  trainer.onChoice(() => say(line, ""));
   const chosen = element("div", { class: "row" }, field("Set", choice), element("div", { class: "buttons" }, rename, remove));
   return card("set", "1 · Set of examples", {}, chosen, holds, make, line);
 }
@@ -45,19 +46,20 @@ async function made(event, name, line) {
   event.preventDefault();
   const set = name.value;
   const make = () => trainer.ask("create_set", { set }).then(() => trainer.chooseNew(set.normalize("NFC")));
-  await attempt(line, make, "made");
+  await attempt(line, make, `Set ${set} created.`);
 }
 
 async function renamed(set, line) {
   const name = await typed(`Rename ${set}`, "New name", set, [], "Rename");
   if (name === null) return;
   const rename = () => trainer.ask("rename_set", { set, name }).then(() => trainer.chooseNew(name.normalize("NFC")));
-  await attempt(line, rename, "renamed");
+  await attempt(line, rename, `Set ${set} is now called ${name}.`);
 }
 
 async function deleted({ name, actions }, line) {
   const number = Object.values(actions).reduce((sum, each) => sum + each, 0);
-  if (await confirmed(`Delete ${name} with ${counted(number, "example")}?`, "Delete set")) {
-    await attempt(line, () => trainer.ask("delete_set", { set: name }), "deleted");
+  if (await confirmed(`Delete the set ${name} with ${counted(number, "example")}?`, "Delete set")) {
+    const remove = () => trainer.ask("delete_set", { set: name }).then(() => trainer.listAnew());
+    await attempt(line, remove, `Set ${name} deleted.`);
   }
 }

@@ -5,8 +5,8 @@ import { counted as numbered } from "../asking.js";
 import { drawn, element, seconds } from "../elements.js";
 import { link } from "../link.js";
 import { newestPosture, people, shownAgent } from "../live/people.js";
+import { isSensorStill } from "../waiting.js";
 
-const NOBODY = "Nobody is in view";
 
 export class TakeView {
   constructor() {
@@ -47,7 +47,8 @@ export class TakeView {
 }
 
 function wording({ kind, phase, label, asked, counted, people: seen }) {
-  if (!seen && phase === "waiting") return `${NOBODY}: waiting for a skeleton`;
+  if (isSensorStill()) return "The sensor sends no frames: the take waits for it";
+  if (!seen && phase === "waiting") return "Nobody is in view: step in front of the camera";
   if (kind === "background") return "Do anything but the actions, then press Stop";
   if (phase === "waiting") return `Do it: ${label}, ${numbered(asked, "time")}`;
   if (phase === "moving") return "Moving …";

@@ -25,7 +25,7 @@ export function trimmed(name, { start_ns: start, end_ns: end }, film) {
       bar.style.setProperty("--to", Number(handles[1].value) / length);
       shown.at(which === null ? null : stampOf(handles[which]));
       const [from, to] = handles.map((each) => Number(each.value) - 0.5);
-      told.textContent = `from ${from.toFixed(2)} s to ${to.toFixed(2)} s: ${(to - from).toFixed(2)} s of it`;
+      told.textContent = `From ${from.toFixed(2)} s to ${to.toFixed(2)} s: ${(to - from).toFixed(2)} s long`;
     };
     const bar = element("div", { class: "trim" }, ...handles);
     handles.forEach((each, which) => each.addEventListener("input", () => moved(which)));

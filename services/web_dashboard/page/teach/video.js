@@ -23,10 +23,16 @@ class Videos {
     this.choice = element("input", { type: "file", accept: "video/*", multiple: true, id: "video-file" });
     this.choice.addEventListener("change", () => this.take(this.choice.files));
     const zone = element("label", { class: "zone", for: "video-file" }, element("span", {}, "Drop a video anywhere on the page, or choose one"), this.choice);
-    this.card = card("video", "or from a video", {}, zone,
-      element("p", { class: "caption" }, "Action, person and number are those of Record; without an action, the file's name says it. Film the whole person from the front."),
+    this.card = card("video", "Or from a video", {}, zone,
+      element("p", { class: "caption" }, "Action, person and number are taken from the form Record. Without an action there, the file's name is the action. Film the whole person from the front."),
       this.line, this.job.element);
+    trainer.onChoice(() => this.forget());
     this.watchDrops();
+  }
+
+  forget() {
+    say(this.line, "");
+    this.job.quiet();
   }
 
   watchDrops() {
@@ -64,9 +70,9 @@ class Videos {
 
   async send(file) {
     const { set, label, person, count } = this.form.fields;
-    if (!set) return say(this.line, "Make a set first, above.", true);
+    if (!set) return say(this.line, "Create a set first.", true);
     const upload = `${PAGE}-${nameOf(file)}`;  // another tab may send a file of that name
-    if (!(await attempt(this.line, () => this.upload(file, upload), `${file.name} sent`))) return null;
+    if (!(await attempt(this.line, () => this.upload(file, upload), `${file.name} sent.`))) return null;
     return this.job.start("import_video", { set, upload, label: label || file.name.replace(NUMBERED, ""), person, count });
   }
 
@@ -74,7 +80,7 @@ class Videos {
     let reply = null;
     for (let offset = 0; offset === 0 || offset < file.size; offset += PIECE) {
       const piece = file.slice(offset, offset + PIECE);
-      say(this.line, `sending ${file.name}, ${percent(offset / Math.max(file.size, 1))}`);
+      say(this.line, `Sending ${file.name}: ${percent(offset / Math.max(file.size, 1))}`);
       reply = await trainer.ask("upload", { name, offset, data: await base64(piece), last: offset + PIECE >= file.size });
     }
     return reply;
@@ -101,7 +107,7 @@ function base64(blob) {
   return new Promise((resolve, reject) => {
     const reader = new FileReader();
     reader.onload = () => resolve(reader.result.slice(reader.result.indexOf(",") + 1));
-    reader.onerror = () => reject(new Error("the file cannot be read"));
+    reader.onerror = () => reject(new Error("The browser cannot read the file."));
     reader.readAsDataURL(blob);
   });
 }
