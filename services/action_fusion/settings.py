@@ -14,41 +14,49 @@ class Settings(ServiceSettings):
 
     measure: Literal["joint", "proximity"] = Field(
         "joint",
-        description="joint: closeness, the reach and moving together, over the segment; proximity: the paper's smallest"
-        " distance",
+        description=(
+            "how to choose the object: joint weighs closeness, reach and common motion over the segment; "
+            "proximity takes the smallest distance, as the paper does"
+        ),
     )
     reach_m: float = Field(
-        0.25, gt=0, description="an object whose marker never came this near to the hand was not reached"
+        0.25,
+        gt=0,
+        description="greatest distance between a hand and the marker of an object that it can reach (m)",
     )
     grasp_m: float = Field(
         0.20,
         gt=0,
-        description="an object may be in a hand up to this distance of their centres: a decimetre from the palm to the"
-        " fingertips, and half of a thing of two decimetres",
+        description="greatest distance between the centres of a hand and of an object that it can hold (m)",
     )
-    moved_m: float = Field(0.03, gt=0, description="an object displaced by less has not moved")
+    moved_m: float = Field(0.03, gt=0, description="least displacement at which an object counts as moved (m)")
     pointing_labels: frozenset[str] = Field(
-        frozenset({"point"}), description="actions whose object is where the arm points to, near or not"
+        frozenset({"point"}), description="actions whose object is the one that the arm points to, at any distance"
     )
     pointing_limit_deg: float = Field(
-        30.0, gt=0, lt=180, description="an object further than this from the line of the arm is not pointed at"
+        30.0,
+        gt=0,
+        lt=180,
+        description="greatest angle between the arm and the direction to an object that it points to (deg)",
     )
     uncertainty_m: float = Field(
-        0.02, ge=0, description="objects that the hand missed by amounts this close are both named"
+        0.02, ge=0, description="difference of two objects' distances to the hand below which an event names both (m)"
     )
     pointing_uncertainty_deg: float = Field(
-        2.0, ge=0, description="objects whose angles to the line of the arm are this close are both named"
+        2.0, ge=0, description="difference of two objects' angles to the arm below which an event names both (deg)"
     )
     expected_outcomes: dict[str, str] = Field(
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
-        description="what an action is to do to its object; it applies no held thing to another",
+        description="expected result of each action on its object; such an action never uses a held object as a tool",
     )
     world_from_camera: Annotated[str | None, BeforeValidator(as_text)] = Field(
         None,
-        description="maps the skeletons' camera frame to a fixed one, in which events then also give the object's pose:"
-        " 16 numbers, row-major, or a file of them",
+        description=(
+            "rigid transform from the skeletons' camera frame to a fixed frame, in which events then give the "
+            "object's pose as well: 16 numbers, row-major, or a file of them"
+        ),
     )
-    world_frame: str = Field("world", min_length=1, max_length=200, description="what events call that fixed frame")
+    world_frame: str = Field("world", min_length=1, max_length=200, description="name of that fixed frame in events")
 
     @property
     def fixed_from_camera(self) -> Array | None:

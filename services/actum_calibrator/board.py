@@ -34,7 +34,7 @@ def canonical(family: str) -> str:
     sought = "DICT_" + family.upper().removeprefix("DICT_")
     alike = [name for name in families() if name.upper() == sought]
     if not alike:
-        raise PatternError(f"{family!r} is no marker family: use one of {', '.join(families())}")
+        raise PatternError(f"{family!r} is not a marker family: use one of {', '.join(families())}")
     return alike[-1]
 
 
@@ -56,7 +56,7 @@ def black_cells(family: str, marker_id: int) -> Mask:
     dictionary = dictionary_of(family)
     count = len(dictionary.bytesList)
     if not 0 <= marker_id < count:
-        raise PatternError(f"{family} has no id {marker_id}: use 0 to {count - 1}")
+        raise PatternError(f"{family} has no marker {marker_id}: use ids from 0 to {count - 1}")
     side = dictionary.markerSize + 2
     black: Mask = np.asarray(cv2.aruco.generateImageMarker(dictionary, marker_id, side)) == 0
     return black
@@ -80,14 +80,19 @@ class Board:
 
     def __post_init__(self) -> None:
         if not all(FEWEST_SQUARES <= count <= MOST_SQUARES for count in (self.columns, self.rows)):
-            raise PatternError(f"a board of {self.columns}x{self.rows} squares: use 3 to 50 each way")
+            raise PatternError(
+                f"a board of {self.columns}x{self.rows} squares is not possible: use 3 to 50 squares in each direction"
+            )
         if not 0 < self.marker_m < self.square_m <= LARGEST_SQUARE_M:
             raise PatternError(
-                f"markers of {self.marker_m * 1000:g} mm in squares of {self.square_m * 1000:g} mm: a marker is "
-                "smaller than its square, and a square at most 1 m"
+                f"markers of {self.marker_m * 1000:g} mm do not fit squares of {self.square_m * 1000:g} mm: a "
+                "marker has to be smaller than its square, and a square at most 1 m"
             )
         if (needed := self.columns * self.rows // 2) > (there := len(dictionary_of(self.family).bytesList)):
-            raise PatternError(f"the board needs {needed} markers, {self.family} has {there}")
+            raise PatternError(
+                f"the board needs {needed} markers, but {self.family} has only {there}: use fewer squares or a "
+                "larger family"
+            )
 
     @property
     def width_m(self) -> float:

@@ -21,7 +21,8 @@ def board_sheet(board: Board, sheet_size: SheetSize) -> bytes:
     board_width, board_height = board.width_m * 1000, board.height_m * 1000
     if board_width > width - 2 * EDGE_MM or board_height > height - STRIP_MM - EDGE_MM:
         raise PatternError(
-            f"a board of {board_width:g} x {board_height:g} mm does not fit {sheet_size}: use smaller squares"
+            f"a board of {board_width:g} x {board_height:g} mm does not fit on {sheet_size}: use smaller or fewer "
+            "squares"
         )
     left, top = (width - board_width) / 2, height - (height - STRIP_MM - board_height + EDGE_MM) / 2
 

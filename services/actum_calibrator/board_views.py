@@ -68,7 +68,7 @@ class BoardFinder:
         height, width = pixels.shape
         blur = blur_px(pixels, self._board, ids, corners_px)
         if blur > (limit_px := _most_blur_px(pixels)):
-            raise BlurredError(name, f"blurred by {blur:.1f} px, at most {limit_px:.1f}")
+            raise BlurredError(name, f"blurred by {blur:.1f} px; at most {limit_px:.1f} px are accepted")
         return View(name, (width, height), self._board, ids, corners_px, blur)
 
     def _refined(self, pixels: Pixels, ids: list[int], corners_px: Array) -> Array:
@@ -95,7 +95,7 @@ def _unfound(pixels: Pixels, name: str, corners: int) -> UnusablePictureError:
     """Return the error that tells why the board was not found."""
     blur = image_blur_px(pixels)
     if blur is None:
-        return UnusablePictureError(name, "nothing to be seen: too dark, too bright or empty")
+        return UnusablePictureError(name, "too dark, too bright or empty")
     if blur > BLINDING_SHARE * _most_blur_px(pixels):
         return BlurredError(name, f"blurred by about {blur:.1f} px, too much to find the board")
     if corners == 0:

@@ -46,7 +46,12 @@ def estimate_extrinsics(pairs: Sequence[Pair], markers: Calibration, people: Cal
     """
     if len(pairs) < FEWEST_PAIRS:
         raise PoorSetError(
-            [f"too few pairs: {len(pairs)} usable, at least {FEWEST_PAIRS} are needed; 6 to 10 are good: take more"]
+            [
+                (
+                    f"too few pairs: {len(pairs)} are usable, at least {FEWEST_PAIRS} are needed, 6 to 10 are good; "
+                    "take more"
+                )
+            ]
         )
     for pair in pairs:
         markers.check_size(*pair.markers.size, pair.markers.name)
@@ -79,7 +84,8 @@ def _mismatch(what: str, noise_px: Sequence[float], calibration: Calibration) ->
         return []
     return [
         f"the calibration of the camera that sees {what} does not fit its pictures: {typical_px:.2f} px, at most "
-        f"{limit_px:.2f}: is it this camera's, at this zoom and focus, and is the board that of the options?"
+        f"{limit_px:.2f} px are accepted; check that the calibration belongs to this camera at this zoom and "
+        "focus, and that the options describe this board"
     ]
 
 
@@ -124,17 +130,21 @@ def _contradictions(adjustment: BundleAdjustment, pairs: Sequence[Pair], noise_p
     least_px = LEAST_OUTLIER_OF_DIAGONAL * max(view.diagonal_px for view in views)
     limits_px = [max(OUTLIER * noise, least_px) for noise in noise_px]
     rated = zip(pairs, adjustment.rms_px, limits_px, strict=True)
-    outliers = [f"{pair.name} ({error:.1f} px, at most {limit:.1f})" for pair, error, limit in rated if error > limit]
+    outliers = [
+        f"{pair.name} ({error:.1f} px, at most {limit:.1f} px)" for pair, error, limit in rated if error > limit
+    ]
     if 2 * len(outliers) > len(pairs):
         return [
-            f"the pairs fit no transform: {len(outliers)} of {len(pairs)} contradict each other, RMS "
-            f"{_rms_px(adjustment):.2f} px: are the two calibrations these cameras', at this size, zoom and focus, and "
-            f"did nothing move between the two pictures of a pair? {', '.join(outliers)}"
+            f"no transform fits the pairs: {len(outliers)} of {len(pairs)} contradict each other, RMS "
+            f"{_rms_px(adjustment):.2f} px; check that both calibrations belong to these cameras at this size, "
+            "zoom and focus, and that nothing moved between the two pictures of a pair; worst pairs: "
+            f"{', '.join(outliers)}"
         ]
     if outliers:
         return [
-            f"{len(outliers)} of {len(pairs)} pairs contradict the others: {', '.join(outliers)}: a camera moved, or "
-            "the board moved between the two pictures. Leave these out; if a camera moved for good, take all pairs anew"
+            f"{len(outliers)} of {len(pairs)} pairs contradict the others ({', '.join(outliers)}): a camera moved, "
+            "or the board moved between the two pictures. Leave these pairs out; if a camera moved, take all "
+            "pairs again"
         ]
     return []
 
@@ -144,9 +154,9 @@ def _undetermined(adjustment: BundleAdjustment) -> list[str]:
     if position_mm <= MOST_POSITION_DEVIATION_MM and rotation_deg <= MOST_ROTATION_DEVIATION_DEG:
         return []
     return [
-        f"not determined: standard deviation {position_mm:.1f} mm and {rotation_deg:.2f} deg, at most "
-        f"{MOST_POSITION_DEVIATION_MM:g} mm and {MOST_ROTATION_DEVIATION_DEG:g} deg: show the board nearer, tilted, "
-        "and at different places in both images"
+        f"the transform is not determined: its standard deviation is {position_mm:.1f} mm and {rotation_deg:.2f} "
+        f"deg, at most {MOST_POSITION_DEVIATION_MM:g} mm and {MOST_ROTATION_DEVIATION_DEG:g} deg are accepted; "
+        "show the board closer, tilted, and at different places in both images"
     ]
 
 

@@ -51,10 +51,10 @@ def grey_from_message(image: Image, name: str) -> Pixels:
     if image.format == "jpeg":
         pixels = decode_grey(image.data, name)
         if pixels.shape != (image.height, image.width):
-            raise UnusablePictureError(name, "has another size than its message says")
+            raise UnusablePictureError(name, "has another size than its message states")
         return pixels
     if image.format != "bgr8" or len(image.data) != image.width * image.height * 3:
-        raise UnusablePictureError(name, f"is no complete colour image of {image.width}x{image.height}")
+        raise UnusablePictureError(name, f"is not a complete colour image of {image.width}x{image.height}")
     colours = np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
     return cv2.cvtColor(colours, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
 
@@ -95,11 +95,12 @@ def complaints(unusable: Sequence[UnusablePictureError]) -> list[str]:
     others = len(unusable) - blurred
     sentences = []
     if blurred:
-        sentences.append(f"{_pictures(blurred)} blurred: hold the board still, give it more light, focus the lens")
+        sentences.append(f"{_pictures(blurred)} blurred: hold the board still, use more light, or focus the lens")
     if others:
         sentences.append(
-            f"{_pictures(others)} without a usable board: is it the board that --board, --square-mm, --marker-mm and "
-            "--family describe, near enough, whole and without glare?"
+            f"{_pictures(others)} without a usable board: check that the board is the one that --board, "
+            "--square-mm, --marker-mm and --family describe, and that it is close, entirely visible and without "
+            "glare"
         )
     return sentences
 

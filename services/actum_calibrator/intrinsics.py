@@ -110,7 +110,9 @@ def _calibrated(views: Sequence[View], deformation: Deformation = FLAT, start: I
             objects, images, views[0].size, *guess, flags=0 if start is None else cv2.CALIB_USE_INTRINSIC_GUESS
         )
     except cv2.error:
-        raise PoorSetError(["no camera fits these views: tilt the board more, and differently in each view"]) from None
+        raise PoorSetError(
+            ["no camera model fits these views: tilt the board more, and differently in each view"]
+        ) from None
     residuals = []
     for view, rotation, position in zip(views, rotations, positions, strict=True):
         projected, _ = cv2.projectPoints(board_m[view.ids], rotation, position, matrix, distortion)
@@ -138,9 +140,9 @@ def _contradiction(intrinsics: Intrinsics, views: Sequence[View]) -> list[str]:
     if not only_without and (np.abs(focal - others) <= limits).all():
         return []
     return [
-        f"one picture contradicts the others: {views[worst].name}; with it the focal length is "
-        f"{focal[0]:.1f} x {focal[1]:.1f} px, without it {others[0]:.1f} x {others[1]:.1f}: was the zoom, the focus or "
-        "the board another? Leave it out or take it again"
+        f"one picture contradicts the others: with {views[worst].name} the focal length is {focal[0]:.1f} x "
+        f"{focal[1]:.1f} px, without it {others[0]:.1f} x {others[1]:.1f} px; leave this picture out, or take it "
+        "again with the same zoom, focus and board"
     ]
 
 
@@ -160,8 +162,8 @@ def _bent(intrinsics: Intrinsics, views: Sequence[View]) -> list[str]:
     if intrinsics.bend_mm <= limit_mm:
         return []
     return [
-        f"the board is bent by {intrinsics.bend_mm:.1f} mm, at most {limit_mm:.1f}: glue it to something flat and "
-        "stiff, and take the pictures anew"
+        f"the board is bent by {intrinsics.bend_mm:.1f} mm, at most {limit_mm:.1f} mm are accepted: glue it to a "
+        "flat, stiff surface and take the pictures again"
     ]
 
 
@@ -170,9 +172,9 @@ def _undetermined(intrinsics: Intrinsics) -> list[str]:
     if share <= MOST_FOCAL_DEVIATION:
         return []
     return [
-        f"focal length not determined: its standard deviation is {share:.1%}, at most {MOST_FOCAL_DEVIATION:.1%}: "
-        "add views with the board tilted by about 30 deg, left, right, up and down, and near enough to fill half the "
-        "image"
+        f"the focal length is not determined: its standard deviation is {share:.1%}, at most "
+        f"{MOST_FOCAL_DEVIATION:.1%} is accepted; add views with the board tilted by about 30 deg to the left, "
+        "right, top and bottom, and close enough to fill half the image"
     ]
 
 
@@ -183,9 +185,10 @@ def _ill_fitting(intrinsics: Intrinsics, views: Sequence[View]) -> list[str]:
     order = sorted(zip(intrinsics.rms_of_views_px(), (view.name for view in views), strict=True), reverse=True)
     worst = ", ".join(f"{name} {error:.1f} px" for error, name in order[:3])
     return [
-        f"corners do not fit: RMS {intrinsics.rms_px:.2f} px, at most {limit_px:.2f}; worst {worst}: is the print "
-        "flat, is it the board that the options name, was it held still, was zoom and focus fixed? Leave the worst out "
-        "or take them again"
+        f"the corners do not fit: RMS {intrinsics.rms_px:.2f} px, at most {limit_px:.2f} px are accepted; worst "
+        f"pictures: {worst}. Check that the print is flat, that the options describe this board, that the board "
+        "was held still, and that zoom and focus did not change; then leave the worst pictures out or take them "
+        "again"
     ]
 
 

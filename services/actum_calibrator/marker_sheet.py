@@ -67,7 +67,7 @@ def marker_sheet(family: str, ids: Sequence[int], size_mm: float, sheet_size: Sh
     family = canonical(family)
     cells = {number: black_cells(family, number) for number in ids}
     if not cells:
-        raise PatternError("no ids: name at least one")
+        raise PatternError("no marker ids are given: name at least one")
     tile = Tile(size_mm)
     columns, rows = _grid(tile, sheet_size)
     numbers, each = list(cells), columns * rows
@@ -98,8 +98,8 @@ def _grid(tile: Tile, sheet_size: SheetSize) -> tuple[int, int]:
     if columns * rows == 0:
         largest = int((width - 2 * EDGE_MM) / (1 + 2 * WHITE_SHARE))
         raise PatternError(
-            f"markers of {tile.size_mm:g} mm on {sheet_size}: use {SMALLEST_MM:g} to {largest} mm "
-            "(white is needed around them)"
+            f"markers of {tile.size_mm:g} mm do not fit on {sheet_size}: use {SMALLEST_MM:g} to {largest} mm, "
+            "which leaves a white margin around them"
         )
     return columns, rows
 

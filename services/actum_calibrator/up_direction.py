@@ -89,14 +89,14 @@ class UpDirectionEstimator:
 def _axis(frame: Skeleton) -> tuple[str, Array | None]:
     """Return "" and the direction (3,) from the feet to the neck, or an instruction and None."""
     if not frame.valid or not frame.agents:
-        return f"nobody is seen{f': {frame.reason}' if frame.reason else ''}", None
+        return f"nobody is visible{(f': {frame.reason}' if frame.reason else '')}", None
     if len(frame.agents) > 1:
-        return f"{len(frame.agents)} people are seen: one must be alone", None
+        return f"{len(frame.agents)} people are visible: only one person may be", None
     joints = frame.agents[0].joints
     known = {name: _point(joints[INDEX[name]]) for name in ("neck", *_LEGS)}
     unseen = [name for name, point in known.items() if point is None]
     if unseen:
-        return f"not seen: {', '.join(unseen)}; step back, or tilt the camera", None
+        return f"not visible: {', '.join(unseen)}; step back, or tilt the camera", None
     return _straight({name: point for name, point in known.items() if point is not None})
 
 

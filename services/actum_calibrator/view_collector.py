@@ -70,9 +70,9 @@ class ViewCollector:
             return "tilt the board by about 30 deg, left, right, up or down"
         covered = covered_cells(self.views)
         if covered.mean() < GOOD_COVERAGE:
-            return f"show it at the {_emptiest(covered)}, tilted"
+            return f"show the board at the {_emptiest(covered)}, tilted"
         if len(self.views) < ENOUGH_VIEWS or shortcomings(self.views):
-            return "show it tilted another way, nearer or farther"
+            return "show the board tilted another way, closer or further away"
         return None
 
 

@@ -30,16 +30,16 @@ def shortcomings(views: Sequence[View]) -> list[str]:
     sizes = sorted({view.size for view in views})
     if len(sizes) > 1:
         listed = ", ".join(f"{width}x{height}" for width, height in sizes)
-        return [f"pictures of several sizes ({listed}): calibrate each size by itself"]
+        return [f"pictures of several sizes ({listed}): calibrate each size separately"]
     reasons = []
     if len(views) < FEWEST_VIEWS:
         reasons.append(
-            f"too few views: {len(views)} usable, at least {FEWEST_VIEWS} are needed; 15 to 20 are good: take more"
+            f"too few views: {len(views)} are usable, at least {FEWEST_VIEWS} are needed, 15 to 20 are good; take more"
         )
     if views and (share := float(covered_cells(views).mean())) < LEAST_COVERAGE:
         reasons.append(
-            f"too little coverage: the board was in {share:.0%} of the image, at least {LEAST_COVERAGE:.0%} are "
-            "needed: show it near every edge and corner of the image, and closer"
+            f"too little coverage: the board covered {share:.0%} of the image, at least {LEAST_COVERAGE:.0%} are "
+            "needed; show the board near every edge and corner of the image, and closer"
         )
     return reasons
 
@@ -84,6 +84,6 @@ def tilt_shortcomings(tilts_deg: Sequence[float]) -> list[str]:
         return []
     return [
         f"too little tilt: {tilted} of {len(tilts_deg)} views are tilted by {TILT_DEG:g} deg or more, at least "
-        f"{FEWEST_TILTED} are needed; frontal views do not determine the focal length: turn the board by about 30 deg, "
-        "left, right, up and down"
+        f"{FEWEST_TILTED} are needed, because frontal views do not determine the focal length; turn the board by "
+        "about 30 deg to the left, right, top and bottom"
     ]

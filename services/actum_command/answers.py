@@ -51,8 +51,8 @@ class Answers:
 def _missing_answer(segment_id: str, action: Action | None) -> str:
     """Describe what a segment without an event lacks: any answer, or only the event after its final action."""
     if action is None:
-        return f"[yellow]{escape(segment_id)}: no answer within {ANSWER_S:g} s; see actum doctor[/yellow]"
-    return f"{describe(action)}; no event: does action_fusion run?"
+        return f"[yellow]{escape(segment_id)}: no answer within {ANSWER_S:g} s: run 'actum doctor'[/yellow]"
+    return f"{describe(action)}; no event arrived: check that action_fusion runs"
 
 
 def _messages(listening: Listening) -> Iterator[Message]:

@@ -45,5 +45,5 @@ def remarks(found: dict[str, ClockOffset]) -> Iterator[str]:
     for hosts in sharing.values():
         each = found[hosts[0]]
         apart = f"{abs(each.ahead_s):.2f} s {'ahead of' if each.ahead_s > 0 else 'behind'} this one's"
-        clock = f"the clock of {', '.join(sorted(hosts))} is {apart}, give or take {each.uncertainty_s:.3f} s"
-        yield f"{clock}: no event depends on it; times in logs agree once both run NTP"
+        clock = f"the clock of {', '.join(sorted(hosts))} is {apart}, ± {each.uncertainty_s:.3f} s"
+        yield f"{clock}: events do not depend on it; to make times in logs agree, run NTP on both hosts"

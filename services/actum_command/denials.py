@@ -5,7 +5,7 @@ from typing import Protocol
 
 from actum_command.heard import Heard
 
-ROLE = "show it the folder of a role that may look, such as viewer, in ACTUM_CREDENTIALS"
+ROLE = "set ACTUM_CREDENTIALS to the folder of a role that may read, such as viewer"
 """What to do."""
 
 
@@ -26,12 +26,12 @@ def everything_denied(heard: Heard, client: Asking, expected: Iterable[str]) -> 
     if heard.tokens or heard.answers or heard.statuses:
         return None
     if any(client.offers(service) for service in expected):
-        return f"services run, and the router's access control tells this program nothing of them: {ROLE}"
+        return f"services run, but the router's access control denies this program permission to read them: {ROLE}"
     if client.router_tells():
         return None
     return (
-        "the router lets this program in and tells it nothing, not even of itself: its access control denies this "
-        f"program everything, unless no service runs and the router is to keep silent. To be told, {ROLE}"
+        "the router accepts this program but answers no query: its access control denies this program all "
+        f"reading, or no service runs and the router is set to answer none. If services should run, {ROLE}"
     )
 
 
@@ -39,8 +39,10 @@ def partly_denied(heard: Heard) -> Iterator[str]:
     """Yield what is missing of services that are known otherwise."""
     answering = {answer.info.service for answer in heard.answers}
     running = heard.tokens.keys() | heard.statuses.keys() | answering
-    for what, known in (("that it is alive", heard.tokens.keys()), ("what it is", answering)):
+    for what, known in (("its token", heard.tokens.keys()), ("its description", answering)):
         if running and not known:
-            yield f"no service tells {what}, though some run: the router's access control denies it; {ROLE}"
+            yield f"services run, but none of them shows {what}: the router's access control denies it; {ROLE}"
     if heard.tokens and not heard.statuses:
-        yield f"no service's status comes through: the router's access control denies it, or all hang; {ROLE}"
+        yield (
+            f"services run, but no status arrives: the router's access control denies it, or all services hang; {ROLE}"
+        )

@@ -40,7 +40,7 @@ MARKS_IGNORED = "marks_ignored"
 LIMIT = "too_many_"
 """The prefix of the kinds of rejects that count what a service had no room for."""
 
-PROGRAMS = {"sensor_gateway": "'python -m sensor_gateway', for the simulated scene 'python -m scene_simulator',"}
+PROGRAMS = {"sensor_gateway": "'python -m sensor_gateway' (for the simulated scene 'python -m scene_simulator')"}
 """The programs to start for a service, where there is more than one of its name."""
 
 
@@ -134,17 +134,20 @@ def _latency(latency_ms: Mapping[str, float]) -> str:
 def _problems(name: str, instances: list[str], infos: list[Info], status: Status | None) -> Iterator[str]:
     if not instances:
         program = PROGRAMS.get(name, f"'python -m {name}'")
-        yield f"{name} is not running: start it with {program} or 'actum up'"
+        yield f"{name} is not running: start it with {program}, or start all services with 'actum up'"
         return
     if len(instances) > 1 or len(infos) > 1:
         who = _who(infos, instances)
-        yield f"{name} runs more than once, so everything is answered more than once: stop all but one of {who}"
+        yield (
+            f"{name} runs more than once, so that every segment is answered more than once: stop all instances but "
+            f"one of {who}"
+        )
     if status is None:
-        yield f"{name} is alive but sent no status in {STATUS_S:g} s"
+        yield f"{name} is alive but published no status in {STATUS_S:g} s: restart it if this persists"
     else:
         yield from _troubles(name, status, next((f" ({info.source})" for info in infos if info.source), ""))
     if not infos:
-        yield f"{name} does not answer on its info key"
+        yield f"{name} does not answer on its info key: restart it if this persists"
     yield from dict.fromkeys(line for info in infos for line in _versions(info))
 
 
@@ -157,14 +160,16 @@ def _who(infos: list[Info], instances: list[str]) -> str:
 def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
     """Yield the problems that a service's own state names; `source` is the source that it reads, in brackets."""
     if status.state.startswith("camera lost"):
-        yield f"{name}: {status.state}{source}; it tries again by itself"
+        yield f"{name}: {status.state}{source}; the service retries by itself"
     elif status.state == SOURCE_ENDED:
         endless = "--repetitions 0" if DESCRIPTION in source else "--loop"
-        yield f"{name}: {status.state}{source}; start it again for more, with {endless} for more and more"
+        yield (
+            f"{name}: {status.state}{source}; start it again to play once more, or with {endless} to play without end"
+        )
     elif status.state.startswith(NO_MODEL):
-        yield f"{name}: {status.state}, so every action is rejected; name one in --model or ACTUM_MODEL"
+        yield f"{name}: {status.state}, so every action is rejected; name a model in --model or ACTUM_MODEL"
     elif status.state.startswith(OLD_MODEL):
-        yield f"{name}: {status.state}; it goes on with the model before"
+        yield f"{name}: {status.state}; the previous model stays in use"
     elif status.state.startswith(UNUSED):
         yield f"{name}: {status.state}"
 
@@ -173,9 +178,15 @@ def _remarks(name: str, status: Status) -> Iterator[str]:
     """Yield what a service that does well says of itself besides, and which of its limits were met."""
     met = [f"{kind} {n}" for kind, n in status.rejects.items() if kind.startswith(LIMIT)]
     if met:
-        yield f"{name} has met its limits: {', '.join(met)}; something puts more than it can take, see docs/messages.md"
+        yield (
+            f"{name} reached its limits ({', '.join(met)}): find the program that publishes too much; "
+            "docs/messages.md explains each limit"
+        )
     if ignored := status.counts.get(MARKS_IGNORED):
-        yield f"{name} rejected {ignored} marks, since its setting segments is auto: --segments both uses marks as well"
+        yield (
+            f"{name} rejected {ignored} marks, because its setting segments is auto: use --segments both to accept "
+            "marks as well"
+        )
     if status.state.startswith(AND):
         yield from (f"{name}: {remark}" for remark in status.state.removeprefix(AND).split("; "))
 
@@ -184,5 +195,10 @@ def _versions(info: Info) -> list[str]:
     missing = {schema_name(message) for message in MESSAGES} - set(info.schemas)
     if info.version == __version__ and not missing:
         return []
-    lack = f"; it lacks {', '.join(sorted(missing))}" if missing else ""
-    return [f"{info.service} is version {info.version}, this is {__version__}: install the same everywhere{lack}"]
+    lack = f"; it lacks the schemas {', '.join(sorted(missing))}" if missing else ""
+    return [
+        (
+            f"{info.service} is version {info.version}, but this program is version {__version__}: install the same "
+            f"version everywhere{lack}"
+        )
+    ]

@@ -32,7 +32,10 @@ def write_inspection(
     maps = maps_of(model)
     segments = answered_segments(maps, recordings, progress)
     if recordings and not segments:
-        raise NoSegmentError("no segment in these recordings: start and end marks make one, see actum segment --help")
+        raise NoSegmentError(
+            "these recordings hold no segment: mark actions while recording (see 'actum segment --help') or with "
+            "'actum label'"
+        )
     labelled = any(segment.label is not None for segment in segments)
     evaluation = evaluate(model, recordings, progress) if labelled else None
     planned = list(pictures(maps, segments, evaluation))

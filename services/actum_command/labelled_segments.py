@@ -78,7 +78,7 @@ def first_stamp_ns(recording: Recording) -> int:
         first = next(iter(recording.messages(topics)), None)
         if first is not None and first.stamp_ns is not None:
             return first.stamp_ns
-    raise LabellingError(f"{recording.path}: neither frames nor marks in it; name a recording of a person")
+    raise LabellingError(f"{recording.path} holds neither frames nor marks: name a recording of a person")
 
 
 def labelled_segments(recording: Recording) -> list[LabelledSegment]:
@@ -111,8 +111,8 @@ def segment_of(segments: Sequence[LabelledSegment], number: int) -> LabelledSegm
         LabellingError: there is none.
     """
     if not 1 <= number <= len(segments):
-        there = f"there are 1 to {len(segments)}" if segments else "nothing is marked"
-        raise LabellingError(f"no segment {number}: {there}, as actum label lists them")
+        there = f"the recording has segments 1 to {len(segments)}" if segments else "the recording has no segments"
+        raise LabellingError(f"there is no segment {number}: {there}; 'actum label REC' lists them")
     return segments[number - 1]
 
 
@@ -126,15 +126,18 @@ def check_span(
     """
     start_s, end_s = (start_ns - first_ns) / SECOND_NS, (end_ns - first_ns) / SECOND_NS
     if end_ns <= start_ns:
-        raise LabellingError(f"it would start at {start_s:.2f} s and end at {end_s:.2f} s: the end has to be later")
+        raise LabellingError(
+            f"the segment would run from {start_s:.2f} s to {end_s:.2f} s: the end has to be later than the start"
+        )
     if start_ns < first_ns:
-        raise LabellingError(f"it would start at {start_s:.2f} s, before the recording does")
+        raise LabellingError(f"the segment would start at {start_s:.2f} s, before the recording does: use 0 or later")
     for other in segments:
         if other.overlaps(start_ns, end_ns, sensor, agent):
             assert other.start_ns is not None and other.end_ns is not None
             span = f"{(other.start_ns - first_ns) / SECOND_NS:.2f} to {(other.end_ns - first_ns) / SECOND_NS:.2f} s"
             raise LabellingError(
-                f"{start_s:.2f} to {end_s:.2f} s overlaps segment {other.number} ({span}): move or delete that first"
+                f"{start_s:.2f} s to {end_s:.2f} s overlaps segment {other.number} ({span}): move or delete that "
+                "segment first"
             )
 
 
@@ -148,7 +151,7 @@ def refuse_outside(recording: Recording, sensor: str, *stamps_ns: int) -> None:
     for stamp_ns in stamps_ns:
         if recording.lacks_frames_at(sensor, stamp_ns):
             at_s = (stamp_ns - first_stamp_ns(recording)) / SECOND_NS
-            raise LabellingError(f"{at_s:.2f} s lies outside of the recording's frames: stay within them")
+            raise LabellingError(f"{at_s:.2f} s lies outside the recording's frames: use a time within them")
 
 
 def followed(segments: Sequence[LabelledSegment], moved: LabelledSegment) -> Change:
@@ -174,7 +177,10 @@ def only_sensor(recording: Recording) -> str:
     """
     names = sorted({sensor for topic in FRAMES for sensor in recording.sensors(topic)})
     if len(names) != 1:
-        raise LabellingError(f"{recording.path}: frames of {', '.join(names) or 'nobody'}; one sensor is needed")
+        raise LabellingError(
+            f"{recording.path} holds frames of {', '.join(names) or 'nobody'}: labelling needs a recording of "
+            "exactly one sensor"
+        )
     return names[0]
 
 
@@ -188,7 +194,7 @@ def cut_anew(recording: Recording, segments: Sequence[LabelledSegment], asked: i
     sensor, first_ns = only_sensor(recording), first_stamp_ns(recording)
     cuts = cut(recorded_courses(recording, sensor), asked, first_ns)
     if cuts is None:
-        raise LabellingError(f"{recording.path}: nobody is seen moving in it, so nothing can be cut")
+        raise LabellingError(f"{recording.path} shows nobody moving, so no repetitions can be found")
     kept = [segment for segment in segments if segment.origin != CUT]
     for repetition in cuts.repetitions:
         check_span(kept, repetition.start_ns, repetition.end_ns, sensor, cuts.course.agent, first_ns)

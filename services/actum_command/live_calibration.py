@@ -14,7 +14,7 @@ from actum_calibrator.view_collector import PairCollector, ViewCollector
 
 SILENCE_S = 10.0  # longer than the slowest camera takes from the gateway's start to the first frame
 POLL_S = 0.01  # a third of a frame's interval
-REMEDY = "A gateway whose ACTUM_CALIBRATION is for another image size gives none that can be used: start it without"
+REMEDY = "If the gateway's ACTUM_CALIBRATION is for another image size, start the gateway without it"
 
 Tell = Callable[[str], object]
 """Called with each line of console markup that says what has happened or what to do next."""
@@ -67,14 +67,16 @@ def live_skeletons(client: Client, stop: threading.Event, tell: Tell) -> Iterato
     """
     key = keys.key(keys.SKELETON, client.sensor)
     stream, received_s = client.listen(key), time.monotonic()
-    tell(f"watching {key}; Ctrl-C ends")
+    tell(f"reading {key}; Ctrl-C ends")
     while not stop.wait(POLL_S):
         while (received := stream.take()) is not None:
             received_s = time.monotonic()
             if isinstance(received.message, Skeleton):
                 yield received.message
         if time.monotonic() - received_s > SILENCE_S:
-            raise SilentStreamError(f"no skeleton on {key} for {SILENCE_S:g} s: does its gateway run?")
+            raise SilentStreamError(
+                f"no skeleton arrived on {key} for {SILENCE_S:g} s: check that the sensor gateway runs"
+            )
 
 
 def _views(
@@ -82,7 +84,7 @@ def _views(
 ) -> Iterator[tuple[int, View | None]]:
     """Yield the index of each image's sensor and the board's view, None where no board is found, until stopped."""
     streams = [_ImageStream(client, keys.key(keys.COLOR, sensor)) for sensor in sensors]
-    tell(f"watching {', '.join(stream.key for stream in streams)}; Ctrl-C ends")
+    tell(f"reading {', '.join(stream.key for stream in streams)}; Ctrl-C ends")
     while not stop.is_set():
         for camera, stream in enumerate(streams):
             image = stream.newest()
@@ -112,12 +114,17 @@ class _ImageStream:
             self._valid_s, self._invalid = time.monotonic(), None
             return image
         if isinstance(image, Image):
-            self._invalid = image.reason or "it does not say why"
+            self._invalid = image.reason or "no reason given"
         if time.monotonic() - self._valid_s <= SILENCE_S:
             return None
         if self._invalid is not None:
-            raise SilentStreamError(f"no valid image on {self.key} for {SILENCE_S:g} s: {self._invalid}. {REMEDY}")
-        raise SilentStreamError(f"no image on {self.key} for {SILENCE_S:g} s: does its gateway send any? {REMEDY}")
+            raise SilentStreamError(
+                f"no valid image arrived on {self.key} for {SILENCE_S:g} s ({self._invalid}). {REMEDY}"
+            )
+        raise SilentStreamError(
+            f"no image arrived on {self.key} for {SILENCE_S:g} s: check that the sensor gateway publishes images. "
+            f"{REMEDY}"
+        )
 
 
 def _view(finder: BoardFinder, image: Image) -> View | None:

@@ -25,12 +25,12 @@ def misspelt(environment: Mapping[str, str]) -> Iterator[str]:
     file = environment.get(FILE)
     for name in tomllib.loads(Path(file).read_text(encoding="utf-8")) if file else ():
         if name not in KNOWN:
-            yield f"{file}: {name} is no setting{_suggestion(name)}"
+            yield f"{file}: {name} is not a setting{_suggestion(name)}"
     for name in environment:
         setting = name.removeprefix(PREFIX).lower()
         if name.startswith(PREFIX) and setting not in (*KNOWN, *OTHERS):
-            yield f"{name} is no setting{_suggestion(setting, PREFIX)}"
+            yield f"{name} is not a setting{_suggestion(setting, PREFIX)}"
 
 
 def _suggestion(name: str, prefix: str = "") -> str:
-    return "".join(f": is {prefix + (one.upper() if prefix else one)} meant?" for one in nearest(name, KNOWN))
+    return "".join(f": did you mean {prefix + (one.upper() if prefix else one)}?" for one in nearest(name, KNOWN))

@@ -70,23 +70,23 @@ def _received(published: Published, file: BinaryIO, progress: Progress) -> tuple
 
 def _chunks(url: str) -> Iterator[bytes]:
     if not url.startswith(("http://", "https://")):
-        raise FetchError(f"{url}: not an http or https address")
+        raise FetchError(f"{url} is not an http or https address")
     try:
         with urllib.request.urlopen(url, timeout=TIMEOUT_S) as answer:
             while chunk := answer.read(CHUNK_BYTES):
                 yield chunk
     except urllib.error.HTTPError as error:
-        raise FetchError(f"{url}: the server says {error.code} {error.reason}; try again later") from None
+        raise FetchError(f"{url}: the server answers {error.code} {error.reason}; try again later") from None
     except (OSError, HTTPException, ValueError) as error:
         reason = getattr(error, "reason", None) or error
-        raise FetchError(f"{url} cannot be reached ({reason}); is there a network, a proxy?") from None
+        raise FetchError(f"{url} cannot be reached ({reason}): check the network and the proxy") from None
 
 
 def _check(published: Published, size: int, sha256: str) -> None:
     if size < published.size:
-        raise FetchError(f"{published.url}: broke off after {size} of {published.size} bytes; try again")
+        raise FetchError(f"{published.url}: the download stopped after {size} of {published.size} bytes; try again")
     if size > published.size or sha256 != published.sha256:
         raise FetchError(
-            f"{published.url}: not the file that was published (SHA-256 {sha256}, expected {published.sha256}); "
-            "nothing was kept"
+            f"{published.url} is not the published file (SHA-256 {sha256}, expected {published.sha256}): the "
+            "download was deleted"
         )

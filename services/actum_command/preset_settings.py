@@ -22,14 +22,14 @@ def preset_named(name: str, settings: Sequence[str] = ()) -> Preset:
         PresetError: there is no such preset, or it has no such setting.
     """
     if name not in PRESETS:
-        raise PresetError(f"no preset {name!r}: use one of {', '.join(PRESETS)}")
+        raise PresetError(f"{name!r} is not a preset: use one of {', '.join(PRESETS)}")
     preset = PRESETS[name]
     changes: dict[str, Any] = dict(setting.partition("=")[::2] for setting in settings)
     if not changes:
         return preset
     if not isinstance(preset, PaperPreset):
-        raise PresetError(f"preset {name} has nothing to set; {PAPER.name} has {', '.join(CHOICES)}")
+        raise PresetError(f"preset {name} has no settings; preset {PAPER.name} has {', '.join(CHOICES)}")
     for setting, value in changes.items():
         if value not in CHOICES.get(setting, ()):
-            raise PresetError(f"preset {name} knows no {setting}={value}; what it knows: {SETTINGS}")
+            raise PresetError(f"preset {name} has no setting {setting}={value}; its settings: {SETTINGS}")
     return replace(preset, posture=replace(preset.posture, **changes))

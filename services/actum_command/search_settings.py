@@ -61,10 +61,10 @@ def refuse_other_settings(file: Path) -> None:
     try:
         held = tomllib.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
     except (tomllib.TOMLDecodeError, UnicodeDecodeError):
-        raise OtherSettingsError(f"{file} is there already and is no TOML: name another file") from None
+        raise OtherSettingsError(f"{file} already exists and is not TOML: name another file") from None
     if others := sorted(held.keys() - set(SEARCH_SETTINGS)):
         raise OtherSettingsError(
-            f"{file} also sets {', '.join(others)}: name another file, and copy its lines into that one"
+            f"{file} also sets {', '.join(others)}: write to another file, then copy its lines into {file}"
         )
 
 

@@ -64,12 +64,14 @@ def _put_hz(topic: Topic, statuses: Statuses, streams: Mapping[Topic, Watched]) 
 def _slow_source(infos: Sequence[Info], put_hz: float, skeletons: Watched) -> Iterator[str]:
     for info in infos:
         if info.service == SENSOR and info.rate_hz and 0 < put_hz < SLOW * info.rate_hz:
-            few = f"{SENSOR} puts {put_hz:.0f} frames a second, and its source is set to {info.rate_hz:g}"
-            yield f"{few}: is the machine busy, the room too dark for short exposures, the camera's cable slow?"
+            few = f"{SENSOR} publishes {put_hz:.0f} frames per second, but its source is set to {info.rate_hz:g}"
+            yield (
+                f"{few}: the machine may be busy, the room too dark for short exposures, or the camera's cable too slow"
+            )
     if 0 < skeletons.rate_hz < SLOW * skeletons.stamped_hz:
         yield (
-            f"{skeletons.rate_hz:.0f} skeletons come in a second, and by their stamps there are "
-            f"{skeletons.stamped_hz:.0f}: the source is late, or puts them too slowly"
+            f"{skeletons.rate_hz:.0f} skeletons arrive per second, but by their stamps there are "
+            f"{skeletons.stamped_hz:.0f}: the source is late or publishes too slowly"
         )
 
 
@@ -77,15 +79,17 @@ def _stopped(statuses: Statuses) -> Iterator[str]:
     gateway = statuses.get(SENSOR, ())
     for topic in (keys.SKELETON, keys.COLOR) if gateway and gateway[-1].state.startswith("running") else ():
         if handled_hz(gateway, topic) == 0 and _handled(gateway[-1], topic):
-            yield f"{SENSOR} puts no {topic.leaf} any more, {_handled(gateway[-1], topic)} so far: start it again"
+            yield (
+                f"{SENSOR} stopped publishing {topic.leaf} after {_handled(gateway[-1], topic)} messages: restart it"
+            )
 
 
 def _frozen(streams: Mapping[Topic, Watched]) -> Iterator[str]:
     for topic, words in ((keys.SKELETON, "skeletons"), (keys.COLOR, "images")):
         if streams[topic].stands_still:
-            yield f"stamps of {words} stand still, so all but the first are refused: start the sensor again"
+            yield f"the stamps of {words} do not rise, so all but the first are refused: restart the sensor"
         elif streams[topic].repeats:
-            yield f"{words} repeat, bit for bit: the camera is frozen, so unplug it and plug it in again"
+            yield f"{words} repeat bit for bit, so the camera is frozen: unplug it and plug it in again"
 
 
 def _readers(statuses: Statuses, put_hz: Mapping[Topic, float]) -> Iterator[str]:
@@ -96,6 +100,9 @@ def _readers(statuses: Statuses, put_hz: Mapping[Topic, float]) -> Iterator[str]
                 continue
             of_all = f"of the {all_hz:.0f} messages a second on {topic.leaf.removesuffix('/{}')}"
             if got_hz == 0:
-                yield f"{service} gets none {of_all}: may its role read them, is the link between routers up?"
+                yield (
+                    f"{service} receives none {of_all}: check the permissions of its role and the link between the "
+                    "routers"
+                )
             elif got_hz < SLOW * all_hz and topic is not keys.COLOR:
-                yield f"{service} gets {got_hz:.0f} {of_all}: is its machine or the network between too slow?"
+                yield f"{service} receives only {got_hz:.0f} {of_all}: its machine or the network may be too slow"

@@ -100,15 +100,15 @@ class Supervisor:
         """Schedule the restart of a program that has ended, and return a line that says so."""
         if child.process.returncode == UNUSABLE:  # a restart would end the same way
             where = f"in {self._log.name}" if self._log else "above"
-            raise UnusableError(f"{child.program.name} cannot run as it is set: it says why {where}")
+            raise UnusableError(f"{child.program.name} cannot run with its settings: see the reason {where}")
         if child.process.returncode == TAKEN:
             child.due_s = now_s + ELSEWHERE_S
-            return f"{child.program.name} runs elsewhere, and here again once it has ended there"
+            return f"{child.program.name} already runs elsewhere: it starts here when that instance ends"
         steady = now_s - child.started_s > STEADY_S
         child.restarts = 0 if steady else child.restarts
         delay_s = RESTART_S[min(child.restarts, len(RESTART_S) - 1)]
         child.due_s = now_s + delay_s
-        return f"{child.program.name} ended with code {child.process.returncode}: restart in {delay_s:g} s"
+        return f"{child.program.name} ended with code {child.process.returncode} and restarts in {delay_s:g} s"
 
     def process_id(self, program: Program) -> int:
         """Return the id of the process that runs a program, or of the last one that did.

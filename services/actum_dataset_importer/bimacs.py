@@ -94,7 +94,7 @@ def take_files(folder: Path) -> list[Path]:
     """
     files = [file for file in folder.glob(PATTERN) if NAME.fullmatch(file.stem)]
     if not files:
-        raise DatasetError(f"{folder}: no {PATTERN} there; name the folder that holds the takes")
+        raise DatasetError(f"{folder} holds no {PATTERN}: name the folder that holds the takes")
     return sorted(files, key=lambda file: tuple(map(int, re.findall(r"\d+", file.stem))))
 
 
@@ -106,7 +106,7 @@ def read_take(path: Path, sensor: str) -> HandsTake:
     """
     match = NAME.fullmatch(path.stem)
     if match is None:
-        raise DatasetError(f"{path}: not named like subject0_take0.csv; keep the set's own file names")
+        raise DatasetError(f"{path} is not named like subject0_take0.csv: keep the data set's own file names")
     labels = _labels(path.parent, match["person"], match["take"])
     try:
         with path.open(newline="") as file:
@@ -119,7 +119,9 @@ def read_take(path: Path, sensor: str) -> HandsTake:
         marks = [m for i, label in enumerate(kept) for m in _marks(label, _id(path, label, i), stamps_ns, sensor)]
         truths = [t for i, label in enumerate(kept) for t in _truths(label, _id(path, label, i), stamps_ns, sensor)]
     except (KeyError, TypeError, ValueError, IndexError, InvalidOperation) as error:
-        raise DatasetError(f"{path}: not a table of stamps and poses of its labels' length ({error!r})") from None
+        raise DatasetError(
+            f"{path} is not a table of stamps and poses as long as its labels ({error!r}): download it again"
+        ) from None
     skipped = [f"{path.stem} {label.hand} {label.action}" for label in labels if label.first >= label.last]
     return HandsTake(path.stem, match["person"], postures, objects, marks, truths, skipped)
 
@@ -206,12 +208,16 @@ def _quaternion(row: Row, body: str) -> Point:
 def _labels(folder: Path, person: str, take: str) -> list[Label]:
     files = sorted(folder.glob(f"labels_subject_{person}/*/take_{take}.json"))
     if not files:
-        raise DatasetError(f"{folder}: no labels_subject_{person}/*/take_{take}.json; put the labels beside the takes")
+        raise DatasetError(
+            f"{folder} holds no labels_subject_{person}/*/take_{take}.json: put the labels next to the takes"
+        )
     try:
         content = json.loads(files[0].read_text())
         return [label for hand in HANDS for label in _hand_labels(hand, content[f"{hand}_hand"])]
     except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise DatasetError(f"{files[0]}: not frames and labels in turns for each hand ({error!r})") from None
+        raise DatasetError(
+            f"{files[0]} does not alternate frames and labels for each hand ({error!r}): download it again"
+        ) from None
 
 
 def _hand_labels(hand: Hand, content: list[Any]) -> list[Label]:

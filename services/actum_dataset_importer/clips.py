@@ -44,12 +44,12 @@ class Naming:
         try:
             compiled = re.compile(pattern)
         except re.error as error:
-            raise DatasetError(f"--pattern {pattern!r} is no regular expression: {error}") from None
+            raise DatasetError(f"--pattern {pattern!r} is not a regular expression: {error}") from None
         if "action" not in compiled.groupindex:
-            raise DatasetError(f"--pattern {pattern!r} has no group (?P<action>…)")
+            raise DatasetError(f"--pattern {pattern!r} has no group for the action: add (?P<action>…)")
         pairs = [pair.partition("=") for pair in names.split(",") if pair]
         if not all(key.strip() and name.strip() for key, _, name in pairs):
-            raise DatasetError(f"--names {names!r} is not like 1=wave,2=drink")
+            raise DatasetError(f"--names {names!r} is not a list of names: write it like 1=wave,2=drink")
         return cls(compiled, {key.strip(): name.strip() for key, _, name in pairs})
 
     def read(self, path: Path) -> tuple[str, str]:
@@ -62,8 +62,8 @@ class Naming:
         action = "" if match is None else (match["action"] or "").strip()
         if match is None or not action:
             raise DatasetError(
-                f"{path.name}: the name does not tell the action; it is to match {self.pattern.pattern!r}, "
-                "or give --pattern (a regular expression with the groups action and person)"
+                f"{path.name} is not imported, because its name does not give the action: it has to match "
+                f"{self.pattern.pattern!r}; rename it, or give another --pattern with the groups action and person"
             )
         person = match["person"] if "person" in self.pattern.groupindex else ""
         return self.actions.get(action, action), (person or "").strip()
@@ -77,7 +77,7 @@ def clip_files(folder: Path) -> list[Path]:
     """
     files = sorted(file for file in folder.rglob("*") if file.suffix.lower() in SUFFIXES)
     if not files:
-        raise DatasetError(f"{folder}: no video there ({', '.join(sorted(SUFFIXES))})")
+        raise DatasetError(f"{folder} holds no video ({', '.join(sorted(SUFFIXES))})")
     return files
 
 
@@ -96,7 +96,7 @@ def check_names(files: Sequence[Path]) -> None:
     for file in files:
         other = taken.setdefault(recording_name(file).casefold(), file)
         if other is not file:
-            raise DatasetError(f"{other} and {file} would both be {recording_name(file)}.mcap: rename one of them")
+            raise DatasetError(f"{other} and {file} would both become {recording_name(file)}.mcap: rename one of them")
 
 
 def read_clip(

@@ -26,9 +26,9 @@ Progress = Callable[[int, int], None]
 """Called after each file with how many are done and how many there are."""
 
 ODDITIES = {
-    utkinect.DUPLICATE_ROW: "duplicate rows dropped",
-    utkinect.OVERLAPPING_PAIR: "pairs of segments that overlap, kept",
-    OTHER_SIZE: "frames of another size than was calibrated: nobody is looked for in them",
+    utkinect.DUPLICATE_ROW: "duplicate rows removed",
+    utkinect.OVERLAPPING_PAIR: "pairs of overlapping segments, both kept",
+    OTHER_SIZE: "frames of another size than the calibration's: no people are detected in them",
 }
 """The report's words for each kind of `Take.oddities`."""
 
@@ -76,10 +76,12 @@ class ImportReport:
         lines = [
             f"{self.files} recordings, {self.frames} frames, {self.segments} labelled segments",
             f"{_listed(self.actions, 'actions')}; {_listed(self.persons, 'persons')}",
-            f"{self.invalid_frames} frames without a skeleton, kept as such",
+            f"{self.invalid_frames} frames without a skeleton, kept without people",
         ]
         if self.excluded:
-            lines.append(f"{self.excluded} recordings marked excluded: training skips them unless told otherwise")
+            lines.append(
+                f"{self.excluded} recordings marked as excluded: training skips them unless it runs with --all"
+            )
         if self.skipped:
             lines.append(f"{len(self.skipped)} segments without bounds skipped: {', '.join(self.skipped)}")
         if self.outside:

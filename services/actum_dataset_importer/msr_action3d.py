@@ -89,7 +89,7 @@ def read_sequence(path: Path, sensor: str) -> Take:
     """
     match = NAME.fullmatch(path.name)
     if match is None or not 1 <= int(match["action"]) <= len(CLASSES):
-        raise DatasetError(f"{path}: not named like a01_s01_e01_skeleton3D.txt; keep the set's own file names")
+        raise DatasetError(f"{path} is not named like a01_s01_e01_skeleton3D.txt: keep the data set's own file names")
     name = match[1]
     frames = [_skeleton(i, rows, sensor, name) for i, rows in enumerate(_frames(path))]
     metadata = {"action": f"a{match['action']}", "execution": str(int(match["execution"]))}
@@ -104,7 +104,10 @@ def _frames(path: Path) -> NDArray[np.float64]:
     """Read the frames (frames, 20, 4): x, y, z (m), confidence."""
     rows = read_rows(path, columns=4)
     if len(rows) % SOURCE_JOINTS:
-        raise DatasetError(f"{path}: {len(rows)} rows are no whole frames of {SOURCE_JOINTS} joints; fetch it anew")
+        raise DatasetError(
+            f"{path} has {len(rows)} rows, which is not a whole number of frames of {SOURCE_JOINTS} joints: "
+            "download it again"
+        )
     return rows.reshape(-1, SOURCE_JOINTS, 4)
 
 

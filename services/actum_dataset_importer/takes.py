@@ -50,7 +50,7 @@ def files_of(path: Path, pattern: str) -> list[Path]:
     """
     files = [path] if path.is_file() else sorted(path.glob(pattern))
     if not files:
-        raise DatasetError(f"{path}: no {pattern} there; name such a file or the folder that holds them")
+        raise DatasetError(f"{path} holds no {pattern}: name such a file or the folder that holds them")
     return files
 
 
@@ -65,9 +65,9 @@ def read_rows(path: Path, columns: int) -> NDArray[np.float64]:
             warnings.filterwarnings("ignore", "loadtxt: input contained no data")
             rows = np.loadtxt(path, ndmin=2)
     except (OSError, ValueError) as error:
-        raise DatasetError(f"{path}: not rows of {columns} numbers ({error}); fetch it anew") from None
+        raise DatasetError(f"{path} does not hold rows of {columns} numbers ({error}): download it again") from None
     if rows.shape[0] == 0 or rows.shape[1] != columns or not np.isfinite(rows).all():
-        raise DatasetError(f"{path}: not rows of {columns} finite numbers; fetch it anew")
+        raise DatasetError(f"{path} does not hold rows of {columns} finite numbers: download it again")
     return rows
 
 

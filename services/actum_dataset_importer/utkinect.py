@@ -57,7 +57,7 @@ def read_recording(path: Path, sensor: str, segments: list[LabelledSegment] | No
     """
     match = NAME.fullmatch(path.name)
     if match is None:
-        raise DatasetError(f"{path}: not named like joints_s01_e01.txt; keep the set's own file names")
+        raise DatasetError(f"{path} is not named like joints_s01_e01.txt: keep the data set's own file names")
     name = match[1]
     rows = _rows(path)
     is_first = np.append(True, np.diff(rows[:, 0]) != 0)
@@ -81,7 +81,7 @@ def read_labelled(path: Path, sensor: str, labels: dict[str, list[LabelledSegmen
     """
     name = path.stem.removeprefix("joints_")
     if name not in labels:
-        raise DatasetError(f"{path}: {LABELS} has no {name}; use the label file that belongs to the set")
+        raise DatasetError(f"{path}: {LABELS} has no entry {name}; use the label file that belongs to the data set")
     return read_recording(path, sensor, labels[name])
 
 
@@ -94,8 +94,8 @@ def read_labels(folder: Path) -> dict[str, list[LabelledSegment]]:
     path = folder / LABELS
     if not path.is_file():
         is_original = (folder / ORIGINAL_LABELS).is_file()
-        hint = f"; {ORIGINAL_LABELS} is there, but some of its bounds are wrong" if is_original else ""
-        raise DatasetError(f"{path}: no such file{hint}; put the corrected label file {LABELS} beside the recordings")
+        hint = f"; {ORIGINAL_LABELS} exists, but some of its bounds are wrong" if is_original else ""
+        raise DatasetError(f"{path} is missing{hint}: put the corrected label file {LABELS} next to the recordings")
     recordings: dict[str, list[LabelledSegment]] = {}
     segments: list[LabelledSegment] | None = None
     for number, line in enumerate(path.read_text().splitlines(), start=1):
@@ -105,7 +105,9 @@ def read_labels(folder: Path) -> dict[str, list[LabelledSegment]]:
         elif text:
             segment = _labelled_segment(text)
             if segment is None or segments is None:
-                raise DatasetError(f"{path}, line {number}: {text!r} is not `action: start end`; correct the line")
+                raise DatasetError(
+                    f"{path}, line {number}: {text!r} does not have the form `action: start end`; correct the line"
+                )
             segments.append(segment)
     return recordings
 
@@ -130,7 +132,7 @@ def _rows(path: Path) -> NDArray[np.float64]:
     """Read the rows (rows, 61): an image number that never falls, and twenty joints (m)."""
     rows = read_rows(path, columns=1 + 3 * SOURCE_JOINTS)
     if rows[0, 0] < 0 or (np.diff(rows[:, 0]) < 0).any():
-        raise DatasetError(f"{path}: the image numbers in the first column fall; fetch it anew")
+        raise DatasetError(f"{path}: the image numbers in the first column decrease; download it again")
     return rows
 
 

@@ -45,10 +45,10 @@ class Signed:
         """
         key = serialization.load_pem_private_key(key_pem, password=None)
         if not isinstance(key, ec.EllipticCurvePrivateKey):
-            raise ValueError("the authority's key is none on an elliptic curve")
+            raise ValueError("the authority's key is not on an elliptic curve")
         certificate = x509.load_pem_x509_certificate(certificate_pem)
         if certificate.public_key() != key.public_key():
-            raise ValueError("its key is another certificate's")
+            raise ValueError("its key belongs to another certificate")
         return cls(certificate, key)
 
 

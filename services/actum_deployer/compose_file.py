@@ -39,7 +39,7 @@ def compose_file(deployment: Deployment, host: Host) -> str:
     mounts = [mount for service in services.values() for mount in service["volumes"]]
     volumes: dict[str, Any] = {mount.partition(":")[0]: {} for mount in mounts if not mount.startswith(".")}
     content = {"name": f"actum-{host.name}", "services": services, **({"volumes": volumes} if volumes else {})}
-    about = f"# What runs on {host.name}, made by 'actum deploy init'. Settings of yours belong into {SETTINGS}.\n"
+    about = f"# Services of {host.name}, written by 'actum deploy init'. Put your own settings into {SETTINGS}.\n"
     return about + yaml.safe_dump(content, sort_keys=False, width=120)
 
 

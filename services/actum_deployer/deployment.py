@@ -28,7 +28,10 @@ from actum_deployer.roles import (
     identity,
 )
 
-ROUTERS_CANNOT = "a stolen key of a router could still deceive clients: delete authority/, init and copy all anew"
+ROUTERS_CANNOT = (
+    "a router's credentials cannot be revoked, because its stolen key could still deceive clients: delete "
+    "authority/, run 'actum deploy init' and copy all folders again"
+)
 """Why the credentials of a router cannot be revoked: clients know it by its address, not by its name."""
 FILE = "deployment.json"
 """The name of the file in the deployment's folder."""
@@ -149,7 +152,7 @@ class Deployment:
         known = {identity(role, sensor) for role, sensor in self.subjects}
         for each in identities:
             if each not in known:
-                raise SettingsError(f"revoke: {each!r} is none of {', '.join(sorted(known))}; {ROUTERS_CANNOT}")
+                raise SettingsError(f"revoke: {each!r} is not one of {', '.join(sorted(known))}; {ROUTERS_CANNOT}")
         again = {each: self.revoked.get(each, 0) + 1 for each in identities}
         return replace(self, revoked={**self.revoked, **again})
 
@@ -168,12 +171,12 @@ class Deployment:
             read = TypeAdapter(cls).validate_json((folder / FILE).read_bytes())
             _check(read.hosts)
         except FileNotFoundError:
-            raise SettingsError(f"{folder} holds no {FILE}: make it with 'actum deploy init'") from None
+            raise SettingsError(f"{folder} holds no {FILE}: create the deployment with 'actum deploy init'") from None
         except (OSError, ValidationError, SettingsError, InvalidKeyError) as error:
             told = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
             raise SettingsError(
-                f"{folder / FILE} cannot be used ({told}): mend it, for it says what was revoked; "
-                "or delete it and authority/, init and copy all anew"
+                f"{folder / FILE} cannot be used ({told}): correct it, because it lists the revoked credentials; "
+                "or delete it and authority/, run 'actum deploy init' and copy all folders again"
             ) from None
         return read
 
@@ -194,12 +197,15 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
     if not cameras or not computing or len({host.name for host in hosts}) < len(hosts):
         raise SettingsError(f"hosts: {text!r}: name at least one camera… and one compute…, each once")
     if len(named) != len(cameras) or len(set(named)) < len(named):
-        raise SettingsError(f"sensors: {sensors!r}: name as many as there are cameras ({len(cameras)}), each once")
+        raise SettingsError(f"sensors: {sensors!r}: name as many sensors as cameras ({len(cameras)}), each once")
     places = [_normal(host.endpoint) for host in hosts]
     if len({*places}) < len(places):
-        raise SettingsError(f"hosts: {text!r}: two have the same address and port")
+        raise SettingsError(f"hosts: {text!r}: two hosts have the same address and port")
     if len(computing) > len(named):
-        raise SettingsError(f"hosts: {len(computing)} to compute are more than there are cameras ({len(named)})")
+        raise SettingsError(
+            f"hosts: {len(computing)} hosts to compute are more than the cameras ({len(named)}): name at most one "
+            "per camera"
+        )
     its: dict[str, tuple[str, ...]] = {host.name: (chunk(sensor),) for host, sensor in zip(cameras, named, strict=True)}
     its |= {host.name: tuple(named[i :: len(computing)]) for i, host in enumerate(computing)}
     return tuple(replace(host, sensors=its[host.name]) for host in hosts)
@@ -208,7 +214,7 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
 def _check(hosts: Sequence[Host]) -> None:
     """Check what a file says of hosts as if it had been said to `actum deploy init`."""
     if not hosts:
-        raise SettingsError("no hosts")
+        raise SettingsError("no hosts are named")
     for host in hosts:
         _host(f"{host.name}={host.endpoint}")
         for sensor in host.sensors:
@@ -222,13 +228,13 @@ def _host(text: str) -> Host:
         address, own_port = place, str(DEFAULT_PORT)
     chunk(name)
     if not any(name.startswith(kind) for kind in KINDS):
-        raise SettingsError(f"hosts: {text!r}: names begin with {' or '.join(KINDS)}, as camera=192.168.1.5")
+        raise SettingsError(f"hosts: {text!r}: names begin with {' or '.join(KINDS)}, such as camera=192.168.1.5")
     if not address or not own_port.isdecimal() or not 0 < int(own_port) <= HIGHEST_PORT:
         raise SettingsError(f"hosts: {text!r}: use NAME=ADDRESS or NAME=ADDRESS:PORT")
     address = address.removeprefix("[").removesuffix("]")
     if not _can_be_reached(address):
         raise SettingsError(
-            f"hosts: {text!r}: a certificate cannot name {address!r}: use a host's name or its IP address"
+            f"hosts: {text!r}: {address!r} cannot stand in a certificate: use a host name or an IP address"
         )
     return Host(name, address, int(own_port))
 

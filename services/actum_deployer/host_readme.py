@@ -70,10 +70,10 @@ deploy rotate --revoke NAME` copy `router.json5` as well, which says what is not
 container then needs `docker compose restart router`.
 
 """
-OPEN = """\
-**Nobody is asked who they are**: whoever reaches this router is trusted with everything. Use a network you trust.
-
-"""
+OPEN = (
+    "**TLS, passwords and access control are disabled**: every program that reaches this router may read and "
+    "write everything. Use a trusted network.\n\n"
+)
 NO_IMAGE = """
 No image has the bridge to ROS 2 yet: run it as below, beside the containers.
 """

@@ -67,14 +67,14 @@ PREPROCESSOR = Role(
 )
 CLASSIFIER = Role(
     "classifier",
-    "the classifier, which also marks what it finds",
+    "the classifier, which also publishes the segments that it finds",
     services=("som_classifier",),
     puts=(keys.SEGMENT, keys.ACTION),
     reads=(keys.POSTURE, keys.SEGMENT),
 )
 TRACKER = Role(
     "tracker",
-    "the tracker of markers",
+    "the marker tracker",
     services=("marker_tracker",),
     puts=(keys.OBJECTS,),
     reads=(keys.COLOR,),
@@ -88,14 +88,14 @@ FUSION = Role(
 )
 TRAINER = Role(
     "trainer",
-    "the service that teaches",
+    "the trainer",
     services=("model_trainer",),
     puts=(keys.TRAINING,),
     reads=(keys.SKELETON, keys.SEGMENT),
 )
 PAGE = Role(
     "page",
-    "the web page, which is a switch to those whom it lets in",
+    "the web page, which publishes marks for its users",
     services=("web_dashboard",),
     puts=(keys.SEGMENT,),
     reads=(*WITHOUT_IMAGES, keys.COLOR),
@@ -104,7 +104,7 @@ PAGE = Role(
 )
 BRIDGE = Role(
     "ros2",
-    "the bridge to ROS 2, which is a switch to its nodes",
+    "the bridge to ROS 2, which publishes marks for ROS 2 nodes",
     services=("ros2_bridge",),
     puts=(keys.SEGMENT,),
     reads=(keys.SKELETON, keys.OBJECTS, keys.EVENT),
@@ -113,13 +113,13 @@ BRIDGE = Role(
 )
 ROBOT = Role(
     "robot",
-    "ROS 2 nodes, or their router: they read what the bridge publishes, and mark",
+    "ROS 2 nodes or their router, which read the bridge's topics and publish marks",
     ros_puts=ROS_MARKS,
     ros_reads=ROS_TOPICS,
 )
 SWITCH = Role(
     "switch",
-    "who marks actions and asks services to do something",
+    "a person or program that publishes marks and sends commands to services",
     puts=(keys.SEGMENT,),
     reads=WITHOUT_IMAGES,
     inspects=True,
@@ -127,13 +127,13 @@ SWITCH = Role(
 )
 VIEWER = Role(
     "viewer",
-    "who watches, and sees no images",
+    "a person or program that reads everything but images",
     reads=WITHOUT_IMAGES,
     inspects=True,
 )
 RECORDER = Role(
     "recorder",
-    "who watches and may see and record images",
+    "a person or program that reads everything, including images, and records",
     reads=(*WITHOUT_IMAGES, *IMAGES),
     inspects=True,
 )

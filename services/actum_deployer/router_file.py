@@ -23,7 +23,10 @@ RETRY = {"period_init_ms": 200, "period_max_ms": 1000, "period_increase_factor":
 def router_file(deployment: Deployment, host: Host) -> str:
     """Return the text of the file."""
     values = router_configuration(deployment, host)
-    about = f"// The router of {host.name}, made by 'actum deploy init': change that, not this.\n"
+    about = (
+        f"// The router of {host.name}, written by 'actum deploy init': change the arguments of that command, not "
+        "this file.\n"
+    )
     return about + json.dumps(_nested(values), indent=1) + "\n"
 
 

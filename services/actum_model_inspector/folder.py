@@ -32,7 +32,9 @@ def clear(folder: Path, wanted: Iterable[str]) -> None:
     ours = set(_unchanged(folder))
     for file in (folder / name for name in wanted):
         if os.path.lexists(file) and file not in ours:
-            raise FileExistsError(f"{file} is not as an earlier run wrote it: move it, or name another folder")
+            raise FileExistsError(
+                f"{file} was changed since an earlier run wrote it: move it away, or name another folder"
+            )
     for file in ours:
         file.unlink(missing_ok=True)
     (folder / LIST).unlink(missing_ok=True)

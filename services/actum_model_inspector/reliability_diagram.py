@@ -33,7 +33,10 @@ def reliability_picture(segments: Sequence[AnsweredSegment]) -> Figure:
     """
     known = labelled_answers(segments)
     if len(known) < MIN_ANSWERS:
-        raise ValueError(f"{len(known)} labelled and answered segments are too few: at least {MIN_ANSWERS} are needed")
+        raise ValueError(
+            f"the reliability diagram needs at least {MIN_ANSWERS} labelled and answered segments, but there are "
+            f"{len(known)}"
+        )
     filled_bins = bins(known)
     figure = figure_with_layout(
         WIDTH_IN, 7.0, f"Confidence is {calibration_error(filled_bins):.2f} off on average ({len(known)} answers)"

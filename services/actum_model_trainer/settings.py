@@ -15,10 +15,10 @@ class Settings(ServiceSettings):
 
     trainer_data: Path = Field(
         default_factory=lambda: data_folder() / "teaching",
-        description="the folder of sets, models and jobs of those who teach",
+        description="the folder in which the trainer keeps sets, models and jobs",
     )
     model: Path | None = Field(
-        None, description="the model in use: the file that the classifier watches; default: model.npz in that folder"
+        None, description="the model file that the classifier watches; default: model.npz in the trainer's folder"
     )
     original_model: Path | None = Field(
         None, description="a model file that is only read: it is copied to the model in use whenever it changes"

@@ -34,12 +34,15 @@ def warnings_of(
 def _one_person(people: set[str]) -> Iterator[str]:
     if people == {""}:
         yield (
-            "No recording says who it shows: how others differ cannot be known. "
-            "Record at least two people, each with --person and a name."
+            "No recording names a person, so the differences between people are unknown. Record at least two "
+            "people, each with --person and a name."
         )
     elif len(people) == 1:
         who = min(people)
-        yield f"All examples are of one person, {who}: how others differ cannot be known. Record a second person."
+        yield (
+            f"All examples are of one person, {who}, so the differences between people are unknown. Record a "
+            "second person."
+        )
 
 
 def few(counts: Mapping[str, int]) -> Iterator[str]:
@@ -82,17 +85,17 @@ def _confused_pair(a: str, b: str, times: Mapping[tuple[str, str], int]) -> str:
     )
     more = listed(done for done, _ in mistaken)
     return (
-        f"{a} and {b} are not told apart: of examples left out, {confusions}. "
-        f"Record {MIN_EXAMPLES} more of {more}, also by people who are not in yet; "
-        "if that does not help, do them more differently or give them one name."
+        f"{a} and {b} are confused: of examples left out, {confusions}. Record {MIN_EXAMPLES} more of {more}, also "
+        "by new people. If that does not help, perform the actions more differently, or give both the same "
+        "label."
     )
 
 
 def _no_background(counts: Mapping[str, int]) -> Iterator[str]:
     if counts and not any(label in counts for label in BACKGROUND):
         yield (
-            f"No segment is labelled {' or '.join(BACKGROUND)}: what is none of the actions is a guess. "
-            f"Record people who do none of them, with --label {BACKGROUND[0]}."
+            f"No segment is labelled {' or '.join(BACKGROUND)}, so the model has to guess what is none of the "
+            f"actions. Record people who do none of the actions, with --label {BACKGROUND[0]}."
         )
 
 

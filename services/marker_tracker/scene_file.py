@@ -90,7 +90,7 @@ def catalogue(settings: Settings) -> Catalogue:
     if settings.scene is None:
         return _from_settings(settings)
     if settings.objects:
-        raise SceneFileError("scene and objects both say what carries which marker: set only one of them")
+        raise SceneFileError("scene and objects both define which object carries which marker: set only one of them")
     return load(settings.scene)
 
 
@@ -106,14 +106,14 @@ def load(path: Path) -> Catalogue:
     except (OSError, UnicodeDecodeError) as error:
         raise SceneFileError(f"{path} cannot be read as text: {error}") from None
     except YAML_ERRORS as error:
-        raise SceneFileError(f"{path} is no YAML: {' '.join(str(error).split())}") from None
+        raise SceneFileError(f"{path} is not YAML: {' '.join(str(error).split())}") from None
     if root is None or not isinstance(content, dict):
-        raise SceneFileError(f"{path} holds no scene: it needs `objects:` with an id and a name for each")
+        raise SceneFileError(f"{path} is not a scene file: it needs `objects:` with an id and a name for each object")
     try:
         _refuse_repeated_keys(path, root, set())
         scene = SceneFile.model_validate(content)
     except RecursionError:
-        raise SceneFileError(f"{path} contains itself: write out what its `*` stand for") from None
+        raise SceneFileError(f"{path} refers to itself: replace each `*` by its content") from None
     except ValidationError as error:
         raise SceneFileError("; ".join(_problem(path, root, each) for each in error.errors())) from None
     return _from_scene(path, root, scene)
@@ -127,7 +127,7 @@ def _from_settings(settings: Settings) -> Catalogue:
     ids = len(family(name).codes)
     for number in settings.objects:
         if not 0 <= number < ids:
-            raise UnknownMarkerError(f"objects: {name} has no marker {number}: use 0 to {ids - 1}")
+            raise UnknownMarkerError(f"objects: {name} has no marker {number}: use ids from 0 to {ids - 1}")
     markers = {
         (name, number): MountedMarker(number, spec.size_m or settings.marker_size_m)
         for number, spec in settings.objects.items()
@@ -144,8 +144,8 @@ def _from_scene(path: Path, root: yaml.Node, scene: SceneFile) -> Catalogue:
                 path,
                 root,
                 location,
-                f"marker {key[1]} of {key[0]} is already on object {owner.object_id}: "
-                f"give object {mounted.object_id} another marker",
+                f"marker {key[1]} of {key[0]} is already on object {owner.object_id}: give object "
+                f"{mounted.object_id} another marker",
             )
         markers[key] = mounted
     families = tuple(sorted({name for name, _ in markers}))
@@ -163,11 +163,11 @@ def _mounted_markers(path: Path, root: yaml.Node, scene: SceneFile) -> Iterator[
             if name is None or size_m is None:
                 lacking = "family" if name is None else "size_m"
                 raise _refusal(
-                    path, root, location, f"`{lacking}` is given neither here nor for the whole file: add it"
+                    path, root, location, f"`{lacking}` is missing, both here and for the whole file: add it"
                 )
             ids = len(family(name).codes)
             if marker.id >= ids:
-                raise _refusal(path, root, location, f"{name} has no marker {marker.id}: use 0 to {ids - 1}")
+                raise _refusal(path, root, location, f"{name} has no marker {marker.id}: use ids from 0 to {ids - 1}")
             yield location, (name, marker.id), MountedMarker(number, size_m, marker.object_from_marker.transform())
 
 
@@ -175,7 +175,7 @@ def _refuse_shared_codes(path: Path, families: tuple[str, ...]) -> None:
     """Refuse dictionaries that hold the same markers, such as DICT_4X4_50 and DICT_4X4_100."""
     for one, other in combinations(families, 2):
         if family(one).cells == family(other).cells and family(one).codes[0, 0] == family(other).codes[0, 0]:
-            raise SceneFileError(f"{path}: {one} and {other} hold the same markers: use the larger for both")
+            raise SceneFileError(f"{path}: {one} and {other} hold the same markers: use the larger dictionary for both")
 
 
 def _refuse_repeated_keys(path: Path, node: yaml.Node, done: set[yaml.Node]) -> None:
@@ -187,7 +187,7 @@ def _refuse_repeated_keys(path: Path, node: yaml.Node, done: set[yaml.Node]) -> 
         for key, value in node.value:
             name = str(yaml.SafeLoader("").construct_object(key)) if key.tag == INTEGER else key.value
             if name in names:
-                raise SceneFileError(f"{path}, line {key.start_mark.line + 1}: {name} is given twice: remove one")
+                raise SceneFileError(f"{path}, line {key.start_mark.line + 1}: {name} occurs twice: remove one")
             names.add(name)
             _refuse_repeated_keys(path, value, done)
     elif isinstance(node, yaml.SequenceNode):
@@ -198,10 +198,10 @@ def _refuse_repeated_keys(path: Path, node: yaml.Node, done: set[yaml.Node]) -> 
 
 def _problem(path: Path, root: yaml.Node, error: Any) -> str:
     advice = {
-        "extra_forbidden": "no such field: remove it or mend its spelling",
+        "extra_forbidden": "there is no such field: remove it or correct its spelling",
         "missing": "is missing: add it",
-        "dict_type": "needs ids with what they are, as `1: {name: cup}`",
-        "model_type": "needs fields, as {name: cup} for an object and {id: 3} for a marker",
+        "dict_type": "has to map ids to objects or markers, such as `1: {name: cup}`",
+        "model_type": "has to have fields, such as {name: cup} for an object and {id: 3} for a marker",
     }
     problem = advice.get(error["type"], error["msg"].removeprefix("Value error, "))
     return str(_refusal(path, root, error["loc"], problem))

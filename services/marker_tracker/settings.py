@@ -24,17 +24,27 @@ class Settings(ServiceSettings):
     """Settings of the marker tracker, besides those of every service."""
 
     scene: Path | None = Field(
-        None, description="a YAML file of objects and their markers, instead of dictionary, marker-size-m and objects"
+        None,
+        description="a YAML scene file of objects and their markers; replaces dictionary, marker-size-m and objects",
     )
-    dictionary: str = Field("DICT_4X4_50", description="the markers' dictionary, by OpenCV's name")
-    marker_size_m: float = Field(0.08, gt=0, le=10, description="side of a marker's black square")
+    dictionary: str = Field("DICT_4X4_50", description="OpenCV's name of the marker dictionary")
+    marker_size_m: float = Field(0.08, gt=0, le=10, description="side of a marker's black square (m)")
     objects: dict[int, ObjectSpec] = Field(
         default_factory=dict,
-        description='what carries which marker, as {"3": {"name": "cup", "size_m": 0.05}}; empty: every marker counts',
+        description=(
+            'the object that carries each marker, such as {"3": {"name": "cup", "size_m": 0.05}}; empty: '
+            "each marker is an object of its own"
+        ),
     )
-    memory_s: float = Field(1.0, gt=0, le=60, description="how long a hidden object stays listed, by stamps")
+    memory_s: float = Field(
+        1.0, gt=0, le=60, description="time for which a hidden object is still published, by stamps (s)"
+    )
     calibrated_size_px: tuple[Pixels, Pixels] | None = Field(
-        None, description="width and height of the images that the camera was calibrated with, where images may differ"
+        None,
+        description=(
+            "width and height of the images that the camera was calibrated with; needed where images may have "
+            "another size (px)"
+        ),
     )
 
     @field_validator("dictionary")

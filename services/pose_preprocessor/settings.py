@@ -8,8 +8,10 @@ from actum.settings import ServiceSettings
 class Settings(ServiceSettings):
     """What the preprocessor can be told beside what every service can."""
 
-    reach_limit_m: float = Field(10.0, gt=0, le=1000, description="a joint further than this from the camera is absurd")
-    bone_limit_m: float = Field(1.5, gt=0, le=1000, description="a bone longer than this is absurd")
+    reach_limit_m: float = Field(
+        10.0, gt=0, le=1000, description="greatest accepted distance of a joint from the camera (m)"
+    )
+    bone_limit_m: float = Field(1.5, gt=0, le=1000, description="greatest accepted length of a bone (m)")
 
     @classmethod
     def defaults(cls) -> "Settings":

@@ -24,22 +24,24 @@ def _names(value: Any) -> Any:
 class Settings(ServiceSettings):
     """What the bridge can be told beside what every service can."""
 
-    ros_domain_id: int = Field(0, ge=0, le=HIGHEST_DOMAIN, description="the ROS domain: your nodes' ROS_DOMAIN_ID")
+    ros_domain_id: int = Field(0, ge=0, le=HIGHEST_DOMAIN, description="the ROS_DOMAIN_ID of your ROS 2 nodes")
     ros_namespace: str | None = Field(
         None,
-        description="stands before the names of the topics, all but /tf and /tf_static; default: actum/ and the sensor",
+        description="namespace of all topics but /tf and /tf_static; default: actum/ and the sensor's name",
     )
     ros_distro: Literal["humble", "jazzy", "kilted"] = Field(
-        "jazzy", description="the nodes' ROS 2: humble's keys have no hashes of types"
+        "jazzy", description="the ROS 2 distribution of your nodes; humble has no type hashes in its keys"
     )
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
-        frozenset(get_args(TopicName)), description="which topics there are: event,mark"
+        frozenset(get_args(TopicName)), description="the topics to publish or subscribe to, such as event,mark"
     )
     ros_frame_id: str | None = Field(
         None,
         min_length=1,
-        description="the camera's optical frame in your robot's tree of frames; default: one named after the sensor,"
-        " such as kinect0_optical_frame, and /tf_static says how that lies in kinect0_link",
+        description=(
+            "the camera's optical frame in your robot's tf tree; default: SENSOR_optical_frame, such as "
+            "kinect0_optical_frame, with a transform from kinect0_link on /tf_static"
+        ),
     )
 
     @field_validator("ros_namespace")
@@ -51,8 +53,8 @@ class Settings(ServiceSettings):
     def _has_a_ros_name(self) -> "Settings":
         if self.namespace and not ROS_NAME.fullmatch(self.namespace):
             raise ValueError(
-                f"{self.namespace!r} cannot be a ROS namespace: give --ros-namespace letters, digits and '_', in parts"
-                " that begin with no digit, as lab/kinect0"
+                f"{self.namespace!r} is not a ROS namespace: give --ros-namespace parts of letters, digits and '_' "
+                "that do not begin with a digit, such as lab/kinect0"
             )
         return self
 

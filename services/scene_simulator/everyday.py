@@ -50,7 +50,9 @@ class Everyday:
     def __post_init__(self) -> None:
         unknown = [kind for kind in self.kinds if kind not in ALL]
         if unknown or not self.kinds:
-            raise ValueError(f"no everyday doings {', '.join(unknown) or 'at all'}: use some of {', '.join(ALL)}")
+            raise ValueError(
+                f"{', '.join(unknown) or 'nothing'} is not an everyday activity: use some of {', '.join(ALL)}"
+            )
 
 
 def chosen(choice: Choice, minutes: float, pauses: Pauses = "long") -> Everyday | None:

@@ -26,11 +26,11 @@ class Task:
 
     def __post_init__(self) -> None:
         if self.action not in ACTIONS:
-            raise ValueError(f"no action {self.action!r}: use one of {', '.join(ACTIONS)}")
+            raise ValueError(f"{self.action!r} is not an action: use one of {', '.join(ACTIONS)}")
         if self.is_pantomime and self.action == "point":
-            raise ValueError("pointing has no pantomime: it touches no object")
+            raise ValueError("pointing cannot be a pantomime, because it touches no object: choose another action")
         if self.object_id not in (*object_ids(), NO_OBJECT):
-            raise ValueError(f"no object {self.object_id}: use one of {object_ids()}")
+            raise ValueError(f"{self.object_id} is not the id of an object: use one of {object_ids()}")
 
     @property
     def is_pantomime(self) -> bool:

@@ -16,14 +16,23 @@ def _number(text: object) -> object:
 class Settings(ServiceSettings):
     """The simulated scene's settings, beside those of every service."""
 
-    actor: int = Field(0, ge=0, description="who acts")
-    seed: int = Field(1, ge=0, description="which repetitions")
-    repetitions: int = Field(0, ge=0, description="how often each action is done; 0 goes on for ever")
-    image_hz: Annotated[Literal[0, 5, 10, 15, 30], BeforeValidator(_number)] = Field(
-        15, description="colour images a second; 0 for none"
+    actor: int = Field(
+        0, ge=0, description="number of the simulated person, who has a height, a tempo and a handedness"
     )
-    everyday: Choice = Field("none", description="what people do between actions; only: nothing else")
-    minutes: float = Field(1.0, ge=0, description="least length of a scene with everyday doings, which fill it up")
-    pauses: Pauses = Field("long", description="between actions up to three everyday doings and rests, or at most one")
-    driven: bool = Field(False, description="the person stands still until asked to perform, see the command 'perform'")
-    actors: int = Field(1, ge=1, le=MOST_PEOPLE, description="how many act side by side; several have no images")
+    seed: int = Field(1, ge=0, description="seed of the random variation between repetitions")
+    repetitions: int = Field(0, ge=0, description="repetitions of each action; 0 repeats without end")
+    image_hz: Annotated[Literal[0, 5, 10, 15, 30], BeforeValidator(_number)] = Field(
+        15, description="colour images per second; 0 publishes none"
+    )
+    everyday: Choice = Field("none", description="everyday activities between the actions; only: no actions at all")
+    minutes: float = Field(
+        1.0, ge=0, description="least length of a scene with everyday activities, which fill the remaining time (min)"
+    )
+    pauses: Pauses = Field(
+        "long",
+        description="pauses between actions; long: up to three everyday activities and rests; short: at most one",
+    )
+    driven: bool = Field(False, description="stand still until the command 'perform' asks for an action")
+    actors: int = Field(
+        1, ge=1, le=MOST_PEOPLE, description="people who act side by side; more than one publishes no images"
+    )

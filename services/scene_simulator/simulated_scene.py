@@ -95,7 +95,7 @@ class Scene:
         place_m: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         if not programme and everyday is None:
-            raise ValueError("the programme is empty: give at least one task, or everyday doings")
+            raise ValueError("the programme is empty: give at least one task, or everyday activities")
         self.programme: Sequence[Task] = tuple(programme)
         self.conditions = conditions
         self.parameters = conditions.arranged(parameters or load_parameters()).moved(*place_m)

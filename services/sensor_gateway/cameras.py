@@ -42,9 +42,9 @@ def optics_of(settings: Settings) -> Optics:
     calibration = None if path is None else Calibration.load(path)
     if calibration is not None and calibration.skeleton_from_image not in (None, SAME_CAMERA):
         raise CalibrationError(
-            f"{path}: it has a skeleton_from_image, so it is for a camera beside the one that sees people, and this "
-            "camera sees the people itself: use its own file of 'actum calibrate intrinsics'; the other is --source "
-            "marker-camera"
+            f"{path} is the calibration of a second camera, because it has a skeleton_from_image; for a camera "
+            "that sees the people, use its own file of 'actum calibrate intrinsics', or start this one with "
+            "--source marker-camera"
         )
     return Optics(settings.field_of_view_deg, calibration, settings.person_height_m, settings.mirrored)
 
@@ -94,8 +94,8 @@ def marker_camera_of(settings: Settings, start_ns: int) -> MarkerCamera:
     calibration = None if settings.calibration is None else Calibration.load(settings.calibration)
     if calibration is None or calibration.skeleton_from_image is None:
         raise CalibrationError(
-            "a camera that sees markers only needs --calibration (ACTUM_CALIBRATION), a file of "
-            "'actum calibrate extrinsics': where it is from the camera that sees the people"
+            "the source marker-camera needs --calibration (ACTUM_CALIBRATION), a file of 'actum calibrate "
+            "extrinsics', which holds the transform to the camera that sees the people"
         )
     return MarkerCamera(
         lambda: nullcontext(Nobody()),
@@ -157,7 +157,9 @@ def _depth_source(settings: Settings, session_id: str, live: Callable[[], Captur
     path = settings.path
     optics = _depth_optics(settings)
     if path is not None and not path.is_file():
-        raise DepthSourceError(f"{path}: no such recording; leave --path (ACTUM_PATH) out to use a camera")
+        raise DepthSourceError(
+            f"there is no recording {path}: correct --path (ACTUM_PATH), or leave it out to use a camera"
+        )
     return CameraSource(
         lambda: estimator_of(settings),
         optics,

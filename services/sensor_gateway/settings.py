@@ -26,37 +26,48 @@ def _text(number: object) -> object:
 class Settings(ServiceSettings):
     """The gateway's settings, beside those of every service."""
 
-    source: SourceName | None = Field(None, description="where the frames come from")
+    source: SourceName | None = Field(None, description="the source of the frames")
     path: Path | None = Field(
-        None, description="the recording: a file, or a folder played in order; a depth camera's recording"
+        None, description="the recording to play: a file, or a folder whose files are played in order"
     )
-    loop: bool = Field(False, description="files: play them again and again, a second between two rounds")
+    loop: bool = Field(False, description="play files again and again, with a pause of a second between two rounds")
     calibration: Path | None = Field(
-        None, description="a file of `actum calibrate`: where given, its camera is put with each colour image"
+        None, description="a calibration file of `actum calibrate`, published with each colour image"
     )
     up_in_camera: Direction | None = Field(
-        None, description="against gravity in the camera's frame, where it is tilted; see calibrate up"
+        None, description="the upward direction in the frame of a tilted camera, as `actum calibrate up` prints it"
     )
     camera: Annotated[str, BeforeValidator(_text)] = Field(
-        "0", description="camera: a device's number or path, a URL, or a video file"
+        "0", description="the camera: a device number or path, a URL, or a video file; for the source camera"
     )
     camera_size: str | None = Field(
         None,
         pattern=r"^\d{2,5}x\d{2,5}$",
-        description="any camera: the image size to ask a device for, such as 1280x720",
+        description="image size to request from the camera, such as 1280x720 (px)",
     )
     field_of_view_deg: float = Field(
         60.0,
         gt=5,
         lt=170,
-        description="camera, openni2: how much it sees along the picture's longer side, where it is not calibrated",
+        description=(
+            "angle of view along the longer side of an image, for a camera without calibration; for the sources "
+            "camera and openni2 (deg)"
+        ),
     )
-    mirrored: bool = Field(False, description="camera: its images are mirrored, and are to be turned back")
+    mirrored: bool = Field(
+        False, description="turn back images that the camera delivers mirrored; for the source camera"
+    )
     pose_model: Path = Field(
-        default_factory=default_pose_model, description="any camera: the pose model that `actum models fetch` gets"
+        default_factory=default_pose_model,
+        description="the pose model file that `actum models fetch` downloads; for all cameras",
     )
     person_height_m: float | None = Field(
-        None, gt=0.5, lt=2.5, description="any camera: how tall the person is; where given, distances rest on it"
+        None,
+        gt=0.5,
+        lt=2.5,
+        description="height of the person, from which distances are then estimated; for all cameras (m)",
     )
-    images: bool = Field(True, description="put images; --no-images where a marker-camera beside this one does")
-    people: int = Field(2, ge=1, le=4, description="any camera: how many people are looked for")
+    images: bool = Field(
+        True, description="publish images; use --no-images where a marker-camera of the same sensor publishes them"
+    )
+    people: int = Field(2, ge=1, le=4, description="greatest number of people to find in an image; for all cameras")

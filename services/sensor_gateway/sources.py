@@ -33,7 +33,9 @@ def source_of(settings: Settings, start_ns: int) -> Source:
         DepthSourceError, RealSenseError, OpenNiError: a depth camera's library or recording is missing.
     """
     if settings.source is None:
-        raise SourceError("name a --source (ACTUM_SOURCE); the simulated scene is another service, scene_simulator")
+        raise SourceError(
+            "no source is named: set --source (ACTUM_SOURCE); for the simulated scene start the service scene_simulator"
+        )
     if settings.source == "recording":
         source = _recording(settings, start_ns)
     else:
@@ -47,7 +49,7 @@ def source_of(settings: Settings, start_ns: int) -> Source:
 def _recording(settings: Settings, start_ns: int) -> Source:
     """Build the source of recordings; cameras calibrate their images themselves."""
     if settings.path is None:
-        raise SourceError("source recording needs --path (ACTUM_PATH): the file or folder to play")
+        raise SourceError("the source recording needs --path (ACTUM_PATH), the file or folder to play")
     played = RecordingSource(settings.path, settings.sensor)
     source: Source = MappedSource(played, with_session_of(f"{start_ns:x}"))
     if settings.loop:

@@ -20,7 +20,7 @@ class ModelError(ValueError):
     """A file that no model can be loaded from; the text names the file, the problem and what to do."""
 
     def __init__(self, path: Path, problem: str) -> None:
-        super().__init__(f"{path}: {problem}; train a model with: actum train REC… -o MODEL")
+        super().__init__(f"{path}: {problem}; train a model with 'actum train REC… -o MODEL'")
 
 
 def load_model(path: Path) -> Model:
@@ -36,7 +36,7 @@ def load_model(path: Path) -> Model:
             metadata, arrays = _parts(path, stored)
         kind = json.loads(metadata).get("kind")
         if kind not in KINDS:
-            raise ModelError(path, f"a model of kind {kind!r}, which this version does not know")
+            raise ModelError(path, f"a model of kind {kind!r}, which this version of actum does not know")
         return KINDS[kind].restored(metadata, arrays)
     except ModelError:
         raise
@@ -45,15 +45,15 @@ def load_model(path: Path) -> Model:
     except ValidationError as error:
         first = error.errors(include_input=False, include_url=False)[0]
         field = ".".join(str(part) for part in first["loc"])
-        raise ModelError(path, f"no actum model: metadata {field}: {first['msg']}") from None
+        raise ModelError(path, f"not a model of actum: metadata {field}: {first['msg']}") from None
     except (*UNREADABLE, AttributeError) as error:
-        raise ModelError(path, f"no actum model, or a damaged one ({error})") from None
+        raise ModelError(path, f"not a model of actum, or damaged ({error})") from None
 
 
 def _parts(path: Path, stored: IO[bytes]) -> tuple[str, Arrays]:
     """Return the metadata as JSON, and the arrays by name."""
     if not zipfile.is_zipfile(stored):  # NumPy's own error would advise to read it as a pickle
-        raise ModelError(path, "no actum model, or a damaged one")
+        raise ModelError(path, "not a model of actum, or damaged")
     refuse_bomb(stored)
     with np.load(stored, allow_pickle=False) as file:
         return str(file["metadata"]), {name: file[name] for name in file.files if name != "metadata"}

@@ -27,7 +27,7 @@ def _pairs(value: Any) -> Any:
     if not isinstance(value, str):
         return value
     if lacking := next((name for name in _names(value) if "=" not in name), None):
-        raise ValueError(f"{lacking!r} is no action with its seconds: write wave=3,clap=1")
+        raise ValueError(f"{lacking!r} has no time: write each action with its seconds, such as wave=3,clap=1")
     return {action.strip(): seconds for action, _, seconds in (pair.rpartition("=") for pair in _names(value))}
 
 
@@ -37,30 +37,41 @@ Names = Annotated[frozenset[str], NoDecode, BeforeValidator(_names)]
 class Settings(ServiceSettings):
     """What the classifier can be told beside what every service can."""
 
-    model: Path | None = Field(None, description="the model file; it may appear or change at any time")
-    publish_maps: bool = Field(False, description="put the maps' activities and the trace with each final action")
+    model: Path | None = Field(None, description="the model file; the classifier loads it when it appears or changes")
+    publish_maps: bool = Field(
+        False, description="publish the activities of the maps and the trace with each final action"
+    )
     segments: WantedSegments = Field(
         "both",
-        description="answer marked segments (marks), those that the classifier finds by itself (auto), or both;"
-        " where both are, the marked ones win",
+        description=(
+            "the segments to answer: marked ones (marks), those that the classifier finds by itself (auto), or "
+            "both; marks take precedence"
+        ),
     )
     false_alarms_per_min: float | None = Field(
         None,
         gt=0,
         allow_inf_nan=False,
-        description="how many wrong actions in a minute of other doings are accepted: more of them means fewer missed"
-        " actions; default: what the model was trained for",
+        description=(
+            "accepted false alarms per minute of background activity; a higher value misses fewer actions; "
+            "default: the value in the model (1/min)"
+        ),
     )
-    shortest_pause_s: Seconds = Field(
-        0.0, description="an action found sooner than this after the one before it is not told"
-    )
+    shortest_pause_s: Seconds = Field(0.0, description="minimum pause between two actions found without marks (s)")
     cooldown_s: Annotated[dict[str, Seconds], NoDecode, BeforeValidator(_pairs)] = Field(
-        {}, description="for how long after one of an action no other of it is told: wave=3,clap=1"
+        {},
+        description="minimum time between two actions of the same label found without marks, such as wave=3,clap=1 (s)",
     )
     enabled_actions: Names = Field(
-        frozenset(), description="of those found only these are told: wave,clap; default: all of the model's"
+        frozenset(),
+        description=(
+            "the only actions to publish among those found without marks, such as wave,clap; default: all actions "
+            "of the model"
+        ),
     )
-    disabled_actions: Names = Field(frozenset(), description="of those found these are not told: wave,clap")
+    disabled_actions: Names = Field(
+        frozenset(), description="actions to leave out among those found without marks, such as wave,clap"
+    )
 
     @property
     def segmentation(self) -> Segmentation:

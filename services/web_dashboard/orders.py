@@ -104,7 +104,7 @@ class Orders:
         except (ValueError, NotAnsweredError) as error:
             return self.refuse(order.id, str(error))
         except Exception:
-            log.exception("a bug, met while carrying out an order")
+            log.exception("a bug occurred while carrying out an order")
             return self.refuse(order.id, "the page's service failed: its log says why")
 
     def refuse(self, number: int | None, refusal: str, refused: bool = False) -> str:

@@ -29,31 +29,34 @@ class Settings(ServiceSettings):
     """What the page's service can be told beside what every service can."""
 
     page_host: str = Field(
-        "127.0.0.1", description="the address that browsers reach: 0.0.0.0 for any machine, which takes a page-token"
+        "127.0.0.1", description="the address to listen on; 0.0.0.0 admits other machines and needs a page-token"
     )
     page_port: int | None = Field(
-        None, ge=0, le=HIGHEST_PORT, description="the page's port; default: 8080, or the next one that is free"
+        None, ge=0, le=HIGHEST_PORT, description="the page's port; default: 8080, or the next free one"
     )
     page_token: str | None = Field(
         None,
         min_length=SHORTEST_TOKEN,
         pattern=r"^[A-Za-z0-9_.~-]+$",
-        description="the word that opens the page: needed where other machines reach it",
+        description="the secret that opens the page; required where other machines can reach the page",
     )
     page_guarded: bool = Field(
         False,
-        description="no page-token is needed: who reaches page-host is let in by something else, such as a container's"
-        " port that is published on 127.0.0.1 alone",
+        description=(
+            "require no page-token, because something else controls access to page-host, such as a container's "
+            "port published on 127.0.0.1 alone"
+        ),
     )
     page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(
-        frozenset(), description="names by which browsers may call this machine, beside its own and its addresses"
+        frozenset(),
+        description="names by which browsers may address this machine, in addition to its own name and its addresses",
     )
 
     @model_validator(mode="after")
     def _check_token(self) -> Self:
         if not (is_local(self.page_host) or self.page_guarded or self.page_token):
             raise ValueError(
-                f"page-host {self.page_host} lets other machines in: set page-token (ACTUM_PAGE_TOKEN) to "
-                f"{SHORTEST_TOKEN} characters or more, as 'openssl rand -hex 16' prints"
+                f"page-host {self.page_host} admits other machines: set page-token (ACTUM_PAGE_TOKEN) to "
+                f"{SHORTEST_TOKEN} characters or more, such as 'openssl rand -hex 16' prints"
             )
         return self

@@ -27,7 +27,9 @@ FURTHEST_M = 1e6
 """Largest plausible coordinate of a camera (m)."""
 LARGEST_BYTES = 100_000
 """At most this many bytes of a file are read: a calibration has some hundreds."""
-HEADER = "# A camera's calibration: the sensor gateway sends it with each image (ACTUM_CALIBRATION names this file).\n"
+HEADER = (
+    "# A camera's calibration. The sensor gateway publishes it with each image if ACTUM_CALIBRATION names this file.\n"
+)
 MATRICES = {"K": 3, "skeleton_from_image": 4}
 """The fields that are written row by row, and how many columns they have."""
 WIDTH = 120
@@ -85,21 +87,21 @@ class Calibration(_Part):
     @classmethod
     def _pinhole(cls, numbers: list[float]) -> list[float]:
         if numbers[0] <= 0 or numbers[4] <= 0 or numbers[6:] != [0, 0, 1]:
-            raise ValueError("not [fx, 0, cx, 0, fy, cy, 0, 0, 1] with fx and fy above 0")
+            raise ValueError("must be [fx, 0, cx, 0, fy, cy, 0, 0, 1] with fx and fy above 0")
         return numbers
 
     @field_validator("distortion")
     @classmethod
     def _complete(cls, coefficients: list[float]) -> list[float]:
         if len(coefficients) not in DISTORTION_LENGTHS:
-            raise ValueError(f"{len(coefficients)} coefficients, not one of {DISTORTION_LENGTHS}")
+            raise ValueError(f"has {len(coefficients)} coefficients; use one of the lengths {DISTORTION_LENGTHS}")
         return coefficients
 
     @field_validator("skeleton_from_image")
     @classmethod
     def _rigid(cls, numbers: list[float] | None) -> list[float] | None:
         if numbers is not None and not geometry.is_rigid(geometry.from_flat(numbers), FURTHEST_M):
-            raise ValueError("no rigid transform: rotation and position as 4x4 numbers, row-major")
+            raise ValueError("is not a rigid transform: give rotation and position as 4x4 numbers, row-major")
         return numbers
 
     @property
@@ -126,8 +128,8 @@ class Calibration(_Part):
         if (width, height) != self.image_size:
             expected = "x".join(map(str, self.image_size))
             raise CalibrationError(
-                f"{name} is {width}x{height}, the calibration is for {expected}: "
-                "set the camera to that size, or calibrate it at this one"
+                f"{name} is {width}x{height}, but the calibration is for {expected}: set the camera to that size, "
+                f"or calibrate the camera at {width}x{height}"
             )
 
     @classmethod
@@ -141,7 +143,7 @@ class Calibration(_Part):
         try:
             return cls.model_validate(content)
         except ValidationError as error:
-            raise CalibrationError(f"{path}: no calibration: {_first(error)}; {REMEDY}") from None
+            raise CalibrationError(f"{path}: not a calibration: {_first(error)}; {REMEDY}") from None
 
     def save(self, path: Path) -> None:
         """Write the calibration file, replacing an existing one."""
@@ -155,7 +157,7 @@ def _content(path: Path) -> object:
     except OSError as error:
         raise CalibrationError(f"{path}: {error.strerror}; {REMEDY}") from None
     except YAML_ERRORS:
-        raise CalibrationError(f"{path}: no YAML; {REMEDY}") from None
+        raise CalibrationError(f"{path}: not YAML; {REMEDY}") from None
 
 
 class _Dumper(yaml.SafeDumper):

@@ -82,7 +82,7 @@ def decode(key: str, payload: bytes, encoding: str = "") -> Message:
         raise DecodeError("unknown_key", str(error)) from None
     topic = address.topic
     if len(payload) > topic.max_bytes:
-        raise DecodeError("too_large", f"{len(payload)} bytes on {key}, at most {topic.max_bytes}")
+        raise DecodeError("too_large", f"{len(payload)} bytes on {key}; at most {topic.max_bytes} are allowed")
     _check_encoding(encoding, topic.message)
     return _validated(key, address, _unpack(key, payload))
 
@@ -94,10 +94,14 @@ def _check_encoding(encoding: str, expected: type[Message]) -> None:
     if match is None:
         return
     if match["schema"] != expected.SCHEMA:
-        raise DecodeError("wrong_schema", f"{match['schema']} where {expected.SCHEMA} belongs")
+        raise DecodeError(
+            "wrong_schema", f"the encoding names the schema {match['schema']}; this key carries {expected.SCHEMA}"
+        )
     if int(match["version"]) > expected.VERSION:
         raise DecodeError(
-            "higher_version", f"{encoding}: this is version {expected.VERSION} of {expected.SCHEMA}; update actum"
+            "higher_version",
+            f"{encoding} is a newer version; this program knows version {expected.VERSION} of {expected.SCHEMA}: "
+            "update actum",
         )
 
 
@@ -107,7 +111,7 @@ def _unpack(key: str, payload: bytes) -> dict[str, Any]:
     except UNPACK_ERRORS as error:
         raise DecodeError("not_msgpack", f"{key}: {type(error).__name__} {error}") from None
     if not isinstance(fields, dict):
-        raise DecodeError("not_a_map", f"{key}: a {type(fields).__name__}, not a map with string keys")
+        raise DecodeError("not_a_map", f"{key}: the payload is a {type(fields).__name__}, not a map with string keys")
     return fields
 
 
@@ -128,7 +132,7 @@ def with_different_names(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
     """
     made = dict(pairs)
     if len(made) < len(pairs):
-        raise ValueError("a name that comes twice")
+        raise ValueError("a name occurs twice in a map")
     return made
 
 
@@ -160,7 +164,7 @@ class Unpacking:
     def _counted(self, container: list[Any]) -> list[Any]:
         self._left -= 1 + len(container)
         if self._left < 0:
-            raise ValueError(f"more than {MOST_VALUES} values")
+            raise ValueError(f"the message has more than {MOST_VALUES} values")
         return container
 
 
@@ -172,7 +176,7 @@ def _validated(key: str, address: keys.Address, fields: dict[str, Any]) -> Messa
     except (ValidationError, keys.InvalidKeyError) as error:
         raise DecodeError("wrong_fields", f"{key}: {_first_line(error)}") from None
     if actual != key:
-        raise DecodeError("wrong_key", f"a message for {actual} on {key}")
+        raise DecodeError("wrong_key", f"the message belongs to {actual} but came on {key}")
     return message
 
 

@@ -135,22 +135,22 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
         Refusal: it is too large, or no JSON object or MessagePack map.
     """
     if len(payload) > MAX_REQUEST_BYTES:
-        raise Refusal(f"a request of {len(payload)} bytes: at most {MAX_REQUEST_BYTES} are taken")
+        raise Refusal(f"the request has {len(payload)} bytes; at most {MAX_REQUEST_BYTES} are allowed")
     if not payload:
         return {}
     try:
         fields = Unpacking().unpack(payload) if encoding.startswith(MSGPACK) else _from_json(payload)
     except UNPACK_ERRORS as error:
-        raise Refusal(f"a request that cannot be read ({error}): send a JSON object, or {MSGPACK}") from None
+        raise Refusal(f"the request cannot be decoded ({error}): send a JSON object, or {MSGPACK}") from None
     if not isinstance(fields, dict) or not all(isinstance(name, str) for name in fields):
-        raise Refusal(f"a request that is no object: {type(fields).__name__}")
+        raise Refusal(f"the request is a {type(fields).__name__}: send a JSON object or a MessagePack map")
     return fields
 
 
 def _from_json(payload: bytes) -> Any:
     """Parse JSON; one of many values is refused, for each takes many times its bytes once parsed."""
     if sum(map(payload.count, BEFORE_VALUES)) > MOST_VALUES:
-        raise ValueError(f"more than {MOST_VALUES} values")
+        raise ValueError(f"it has more than {MOST_VALUES} values")
     return json.loads(payload, object_pairs_hook=with_different_names)
 
 
@@ -165,7 +165,7 @@ def packed(fields: Mapping[str, Any], encoding: str) -> bytes:
             return bytes(msgpack.packb(fields, use_bin_type=True))
         return json.dumps(fields, ensure_ascii=False, allow_nan=False).encode()
     except (ValueError, TypeError, OverflowError, RecursionError) as error:
-        raise Refusal(f"fields that {encoding} cannot hold: {error}") from None
+        raise Refusal(f"the fields cannot be encoded as {encoding}: {error}") from None
 
 
 def _check_encodable(fields: dict[str, Any]) -> None:
@@ -175,7 +175,7 @@ def _check_encodable(fields: dict[str, Any]) -> None:
         values = [inner for value in values for inner in _inner(value)]
         if not values:
             return
-    raise Refusal(f"a request that is nested deeper than {MOST_LEVELS} levels")
+    raise Refusal(f"the request is nested deeper than {MOST_LEVELS} levels")
 
 
 def _inner(value: Any) -> Iterator[Any]:
@@ -184,20 +184,20 @@ def _inner(value: Any) -> Iterator[Any]:
         case dict():
             for name, inner in value.items():
                 if not isinstance(name, str):
-                    raise Refusal(f"a request with the name {name!r}: names are texts")
+                    raise Refusal(f"the request has the field name {name!r}: use text for names")
                 yield from (name, inner)
         case list():
             yield from value
         case str() if encodable(value) != value:
-            raise Refusal("a request with half of a surrogate pair: texts are UTF-8")
+            raise Refusal("a text in the request holds half of a surrogate pair: send valid UTF-8")
         case float() if not math.isfinite(value):
-            raise Refusal(f"a request with the number {value}: numbers are finite")
+            raise Refusal(f"the request holds the number {value}: send finite numbers")
         case int() if value not in INTEGERS:
-            raise Refusal("a request with an integer of more than 64 bits")
+            raise Refusal("the request holds an integer of more than 64 bits")
         case None | str() | float() | int() | bytes():
             return
         case _:
-            raise Refusal(f"a request with a {type(value).__name__}: use what JSON has, or bytes")
+            raise Refusal(f"the request holds a {type(value).__name__}: use the types of JSON, or bytes")
 
 
 def problems(error: ValidationError) -> str:

@@ -116,9 +116,9 @@ def ego_from_camera(joints: Array) -> Array:
     if unknown.any():
         right, left = _hips_from_shoulders(joints)
         right_hip, left_hip = np.where(unknown, right, right_hip), np.where(unknown, left, left_hip)
-    left = _unit(left_hip - right_hip, "the hips, or the shoulders in their place, coincide")
+    left = _unit(left_hip - right_hip, "both hips, or both shoulders in place of missing hips, lie at one point")
     origin = right_hip + ((torso - right_hip) * left).sum(axis=-1, keepdims=True) * left
-    up = _unit(torso - origin, "the torso lies on the line through the hips")
+    up = _unit(torso - origin, "the torso lies on the line through both hips")
     ego = np.zeros((*joints.shape[:-2], 4, 4))
     ego[..., 0, :3], ego[..., 1, :3], ego[..., 2, :3] = left, up, _cross(left, up)
     ego[..., :3, 3] = -(ego[..., :3, :3] @ origin[..., None])[..., 0]

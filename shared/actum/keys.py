@@ -106,7 +106,9 @@ def chunk(text: str) -> str:
         InvalidKeyError: it holds anything but a-z, 0-9, `_` and `-`, or more than 64 of them.
     """
     if not CHUNK.fullmatch(text):
-        raise InvalidKeyError(f"{text!r} cannot stand in a key: use a-z, 0-9, '_' and '-', 64 at most")
+        raise InvalidKeyError(
+            f"{text!r} is not a valid part of a key: use 1 to 64 of the characters a-z, 0-9, '_' and '-'"
+        )
     return text
 
 
@@ -118,7 +120,7 @@ def key(topic: Topic, sensor: str, name: str | int | None = None) -> str:
         InvalidKeyError: the topic needs a name and none is given, or has none and one is given, or a chunk is invalid.
     """
     if ("{}" in topic.leaf) != (name is not None):
-        raise InvalidKeyError(f"{topic.leaf!r} does not go with the name {name!r}")
+        raise InvalidKeyError(f"the topic {topic.leaf!r} cannot be used with the name {name!r}")
     leaf = topic.leaf if name is None else topic.leaf.format(chunk(str(name)))
     return f"{BASE}/{chunk(sensor)}/{leaf}"
 
@@ -195,7 +197,7 @@ def parse(text: str) -> Address:
         topic = _BY_PREFIX.get(prefix)
         if topic is not None and "{}" in topic.leaf and CHUNK.fullmatch(name):
             return Address(topic, sensor, name)
-    raise InvalidKeyError(f"{text!r} is no actum key")
+    raise InvalidKeyError(f"{text!r} is not a key of actum")
 
 
 def address_of(message: m.Message) -> Address:

@@ -107,13 +107,13 @@ class McapFile:
     def _opened(self) -> BinaryIO:
         try:
             if self.path.exists() and not (self.path.is_file() or self.path.is_dir()):
-                raise RecordingError(self.path, "no file", REMEDY)  # reading a named pipe would never end
+                raise RecordingError(self.path, "not a regular file", REMEDY)  # reading a named pipe would never end
             file = self.path.open("rb")
         except OSError as error:
             raise RecordingError(self.path, error.strerror or str(error), REMEDY) from None
         if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
             file.close()
-            raise RecordingError(self.path, "no MCAP file", REMEDY)
+            raise RecordingError(self.path, "not an MCAP file", REMEDY)
         file.seek(0)
         return file
 
@@ -130,7 +130,7 @@ class _Exact:
 
     def read(self, length: int) -> bytes:
         if length < 0:
-            raise ValueError(f"a record of {length} bytes")
+            raise ValueError(f"a record claims {length} bytes")
         if length > self._remaining:
             raise EndOfFile
         self._remaining -= length
@@ -152,10 +152,10 @@ class _Chunks:
         size = chunk.uncompressed_size
         self._left -= size
         if size > LARGEST_CHUNK or self._left < 0:
-            raise ValueError(f"{len(chunk.data)} bytes that decompress to {size}")
+            raise ValueError(f"{len(chunk.data)} bytes of a chunk decompress to {size}")
         data = _decompressed(chunk)
         if len(data) != size:
-            raise ValueError(f"a chunk of another size than {size} bytes")
+            raise ValueError(f"a chunk does not decompress to its stated {size} bytes")
         return breakup_chunk(replace(chunk, compression="", data=data), validate_crc=True)
 
 

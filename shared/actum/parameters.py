@@ -89,7 +89,10 @@ class LiveParameters(Generic[S]):
             Refusal: a name is none of them, or a value is out of range.
         """
         if unknown := sorted(request.values.keys() - set(self._names)):
-            raise Refusal(f"{', '.join(unknown)} cannot be changed here: {', '.join(self._names)} can")
+            raise Refusal(
+                f"{', '.join(unknown)} cannot be changed at run time: change {', '.join(self._names)} instead, or "
+                "restart the service"
+            )
         settings = self._changed(request.values)
         self._apply(settings)
         self._settings = settings

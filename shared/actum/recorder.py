@@ -56,7 +56,7 @@ def refuse_taken(path: Path) -> None:
     """
     part = unfinished(path)
     if os.path.lexists(path):
-        raise TakenError(path, f"{path} is there already: name another file, or remove it")
+        raise TakenError(path, f"{path} already exists: name another file, or remove this one")
     if not os.path.lexists(part):
         return
     stat = part.lstat()
@@ -64,9 +64,9 @@ def refuse_taken(path: Path) -> None:
     todo = (
         "another process is writing it: name another file"
         if is_being_written(part)
-        else f"make a recording of it by actum record {path} --finish, or remove it"
+        else f"turn it into a recording with 'actum record {path} --finish', or remove it"
     )
-    raise TakenError(part, f"{part} is there, an unfinished recording ({size}, last written {written}): {todo}")
+    raise TakenError(part, f"{part} is an unfinished recording ({size}, last written {written}): {todo}")
 
 
 def is_being_written(part: Path) -> bool:
@@ -154,7 +154,7 @@ class Recorder:
             OSError: the disk takes no more; nothing can be written after that.
         """
         if message.stamp_ns is None:
-            raise ValueError(f"a recorded message needs its stamp: {message!r}")
+            raise ValueError(f"the message has no stamp, which a recording needs: {message!r}")
         numbered = self._numbering.numbered(message)
         frame = codec.encode(numbered)
         assert numbered.seq is not None

@@ -28,7 +28,7 @@ class RecordingFiles:
     @property
     def remarks(self) -> list[str]:
         """What to tell whoever named the folders, in lines."""
-        begun = [f"{file} is not finished: what has been stored so far is read" for file in self.unfinished]
+        begun = [f"{file} is not finished: its messages so far are read" for file in self.unfinished]
         return [*begun, *self.left_out]
 
 
@@ -61,12 +61,12 @@ def _search(folder: Path, found: RecordingFiles) -> None:
 def _take_unfinished(file: Path, found: RecordingFiles) -> None:
     finished = file.with_suffix("")
     if finished.exists():
-        found.left_out.append(f"{file} is left out: {finished} is read, which has its name")
+        found.left_out.append(f"{file} is not read, because the finished recording {finished} exists as well")
         return
     try:
         Recording(file)
     except RecordingError as error:
-        found.left_out.append(f"left out: {error}")
+        found.left_out.append(f"not read: {error}")
         return
     found.paths.append(file)
     found.unfinished.append(file)

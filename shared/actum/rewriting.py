@@ -45,7 +45,7 @@ def rewrite(
     target = path.resolve()
     if target.suffix == UNFINISHED:
         finished = path.with_suffix("")
-        raise RecordingError(path, "an unfinished recording", f"finish it: actum record {finished} --finish")
+        raise RecordingError(path, "an unfinished recording", f"finish it with 'actum record {finished} --finish'")
     with replaced(target) as file:
         _copy(McapFile(path), file, change, added, metadata or {})
         shutil.copymode(target, file.name)
@@ -63,9 +63,9 @@ def finish(path: Path) -> int:
     part = unfinished(path)
     with part.open("r+b") as claimed:  # to write, or a network file system gives no lock
         if not claim(claimed) or not os.path.samestat(os.fstat(claimed.fileno()), part.stat()):
-            raise TakenError(part, f"{part} is being written by another process: end that, or wait for its end")
+            raise TakenError(part, f"{part} is being written by another process: wait for that process, or stop it")
         if os.path.lexists(path):
-            raise TakenError(path, f"{path} is there already, so {part} cannot get that name: rename one of them")
+            raise TakenError(path, f"{path} already exists, so {part} cannot be renamed to it: rename one of them")
         with created(path) as file:
             count = _copy(McapFile(part), file, unchanged, (), {})
             shutil.copymode(part, file.name)
@@ -83,7 +83,9 @@ def _copy(
         try:
             copying.take(record)
         except KeyError as error:
-            raise RecordingError(source.path, f"damaged (a message of the unknown channel {error})", REMEDY) from None
+            raise RecordingError(
+                source.path, f"damaged (a message belongs to the unknown channel {error})", REMEDY
+            ) from None
     if metadata and not copying.described:
         writer.add_metadata(METADATA, dict(metadata))
     for message in added:

@@ -47,7 +47,7 @@ def host_and_port(endpoint: str) -> tuple[str, int] | None:
         return None
     host, colon, port = address.rpartition(":")
     if transport not in WITH_PORT or not colon or not port.isdecimal() or int(port) > HIGHEST_PORT:
-        raise SettingsError(f"{endpoint!r} is no endpoint: use tcp/host:port, as {DEFAULT_ENDPOINT}")
+        raise SettingsError(f"{endpoint!r} is not an endpoint: use tcp/host:port, such as {DEFAULT_ENDPOINT}")
     return host.strip("[]"), int(port)
 
 
@@ -106,25 +106,36 @@ class ServiceSettings(BaseSettings):
 
     connect: Annotated[str, AfterValidator(_endpoint)] = Field(DEFAULT_ENDPOINT, description="the router's endpoint")
     sensor: str = Field(
-        "kinect0", pattern=f"^{CHUNK.pattern}$", description="the viewpoint: the chunk after actum/ in every key"
+        "kinect0",
+        pattern=f"^{CHUNK.pattern}$",
+        description="the sensor's name, which is the chunk after actum/ in every key",
     )
     instance: str = Field(
-        default_factory=default_instance, pattern=f"^{CHUNK.pattern}$", description="this process's name among its like"
+        default_factory=default_instance,
+        pattern=f"^{CHUNK.pattern}$",
+        description="the name of this process among the instances of the service",
     )
     take_over: bool = Field(
-        False, description="where this service runs for this sensor already, have that one stop and go on in its place"
+        False, description="stop the instance of this service that already runs for this sensor, and replace it"
     )
     zenoh_config: Path | None = Field(
-        None, description="a JSON5 file laid under the session's configuration (TLS, users)"
+        None,
+        description="a JSON5 file of Zenoh settings, such as TLS and users; actum's own settings override it",
     )
     credentials: Path | None = Field(
-        None, description="a folder of one role that actum deploy wrote, shown to a router at tls/host:port"
+        None,
+        description="a folder of credentials that `actum deploy` wrote for one role; needs a router at tls/host:port",
     )
     state: Path | None = Field(
         None,
-        description="a folder for the last answers of the classifier and the fusion: started anew, they give no others",
+        description=(
+            "a folder in which the classifier and the fusion keep their last answers, so that a restart does not "
+            "change them"
+        ),
     )
-    health_file: Path | None = Field(None, description="a file touched every second while connected and working")
+    health_file: Path | None = Field(
+        None, description="a file to touch every second while the service is connected and working"
+    )
 
     @classmethod
     def settings_customise_sources(
@@ -145,8 +156,10 @@ class ServiceSettings(BaseSettings):
 
 def _file_source(settings_cls: type[BaseSettings], name: str | None) -> TomlConfigSettingsSource:
     if name and not Path(name).is_file():
-        raise SettingsError(f"ACTUM_CONFIG names {name}, which is no file: correct or unset it")
+        raise SettingsError(f"ACTUM_CONFIG names {name}, which is not a file: correct or unset ACTUM_CONFIG")
     try:
         return TomlConfigSettingsSource(settings_cls, toml_file=name or None)
     except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise SettingsError(f"ACTUM_CONFIG names {name}, which cannot be read as TOML: {error}") from None
+        raise SettingsError(
+            f"ACTUM_CONFIG names {name}, which is not readable TOML ({error}): correct that file"
+        ) from None

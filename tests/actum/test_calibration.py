@@ -80,14 +80,14 @@ def test_the_id_depends_on_the_content_not_on_its_writing(tmp_path) -> None:
 
 FOREIGN = {
     "text": ("nothing of the kind", "the file"),
-    "no YAML": ("K: [1, 2", "no YAML"),
-    "binary": (b"\x80\xff\x00", "no YAML"),
-    "an impossible date": (LEAST + "intrinsics: {date: 2026-13-45}", "no YAML"),
-    "a date that is none": (LEAST + "intrinsics: {date: !!timestamp foo}", "no YAML"),
-    "an integer that is none": (LEAST.replace("640", "!!int foo"), "no YAML"),
-    "an integer that is empty": (LEAST.replace("640", "!!int ''"), "no YAML"),
-    "a truth that is none": (LEAST.replace("640", "!!bool foo"), "no YAML"),
-    "endlessly nested": ("[" * 50_000, "no YAML"),
+    "no YAML": ("K: [1, 2", "not YAML"),
+    "binary": (b"\x80\xff\x00", "not YAML"),
+    "an impossible date": (LEAST + "intrinsics: {date: 2026-13-45}", "not YAML"),
+    "a date that is none": (LEAST + "intrinsics: {date: !!timestamp foo}", "not YAML"),
+    "an integer that is none": (LEAST.replace("640", "!!int foo"), "not YAML"),
+    "an integer that is empty": (LEAST.replace("640", "!!int ''"), "not YAML"),
+    "a truth that is none": (LEAST.replace("640", "!!bool foo"), "not YAML"),
+    "endlessly nested": ("[" * 50_000, "not YAML"),
     "itself": ("&it {image_size: *it}", "image_size: "),
     "beyond what a number holds": (LEAST.replace("[500", f"[1{'0' * 400}"), "K"),
     "empty": ("", "the file"),
@@ -119,5 +119,5 @@ def test_a_missing_file_is_refused_by_name(tmp_path) -> None:
 
 def test_images_of_another_size_are_refused() -> None:
     WHOLE.check_size(640, 480, "a.png")
-    with pytest.raises(CalibrationError, match=r"a\.png is 1280x720, the calibration is for 640x480"):
+    with pytest.raises(CalibrationError, match=r"a\.png is 1280x720, but the calibration is for 640x480"):
         WHOLE.check_size(1280, 720, "a.png")

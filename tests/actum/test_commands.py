@@ -93,7 +93,7 @@ def test_without_payload_there_are_no_fields() -> None:
     ],
 )
 def test_what_is_no_object_is_refused(payload: bytes, encoding: str) -> None:
-    with pytest.raises(Refusal, match="a request"):
+    with pytest.raises(Refusal, match="the request"):
         unpacked(payload, encoding)
 
 
@@ -102,12 +102,12 @@ def test_what_is_no_object_is_refused(payload: bytes, encoding: str) -> None:
 def test_fields_that_cannot_be_encoded_are_refused(value: Any, encoding: str) -> None:
     if encoding == JSON and isinstance(value, int):
         return  # JSON has numbers of any length
-    with pytest.raises(Refusal, match="fields that application/.* cannot hold"):
+    with pytest.raises(Refusal, match="the fields cannot be encoded as application/"):
         packed({"name": value}, encoding)
 
 
 def test_a_reply_with_a_number_that_json_lacks_is_refused_and_no_bug() -> None:
-    with pytest.raises(Refusal, match="application/json cannot hold"):
+    with pytest.raises(Refusal, match="cannot be encoded as application/json"):
         packed({"score": math.nan}, JSON)
 
 
@@ -115,7 +115,7 @@ def test_a_reply_with_a_number_that_json_lacks_is_refused_and_no_bug() -> None:
     "value", [math.inf, math.nan, 2**70, -(2**63) - 1, "\ud800", {"\ud800": 1}, {1: 2}, (1,), msgpack.ExtType(1, b"")]
 )
 def test_fields_that_an_encoding_cannot_hold_reach_no_handler(value: Any) -> None:
-    with pytest.raises(Refusal, match="a request with"):
+    with pytest.raises(Refusal, match="the request"):
         GREET.obey({"name": value})
 
 

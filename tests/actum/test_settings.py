@@ -40,7 +40,7 @@ def test_what_is_no_endpoint_is_refused_by_name_with_the_form(endpoint: str, mon
     monkeypatch.setenv("ACTUM_CONNECT", endpoint)
     with pytest.raises(ValidationError) as refused:
         ServiceSettings()
-    assert complaint(refused.value).startswith(f"settings: connect: {endpoint!r} is no endpoint: use tcp/host:port")
+    assert complaint(refused.value).startswith(f"settings: connect: {endpoint!r} is not an endpoint: use tcp/host:port")
 
 
 def test_the_file_that_is_named_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -66,7 +66,7 @@ def test_a_zenoh_configuration_that_cannot_be_used_is_refused_by_name(content: s
     file = tmp_path / "zenoh.json5"
     if content is not None:
         file.write_text(content)
-    with pytest.raises(SettingsError, match=r"zenoh\.json5 is no Zenoh configuration") as refused:
+    with pytest.raises(SettingsError, match=r"zenoh\.json5 is not a Zenoh configuration") as refused:
         client_config(ServiceSettings(zenoh_config=file))
     assert "\n" not in str(refused.value)
 
@@ -170,4 +170,4 @@ def test_a_log_level_that_there_is_not_is_refused_in_a_line(
     with pytest.raises(SystemExit) as ended:
         configured(ServiceSettings, lambda _: None, [])
     assert ended.value.code == UNUSABLE
-    assert "ACTUM_LOG: there is no level 'verbose'" in capsys.readouterr().err
+    assert "ACTUM_LOG: 'verbose' is not a log level" in capsys.readouterr().err

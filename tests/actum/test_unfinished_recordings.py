@@ -80,7 +80,7 @@ def recorded(path: Path, *stamps_ns: int) -> None:
 def test_what_a_killed_process_left_is_not_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     left = killed(path)
-    with pytest.raises(FileExistsError, match=r"a\.mcap\.part is there, an unfinished recording \(0\.\d MB.*--finish"):
+    with pytest.raises(FileExistsError, match=r"a\.mcap\.part is an unfinished recording \(0\.\d MB.*--finish"):
         recorded(path, 1)
     assert part_of(path).read_bytes() == left
 
@@ -88,7 +88,7 @@ def test_what_a_killed_process_left_is_not_overwritten(tmp_path: Path) -> None:
 def test_a_recording_is_not_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     recorded(path, 1)
-    with pytest.raises(FileExistsError, match=r"a\.mcap is there already"):
+    with pytest.raises(FileExistsError, match=r"a\.mcap already exists"):
         recorded(path, 2)
     assert stamps(path) == [1]
     assert [file.name for file in tmp_path.iterdir()] == ["a.mcap"]
@@ -192,12 +192,12 @@ def test_what_cannot_be_finished_stays_as_it_is(tmp_path: Path) -> None:
     with full_disk(1000), pytest.raises(OSError):
         finish(path)
     path.write_bytes(b"mine")
-    with pytest.raises(FileExistsError, match=r"a\.mcap is there already, so .*a\.mcap\.part cannot get that name"):
+    with pytest.raises(FileExistsError, match=r"a\.mcap already exists, so .*a\.mcap\.part cannot be renamed to it"):
         finish(path)
     assert path.read_bytes() == b"mine"
     path.unlink()
     part_of(path).write_bytes(b"")
-    with pytest.raises(RecordingError, match="no MCAP file"):
+    with pytest.raises(RecordingError, match="not an MCAP file"):
         finish(path)
     part_of(path).write_bytes(left)
     finish(path)

@@ -44,5 +44,5 @@ def test_a_flat_board_is_taken_for_flat(board: Board, seed: int) -> None:
 
 
 def test_a_board_bent_too_far_is_refused(board: Board) -> None:
-    with pytest.raises(PoorSetError, match=r"the board is bent by \d\.\d mm, at most 3\.0: glue it"):
+    with pytest.raises(PoorSetError, match=r"the board is bent by \d\.\d mm, at most 3\.0 mm are accepted: glue it"):
         estimate_intrinsics(views_of(board, (0.0095, 0.0, 0.0)))

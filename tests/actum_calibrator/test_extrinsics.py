@@ -73,14 +73,14 @@ def test_pairs_after_a_camera_moved_by_a_centimetre_are_named(pairs: list[Pair],
     with pytest.raises(PoorSetError) as refused:
         estimate_extrinsics([*moved_pairs, *pairs[2:]], MARKERS, PEOPLE)
     (reason,) = refused.value.reasons
-    assert reason.startswith("2 of 5 pairs contradict the others: pair 0 (")
+    assert reason.startswith("2 of 5 pairs contradict the others (pair 0 (")
     assert ", pair 1 (" in reason
     assert "a camera moved" in reason
     assert all(f"pair {n}" not in reason for n in (2, 3, 4))
 
 
 def test_too_few_pairs_are_refused(pairs: list[Pair]) -> None:
-    with pytest.raises(PoorSetError, match="too few pairs: 2 usable, at least 3"):
+    with pytest.raises(PoorSetError, match="too few pairs: 2 are usable, at least 3"):
         estimate_extrinsics(pairs[:2], MARKERS, PEOPLE)
 
 
@@ -99,7 +99,7 @@ def test_another_camera_s_calibration_is_refused(pairs: list[Pair]) -> None:
 
 def test_a_calibration_of_another_size_is_refused(pairs: list[Pair]) -> None:
     larger = PEOPLE.model_copy(update={"image_size": (1280, 720)})
-    with pytest.raises(CalibrationError, match="0_b is 640x480, the calibration is for 1280x720"):
+    with pytest.raises(CalibrationError, match="0_b is 640x480, but the calibration is for 1280x720"):
         estimate_extrinsics(pairs, MARKERS, larger)
 
 

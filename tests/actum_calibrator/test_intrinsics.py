@@ -59,8 +59,8 @@ def reasons(views: list[View]) -> str:
 
 
 def test_too_few_views_are_refused(good_views: list[View]) -> None:
-    assert "too few views: 5 usable, at least 8" in reasons(good_views[:5])
-    assert "too few views: 0 usable" in reasons([])
+    assert "too few views: 5 are usable, at least 8" in reasons(good_views[:5])
+    assert "too few views: 0 are usable" in reasons([])
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +88,7 @@ def test_corners_that_do_not_fit_are_refused_and_the_worst_named(good_views: lis
     shaken = View("bent.png", bent.size, bent.board, bent.ids, bent.corners_px + bulge, bent.blur_px)
     said = reasons([*good_views[:3], shaken, *good_views[4:]])
     assert "corners do not fit" in said
-    assert "worst bent.png" in said
+    assert "worst pictures: bent.png" in said
 
 
 @pytest.mark.parametrize("zoom", [1.05, 1.3])
@@ -97,7 +97,7 @@ def test_one_picture_at_another_zoom_is_refused_and_named(good_views: list[View]
     view, centre_px = good_views[place], np.array([320.0, 240.0])
     zoomed = replace(view, corners_px=centre_px + zoom * (view.corners_px - centre_px))
     views = [*good_views[:place], zoomed, *good_views[place + 1 :]]
-    with pytest.raises(PoorSetError, match=f"one picture contradicts the others: view {place};"):
+    with pytest.raises(PoorSetError, match=f"one picture contradicts the others: with view {place} "):
         estimate_intrinsics(views)
 
 
@@ -128,7 +128,7 @@ def test_motion_across_is_blur_too(board: Board, finder: BoardFinder) -> None:
 
 
 def test_pictures_without_a_board_are_called_so(finder: BoardFinder) -> None:
-    with pytest.raises(UnusablePictureError, match="nothing to be seen"):
+    with pytest.raises(UnusablePictureError, match="too dark, too bright or empty"):
         finder.find(np.zeros((480, 640), dtype=np.uint8), "black.png")
     squares = np.kron(np.indices((12, 16)).sum(axis=0) % 2 * 255, np.ones((40, 40))).astype(np.uint8)
     with pytest.raises(UnusablePictureError, match="no board found"):

@@ -105,9 +105,9 @@ def test_the_same_sheet_is_the_same_file() -> None:
 
 
 REFUSED = [
-    ("DICT_4X4_51", [1], 80.0, "no marker family: use one of DICT_4X4_100"),
-    ("DICT_4X4_50", [50], 80.0, "no id 50: use 0 to 49"),
-    ("DICT_4X4_50", [], 80.0, "no ids"),
+    ("DICT_4X4_51", [1], 80.0, "not a marker family: use one of DICT_4X4_100"),
+    ("DICT_4X4_50", [50], 80.0, "no marker 50: use ids from 0 to 49"),
+    ("DICT_4X4_50", [], 80.0, "no marker ids"),
     ("DICT_4X4_50", [1], 170.0, "use 10 to 160 mm"),
     ("DICT_4X4_50", [1], 5.0, "use 10 to 160 mm"),
     ("DICT_4X4_50", [1], float("nan"), "use 10 to 160 mm"),
@@ -122,7 +122,7 @@ def test_what_cannot_be_printed_is_refused_with_what_can(family, ids, size_mm, r
 
 
 def test_a_board_too_large_for_the_paper_is_refused() -> None:
-    with pytest.raises(PatternError, match="does not fit a4"):
+    with pytest.raises(PatternError, match="does not fit on a4"):
         board_sheet(Board(square_m=0.045), SheetSize.A4)
 
 
@@ -131,7 +131,7 @@ def test_a_board_too_large_for_the_paper_is_refused() -> None:
     [
         ({"columns": 2}, "2x5 squares"),
         ({"marker_m": 0.04}, "smaller than its square"),
-        ({"family": "DICT_5X5"}, "no marker family"),
+        ({"family": "DICT_5X5"}, "not a marker family"),
         ({"columns": 20, "rows": 20}, "needs 200 markers"),
     ],
 )

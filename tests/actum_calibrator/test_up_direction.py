@@ -149,11 +149,11 @@ def bent(degrees: float) -> Array:
 @pytest.mark.parametrize(
     ("people", "instruction"),
     [
-        ((), "nobody is seen"),
-        ((plumb(), plumb() + np.array([1, 0, 0])), "2 people are seen: one must be alone"),
-        ((lacking(plumb(), "left_foot", "right_foot"),), "not seen: left_foot, right_foot; step back"),
+        ((), "nobody is visible"),
+        ((plumb(), plumb() + np.array([1, 0, 0])), "2 people are visible: only one person may be"),
+        ((lacking(plumb(), "left_foot", "right_foot"),), "not visible: left_foot, right_foot; step back"),
         ((bent(MOST_BEND_DEG + 20),), "stand straight: the body is bent"),
-        ((np.where(np.arange(15)[:, None] == INDEX["left_hip"], 1e400, plumb()),), "not seen: left_hip"),
+        ((np.where(np.arange(15)[:, None] == INDEX["left_hip"], 1e400, plumb()),), "not visible: left_hip"),
         ((np.zeros((15, 3)),), "stand straight"),
     ],
 )
@@ -176,6 +176,6 @@ def test_an_interruption_begins_it_anew() -> None:
     estimator.offer(
         Skeleton(stamp_ns=FRAMES * FRAME_NS, sensor="kinect0", agents=[], valid=False, reason="camera lost")
     )
-    assert estimator.instruction == "nobody is seen: camera lost"
+    assert estimator.instruction == "nobody is visible: camera lost"
     estimator.offer(skeleton((FRAMES + 1) * FRAME_NS, plumb()))
     assert estimator.up is None

@@ -94,13 +94,13 @@ def test_a_rejected_action_says_why(live: Live) -> None:
 
 def test_without_the_fusion_the_final_action_is_said(live: Live) -> None:
     live.answered_by[1] = [Action]
-    assert "toggle-now-1 final: push 1.00, 1 frames; no event: does action_fusion run?" in toggled(2)
+    assert "toggle-now-1 final: push 1.00, 1 frames; no event arrived: check that action_fusion runs" in toggled(2)
 
 
 def test_where_no_answer_comes_it_is_said_and_the_switch_goes_on(live: Live) -> None:
     live.answered_by[1] = []
     said = toggled(4)
-    assert "toggle-now-1: no answer within 0.1 s; see actum doctor" in said
+    assert "toggle-now-1: no answer within 0.1 s: run 'actum doctor'" in said
     assert "toggle-now-2: push cup" in said
 
 

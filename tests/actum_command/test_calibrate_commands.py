@@ -79,7 +79,7 @@ def test_a_picture_that_would_be_overwritten_is_named_before_anything_is_looked_
     photograph_file = tmp_path / "cam-coverage.png"
     photograph_file.write_bytes(b"a photograph")
     said = run("calibrate", "intrinsics", folder, photograph_file, "-o", tmp_path / "x" / ".." / "cam.yaml", code=1)
-    assert "cam-coverage.png is among the pictures and would be overwritten" in said
+    assert "cam-coverage.png is one of the pictures and would be overwritten" in said
     assert "is no image" not in said
     assert [file.read_bytes() for file in tmp_path.iterdir()] == [b"a photograph"]
 
@@ -99,14 +99,14 @@ def test_blurred_pictures_are_refused_and_nothing_is_written(folder: Path, tmp_p
     for file in folder.iterdir():
         cv2.imwrite(str(tmp_path / file.name), cv2.GaussianBlur(cv2.imread(str(file)), (0, 0), 5.0))
     said = run("calibrate", "intrinsics", tmp_path, "-o", tmp_path / "c.yaml", code=1)
-    assert "too few views: 0 usable" in said
+    assert "too few views: 0 are usable" in said
     assert "10 pictures are blurred: hold the board still" in said
     assert not (tmp_path / "c.yaml").exists()
 
 
 def test_too_few_pictures_are_refused(folder: Path, tmp_path: Path) -> None:
     files = sorted(folder.iterdir())[:4]
-    assert "too few views: 4 usable" in run("calibrate", "intrinsics", *files, "-o", tmp_path / "c.yaml", code=1)
+    assert "too few views: 4 are usable" in run("calibrate", "intrinsics", *files, "-o", tmp_path / "c.yaml", code=1)
 
 
 def test_broken_and_foreign_pictures_are_named(folder: Path, tmp_path: Path) -> None:
@@ -118,9 +118,9 @@ def test_broken_and_foreign_pictures_are_named(folder: Path, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("options", "reason"),
     [
-        (["--board", "7by5"], "say the squares across x down, as 7x5"),
-        (["--family", "DICT"], "no marker family"),
-        (["--live"], "name pictures of the board, or use --live"),
+        (["--board", "7by5"], "give them across x down, such as 7x5"),
+        (["--family", "DICT"], "not a marker family"),
+        (["--live"], "name either pictures of the board, or --live"),
     ],
 )
 def test_impossible_options_are_refused(folder: Path, tmp_path: Path, options: list[str], reason: str) -> None:
@@ -131,7 +131,7 @@ def test_a_foreign_calibration_is_refused(folder: Path, tmp_path: Path) -> None:
     bad = tmp_path / "c.yaml"
     bad.write_text("focal: 500")
     command = ["--markers-camera", bad, "--people-camera", bad, folder, "-o", tmp_path / "d.yaml"]
-    assert "c.yaml: no calibration" in run("calibrate", "extrinsics", *command, code=1)
+    assert "c.yaml: not a calibration" in run("calibrate", "extrinsics", *command, code=1)
 
 
 def test_markers_are_printed_to_a_file(tmp_path: Path) -> None:
@@ -168,7 +168,7 @@ def test_how_a_camera_is_tilted_is_found_in_a_recording(tmp_path: Path) -> None:
     assert pitch_deg == pytest.approx(12.0, abs=3.0)
     assert up == pytest.approx([0.0, -np.cos(np.radians(pitch_deg)), np.sin(np.radians(pitch_deg))], abs=0.01)
     assert "nobody stood upright and still for long enough" in run("calibrate", "up", acting, code=1)
-    assert "no MCAP file" in run("calibrate", "up", Path(__file__), code=1)
+    assert "not an MCAP file" in run("calibrate", "up", Path(__file__), code=1)
 
 
 def test_who_flickers_in_and_out_of_view_is_told_what_to_do_no_more_than_twice_a_second(
@@ -179,6 +179,6 @@ def test_who_flickers_in_and_out_of_view_is_told_what_to_do_no_more_than_twice_a
     monkeypatch.setattr(calibrate_up_command, "_live", lambda: iter(frames))
     done = CliRunner().invoke(app, ["calibrate", "up"])
     told = [line for line in done.stdout.splitlines() if line.strip()]
-    assert "not seen: left_foot" in told[0]
+    assert "not visible: left_foot" in told[0]
     assert "stay like that" in told[1]
     assert 5 < len(told) <= 10

@@ -113,7 +113,7 @@ def test_a_file_that_would_be_named_as_another_kind_is_refused_with_the_right_na
 
 
 def test_a_folder_that_would_be_named_as_a_picture_is_refused(tmp_path: Path) -> None:
-    assert "name the folder" in refusal("inspect", "model.npz", "-o", str(tmp_path / "map.png"))
+    assert "name a folder" in refusal("inspect", "model.npz", "-o", str(tmp_path / "map.png"))
 
 
 def test_a_folder_without_recordings_is_refused(tmp_path: Path) -> None:
@@ -128,12 +128,12 @@ def test_a_foreign_model_is_refused_with_the_remedy(tmp_path: Path) -> None:
 def test_a_file_that_is_no_model_is_refused_without_advice_to_load_it_unsafely(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_text("a recording, named where the model is to stand")
     refused = refusal("evaluate", str(tmp_path / "a.mcap"), str(tmp_path))
-    assert "a.mcap: no actum model" in refused
+    assert "a.mcap: not a model of actum" in refused
     assert "pickle" not in refused
 
 
 def test_a_model_alone_is_nothing_to_evaluate() -> None:
-    assert "name a model and then recordings" in refusal("evaluate", "m.npz")
+    assert "name a model and recordings" in refusal("evaluate", "m.npz")
 
 
 @pytest.mark.parametrize(
@@ -154,17 +154,17 @@ def test_a_file_is_not_passed_over_by_a_source_that_plays_none(
 def test_an_unknown_preset_is_refused_with_the_known_ones(tmp_path: Path) -> None:
     assert CliRunner().invoke(app, ["simulate", str(tmp_path / "a.mcap"), "--repetitions", "1"]).exit_code == 0
     message = refusal("train", str(tmp_path), "-o", str(tmp_path / "m.npz"), "--preset", "best")
-    assert "no preset" in message
+    assert "is not a preset" in message
     assert "paper" in message
 
 
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        (("paper", "attention=arms"), "no attention=arms"),
-        (("paper", "beta=1"), "no beta=1"),
-        (("paper", "axes"), "no axes="),
-        (("pyramid", "attention=all"), "pyramid has nothing to set"),
+        (("paper", "attention=arms"), "has no setting attention=arms"),
+        (("paper", "beta=1"), "has no setting beta=1"),
+        (("paper", "axes"), "has no setting axes="),
+        (("pyramid", "attention=all"), "preset pyramid has no settings"),
     ],
 )
 def test_a_setting_that_a_preset_does_not_know_is_refused_with_the_known_ones(
@@ -198,7 +198,7 @@ def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
 def test_a_model_that_cannot_find_actions_by_itself_says_what_to_do(examples: Path, tmp_path: Path) -> None:
     model = str(tmp_path / "m.npz")
     assert CliRunner().invoke(app, ["train", str(examples), "-o", model, "--preset", "paper"]).exit_code == 0
-    assert "cannot find actions without marks; train it anew" in refusal(
+    assert "cannot find actions without marks: train it again" in refusal(
         "evaluate", "--continuous", model, str(examples)
     )
 
@@ -262,7 +262,7 @@ def test_training_and_evaluating_name_the_recording_that_breaks_off(broken_off: 
     for command in (["train", str(broken_off), "-o", model], ["evaluate", model, str(broken_off)]):
         done = CliRunner().invoke(app, command)
         assert done.exit_code == 0
-        assert f"{broken_off} breaks off" in done.stdout
+        assert f"{broken_off} is truncated" in done.stdout
 
 
 @pytest.mark.parametrize("place", ["nowhere/x.json", "folder", "file/x.json"])
@@ -281,10 +281,10 @@ def test_where_nothing_can_be_written_nothing_is_trained_or_evaluated(
     ("name", "value", "complaint"),
     [
         ("ACTUM_SENSOR", "Kinect0", "settings: sensor: "),
-        ("ACTUM_CONNECT", "127.0.0.1:7551", "'127.0.0.1:7551' is no endpoint: use tcp/host:port"),
-        ("ACTUM_CONNECT", "foo", "'foo' is no endpoint: use tcp/host:port"),
-        ("ACTUM_ZENOH_CONFIG", "/nowhere.json5", "/nowhere.json5 is no Zenoh configuration"),
-        ("ACTUM_CONFIG", "/nowhere.toml", "/nowhere.toml, which is no file"),
+        ("ACTUM_CONNECT", "127.0.0.1:7551", "'127.0.0.1:7551' is not an endpoint: use tcp/host:port"),
+        ("ACTUM_CONNECT", "foo", "'foo' is not an endpoint: use tcp/host:port"),
+        ("ACTUM_ZENOH_CONFIG", "/nowhere.json5", "/nowhere.json5 is not a Zenoh configuration"),
+        ("ACTUM_CONFIG", "/nowhere.toml", "/nowhere.toml, which is not a file"),
     ],
 )
 @pytest.mark.parametrize("command", ["doctor", "watch", "scene", "segment end a"])
@@ -309,7 +309,7 @@ def served(monkeypatch: pytest.MonkeyPatch) -> list[str | None]:
 
 @pytest.mark.parametrize("endpoint", ["udp7551", "tcp/127.0.0.1:99999", "7552", "tcp/127.0.0.1"])
 def test_a_router_refuses_what_is_no_endpoint(endpoint: str, served: list[str | None]) -> None:
-    assert f"'{endpoint}' is no endpoint: use tcp/host:port" in refusal("router", "--listen", endpoint)
+    assert f"'{endpoint}' is not an endpoint: use tcp/host:port" in refusal("router", "--listen", endpoint)
     assert served == []
 
 
@@ -344,7 +344,7 @@ def test_a_switch_that_is_left_leaves_the_line_to_the_shell(monkeypatch: pytest.
     monkeypatch.setattr(segment_commands, "Answers", lambda _: None)
     left = CliRunner().invoke(app, ["segment", "toggle"], input="")
     assert left.exit_code == 0
-    assert left.stdout == "Enter starts action 1, Ctrl-D leaves \n"
+    assert left.stdout == "press Enter to start action 1, Ctrl-D to quit \n"
 
 
 def test_who_waits_for_a_router_says_so_once(
@@ -391,7 +391,7 @@ def test_a_demo_ends_where_it_is_and_leaves_no_files(
 
 def test_a_router_refuses_a_configuration_that_zenoh_refuses(tmp_path: Path) -> None:
     (tmp_path / "router.json5").write_text("{nonsense")
-    assert "no router can be started on " in refusal("router", "--config", str(tmp_path / "router.json5"))
+    assert "the router cannot start on " in refusal("router", "--config", str(tmp_path / "router.json5"))
 
 
 def test_why_nothing_could_be_learnt_is_said_before_that_it_could_not(tmp_path: Path) -> None:
@@ -401,7 +401,7 @@ def test_why_nothing_could_be_learnt_is_said_before_that_it_could_not(tmp_path: 
             recorder.write(message)
     done = CliRunner().invoke(app, ["train", str(tmp_path), "-o", str(tmp_path / "model.npz")])
     assert done.exit_code == 1
-    assert "left out s1 of " in done.stdout
+    assert "s1 of " in done.stdout and "was not used" in done.stdout
     assert "2 usable frames, at least 3 are needed" in done.stdout
     assert "a model needs examples of at least two actions" in done.stderr
 
@@ -425,7 +425,7 @@ def test_a_number_that_is_not_finite_is_refused_as_argument_and_as_option(value:
 
     for arguments in ([value], ["1", "--seconds", value]):
         refused = CliRunner().invoke(measuring, arguments, standalone_mode=False).exception
-        assert isinstance(refused, typer.BadParameter) and "is no finite number" in refused.message
+        assert isinstance(refused, typer.BadParameter) and "is not a finite number" in refused.message
     assert not measured
 
 

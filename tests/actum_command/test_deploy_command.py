@@ -24,7 +24,7 @@ def test_init_says_where_each_folder_goes(tmp_path: Path) -> None:
     ended = run("init", tmp_path, *HOSTS)
     assert ended.exit_code == 0
     assert f"compute: copy {tmp_path / 'compute'} to 192.168.1.6" in ended.stdout
-    assert f"keep {tmp_path / 'authority'} where nobody else reads it" in ended.stdout
+    assert f"keep {tmp_path / 'authority'} private" in ended.stdout
     assert (tmp_path / "camera" / "compose.yml").is_file()
 
 
@@ -81,7 +81,7 @@ def test_certificates_do_not_outlast_their_authority(days: str, tmp_path: Path) 
 def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
     assert run("init", tmp_path, *HOSTS, "--open").exit_code == 0
     assert not list(tmp_path.rglob("*.pem"))
-    assert "trusted with everything" in (tmp_path / "camera" / "README.md").read_text()
+    assert "access control are disabled" in (tmp_path / "camera" / "README.md").read_text()
     assert "has no credentials" in run("rotate", tmp_path).stderr
 
 
@@ -89,7 +89,7 @@ def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
     ("arguments", "said"),
     [
         (("init", "--hosts", "camera=a"), "at least one camera… and one compute…"),
-        (("init", *HOSTS, "--open", "--passwords"), "--open asks nobody for passwords"),
+        (("init", *HOSTS, "--open", "--passwords"), "--open disables passwords"),
         (("rotate",), "holds no deployment.json"),
     ],
 )

@@ -115,7 +115,7 @@ def test_a_system_that_is_well_is_said_to_be(monkeypatch: pytest.MonkeyPatch) ->
 def test_another_version_is_a_problem_though_it_has_the_same_schemas(monkeypatch: pytest.MonkeyPatch) -> None:
     code, output = diagnosed(monkeypatch, System(status("som_classifier"), version="0.0.1"))
     assert code == 1
-    assert f"som_classifier is version 0.0.1, this is {__version__}" in output
+    assert f"som_classifier is version 0.0.1, but this program is version {__version__}" in output
     assert "of one version" not in output
 
 
@@ -134,12 +134,14 @@ def test_a_latency_that_is_not_told_is_a_dash(latency_ms: dict[str, float], show
 
 def test_a_classifier_without_a_model_is_a_problem_that_names_the_file() -> None:
     [problem] = examined(state="no model: there is no m.npz yet").problems
-    assert problem.startswith("som_classifier: no model: there is no m.npz yet, so every action is rejected; name one")
+    assert problem.startswith(
+        "som_classifier: no model: there is no m.npz yet, so every action is rejected; name a model"
+    )
 
 
 def test_a_model_that_could_not_be_renewed_is_a_problem() -> None:
     [problem] = examined(state="model not renewed: m.npz: damaged").problems
-    assert problem == "som_classifier: model not renewed: m.npz: damaged; it goes on with the model before"
+    assert problem == "som_classifier: model not renewed: m.npz: damaged; the previous model stays in use"
 
 
 @pytest.mark.parametrize("state", ["source ended", "camera lost: it cannot be opened"])
@@ -152,10 +154,10 @@ def test_a_gateway_that_gives_nothing_is_told_with_what_it_reads(state: str) -> 
 def test_a_simulated_scene_that_is_over_is_told_how_it_goes_on_for_ever() -> None:
     scene = System(status("sensor_gateway", state="source ended"), source=DESCRIPTION)
     [problem] = [p for finding in examine(scene).findings for p in finding.problems]  # type: ignore[arg-type]
-    assert problem.endswith("start it again for more, with --repetitions 0 for more and more")
+    assert problem.endswith("start it again to play once more, or with --repetitions 0 to play without end")
     recording = System(status("sensor_gateway", state="source ended"), source="recording a.mcap")
     [problem] = [p for finding in examine(recording).findings for p in finding.problems]  # type: ignore[arg-type]
-    assert problem.endswith("start it again for more, with --loop for more and more")
+    assert problem.endswith("start it again to play once more, or with --loop to play without end")
 
 
 class Sensorless(System):
@@ -186,8 +188,8 @@ def test_two_of_one_identity_are_a_problem_that_names_both(monkeypatch: pytest.M
     system.also = ("pose_preprocessor", second)
     code, output = diagnosed(monkeypatch, system)
     assert code == 1
-    assert "pose_preprocessor runs more than once, so everything is answered more than once" in output
-    assert f"stop all but one of a on lab, {second} on lab" in output
+    assert "pose_preprocessor runs more than once, so that every segment is answered more than once" in output
+    assert f"stop all instances but one of a on lab, {second} on lab" in output
 
 
 def test_where_there_is_no_room_for_a_table_there_are_lines_of_whole_words() -> None:
@@ -238,7 +240,8 @@ def test_what_was_found_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_marks_that_are_not_used_are_told() -> None:
     (remark,) = examined(counts={"marks_ignored": 4}).remarks
     assert remark == (
-        "som_classifier rejected 4 marks, since its setting segments is auto: --segments both uses marks as well"
+        "som_classifier rejected 4 marks, because its setting segments is auto: "
+        "use --segments both to accept marks as well"
     )
 
 

@@ -173,7 +173,7 @@ def test_raw_images_say_how_their_bytes_lie(tmp_path: Path) -> None:
 def test_an_image_of_too_few_bytes_is_told_of_and_not_shown(tmp_path: Path) -> None:
     found = put(tmp_path, image("bgr8", b"123"))
     [(_, line)] = found["/actum/kinect0/log"]
-    assert (set(found), line.message) == ({"/actum/kinect0/log"}, "3 bytes are no bgr8 of 2x1, which has 6")
+    assert (set(found), line.message) == ({"/actum/kinect0/log"}, "a bgr8 image of 2x1 has 6 bytes, but this one has 3")
 
 
 def test_marks_and_answers_are_json_with_every_field_and_lines_of_the_log(tmp_path: Path) -> None:

@@ -183,7 +183,7 @@ def test_who_takes_nothing_costs_bounded_memory_and_it_is_told(caplog: pytest.Lo
         picture = image(1).model_copy(update={"data": bytes(4_000_000)})
         for _ in range(60):
             made.stream.show(picture)
-    assert re.search(r"\d+ messages were left out", caplog.text)
+    assert re.search(r"\d+ messages were dropped", caplog.text)
 
 
 def test_who_speaks_no_such_protocol_is_refused(usual: Serving) -> None:

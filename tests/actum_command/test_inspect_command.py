@@ -92,7 +92,7 @@ def test_a_users_file_of_a_wanted_name_is_not_overwritten(tmp_path: Path, name: 
     out.mkdir()
     (out / name).write_bytes(b"mine")
     refused = inspect(model, "-o", out)
-    assert refused.exit_code == 1 and f"{name} is not as an earlier run wrote it" in refused.output
+    assert refused.exit_code == 1 and f"{name} was changed since an earlier run wrote it" in refused.output
     assert (out / name).read_bytes() == b"mine" and len(list(out.iterdir())) == 1
 
 
@@ -143,7 +143,7 @@ def test_what_is_wrong_is_said(tmp_path: Path) -> None:
     assert "there is no such file" in refusal(tmp_path / "none.npz", "-o", tmp_path / "out")
     assert "png, svg" in refusal(tmp_path / "m.npz", "-o", tmp_path / "out", "--format", "bmp")
     assert "no recordings" in refusal(tmp_path / "m.npz", tmp_path, "-o", tmp_path / "out")
-    assert "foreign.npz is no folder" in refusal(tmp_path / "m.npz", "-o", foreign)
+    assert "foreign.npz is not a folder" in refusal(tmp_path / "m.npz", "-o", foreign)
 
 
 def test_a_recording_without_segments_is_refused_with_the_remedy(tmp_path: Path) -> None:
@@ -160,7 +160,7 @@ def test_a_recording_that_breaks_off_before_any_segment_is_named(tmp_path: Path)
     whole.write_bytes(whole.read_bytes()[:400])
     done = inspect(tmp_path / "m.npz", whole, "-o", tmp_path / "out")
     assert done.exit_code == 1
-    assert "breaks off" in " ".join(done.output.split())
+    assert "is truncated" in " ".join(done.output.split())
 
 
 def test_segments_without_labels_are_shown_by_their_answers(tmp_path: Path) -> None:

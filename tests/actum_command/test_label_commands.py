@@ -172,7 +172,7 @@ def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) 
             recorder.write(frame)
     assert label(path).endswith("0 segments\n")
     assert "0 segments drawn" in label("picture", path, "-o", tmp_path / "bare.png")
-    assert "nobody is seen moving" in refused("cut", path, 5, "wave")
+    assert "shows nobody moving" in refused("cut", path, 5, "wave")
     label("add", path, 0.5, 1.5, "stand")
     assert rows(path) == ["1 0.50 s 1.50 s (1.00 s) stand manual nearest"]
 
@@ -180,15 +180,15 @@ def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) 
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
-        (("delete", 3), "no segment 3: there are 1 to 2"),
-        (("move", 0, "--start", "1"), "no segment 0"),
-        (("move", 1, "--start", "2", "--end", "1.5"), "start at 2.00 s and end at 1.50 s: the end has to be later"),
-        (("move", 1, "--end", "+3"), r"1.20 to 5.57 s overlaps segment 2 \(3.80 to 5.17 s\)"),
+        (("delete", 3), "there is no segment 3: the recording has segments 1 to 2"),
+        (("move", 0, "--start", "1"), "there is no segment 0"),
+        (("move", 1, "--start", "2", "--end", "1.5"), "run from 2.00 s to 1.50 s: the end has to be later"),
+        (("move", 1, "--end", "+3"), r"1.20 s to 5.57 s overlaps segment 2 \(3.80 to 5.17 s\)"),
         (("move", 1, "--start", "-9"), "before the recording does"),
-        (("move", 1, "--start", "soon"), "'soon' is no time"),
-        (("move", 1, "--start", "nan"), "'nan' is no time"),
+        (("move", 1, "--start", "soon"), "'soon' is not a time"),
+        (("move", 1, "--start", "nan"), "'nan' is not a time"),
         (("add", 2.0, 3.0, "wave"), "overlaps segment 1"),
-        (("rename", 1, ""), "a label has 1 to 200 characters"),
+        (("rename", 1, ""), "the label has to have 1 to 200 characters"),
         (("cut", 5, "wave"), "overlaps segment 1"),
     ],
 )
@@ -203,7 +203,7 @@ def test_what_cannot_be_done_is_refused_and_changes_nothing(
 
 def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_text("nothing")
-    assert "no MCAP file" in refused(tmp_path / "a.mcap")
+    assert "not an MCAP file" in refused(tmp_path / "a.mcap")
 
 
 def test_a_picture_of_another_kind_is_refused(path: Path, tmp_path: Path) -> None:

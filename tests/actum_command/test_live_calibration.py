@@ -56,19 +56,19 @@ def said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Said:
 def test_where_no_image_comes_the_gateway_is_asked_for_and_its_calibration_named(said: Said) -> None:
     for messages in ([], [skeleton(1), skeleton(2)]):
         told = said(messages)
-        assert "no image on actum/kinect0/image/color for 10 s: does its gateway send any?" in told
+        assert "no image arrived on actum/kinect0/image/color for 10 s: check that the sensor gateway" in told
         assert "ACTUM_CALIBRATION" in told
 
 
 def test_where_images_come_that_are_not_valid_their_reason_is_said_and_the_calibration_named(said: Said) -> None:
     told = said([INVALID] * 20)
-    assert f"no valid image on actum/kinect0/image/color for 10 s: {MISMATCH}." in told
+    assert f"no valid image arrived on actum/kinect0/image/color for 10 s ({MISMATCH})." in told
     assert "ACTUM_CALIBRATION" in told
     assert "does its gateway send any" not in told
 
 
 def test_an_invalid_image_between_valid_ones_is_no_cause(said: Said) -> None:
-    assert "no image on" in said([image(1), INVALID, image(2)])
+    assert "no image arrived on" in said([image(1), INVALID, image(2)])
 
 
 def test_views_are_taken_of_the_valid_images_alone(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -24,7 +24,7 @@ def test_every_setting_of_every_service_is_known(service: str, tmp_path: Path) -
 
 
 def test_what_resembles_a_setting_is_asked_about() -> None:
-    assert list(misspelt({"ACTUM_MODLE": "m.npz"})) == ["ACTUM_MODLE is no setting: is ACTUM_MODEL meant?"]
+    assert list(misspelt({"ACTUM_MODLE": "m.npz"})) == ["ACTUM_MODLE is not a setting: did you mean ACTUM_MODEL?"]
 
 
 def test_whatever_the_pages_and_compose_files_name_is_known() -> None:
@@ -43,6 +43,6 @@ def test_the_file_is_every_service_s_own_so_all_that_is_unknown_in_it_is_told(tm
     file = tmp_path / "actum.toml"
     file.write_text('sensr = "k"\ncolour = "red"\nconnect = "tcp/a:1"\n')
     assert list(misspelt({"ACTUM_CONFIG": str(file)})) == [
-        f"{file}: sensr is no setting: is sensor meant?",
-        f"{file}: colour is no setting",
+        f"{file}: sensr is not a setting: did you mean sensor?",
+        f"{file}: colour is not a setting",
     ]

@@ -167,20 +167,20 @@ def test_what_a_crash_left_is_not_recorded_over_but_finished(live: Live, tmp_pat
     left = (tmp_path / "a.mcap.part").read_bytes()
     live.comes(skeleton(2))
     told = refused("record", path)
-    assert "a.mcap.part is there, an unfinished recording (0.0 MB, last written 2" in told
+    assert "a.mcap.part is an unfinished recording (0.0 MB, last written 2" in told
     assert f"actum record {path} --finish" in told
     assert (tmp_path / "a.mcap.part").read_bytes() == left
     assert live.take() is not None, "nobody has listened"
     assert f"1 messages, up to where it breaks off, written to {path}" in actum("record", path, "--finish").stdout
     assert [message.stamp_ns for message in Recording(path).messages()] == [1]
-    assert "is there already" in refused("record", path)
+    assert "already exists" in refused("record", path)
     assert "nothing to finish: there is no" in refused("record", path, "--finish")
 
 
 def test_what_cannot_be_finished_is_told_and_left(tmp_path: Path) -> None:
     (tmp_path / "a.mcap.part").write_bytes(b"torn")
     told = refused("record", tmp_path / "a.mcap", "--finish")
-    assert "a.mcap.part cannot be finished (no MCAP file): it is as it was; move it away or remove it" in told
+    assert "a.mcap.part cannot be finished (not an MCAP file): it is as it was; move it away or remove it" in told
     assert (tmp_path / "a.mcap.part").read_bytes() == b"torn"
 
 
@@ -207,7 +207,7 @@ def test_no_command_writes_over_a_recording_or_what_is_left_of_one(tmp_path: Pat
     source = written(tmp_path / "source.mcap", skeleton(1))
     (tmp_path / named).write_bytes(b"mine")
     for command in (["simulate", tmp_path / "a.mcap"], ["export", source, tmp_path / "a.mcap", "--foxglove"]):
-        assert f"{named} is there" in refused(*command)
+        assert named in refused(*command)
     assert (tmp_path / named).read_bytes() == b"mine"
 
 
@@ -262,7 +262,7 @@ def test_a_recording_is_never_written_over(live: Live, tmp_path: Path) -> None:
     path = written(tmp_path / "a.mcap", skeleton(1))
     before = path.read_bytes()
     live.comes(skeleton(2))
-    assert f"{path} is there already" in refused("record", path)
+    assert f"{path} already exists" in refused("record", path)
     assert path.read_bytes() == before
 
 
@@ -291,7 +291,7 @@ def test_a_recording_that_breaks_off_is_named(live: Live, tmp_path: Path) -> Non
     path = cut(written(tmp_path / "a.mcap", skeleton(1), skeleton(2)))
     played = actum("play", path)
     assert played.exit_code == 0
-    assert f"{path} breaks off" in played.stdout
+    assert f"{path} is truncated" in played.stdout
 
 
 def test_what_a_play_passes_over_is_counted(live: Live, tmp_path: Path) -> None:
@@ -323,9 +323,9 @@ class TestUnfinishedInAFolder:
         recorder.close()
 
     def told_of(self, text: str, folder: Path) -> None:
-        assert f"{folder / 'b.mcap.part'} is not finished: what has been stored so far is read" in text
-        assert f"left out: {folder / 'c.mcap.part'}: no MCAP file" in text
-        assert f"{folder / 'a.mcap.part'} is left out: {folder / 'a.mcap'} is read" in text
+        assert f"{folder / 'b.mcap.part'} is not finished: its messages so far are read" in text
+        assert f"not read: {folder / 'c.mcap.part'}: not an MCAP file" in text
+        assert f"{folder / 'a.mcap.part'} is not read, because the finished recording {folder / 'a.mcap'}" in text
 
     def test_commands_read_them_and_say_so(self, folder: Path) -> None:
         listed = actum("takes", folder).stdout
@@ -336,11 +336,11 @@ class TestUnfinishedInAFolder:
         watched = actum("watch", "segment", "--json", "--from", folder)
         assert [json.loads(line)["segment_id"] for line in watched.stdout.splitlines()] == ["done"] * 2 + ["newest"] * 2
         self.told_of(watched.stderr, folder)
-        assert f"{folder / 'b.mcap.part'} breaks off" in watched.stderr
+        assert f"{folder / 'b.mcap.part'} is truncated" in watched.stderr
 
     def test_a_file_that_is_named_is_read_or_refused(self, folder: Path) -> None:
         assert "newest" in actum("watch", "segment", "--from", folder / "b.mcap.part").stdout
-        assert "no MCAP file" in refused("watch", "segment", "--from", folder / "c.mcap.part")
+        assert "not an MCAP file" in refused("watch", "segment", "--from", folder / "c.mcap.part")
 
     def test_what_takes_folders_by_itself_logs_it(self, folder: Path, caplog: pytest.LogCaptureFixture) -> None:
         assert [recording.path.name for recording in select([folder])] == ["a.mcap", "b.mcap.part"]

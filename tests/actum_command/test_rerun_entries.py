@@ -145,7 +145,7 @@ def test_an_image_of_too_few_bytes_is_told_of_and_not_shown(tmp_path: Path) -> N
     rows = shown(tmp_path, image("bgr8", b"123"))
     assert "/kinect0/image/color" not in rows
     [row] = rows["/kinect0/log/image"]
-    assert row["TextLog:text"] == ["3 bytes are no bgr8 of 2x1, which has 6"]
+    assert row["TextLog:text"] == ["a bgr8 image of 2x1 has 6 bytes, but this one has 3"]
     assert row["TextLog:level"] == ["WARN"]
 
 

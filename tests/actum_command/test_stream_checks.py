@@ -71,34 +71,34 @@ def test_streams_that_flow_are_no_problem() -> None:
 @pytest.mark.parametrize(("put_hz", "told"), [(12.0, True), (17.5, True), (18.5, False), (29.0, False), (0.0, False)])
 def test_a_source_that_gives_fewer_frames_than_it_is_set_to(put_hz: float, told: bool) -> None:
     found = said([statuses(GATEWAY, {SKELETON: put_hz}, state="camera lost: x")], [info(GATEWAY, rate_hz=30.0)])
-    assert [f"puts {put_hz:.0f} frames a second, and its source is set to 30" in line for line in found] == [
+    assert [f"publishes {put_hz:.0f} frames per second, but its source is set to 30" in line for line in found] == [
         True
     ] * told
 
 
 def test_skeletons_that_come_slower_than_they_are_stamped() -> None:
     [line] = said(streams={keys.SKELETON: watched(people(30), apart_s=1 / 12)})
-    assert line.startswith("12 skeletons come in a second, and by their stamps there are 30")
+    assert line.startswith("12 skeletons arrive per second, but by their stamps there are 30")
 
 
 def test_images_that_have_stopped() -> None:
     image_key = "actum/kinect0/image/color"
     [line] = said([statuses(GATEWAY, {SKELETON: 30.0, image_key: 0.0})], streams={keys.SKELETON: watched(people(75))})
-    assert line == "sensor_gateway puts no image/color any more, 1000 so far: start it again"
+    assert line == "sensor_gateway stopped publishing image/color after 1000 messages: restart it"
     assert said([statuses(GATEWAY, {image_key: 0.0}, state="source ended")]) == []
 
 
 def test_a_frozen_camera() -> None:
     assert said(streams={keys.SKELETON: watched(people(60, moving=False))})[0].startswith(
-        "skeletons repeat, bit for bit"
+        "skeletons repeat bit for bit"
     )
     [line] = said(streams={keys.COLOR: watched([image(i * SECOND_NS // 30) for i in range(60)])})
-    assert line.startswith("images repeat, bit for bit: the camera is frozen")
+    assert line.startswith("images repeat bit for bit, so the camera is frozen")
 
 
 def test_stamps_that_stand_still() -> None:
     [line] = said(streams={keys.SKELETON: watched([skeleton(7, STANDING + 0.001 * i) for i in range(60)])})
-    assert line.startswith("stamps of skeletons stand still")
+    assert line.startswith("the stamps of skeletons do not rise")
 
 
 def test_an_empty_room_is_not_frozen() -> None:
@@ -107,7 +107,8 @@ def test_an_empty_room_is_not_frozen() -> None:
 
 
 @pytest.mark.parametrize(
-    ("got_hz", "words"), [(0.0, "gets none of the 30"), (12.0, "gets 12 of the 30"), (25.0, None), (30.0, None)]
+    ("got_hz", "words"),
+    [(0.0, "receives none of the 30"), (12.0, "receives only 12 of the 30"), (25.0, None), (30.0, None)],
 )
 def test_a_reader_that_gets_fewer_than_are_put(got_hz: float, words: str | None) -> None:
     found = said([statuses(GATEWAY, {SKELETON: 30.0}), statuses(PREPROCESSOR, {SKELETON: got_hz})])
@@ -145,7 +146,7 @@ def test_the_fastest_answer_counts_and_hosts_that_agree_share_a_line() -> None:
     assert found["far"].ahead_s == pytest.approx(5.0) and found["far"].uncertainty_s == pytest.approx(0.001)
     [line] = clock_offsets.remarks(found)
     assert line.startswith("the clock of beside, far is 5.0")
-    assert "s ahead of this one's, give or take 0.001 s: no event depends on it" in line
+    assert "s ahead of this one's, ± 0.001 s: events do not depend on it" in line
 
 
 class Router:
@@ -165,10 +166,10 @@ def test_where_nothing_is_heard_a_router_that_speaks_says_that_nothing_runs() ->
     nothing = Heard({}, [], {}, {})
     assert everything_denied(nothing, Router(offered=False, tells=True), [GATEWAY, PREPROCESSOR]) is None
     denied = everything_denied(nothing, Router(offered=False, tells=False), [GATEWAY, PREPROCESSOR])
-    assert denied is not None and denied.startswith("the router lets this program in and tells it nothing")
+    assert denied is not None and denied.startswith("the router accepts this program but answers no query")
     hidden = everything_denied(nothing, Router(offered=True, tells=True), [GATEWAY, PREPROCESSOR])
     assert hidden is not None and hidden.startswith(
-        "services run, and the router's access control tells this program nothing"
+        "services run, but the router's access control denies this program permission"
     )
 
 
@@ -177,6 +178,6 @@ def test_what_is_told_in_part() -> None:
     answered = [answer(GATEWAY, 0.0, 0.001)]
     assert list(partly_denied(Heard({GATEWAY: ["a"]}, answered, {GATEWAY: known}, {}))) == []
     [line] = partly_denied(Heard({}, answered, {GATEWAY: known}, {}))
-    assert line.startswith("no service tells that it is alive")
+    assert line.startswith("services run, but none of them shows its token")
     [line] = partly_denied(Heard({GATEWAY: ["a"]}, answered, {}, {}))
-    assert line.startswith("no service's status comes through")
+    assert line.startswith("services run, but no status arrives")

@@ -37,7 +37,7 @@ def outcome(supervisor: Supervisor) -> list[str]:
 def test_what_ends_is_announced_and_started_again(ending: type[Program], tmp_path: Path) -> None:
     with Supervisor(tmp_path / "log") as supervisor:
         supervisor.start(ending("worker", "ending", ["1"]))
-        assert outcome(supervisor) == ["worker ended with code 1: restart in 0.5 s"]
+        assert outcome(supervisor) == ["worker ended with code 1 and restarts in 0.5 s"]
 
 
 def test_what_is_killed_is_another_process_afterwards(tmp_path: Path) -> None:
@@ -58,7 +58,7 @@ def test_what_runs_elsewhere_is_tried_again_now_and_then(
 ) -> None:
     with Supervisor(tmp_path / "log") as supervisor:
         supervisor.start(ending("worker", "ending", [str(TAKEN)]))
-        assert outcome(supervisor) == ["worker runs elsewhere, and here again once it has ended there"]
+        assert outcome(supervisor) == ["worker already runs elsewhere: it starts here when that instance ends"]
         now_s = time.monotonic()
         monkeypatch.setattr(time, "monotonic", lambda: now_s + ELSEWHERE_S - 5)
         assert supervisor.restart_ended() == []
@@ -72,7 +72,9 @@ def test_what_runs_elsewhere_is_tried_again_now_and_then(
 def test_what_cannot_be_used_as_it_is_set_is_not_started_again(ending: type[Program], tmp_path: Path) -> None:
     with Supervisor(tmp_path / "log") as supervisor:
         supervisor.start(ending("worker", "ending", [str(UNUSABLE)]))
-        with pytest.raises(UnusableError, match=f"worker cannot run as it is set: it says why in {tmp_path / 'log'}"):
+        with pytest.raises(
+            UnusableError, match=f"worker cannot run with its settings: see the reason in {tmp_path / 'log'}"
+        ):
             outcome(supervisor)
     assert (tmp_path / "log").read_text() == "mode: no such thing\n"
 
@@ -86,7 +88,7 @@ def test_a_system_ends_with_the_line_of_the_program_that_cannot_be_used(
     told = capfd.readouterr()
     assert ended.value.exit_code == 1
     assert told.out == "mode: no such thing\n"
-    assert "worker cannot run as it is set" in told.err
+    assert "worker cannot run with its settings" in told.err
 
 
 SUPERVISING = """

@@ -111,9 +111,9 @@ def test_what_is_no_take_is_named(tmp_path: Path) -> None:
         take_files(tmp_path)
     path = take(tmp_path)
     path.write_text(path.read_text().replace("Bowl_x", "Pot_x"))
-    with pytest.raises(DatasetError, match="subject0_take0.csv: not a table"):
+    with pytest.raises(DatasetError, match="subject0_take0.csv is not a table"):
         read_take(path, "kinect0")
-    with pytest.raises(DatasetError, match="put the labels beside"):
+    with pytest.raises(DatasetError, match="put the labels next to"):
         read_take(take(tmp_path).rename(tmp_path / "subject0_take7.csv"), "kinect0")
 
 

@@ -64,10 +64,10 @@ def test_a_name_tells_action_and_person(name: str, pattern: str, told: tuple[str
 @pytest.mark.parametrize(
     ("pattern", "names", "complaint"),
     [
-        ("(", "", "no regular expression"),
+        ("(", "", "not a regular expression"),
         (r"(?P<person>.*)", "", "no group"),
-        (DEFAULT_PATTERN, "1", "not like 1=wave"),
-        (DEFAULT_PATTERN, "1=", "not like 1=wave"),
+        (DEFAULT_PATTERN, "1", "not a list of names: write it like 1=wave"),
+        (DEFAULT_PATTERN, "1=", "not a list of names: write it like 1=wave"),
     ],
 )
 def test_options_that_cannot_be_used_are_refused(pattern: str, names: str, complaint: str) -> None:
@@ -102,15 +102,15 @@ def test_clips_of_another_size_than_was_calibrated_are_told(tmp_path: Path) -> N
     calibration = Calibration(image_size=(640, 480), K=[600, 0, 320, 0, 600, 240, 0, 0, 1], distortion=[])
     report, _ = imported(tmp_path / "clips", tmp_path / "out", optics=Optics(calibration=calibration))
     assert report.lines()[-2:] == [
-        "6 frames without a skeleton, kept as such",
-        "6 frames of another size than was calibrated: nobody is looked for in them",
+        "6 frames without a skeleton, kept without people",
+        "6 frames of another size than the calibration's: no people are detected in them",
     ]
 
 
 def test_a_name_that_does_not_tell_is_refused_before_anything_is_written(tmp_path: Path) -> None:
     write_video(tmp_path / "clips" / "wave_anna.avi")
     write_video(tmp_path / "clips" / "zzz.avi")
-    with pytest.raises(DatasetError, match=r"zzz\.avi: the name does not tell"):
+    with pytest.raises(DatasetError, match=r"zzz\.avi is not imported, because its name does not give"):
         imported(tmp_path / "clips", tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
@@ -119,16 +119,16 @@ def test_a_clip_that_was_imported_is_refused_before_any_is_read(tmp_path: Path) 
     write_video(tmp_path / "clips" / "wave_anna.avi")
     imported(tmp_path / "clips", tmp_path / "out")
     write_video(tmp_path / "clips" / "clap_ben.avi")
-    with pytest.raises(FileExistsError, match=r"wave_anna\.mcap is there already"):
+    with pytest.raises(FileExistsError, match=r"wave_anna\.mcap already exists"):
         imported(tmp_path / "clips", tmp_path / "out")
     assert [file.name for file in (tmp_path / "out").iterdir()] == ["wave_anna.mcap"]
 
 
 def test_a_broken_clip_and_an_empty_folder_are_named(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match="no video there"):
+    with pytest.raises(DatasetError, match="holds no video"):
         imported(tmp_path, tmp_path / "out")
     (tmp_path / "wave_anna.mp4").write_text("no video")
-    with pytest.raises(DatasetError, match=r"wave_anna\.mp4: no video"):
+    with pytest.raises(DatasetError, match=r"wave_anna\.mp4 is not a video"):
         imported(tmp_path, tmp_path / "out")
 
 
@@ -148,5 +148,5 @@ def test_two_clips_of_one_name_are_refused_before_anything_is_written(other: str
 
 
 def test_an_action_that_is_not_told_is_refused() -> None:
-    with pytest.raises(DatasetError, match="does not tell the action"):
+    with pytest.raises(DatasetError, match="does not give the action"):
         Naming.of(r"(?P<action>[a-z]+)?_.*", "").read(Path("_anna.mp4"))

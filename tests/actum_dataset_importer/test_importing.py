@@ -44,7 +44,7 @@ def test_what_was_imported_and_mended_since_is_not_imported_over(tmp_path: Path)
     msr_sequence(tmp_path, "a01_s02_e03", "x0x")
     import_msr_action3d(tmp_path, tmp_path / "out", lambda done, total: None)
     (tmp_path / "out" / "a01_s02_e03.mcap").write_bytes(b"mended")
-    with pytest.raises(FileExistsError, match="is there already: name another file, or remove it"):
+    with pytest.raises(FileExistsError, match="already exists: name another file, or remove this one"):
         import_msr_action3d(tmp_path, tmp_path / "out", lambda done, total: None)
     assert (tmp_path / "out" / "a01_s02_e03.mcap").read_bytes() == b"mended"
 
@@ -84,10 +84,10 @@ def test_utkinect_recordings_keep_their_segments(tmp_path: Path) -> None:
     assert report.lines() == [
         "1 recordings, 3 frames, 2 labelled segments",
         "2 actions: pull, push; 1 persons: 3",
-        "0 frames without a skeleton, kept as such",
+        "0 frames without a skeleton, kept without people",
         "1 segments without bounds skipped: s03_e02 carry",
-        "1 duplicate rows dropped",
-        "1 pairs of segments that overlap, kept",
+        "1 duplicate rows removed",
+        "1 pairs of overlapping segments, both kept",
     ]
     recording = Recording(tmp_path / "out" / "s03_e02.mcap")
     assert (recording.person, recording.source) == ("3", "utkinect")
@@ -110,7 +110,7 @@ def test_a_recording_that_is_there_is_not_overwritten(tmp_path: Path) -> None:
     msr_sequence(tmp_path, "a01_s02_e03", "x0x")
     (tmp_path / "out").mkdir()
     (tmp_path / "out/a01_s02_e03.mcap").write_bytes(b"mine")
-    with pytest.raises(OSError, match="is there already: name another file, or remove it"):
+    with pytest.raises(OSError, match="already exists: name another file, or remove this one"):
         import_msr_action3d(tmp_path, tmp_path / "out", lambda done, total: None)
     assert (tmp_path / "out/a01_s02_e03.mcap").read_bytes() == b"mine"
 

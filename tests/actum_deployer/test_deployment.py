@@ -61,7 +61,7 @@ def test_addresses_of_either_protocol_have_a_port_or_the_usual_one(written: str,
     ],
 )
 def test_what_cannot_be_is_refused_by_name(hosts: str, sensors: str | None) -> None:
-    with pytest.raises((SettingsError, InvalidKeyError), match=r"hosts|sensors|cannot stand in a key"):
+    with pytest.raises((SettingsError, InvalidKeyError), match=r"hosts|sensors|is not a valid part of a key"):
         hosts_of(hosts, sensors)
 
 

@@ -124,7 +124,7 @@ def test_time_in_which_nobody_is_seen_is_no_background(record: Record) -> None:
 
 
 def test_a_model_that_cannot_find_actions_says_so_and_what_to_do(lifts: Recording) -> None:
-    with pytest.raises(NoSpotterError, match="cannot find actions without marks; train it anew"):
+    with pytest.raises(NoSpotterError, match="cannot find actions without marks: train it again"):
         found_by(tiny_model(), [lifts])
 
 

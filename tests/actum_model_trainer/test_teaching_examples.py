@@ -162,7 +162,7 @@ def test_a_set_is_a_folder_that_can_be_copied_renamed_and_deleted(teacher: Teach
 def test_a_damaged_file_in_a_set_is_named_and_the_others_are_there(teacher: Teacher) -> None:
     (teacher.folder / "sets/kitchen/take-0001.mcap").write_bytes(b"no recording")
     (kitchen,) = teacher.ask("list")["sets"]
-    assert "take-0001.mcap: no MCAP file" in kitchen["unreadable"][0]
+    assert "take-0001.mcap: not an MCAP file" in kitchen["unreadable"][0]
     assert kitchen["actions"] == {"goggles": 5}
 
 

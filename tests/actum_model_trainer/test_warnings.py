@@ -31,13 +31,13 @@ def test_no_example_is_nothing_to_warn_of() -> None:
 
 def test_one_person_says_nothing_of_others() -> None:
     assert warnings_of(examples(ENOUGH, people=("anna",)), []) == [
-        "All examples are of one person, anna: how others differ cannot be known. Record a second person."
+        "All examples are of one person, anna, so the differences between people are unknown. Record a second person."
     ]
 
 
 def test_people_that_are_not_named_may_be_one() -> None:
     (said,) = warnings_of(examples(ENOUGH, people=("",)), [])
-    assert said.startswith("No recording says who it shows") and "--person" in said
+    assert said.startswith("No recording names a person") and "--person" in said
 
 
 def test_few_examples_are_named_with_how_many_more() -> None:
@@ -63,7 +63,9 @@ def test_background_may_be_as_much_as_there_is() -> None:
 
 def test_without_background_what_is_none_of_the_actions_is_a_guess() -> None:
     (said,) = warnings_of(examples({"push": 6, "pull": 6}), [])
-    assert said.startswith("No segment is labelled idle or background: what is none of the actions is a guess.")
+    assert said.startswith(
+        "No segment is labelled idle or background, so the model has to guess what is none of the actions."
+    )
     assert warnings_of(examples({"push": 6, "pull": 6, "background": 6}), []) == []
 
 
@@ -72,12 +74,12 @@ def test_without_background_what_is_none_of_the_actions_is_a_guess() -> None:
     [
         (
             [("push", "push")] * 4 + [("push", "pull")] * 2 + [("pull", "pull")] * 2,
-            "pull and push are not told apart: of examples left out, push was taken for pull in 2 of 6. "
-            "Record 5 more of push, also by people who are not in yet; ",
+            "pull and push are confused: of examples left out, push was taken for pull in 2 of 6. "
+            "Record 5 more of push, also by new people. ",
         ),
         (
             [("push", "push")] * 3 + [("push", "pull")] + [("pull", "pull")] * 3 + [("pull", "push")],
-            "pull and push are not told apart: of examples left out, pull was taken for push in 1 of 4 "
+            "pull and push are confused: of examples left out, pull was taken for push in 1 of 4 "
             "and push was taken for pull in 1 of 4. Record 5 more of pull and push, ",
         ),
     ],
@@ -87,7 +89,7 @@ def test_two_actions_that_are_mixed_up_are_named_with_what_to_record(
 ) -> None:
     (warning,) = warnings_of(examples(ENOUGH), held_out)
     assert warning.startswith(said)
-    assert warning.endswith("do them more differently or give them one name.")
+    assert warning.endswith("perform the actions more differently, or give both the same label.")
 
 
 @pytest.mark.parametrize(

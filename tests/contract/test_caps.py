@@ -49,7 +49,7 @@ def test_a_full_ring_of_every_topic_is_bounded_in_bytes() -> None:
 
 def test_a_chunk_of_a_key_is_no_longer_than_a_name() -> None:
     assert keys.chunk("k" * 64)
-    with pytest.raises(keys.InvalidKeyError, match="64 at most"):
+    with pytest.raises(keys.InvalidKeyError, match="use 1 to 64"):
         keys.chunk("k" * 65)
 
 
@@ -72,7 +72,7 @@ def test_numbers_are_kept_of_so_many_keys() -> None:
     ids=["MessagePack", "JSON"],
 )
 def test_a_request_that_unpacks_to_many_times_its_size_is_refused(payload: bytes, encoding: str) -> None:
-    with pytest.raises(Refusal, match="cannot be read"):
+    with pytest.raises(Refusal, match="cannot be decoded"):
         unpacked(payload, encoding)
     assert tracemalloc.get_traced_memory()[1] < 100_000_000
 

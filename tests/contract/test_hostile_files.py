@@ -99,7 +99,7 @@ def test_a_thousand_small_bombs_in_one_file_are_refused(tmp_path: Path) -> None:
             writer.add_message(channel, i, payload, i)
         writer.finish()
     assert path.stat().st_size < 100_000
-    assert "far more messages than a file of its size holds" in refused(path)
+    assert "far more messages than a file of its size can hold" in refused(path)
 
 
 def test_a_lens_that_is_covered_makes_no_bomb(tmp_path: Path) -> None:
@@ -158,7 +158,7 @@ def test_an_mcap_of_a_later_version_is_refused(recording: Path, tmp_path: Path) 
 
 
 def no_model(path: Path) -> str:
-    with pytest.raises(ModelError, match=f"^{path}: .*; train a model with: actum train REC… -o MODEL$") as error:
+    with pytest.raises(ModelError, match=f"^{path}: .*; train a model with 'actum train REC… -o MODEL'$") as error:
         load_model(path)
     return str(error.value)
 

@@ -114,7 +114,7 @@ def test_another_dictionary_is_chosen_by_name(image_of, pose_at) -> None:
 
 
 def test_an_unknown_dictionary_is_named() -> None:
-    with pytest.raises(ValueError, match="'DICT_9X9' is no marker dictionary"):
+    with pytest.raises(ValueError, match="'DICT_9X9' is not a marker dictionary"):
         Settings(dictionary="DICT_9X9")
 
 

@@ -89,12 +89,12 @@ def test_an_attachment_is_number_time_and_who_put_it() -> None:
 
 @pytest.mark.parametrize("namespace", ["a-b", "1a", "a//b", "a/*", "a b"])
 def test_what_is_no_ros_name_is_refused(namespace) -> None:
-    with pytest.raises(ValidationError, match="cannot be a ROS namespace: give --ros-namespace"):
+    with pytest.raises(ValidationError, match="is not a ROS namespace: give --ros-namespace"):
         Settings(ros_namespace=namespace)
 
 
 def test_a_sensor_whose_name_ros_cannot_have_needs_a_namespace() -> None:
     with pytest.raises(ValidationError) as refused:
         Settings(sensor="cam-1")
-    assert complaint(refused.value).startswith("settings: 'actum/cam-1' cannot be a ROS namespace")
+    assert complaint(refused.value).startswith("settings: 'actum/cam-1' is not a ROS namespace")
     assert Settings(sensor="cam-1", ros_namespace="cam_1").namespace == "cam_1"

@@ -202,5 +202,5 @@ def test_no_doing_touches_an_object(idle: Scene, states: list[SceneState]) -> No
 
 @pytest.mark.parametrize("kinds", [("juggle",), ()])
 def test_unknown_doings_and_none_at_all_are_refused(kinds: tuple[str, ...]) -> None:
-    with pytest.raises(ValueError, match="no everyday doings"):
+    with pytest.raises(ValueError, match="is not an everyday activity"):
         Everyday(kinds)

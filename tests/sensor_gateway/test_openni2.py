@@ -114,7 +114,7 @@ def test_depth_and_colour_that_are_never_of_the_same_time_are_refused(tmp_path: 
 def test_a_recording_of_depth_alone_is_refused(tmp_path: Path) -> None:
     path = write_oni(tmp_path / "depth.oni", Track(DEPTH, [DEPTH_MM], [1000]))
 
-    with pytest.raises(VideoError, match=r"depth.oni: no recording .* no colour and depth"):
+    with pytest.raises(VideoError, match=r"depth.oni (is not a recording|holds no colour)"):
         next(recorded_pictures(path, 0))
 
 
@@ -123,7 +123,7 @@ def test_what_is_no_recording_is_refused_by_name(tmp_path: Path, content: bytes)
     path = tmp_path / "broken.oni"
     path.write_bytes(content)
 
-    with pytest.raises(VideoError, match="broken.oni: no recording"):
+    with pytest.raises(VideoError, match="broken.oni is not a recording"):
         next(recorded_pictures(path, 0))
 
 
@@ -221,7 +221,7 @@ def test_a_library_that_is_not_there_is_an_error_with_what_to_install(monkeypatc
     monkeypatch.delenv("OPENNI2_REDIST64", raising=False)
     monkeypatch.delenv("OPENNI2_REDIST", raising=False)
 
-    with pytest.raises(OpenNiError, match=r"apt install libopenni2-0 \(libOpenNI2"):
+    with pytest.raises(OpenNiError, match=r"\(libOpenNI2.*apt install libopenni2-0"):
         library()
 
 

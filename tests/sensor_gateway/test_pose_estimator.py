@@ -55,9 +55,9 @@ def test_a_missing_model_is_told_with_the_command_that_gets_it(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("error", "told"),
     [
-        (PermissionError("Unable to open file at pose.task"), "this user may not read it"),
-        (FileNotFoundError("No file with name: pose_detector.tflite"), "no pose model .*'actum models fetch'"),
-        (OSError("libGLESv2.so.2: cannot open shared object file"), "'apt install libegl1 libgles2'"),
+        (PermissionError("Unable to open file at pose.task"), "cannot be read by this user"),
+        (FileNotFoundError("No file with name: pose_detector.tflite"), "is not a pose model .*'actum models fetch'"),
+        (OSError("libGLESv2.so.2: cannot open shared object file"), "apt install libegl1 libgles2"),
     ],
 )
 def test_why_the_model_cannot_be_opened_is_told(
@@ -120,7 +120,7 @@ def bundle_of_another_kind() -> bytes:
 @pytest.mark.parametrize("content", [b"no model" * 1000, bundle_of_another_kind()], ids=["no model", "a hand's"])
 def test_what_is_no_pose_model_is_told_likewise(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "pose.task").write_bytes(content)
-    with pytest.raises(PoseModelError, match=r"pose\.task: no pose model .*'actum models fetch'"):
+    with pytest.raises(PoseModelError, match=r"pose\.task is not a pose model .*'actum models fetch'"):
         PoseEstimator(tmp_path / "pose.task")
 
 

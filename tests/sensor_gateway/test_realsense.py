@@ -146,7 +146,7 @@ def test_what_is_no_recording_is_refused_by_name(tmp_path: Path, content: bytes,
     path = tmp_path / f"broken{ending}"
     path.write_bytes(content)
 
-    with pytest.raises(VideoError, match=f"broken{ending}: no recording"):
+    with pytest.raises(VideoError, match=f"broken{ending} is not a recording"):
         next(recorded_pictures(path, 0))
 
 

@@ -54,13 +54,13 @@ def test_a_mark_without_a_classifier_ends_with_code_1_and_says_why(running: Syst
     with running.client():
         marking = running.actum("segment", "start", "a")
     assert marking.returncode == 1
-    assert "nobody listens on actum/kinect0/segment" in marking.stderr
+    assert "no service received the mark on actum/kinect0/segment" in marking.stderr
 
 
 def test_without_a_router_a_command_says_what_to_do(running: System) -> None:
     asked = running.actum("doctor")
     assert asked.returncode == 1
-    assert "start one with 'actum router' or set ACTUM_CONNECT" in " ".join(asked.stderr.split())
+    assert "start a router with 'actum router', or set ACTUM_CONNECT" in " ".join(asked.stderr.split())
 
 
 def test_marks_from_the_command_line_are_answered(running: System, scene_model: Path) -> None:
@@ -94,7 +94,7 @@ def test_up_runs_everything_that_watch_shows_restarts_what_dies_and_leaves_nothi
         assert "waiting for it" not in up.said(), "the router is there first"
         wait_until(lambda: re.search(r"the page: http://127.0.0.1:\d+/", up.said()) is not None, "it names the page")
         subprocess.run(["pkill", "-KILL", "-P", str(up.process.pid), "-f", "action_fusion"], check=True)
-        wait_until(lambda: "action_fusion ended with code -9: restart" in up.said(), "the supervisor notices")
+        wait_until(lambda: "action_fusion ended with code -9 and restarts" in up.said(), "the supervisor notices")
         assert_recognised(events)
         wait_until(lambda: re.search(r"(push|pull|put|lift|point)", watch.said()) is not None, "watch prints an event")
     watch.terminate()
@@ -149,7 +149,7 @@ def test_up_refuses_a_zenoh_configuration_that_cannot_be_used(running: System, m
     monkeypatch.setenv("ACTUM_ZENOH_CONFIG", "/nowhere.json5")
     refused = running.actum("up")
     assert refused.returncode == 1
-    assert "actum: zenoh-config: /nowhere.json5 is no Zenoh configuration" in refused.stderr
+    assert "actum: zenoh-config: /nowhere.json5 is not a Zenoh configuration" in refused.stderr
     assert "Traceback" not in refused.stderr
     assert pids_of(running) == set()
 
@@ -158,7 +158,7 @@ def test_up_ends_with_the_complaint_of_a_service_that_cannot_be_used_as_it_is_se
     refused = running.actum("up", "--source", "foo")
     assert refused.returncode == 1
     assert "sensor_gateway: settings: source: Input should be 'camera'" in refused.stderr
-    assert "sensor_gateway cannot run as it is set" in refused.stderr
+    assert "sensor_gateway cannot run with its settings" in refused.stderr
     assert "actum is up" not in refused.stdout
     assert pids_of(running) == set()
 

@@ -109,11 +109,11 @@ def test_it_is_a_service_that_says_how_it_does(running: System, tmp_path: Path) 
         assert finished[-1].state == "running"
         second = started(running, tmp_path / "elsewhere")
         assert second.process.wait(timeout=PATIENCE_S) == 3
-        assert "another event_recorder runs for sensor kinect0" in second.said()
+        assert "another event_recorder already runs for sensor kinect0" in second.said()
     assert not (tmp_path / "elsewhere").exists()
 
 
 def test_a_file_is_no_folder(running: System, tmp_path: Path) -> None:
     refused = running.actum("record", str(tmp_path / "a.mcap"), "--events")
     assert refused.returncode == 2
-    assert "is a file's name: with --events name a folder" in refused.stderr
+    assert "has the name of a file: with --events name a folder" in refused.stderr

@@ -68,7 +68,7 @@ def test_the_second_of_a_kind_says_so_and_ends(running: System, service: str, pr
         assert code_of(second) == TAKEN
         [complaint] = [line for line in second.said().splitlines() if "another" in line]
         assert re.search(
-            rf"another {service} runs for sensor kinect0: one on \S+\. .*stop the other.*--take-over", complaint
+            rf"another {service} already runs for sensor kinect0: one on \S+\. .*Stop the other.*--take-over", complaint
         )
         wait_for_tokens(client, f"{service}/one")
     assert first.process.poll() is None
@@ -114,7 +114,7 @@ def test_who_takes_over_has_the_other_stop_and_everything_is_answered_once(runni
         wait_for_tokens(client, "pose_preprocessor/one")
         second = start(running, "two", "--take-over")
         assert code_of(first) == 0
-        assert "two takes over for sensor kinect0: this one stops" in first.said()
+        assert "two replaces this instance for sensor kinect0" in first.said()
         wait_for_tokens(client, "pose_preprocessor/two")
         assert_answered_once(client)
     assert second.process.poll() is None
@@ -153,7 +153,7 @@ def test_one_that_no_longer_answers_is_waited_for_and_ends_when_it_comes_back(ru
         assert "two does not answer: waiting" in second.said()
         first.process.send_signal(signal.SIGCONT)
         assert code_of(first) == 0
-        assert "one takes over" in first.said()
+        assert "one replaces this instance" in first.said()
         wait_for_tokens(client, "pose_preprocessor/one")
     assert second.process.poll() is None
 
@@ -179,5 +179,5 @@ def test_a_camera_for_the_markers_lives_beside_the_sensors_gateway(running: Syst
         wait_for_tokens(client, "marker_camera/one", "sensor_gateway/one")
         third = start(running, "two", *marker_camera(tmp_path), service="sensor_gateway")
         assert code_of(third) == TAKEN
-        assert "another marker_camera runs for sensor kinect0: one on" in third.said()
+        assert "another marker_camera already runs for sensor kinect0: one on" in third.said()
     assert [it.process.poll() for it in (gateway, beside)] == [None, None]

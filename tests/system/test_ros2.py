@@ -202,7 +202,7 @@ def test_marks_become_segments_and_what_is_none_is_counted(running: System, node
         told = collect(statuses, Status, lambda found: bool(found) and found[-1].counts.get("marks") == 2)[-1]
     assert told.rejects == {"bad_mark": 2}
     assert told.last_error is not None
-    assert "no std_msgs/String" in told.last_error
+    assert "not a std_msgs/String" in told.last_error
 
 
 def test_the_bridge_survives_its_routers_death(running: System, node: RosNode, bridge: Running) -> None:

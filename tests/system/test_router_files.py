@@ -35,4 +35,4 @@ def test_all_but_images_is_passed_on_to_the_other_host(running: System) -> None:
 def test_a_link_that_is_no_endpoint_is_refused(running: System) -> None:
     refused = running.actum("router", "--listen", running.settings.connect, "--link", "elsewhere")
     assert refused.returncode == 1
-    assert "'elsewhere' is no endpoint: use tcp/host:port" in refused.stderr
+    assert "'elsewhere' is not an endpoint: use tcp/host:port" in refused.stderr

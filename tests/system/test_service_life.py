@@ -138,17 +138,17 @@ def test_tokens_go_with_their_process(running: System) -> None:
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (["sensor_gateway"], "name a --source (ACTUM_SOURCE)"),
+        (["sensor_gateway"], "set --source (ACTUM_SOURCE)"),
         (["sensor_gateway", "--source", "recording"], "needs --path"),
         (["sensor_gateway", "--source", "recording", "--path", "/nowhere"], "/nowhere"),
         (["sensor_gateway", "--source", "camera", "--pose-model", "/nowhere"], "'actum models fetch'"),
         (["marker_tracker", "--dictionary", "DICT_NONE"], "dictionary: "),
         (["pose_preprocessor", "--sensor", "Kinect 0"], "sensor: "),
-        (["pose_preprocessor", "--connect", "127.0.0.1:7551"], "'127.0.0.1:7551' is no endpoint: use tcp/host:port"),
-        (["scene_simulator", "--connect", "foo"], "'foo' is no endpoint: use tcp/host:port"),
-        (["action_fusion", "--zenoh-config", "/nowhere.json5"], "/nowhere.json5 is no Zenoh configuration"),
-        (["action_fusion", "--state", __file__], f"state: the folder {__file__} cannot be made"),
-        (["action_fusion", "--zenoh-config", __file__], f"{__file__} is no Zenoh configuration"),
+        (["pose_preprocessor", "--connect", "127.0.0.1:7551"], "'127.0.0.1:7551' is not an endpoint: use tcp/"),
+        (["scene_simulator", "--connect", "foo"], "'foo' is not an endpoint: use tcp/host:port"),
+        (["action_fusion", "--zenoh-config", "/nowhere.json5"], "/nowhere.json5 is not a Zenoh configuration"),
+        (["action_fusion", "--state", __file__], f"state: the folder {__file__} cannot be created"),
+        (["action_fusion", "--zenoh-config", __file__], f"{__file__} is not a Zenoh configuration"),
     ],
 )
 def test_settings_that_cannot_be_used_end_with_one_line(running: System, arguments: list[str], complaint: str) -> None:
@@ -165,7 +165,7 @@ def test_a_configuration_file_that_is_not_there_is_no_defaults(
     monkeypatch.setenv("ACTUM_CONFIG", "/nowhere.toml")
     service = running.start("pose_preprocessor")
     assert service.process.wait(timeout=30) == 2
-    named = "ACTUM_CONFIG names /nowhere.toml, which is no file: correct or unset it"
+    named = "ACTUM_CONFIG names /nowhere.toml, which is not a file: correct or unset ACTUM_CONFIG"
     assert service.said() == f"pose_preprocessor: {named}\n"
 
 
@@ -194,7 +194,7 @@ def test_a_service_of_which_a_part_has_a_bug_ends_and_says_so_instead_of_going_o
 
         wait_until(ended, "the process ends", 15.0)
     assert service.process.returncode == 1
-    assert "a bug, met" in service.said() and where in service.said()
+    assert "a bug occurred" in service.said() and where in service.said()
 
 
 def test_a_router_goes_on_where_its_health_file_cannot_be_written(running: System) -> None:

@@ -135,7 +135,7 @@ def test_foxglove_is_served_the_live_scene_on_this_machine_only(running: System)
         with pytest.raises(Exception, match="HTTP 403"):
             listen(heard(address, bool, origin="https://app.foxglove.dev"))
     serving.terminate()
-    refusal = "refused: a page of 'https://app.foxglove.dev' may not come in here: --origin can name it"
+    refusal = "refused: a page of 'https://app.foxglove.dev' may not come in here: use --origin to admit it"
     assert serving.said().count(refusal) == 1
     assert re.search(r"\d+ messages served", serving.said())
 

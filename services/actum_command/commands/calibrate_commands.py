@@ -24,22 +24,28 @@ from actum_command.commands.plain_help import PlainTyper
 from actum_command.commands.terminal import connect, console, fail, refuse_ending, say
 from actum_command.live_calibration import SilentStreamError, collect_pairs, collect_views
 
-app = PlainTyper(no_args_is_help=True, help="Calibrate cameras; most need the board of actum markers --board.")
+app = PlainTyper(
+    no_args_is_help=True,
+    help="Calibrate cameras with the board that 'actum markers --board' prints, or with a standing person (up).",
+)
 app.command("up")(up)
 
-Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration to write (YAML)")]
-Squares = Annotated[str, typer.Option("--board", help="the board's squares, across x down")]
-SquareMm = Annotated[float, typer.Option(help="side of a square, as measured on the print")]
-MarkerMm = Annotated[float, typer.Option(help="side of a marker on the board")]
-Family = Annotated[str, typer.Option(help="the board's marker dictionary, by OpenCV's name")]
+Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration file to write (YAML)")]
+Squares = Annotated[str, typer.Option("--board", help="number of squares of the board, across x down")]
+SquareMm = Annotated[float, typer.Option(help="side of a square, as measured on the print (mm)")]
+MarkerMm = Annotated[float, typer.Option(help="side of a marker on the board (mm)")]
+Family = Annotated[str, typer.Option(help="OpenCV's name of the board's marker dictionary")]
 Existing = typer.Option(exists=True, dir_okay=False)
 
 
 @app.command("intrinsics")
 def intrinsics(
     output: Output,
-    images: Annotated[list[Path] | None, typer.Argument(help="pictures of the board, or folders of them")] = None,
-    live: Annotated[bool, typer.Option("--live", help="from the sensor's colour stream instead")] = False,
+    images: Annotated[list[Path] | None, typer.Argument(help="pictures of the board, or folders of pictures")] = None,
+    live: Annotated[
+        bool,
+        typer.Option("--live", help="take the pictures from the sensor's colour stream"),
+    ] = False,
     board: Squares = "7x5",
     square_mm: SquareMm = 35.0,
     marker_mm: MarkerMm = 26.0,
@@ -47,7 +53,7 @@ def intrinsics(
 ) -> None:
     """Find a camera's focal lengths, centre and distortion from 15 to 20 pictures of the board."""
     if live == bool(images):
-        fail("name pictures of the board, or use --live")
+        fail("name either pictures of the board, or --live")
     files = _files(images or [])
     picture = _coverage_picture_of(output, files)
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
@@ -73,20 +79,27 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     output: Output,
     pairs: Annotated[
         list[Path] | None,
-        typer.Argument(help="NAME_a.png (sees markers) and NAME_b.png (sees people) …, or two folders"),
+        typer.Argument(
+            help=(
+                "pairs NAME_a.png (from the camera that sees the markers) and NAME_b.png (from the one that sees the "
+                "people), or two folders"
+            )
+        ),
     ] = None,
-    live: Annotated[str | None, typer.Option(help="two sensors instead: MARKERS,PEOPLE")] = None,
+    live: Annotated[
+        str | None, typer.Option(help="take the pictures from two sensors, MARKERS,PEOPLE, such as kinect0,kinect1")
+    ] = None,
     board: Squares = "7x5",
     square_mm: SquareMm = 35.0,
     marker_mm: MarkerMm = 26.0,
     family: Family = "DICT_5X5_100",
 ) -> None:
-    """Find where the camera that sees people sees the one that sees markers, from 6 to 10 pairs of pictures.
+    """Find the transform from the camera that sees the markers to the one that sees the people, from 6 to 10 pairs.
 
     Writes the marker camera's calibration with skeleton_from_image in it.
     """
     if (live is not None) == bool(pairs):
-        fail("name pairs of pictures, or use --live MARKERS,PEOPLE")
+        fail("name either pairs of pictures, or --live MARKERS,PEOPLE")
     refuse_ending(output, ".yaml", ".yml")
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
     try:
@@ -116,7 +129,7 @@ def _extrinsics(
 def _board(squares: str, square_mm: float, marker_mm: float, family: str) -> Board:
     columns, _, rows = squares.partition("x")
     if not (columns.isdecimal() and rows.isdecimal()):
-        fail(f"--board is {squares!r}: say the squares across x down, as 7x5")
+        fail(f"--board {squares!r} is not a number of squares: give them across x down, such as 7x5")
     try:
         return Board(int(columns), int(rows), square_mm / 1000, marker_mm / 1000, family)
     except PatternError as error:
@@ -134,14 +147,17 @@ def _coverage_picture_of(output: Path, pictures: Sequence[Path]) -> Path:
     inputs = {file.resolve() for file in pictures}
     for written in (output, picture):
         if written.resolve() in inputs:
-            fail(f"{written} is among the pictures and would be overwritten: write to another place or name with -o")
+            fail(f"{written} is one of the pictures and would be overwritten: name another output with -o")
     return picture
 
 
 def _sensors(text: str) -> tuple[str, str]:
     markers, _, people = text.partition(",")
     if not CHUNK.fullmatch(markers) or not CHUNK.fullmatch(people) or markers == people:
-        fail(f"--live is {text!r}: name two sensors, the one that sees markers first, as kinect0,kinect1")
+        fail(
+            f"--live {text!r} does not name two sensors: put the one that sees the markers first, such as "
+            "kinect0,kinect1"
+        )
     return markers, people
 
 
@@ -167,7 +183,7 @@ def _live_views(finder: BoardFinder) -> list[View]:
 
 
 def _live_pairs(sensors: tuple[str, str], finder: BoardFinder) -> list[Pair]:
-    console.print("hold the board still where both cameras see it, each time elsewhere and tilted otherwise")
+    console.print("hold the board still where both cameras see it; change its place and its tilt for each pair")
     with connect() as client:
         try:
             return collect_pairs(client, sensors, finder, stop_on_signals(), console.print)
@@ -196,14 +212,14 @@ def _report_intrinsics(fit: Intrinsics) -> None:
     console.print(f"coverage {fit.coverage:.0%} of the image")
     if fit.bend_mm:
         console.print(
-            f"[yellow]the board is bent by {fit.bend_mm:.1f} mm: allowed for here, but not in extrinsics; glue it "
-            "to something flat[/yellow]",
+            f"[yellow]the board is bent by {fit.bend_mm:.1f} mm: this calibration allows for that, extrinsics "
+            "cannot; glue the board to a flat surface[/yellow]",
             soft_wrap=True,
         )
     if fit.coverage < GOOD_COVERAGE:
         console.print(
-            "[yellow]towards the edges of the image the distortion is extrapolated: "
-            "add views with the board there, if objects will be[/yellow]",
+            "[yellow]near the edges of the image the distortion is extrapolated: if objects will be there, add "
+            "views with the board there[/yellow]",
             soft_wrap=True,
         )
 
@@ -214,14 +230,15 @@ def _report_extrinsics(fit: Extrinsics, pairs: Sequence[Pair]) -> None:
     for pair, error in zip(pairs, fit.rms_of_pairs_px, strict=True):
         say(f"  {pair.name}: {error:.3f} px")
     console.print(
-        f"the camera that sees markers is at x {x:+.3f}, y {y:+.3f}, z {z:+.3f} m of the one that sees people "
-        f"(right, down, forward), ± {fit.position_deviation_mm:.1f} mm and ± {fit.rotation_deviation_deg:.2f} deg",
+        f"the camera that sees the markers is at x {x:+.3f}, y {y:+.3f}, z {z:+.3f} m (right, down, forward) from "
+        f"the one that sees the people, ± {fit.position_deviation_mm:.1f} mm and ± "
+        f"{fit.rotation_deviation_deg:.2f} deg",
         soft_wrap=True,
     )
 
 
 def _refuse(reasons: Sequence[str], output: Path) -> NoReturn:
-    fail("\n  ".join([f"not calibrated, {output} is not written:", *reasons]))
+    fail("\n  ".join([f"{output} was not written, because the calibration failed:", *reasons]))
 
 
 def _today() -> datetime.date:

@@ -20,10 +20,10 @@ PAUSE_NS = SECOND_NS // 2  # shortest time between two instructions, so that eac
 
 def up(
     recording: Annotated[
-        Path | None, typer.Argument(exists=True, dir_okay=False, help="a recording instead of the live stream")
+        Path | None, typer.Argument(exists=True, dir_okay=False, help="a recording to use in place of the live stream")
     ] = None,
 ) -> None:
-    """Find how a tilted camera is tilted: one person stands upright and still before it, arms down, for two seconds."""
+    """Find the tilt of a camera from one person who stands upright and still before it, arms down, for two seconds."""
     frames = _live() if recording is None else _recorded(recording)
     estimator, instruction, instructed_ns = UpDirectionEstimator(), "", -PAUSE_NS
     for frame in frames:
@@ -44,7 +44,7 @@ def _report(tilt: UpDirection) -> None:
         f"{_signed(tilt.roll_deg, 'clockwise', 'counterclockwise')} (the body swayed by {tilt.sway_deg:.1f} degrees)"
     )
     numbers = ", ".join(f"{component:.3f}" for component in tilt.in_camera)
-    say(f"tell its sensor gateway: ACTUM_UP_IN_CAMERA='[{numbers}]'")
+    say(f"set this for the camera's sensor gateway: ACTUM_UP_IN_CAMERA='[{numbers}]'")
 
 
 def _signed(angle_deg: float, positive: str, negative: str) -> str:

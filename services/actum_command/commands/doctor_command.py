@@ -23,7 +23,7 @@ SOURCES = {"sensor_gateway": "sensor", "marker_camera": "marker camera"}
 
 
 def doctor() -> None:
-    """Check router, services, streams, versions, clocks and the names of settings; exit 1 if anything is wrong."""
+    """Check the router, services, streams, versions, clocks and names of settings; exit with 1 on any problem."""
     with connect() as client:
         found = examine(client)
     show(found.findings, console)

@@ -17,17 +17,19 @@ COLUMNS = 3  # pictures side by side: two rows for the six that are drawn by def
 
 def draw(
     video: Annotated[Path, typer.Argument(help="a video file", exists=True, dir_okay=False)],
-    output: Annotated[Path, typer.Option("-o", "--output", help="the image to write, .png or .jpg")],
-    count: Annotated[int, typer.Option("--pictures", min=1, max=30, help="how many, evenly over the video")] = 6,
-    people: Annotated[int, typer.Option(min=1, max=4, help="how many people are looked for")] = 2,
+    output: Annotated[Path, typer.Option("-o", "--output", help="the image file to write (.png or .jpg)")],
+    count: Annotated[
+        int, typer.Option("--pictures", min=1, max=30, help="number of pictures, spread evenly over the video")
+    ] = 6,
+    people: Annotated[int, typer.Option(min=1, max=4, help="greatest number of people to find in a picture")] = 2,
 ) -> None:
-    """Draw the fifteen joints of everybody in a video: is the person found, is left their left, does the lens fit?
+    """Draw the fifteen joints of the people in a video, to check detection, left and right, and the lens.
 
-    The camera is described as for the gateway: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION,
+    The settings of the camera are the gateway's: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION,
     ACTUM_MIRRORED.
     """
     if not cv2.haveImageWriter(str(output)):
-        fail(f"{output}: no kind of picture that can be written; name a .png or .jpg")
+        fail(f"{output} does not end in the name of a picture format: use .png or .jpg")
     refuse_unwritable(output)
     try:
         settings = Settings(people=people)
@@ -37,4 +39,4 @@ def draw(
             fail(f"{output} cannot be written")
     except (ValueError, OSError, cv2.error) as error:
         fail(str(error))
-    say(f"{len(chosen)} of {frames} pictures, the actor's left blue: {output}")
+    say(f"{len(chosen)} of {frames} pictures written to {output}; the actor's left side is blue")

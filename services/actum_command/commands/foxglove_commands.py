@@ -23,19 +23,21 @@ SUBSCRIBING_S = 0.5  # from a client's first subscription to its last: a viewer'
 def foxglove(
     recording: RecordingArgument = None,
     host: Annotated[
-        str, typer.Option(help="the address to serve; others than 127.0.0.1 show people to your network")
+        str, typer.Option(help="the address to listen on; any other than 127.0.0.1 shows people to your network")
     ] = ("127.0.0.1"),
-    port: Annotated[int, typer.Option(min=0, max=65535, help="0 for any that is free")] = 8765,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="the port to listen on; 0 picks a free one")] = 8765,
     origin: Annotated[
         list[str] | None,
-        typer.Option(help="a site whose pages may connect, such as https://app.foxglove.dev; again for more"),
+        typer.Option(help="a site whose pages may connect, such as https://app.foxglove.dev; may be repeated"),
     ] = None,
-    speed: Annotated[float, typer.Option(min=0.01, help="of a recording: 1 is the pace of its capture")] = 1.0,
+    speed: Annotated[
+        float, typer.Option(min=0.01, help="speed at which a recording is played; 1 is the speed of its capture")
+    ] = 1.0,
 ) -> None:
-    """Serve live streams, or play a recording, to Foxglove: frames, people, objects, images, events; until Ctrl-C.
+    """Serve live streams or a recording to Foxglove, with people, objects, images and events, until Ctrl-C.
 
-    Programs of this machine may connect, websites may not unless --origin names them: who is refused is printed.
-    A recording begins once somebody has subscribed. To go to and fro in one, see actum export.
+    Programs on this machine may connect. Websites need --origin; refused ones are printed. A recording starts to play
+    when a client subscribes. To scrub through a recording, write a file with actum export.
     """
     refuse_without("foxglove", "foxglove-sdk", "foxglove")
     from actum_command.viewers.foxglove_sinks import ServerError, served
@@ -47,7 +49,7 @@ def foxglove(
             streams_of(recording, Pace(speed)) as streams,
             served(streams.sensors, host, port, subscribed, origins, _Refusals()) as (stream, address),
         ):
-            say(f"in Foxglove open a connection to {address}; Ctrl-C ends it")
+            say(f"open a connection to {address} in Foxglove; Ctrl-C stops")
             if recording is not None:
                 _wait_for_subscriber(subscribed, stop)
             showing = Showing(stream.show)
@@ -71,7 +73,10 @@ class _Refusals:
 
 def _origin(text: str) -> str:
     """Return an origin as browsers write it; fail where it stands for no site, or for any."""
-    advice = f"--origin {text}: write what is printed for a refused page, such as https://app.foxglove.dev"
+    advice = (
+        f"--origin {text} is not an origin: use the one that is printed for a refused page, such as "
+        "https://app.foxglove.dev"
+    )
     try:
         site = urlsplit(text)
     except ValueError:
@@ -93,13 +98,13 @@ def _wait_for_subscriber(subscribed: Flag, stop: Flag) -> None:
 
 
 def export(
-    file: Annotated[Path, typer.Argument(metavar="REC", help="a recording of ours")],
+    file: Annotated[Path, typer.Argument(metavar="REC", help="a recording of actum")],
     output: Annotated[Path, typer.Argument(metavar="OUT", help="the .mcap file to write")],
-    for_foxglove: Annotated[bool, typer.Option("--foxglove", help="with Foxglove's schemas")] = False,
+    for_foxglove: Annotated[bool, typer.Option("--foxglove", help="use Foxglove's schemas")] = False,
 ) -> None:
-    """Write a recording in a form that other programs open; --foxglove is the one that there is."""
+    """Write a recording in a format that other programs open; --foxglove is the only one."""
     if not for_foxglove:
-        fail("say for which program: --foxglove")
+        fail("no format is chosen: add --foxglove")
     refuse_without("foxglove", "foxglove-sdk", "foxglove")
     refuse_output(output)
     from actum_command.viewers.foxglove_sinks import written

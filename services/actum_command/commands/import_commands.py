@@ -49,16 +49,16 @@ def msrc12(
     source: Source,
     out: Out,
     trimmed: Annotated[
-        bool, typer.Option("--trimmed", help="segments from where a gesture starts to where it ends, as far as is seen")
+        bool, typer.Option("--trimmed", help="bound segments by the visible start and end of the gesture")
     ] = False,
     composed: Annotated[
         bool,
-        typer.Option("--composed", help="two streams of each person instead, all gestures mixed, trimmed likewise"),
+        typer.Option("--composed", help="compose two streams of mixed gestures per person, with trimmed segments"),
     ] = False,
 ) -> None:
     """Import MSRC-12: one recording per stream, with a labelled segment of up to 3 s about each action point."""
     if trimmed and composed:
-        fail("composed streams are trimmed anyway: name one of --trimmed and --composed")
+        fail("--composed already trims its segments: leave out --trimmed")
     importer = import_msrc12_composed if composed else import_msrc12_trimmed if trimmed else import_msrc12
     _run(importer, source, out)
 
@@ -74,15 +74,18 @@ def video(
     source: Annotated[Path, typer.Argument(help="a folder of video clips, each of one action", exists=True)],
     out: Out,
     pattern: Annotated[
-        str, typer.Option(help="a regular expression over the file name without its ending: the groups action, person")
+        str,
+        typer.Option(
+            help="regular expression that matches a file name without its ending, with the groups action and person"
+        ),
     ] = DEFAULT_PATTERN,
-    names: Annotated[str, typer.Option(help="what the actions are called, e.g. 1=wave,2=drink")] = "",
-    people: Annotated[int, typer.Option(min=1, max=4, help="how many people are looked for in a clip")] = 1,
+    names: Annotated[str, typer.Option(help="names of the actions, such as 1=wave,2=drink")] = "",
+    people: Annotated[int, typer.Option(min=1, max=4, help="greatest number of people to find in a clip")] = 1,
 ) -> None:
-    """Import video clips named with their action (wave_anna_2.mp4): one recording per clip, the whole clip a segment.
+    """Import video clips named after their action (wave_anna_2.mp4): one recording per clip, one segment per recording.
 
-    The camera is described as for the gateway: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION,
-    ACTUM_MIRRORED, ACTUM_PERSON_HEIGHT_M. No image is kept.
+    The settings of the camera are the gateway's: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION,
+    ACTUM_MIRRORED, ACTUM_PERSON_HEIGHT_M. Recordings hold no images.
     """
     try:
         naming, settings = Naming.of(pattern, names), Settings(people=people)

@@ -23,27 +23,32 @@ FILES = (".png", ".svg", ".html", ".pdf")
 
 
 def inspect(
-    model_file: Annotated[Path, typer.Argument(metavar="MODEL", help="the model file to look into")],
+    model_file: Annotated[Path, typer.Argument(metavar="MODEL", help="the model file to draw")],
     output: Annotated[
-        Path, typer.Option("-o", "--output", help="the folder for pictures and index.html; those of an earlier run go")
+        Path,
+        typer.Option(
+            "-o", "--output", help="the folder for pictures and index.html; files of an earlier run in it are removed"
+        ),
     ],
     files: Annotated[
-        list[Path] | None, typer.Argument(metavar="[REC]...", help="recordings to try it on, or folders of them")
+        list[Path] | None, typer.Argument(metavar="[REC]...", help="recordings to try the model on, or folders of them")
     ] = None,
     person: PersonOption = None,
-    picture_format: Annotated[str, typer.Option("--format", help=f"one of {', '.join(FORMATS)}")] = "png",
+    picture_format: Annotated[
+        str, typer.Option("--format", help=f"format of the pictures: {', '.join(FORMATS)}")
+    ] = "png",
     with_excluded: AllOption = False,
 ) -> None:
-    """Draw what a model has learnt, and with recordings how and why it recognises what they hold."""
+    """Draw what a model has learnt and, for recordings, how and why it recognises their actions."""
     began_s = time.monotonic()
     if picture_format not in FORMATS:
-        fail(f"--format is {picture_format!r}: use one of {', '.join(FORMATS)}")
+        fail(f"--format {picture_format!r} is not known: use one of {', '.join(FORMATS)}")
     if output.suffix.lower() in FILES:
-        fail(f"{output} is named as a file: name the folder to write pictures and index.html to")
+        fail(f"{output} has the name of a file: name a folder for the pictures and index.html")
     if output.exists() and not output.is_dir():
-        fail(f"{output} is no folder: name the one to write pictures to")
+        fail(f"{output} is not a folder: name a folder for the pictures")
     if find_spec("matplotlib") is None:
-        fail(f"matplotlib draws the pictures and is not installed: {adding('model-inspector')}")
+        fail(f"matplotlib, which draws the pictures, is not installed: {adding('model-inspector')}")
     try:
         model = load_model(model_file)
         output.mkdir(parents=True, exist_ok=True)

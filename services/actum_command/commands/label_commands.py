@@ -39,12 +39,17 @@ RIGHT_ALIGNED = (True, True, True, True, False, False, False, False, False)
 app = PlainTyper(
     cls=ListingGroup,
     no_args_is_help=True,
-    help="List the segments of a recording, actum label REC, draw and mend them. Times are seconds from its start.",
+    help=(
+        "List the segments of a recording (actum label REC), draw and correct them. Times are seconds from the "
+        "start of the recording."
+    ),
 )
 
-Number = Annotated[int, typer.Argument(metavar="N", help="the segment, as the list numbers it")]
-Label = Annotated[str, typer.Argument(metavar="LABEL", help="what is done")]
-Agent = Annotated[int | None, typer.Option(min=1, help="who acts; default: who is nearest to the camera")]
+Number = Annotated[int, typer.Argument(metavar="N", help="number of the segment in the list")]
+Label = Annotated[str, typer.Argument(metavar="LABEL", help="label of the action")]
+Agent = Annotated[
+    int | None, typer.Option(min=1, help="number of the person who acts; default: the person nearest to the camera")
+]
 
 
 @app.command(LISTS)
@@ -73,16 +78,21 @@ def move(
     file: RecordingFile,
     number: Number,
     start: Annotated[
-        str | None, typer.Option(help="new start, e.g. 12.3; +0.2 is later than now, -0.1 earlier; default: stays")
+        str | None,
+        typer.Option(help="new start (s), such as 12.3; +0.2 moves it later, -0.1 earlier; default: unchanged"),
     ] = None,
-    end: Annotated[str | None, typer.Option(help="new end, likewise; default: stays")] = None,
+    end: Annotated[
+        str | None,
+        typer.Option(help="new end (s), such as 14.1; +0.2 moves it later, -0.1 earlier; default: unchanged"),
+    ] = None,
 ) -> None:
-    """Move the start or the end of a segment; what was answered stays."""
+    """Move the start or the end of a segment; recorded answers stay."""
     recording, segments, first_ns = _opened(file)
     segment = _of_number(segments, number)
     if segment.start_ns is None or segment.end_ns is None:
         fail(
-            f"segment {number} has no {'start' if segment.start_ns is None else 'end'} mark: delete it and add it anew"
+            f"segment {number} has no {('start' if segment.start_ns is None else 'end')} mark: delete the segment "
+            "and add it again"
         )
     start_ns, end_ns = _moved_to(start, segment.start_ns, first_ns), _moved_to(end, segment.end_ns, first_ns)
     others = [other for other in segments if other.number != number]
@@ -99,13 +109,18 @@ def move(
 
 @app.command("delete")
 def delete(file: RecordingFile, number: Number) -> None:
-    """Delete a segment: its marks, what was answered, and the frames of whoever acts in it, unless it has no label or
-    another labelled segment of that person needs them."""
+    """Delete a segment: its marks, its answers and the frames of the person who acts in it.
+
+    The frames stay if the segment has no label, or if another labelled segment of that person needs them.
+    """
     recording, segments, _ = _opened(file)
     segment = _of_number(segments, number)
     kept = [other for other in segments if other.number != number]
     change_recording(file, deleted([segment], kept), metadata=fields_after(recording, kept))
-    say(f"segment {number} ({segment.label or 'no label'}) is no longer in {file}; later ones have one number less")
+    say(
+        f"segment {number} ({segment.label or 'no label'}) was deleted from {file}; the numbers of later segments "
+        "decrease by one"
+    )
 
 
 @app.command("rename")
@@ -115,7 +130,7 @@ def rename(file: RecordingFile, number: Number, label: Label) -> None:
     segment = _of_number(segments, number)
     refuse_length(label)
     if segment.start_ns is None:
-        fail(f"segment {number} has no start mark, which a label belongs to: delete it")
+        fail(f"segment {number} has no start mark, which holds the label: delete the segment")
     change_recording(file, relabelled(segment, label))
     say(f"segment {number} is labelled {label!r} in {file}")
 
@@ -123,8 +138,8 @@ def rename(file: RecordingFile, number: Number, label: Label) -> None:
 @app.command("add")
 def add(
     file: RecordingFile,
-    start: Annotated[float, typer.Argument(metavar="START", help="where it starts (s)")],
-    end: Annotated[float, typer.Argument(metavar="END", help="where it ends (s)")],
+    start: Annotated[float, typer.Argument(metavar="START", help="start (s)")],
+    end: Annotated[float, typer.Argument(metavar="END", help="end (s)")],
     label: Label,
     agent: Agent = None,
 ) -> None:
@@ -146,10 +161,10 @@ def add(
 @app.command("cut")
 def cut(
     file: RecordingFile,
-    times: Annotated[int, typer.Argument(metavar="TIMES", min=1, help="how often it is done")],
+    times: Annotated[int, typer.Argument(metavar="TIMES", min=1, help="number of repetitions in the recording")],
     label: Label,
 ) -> None:
-    """Cut the repetitions of one action anew, in place of those that were cut before; marks by hand stay."""
+    """Find the repetitions of one action again, in place of earlier cuts; segments marked by hand stay."""
     recording, segments, first_ns = _opened(file)
     refuse_length(label)
     try:
@@ -170,17 +185,15 @@ def cut(
 @app.command("picture")
 def picture(
     file: RecordingFile,
-    output: Annotated[Path, typer.Option("-o", "--output", help="the picture to write, .png or .svg")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="the picture to write (.png or .svg)")],
     model: Annotated[
         Path | None,
-        typer.Option(
-            help="a model file whose answers are drawn, and what it finds without marks; default: the recorded answers"
-        ),
+        typer.Option(help="a model file whose answers are drawn in place of the recorded ones, with and without marks"),
     ] = None,
 ) -> None:
-    """Draw the stream: how fast people move, the segments with their labels, and what was answered."""
+    """Draw the recording's motion over time, with the labelled segments and the answers."""
     if find_spec("matplotlib") is None:
-        fail(f"matplotlib draws the picture and is not installed: {adding('model-inspector')}")
+        fail(f"matplotlib, which draws the picture, is not installed: {adding('model-inspector')}")
     from actum_command.recording_picture import write_picture
 
     refuse_unwritable(output)
@@ -223,7 +236,7 @@ def _moved_to(text: str | None, now_ns: int, first_ns: int) -> int:
     try:
         offset_ns = round(float(text) * SECOND_NS)
     except (ValueError, OverflowError):
-        fail(f"{text!r} is no time: give seconds such as 12.3, or +0.2 or -0.1 from where it is")
+        fail(f"{text!r} is not a time: give seconds such as 12.3, or a shift such as +0.2 or -0.1")
     return (now_ns if text[:1] in "+-" else first_ns) + offset_ns
 
 

@@ -14,14 +14,16 @@ MOST_IDS = 1000  # as many as the largest family has
 
 
 def markers(
-    output: Annotated[Path, typer.Option("-o", "--output", help="the PDF to write")],
-    family: Annotated[str, typer.Option(help="the markers' dictionary, by OpenCV's name")] = "DICT_4X4_50",
-    ids: Annotated[str, typer.Option(help="which markers: 1,2,3 or 0-9")] = "0-3",
-    size_mm: Annotated[float, typer.Option(help="side of the black square")] = 80.0,
-    paper: Annotated[SheetSize, typer.Option(help="what it is printed on")] = SheetSize.A4,
-    board: Annotated[bool, typer.Option("--board", help="instead of markers, the board for actum calibrate")] = False,
+    output: Annotated[Path, typer.Option("-o", "--output", help="the PDF file to write")],
+    family: Annotated[str, typer.Option(help="OpenCV's name of the marker dictionary")] = "DICT_4X4_50",
+    ids: Annotated[str, typer.Option(help="ids of the markers to print, such as 1,2,3 or 0-9")] = "0-3",
+    size_mm: Annotated[float, typer.Option(help="side of a marker's black square (mm)")] = 80.0,
+    paper: Annotated[SheetSize, typer.Option(help="size of the paper")] = SheetSize.A4,
+    board: Annotated[
+        bool, typer.Option("--board", help="print the calibration board of 'actum calibrate' in place of markers")
+    ] = False,
 ) -> None:
-    """Write a PDF of markers to put on objects, or of the calibration board, in true size."""
+    """Write a PDF of markers for objects, or of the calibration board, in true size."""
     from actum_calibrator.board_sheet import board_sheet  # the PDF library is needed here alone
     from actum_calibrator.marker_sheet import marker_sheet
 
@@ -31,9 +33,9 @@ def markers(
         write_whole(output, pdf)
     except (PatternError, OSError) as error:
         fail(str(error))
-    say(f"written to {output}: print it at 100 % ('actual size'), then measure the ruler: 100 mm")
+    say(f"written to {output}: print it at 100 % ('actual size') and check that the printed ruler is 100 mm long")
     if board:
-        say(f"the board has {Board()}; glue it to something flat and stiff")
+        say(f"the board has {Board()}; glue it to a flat, stiff surface")
 
 
 def _numbers(text: str) -> list[int]:
@@ -48,8 +50,8 @@ def _numbers(text: str) -> list[int]:
         try:
             span = range(int(first), int(last or first) + 1)
         except ValueError:
-            raise PatternError(f"--ids has {part!r}: use numbers like 1,2,3 or 0-9") from None
+            raise PatternError(f"--ids contains {part!r}: use numbers such as 1,2,3 or 0-9") from None
         if not span or len(numbers) + len(span) > MOST_IDS:
-            raise PatternError(f"--ids has {part!r}: use at most {MOST_IDS} rising numbers like 1,2,3 or 0-9")
+            raise PatternError(f"--ids contains {part!r}: use at most {MOST_IDS} rising numbers such as 1,2,3 or 0-9")
         numbers += span
     return numbers

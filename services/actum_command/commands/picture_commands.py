@@ -13,7 +13,7 @@ def add_picture_commands(app: PlainTyper) -> None:
     if find_spec("cv2") is None:
         for name in NAMES:
             whatever = {"allow_extra_args": True, "ignore_unknown_options": True}
-            app.command(name, context_settings=whatever, help="Not installed here.")(_refuse)
+            app.command(name, context_settings=whatever, help="Not installed.")(_refuse)
         return
     from actum_command.commands import calibrate_commands, draw_command, import_commands, markers_command
 

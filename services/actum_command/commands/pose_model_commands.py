@@ -12,7 +12,7 @@ from actum_command.commands.terminal import errors, fail, refuse_ending, say
 from actum_command.model_download import POSE_MODEL, FetchError, Published, fetch
 from sensor_gateway.settings import default_pose_model
 
-app = PlainTyper(no_args_is_help=True, help="Get the model that finds people's poses in a camera's images.")
+app = PlainTyper(no_args_is_help=True, help="Download the model that finds people's poses in the images of a camera.")
 
 
 @app.callback()
@@ -23,9 +23,9 @@ def _models() -> None:
 @app.command("fetch")
 def fetch_command(
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="the file to write; default: where the gateway looks")
+        Path | None, typer.Option("-o", "--output", help="the file to write; default: the path that the gateway reads")
     ] = None,
-    url: Annotated[str, typer.Option(help="another place that has the same file")] = POSE_MODEL.url,
+    url: Annotated[str, typer.Option(help="another address of the same file")] = POSE_MODEL.url,
 ) -> None:
     """Download MediaPipe's pose model (9 MB, Apache-2.0) and check its digest."""
     if output is not None:
@@ -39,9 +39,9 @@ def fetch_command(
         _fetch(published, path)
     except (FetchError, OSError) as error:
         fail(str(error))
-    say(f"fetched and checked: {path}")
+    say(f"downloaded and verified: {path}")
     if output is not None:
-        say(f"the gateway reads it with ACTUM_POSE_MODEL={path}")
+        say(f"to use it, set this for the gateway: ACTUM_POSE_MODEL={path}")
 
 
 def _fetch(published: Published, path: Path) -> None:

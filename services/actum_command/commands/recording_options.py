@@ -15,9 +15,9 @@ from actum.rewriting import Change, rewrite
 from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
 from actum_model_trainer.samples import select
 
-PersonOption = Annotated[str | None, typer.Option(help="only these persons, e.g. 1,3,5")]
-RecordingFile = Annotated[Path, typer.Argument(metavar="REC", help="the recording", exists=True, dir_okay=False)]
-AllOption = Annotated[bool, typer.Option("--all", help="also recordings marked as excluded")]
+PersonOption = Annotated[str | None, typer.Option(help="use recordings of these people only, such as 1,3,5")]
+RecordingFile = Annotated[Path, typer.Argument(metavar="REC", help="the recording file", exists=True, dir_okay=False)]
+AllOption = Annotated[bool, typer.Option("--all", help="use recordings marked as excluded as well")]
 
 LONGEST_LABEL = 200  # characters allowed in the field of a mark
 
@@ -30,7 +30,7 @@ def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[R
     except RecordingError as error:
         fail(str(error))
     if not recordings:
-        fail(f"no recordings of person {person or '(any)'} in {', '.join(map(str, files)) or 'nothing'}")
+        fail(f"there are no recordings of person {person or '(any)'} in {', '.join(map(str, files)) or 'nothing'}")
     return recordings
 
 
@@ -54,7 +54,7 @@ def unread(recordings: Iterable[Recording]) -> Iterator[str]:
     """Yield a line for each recording that breaks off, or of which messages were skipped."""
     for recording in recordings:
         if recording.truncated:
-            yield f"{recording.path} breaks off: only what lies before the break was read"
+            yield f"{recording.path} is truncated: only the messages before that point were read"
         if recording.skipped:
             kinds = ", ".join(f"{kind} {count}" for kind, count in sorted(recording.skipped.items()))
             yield f"{recording.path}: skipped {kinds}"
@@ -63,7 +63,7 @@ def unread(recordings: Iterable[Recording]) -> Iterator[str]:
 def refuse_length(label: str) -> None:
     """Fail where a label is empty, or too long for a mark."""
     if not 0 < len(label) <= LONGEST_LABEL:
-        fail(f"a label has 1 to {LONGEST_LABEL} characters")
+        fail(f"the label has to have 1 to {LONGEST_LABEL} characters")
 
 
 def in_ns(seconds: float) -> int:
@@ -71,7 +71,7 @@ def in_ns(seconds: float) -> int:
     try:
         return round(seconds * SECOND_NS)
     except (ValueError, OverflowError):
-        fail(f"{seconds:g} is no time in seconds: give one such as 12.3")
+        fail(f"{seconds:g} is not a time: give seconds such as 12.3")
 
 
 def change_recording(
@@ -83,4 +83,4 @@ def change_recording(
     except RecordingError as error:
         fail(str(error))
     except OSError as error:
-        fail(f"{file} cannot be written anew ({error.strerror}); it is as it was")
+        fail(f"{file} cannot be changed ({error.strerror}): the recording is as it was")

@@ -8,9 +8,9 @@ from ros2_bridge.settings import Settings
 
 @with_bridge_flags
 def ros2(*, given: Given) -> None:
-    """Put skeletons, objects and events on ROS 2 topics over rmw_zenoh, and take marks from one, until Ctrl-C.
+    """Publish skeletons, objects and events on ROS 2 topics over rmw_zenoh, and receive marks, until Ctrl-C.
 
-    ROS is not needed here. ACTUM_CONNECT names the router, which the ROS 2 nodes share.
+    ROS 2 need not be installed here. ACTUM_CONNECT names the router, which the ROS 2 nodes share.
     """
     with needs_extra("ros2"):
         from ros2_bridge.bridge import Ros2Bridge

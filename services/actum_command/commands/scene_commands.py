@@ -14,20 +14,27 @@ from scene_simulator.everyday import Choice, Pauses
 
 def simulate(
     output: Annotated[Path, typer.Argument(help="the recording to write")],
-    repetitions: Annotated[int, typer.Option(min=1, help="how often each of the five actions is done")] = 12,
-    actor: Annotated[int, typer.Option(min=0, help="who acts")] = 0,
-    seed: Annotated[int, typer.Option(min=0, help="which repetitions")] = 0,
-    everyday: Annotated[Choice, typer.Option(help="what people do between actions; only: nothing else")] = "none",
-    minutes: Annotated[float, typer.Option(min=0, help="least length with everyday doings, which fill it up")] = 1.0,
+    repetitions: Annotated[int, typer.Option(min=1, help="repetitions of each of the five actions")] = 12,
+    actor: Annotated[int, typer.Option(min=0, help="number of the simulated person")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="seed of the random variation between repetitions")] = 0,
+    everyday: Annotated[
+        Choice, typer.Option(help="everyday activities between the actions; only: no actions at all")
+    ] = "none",
+    minutes: Annotated[
+        float, typer.Option(min=0, help="least length with everyday activities, which fill the remaining time (min)")
+    ] = 1.0,
     pauses: Annotated[
-        Pauses, typer.Option(help="between actions up to three everyday doings and rests, or at most one")
+        Pauses,
+        typer.Option(
+            help="pauses between actions; long: up to three everyday activities and rests; short: at most one"
+        ),
     ] = "long",
 ) -> None:
     """Write labelled examples of the simulated scene, without images.
 
-    With --everyday the person also scratches, phones, walks away and comes back, reaches for an object and draws back,
-    all without marks: what a model has to answer with nothing. Train with "familiar", which leaves some kinds of doings
-    out, and test with "all"; "only" has no actions.
+    With --everyday the person also scratches, phones, walks away and comes back, or reaches for an object and draws
+    back, all without marks: a model should not answer these. Train with "familiar", which leaves out some kinds of
+    activities, and test with "all"; "only" writes no actions.
     """
     refuse_output(output)
     try:
@@ -39,6 +46,6 @@ def simulate(
 
 
 def scene() -> None:
-    """Put the start and end marks of the simulated scene, as an ordinary client."""
+    """Publish the start and end marks of the simulated scene, as an ordinary client does."""
     with connect_whenever() as client:
         mark_truth(client, stop_on_signals())

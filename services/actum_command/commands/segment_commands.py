@@ -19,11 +19,13 @@ WAIT_S = 5.0  # how long to wait for a classifier that is starting to subscribe
 
 app = PlainTyper(no_args_is_help=True, help="Mark the start and the end of an action.")
 
-Id = Annotated[str, typer.Argument(help="any name, new for each action")]
-AgentOption = Annotated[int | None, typer.Option(min=1, help="whose action; default: who is nearest to the camera")]
-HandOption = Annotated[str | None, typer.Option(help="left or right: the hand that acts")]
-LabelOption = Annotated[str | None, typer.Option(help="what it is, for recording examples")]
-StampOption = Annotated[int | None, typer.Option(min=0, help="capture time (ns) on the sensor's clock; default: now")]
+Id = Annotated[str, typer.Argument(help="name of the segment, which has to be new for each action")]
+AgentOption = Annotated[
+    int | None, typer.Option(min=1, help="number of the person who acts; default: the person nearest to the camera")
+]
+HandOption = Annotated[str | None, typer.Option(help="the hand that acts: left or right")]
+LabelOption = Annotated[str | None, typer.Option(help="label of the action, for recording examples")]
+StampOption = Annotated[int | None, typer.Option(min=0, help="capture time on the sensor's clock; default: now (ns)")]
 
 
 @app.command()
@@ -53,14 +55,14 @@ def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
 @app.command()
 @with_router_flags
 def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOption = None) -> None:
-    """Switch by keyboard: Enter starts, Enter ends and shows the answer, Ctrl-D leaves."""
+    """Mark actions from the keyboard: Enter starts an action, Enter ends it and prints the answer, Ctrl-D quits."""
     with connect() as client:
         answers, number = Answers(client), 0
-        while _waits_for_enter(f"Enter starts action {number + 1}, Ctrl-D leaves "):
+        while _waits_for_enter(f"press Enter to start action {number + 1}, Ctrl-D to quit "):
             number += 1
             segment_id = f"toggle-{client.run}-{number}"
             _put(client, _mark("start", segment_id, agent, hand, label))
-            ended = _waits_for_enter("Enter ends it ")
+            ended = _waits_for_enter("press Enter to end it ")
             _put(client, _mark("end", segment_id))
             for line in answers.until(segment_id, interrupted=_enter_was_pressed):
                 console.print(line, soft_wrap=True)
@@ -77,7 +79,7 @@ def _mark(
     stamp_ns: int | None = None,
 ) -> Segment:
     if hand not in (None, "left", "right"):
-        fail(f"--hand is {hand!r}: use left or right")
+        fail(f"--hand {hand!r} is not a hand: use left or right")
     fields = {
         "sensor": settings().sensor,
         "kind": kind,
@@ -96,7 +98,10 @@ def _mark(
 
 def _put(client: Client, mark: Segment) -> None:
     if not client.wait_for_subscriber(keys.SEGMENT, WAIT_S):
-        fail(f"nobody listens on {keys.key_of(mark)} within {WAIT_S:g} s: is the classifier running? See actum doctor")
+        fail(
+            f"no service received the mark on {keys.key_of(mark)} within {WAIT_S:g} s: check with 'actum doctor' "
+            "that the classifier runs"
+        )
     client.put(mark)
     say(f"{mark.kind} {mark.segment_id}")
 

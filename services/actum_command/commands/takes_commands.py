@@ -37,11 +37,13 @@ from actum_model_trainer.segment_edits import deleted, fields_after, in_turn
 app = PlainTyper(
     cls=ListingGroup,
     no_args_is_help=True,
-    help="List the marked actions of recordings, actum takes REC…, and mend them.",
+    help="List the marked actions of recordings (actum takes REC…) and correct them.",
 )
 
-SegmentId = Annotated[str, typer.Argument(metavar="SEGMENT", help="the action, as the list names it")]
-SensorOption = Annotated[str | None, typer.Option(help="whose action, where several sensors have one of that name")]
+SegmentId = Annotated[str, typer.Argument(metavar="SEGMENT", help="segment id of the action in the list")]
+SensorOption = Annotated[
+    str | None, typer.Option(help="sensor of the action, needed where several sensors have the same segment id")
+]
 
 
 @app.command(LISTS)
@@ -68,14 +70,17 @@ def list_command(
 def relabel(
     file: RecordingFile,
     segment_id: SegmentId,
-    label: Annotated[str, typer.Argument(metavar="LABEL", help="what it is")],
+    label: Annotated[str, typer.Argument(metavar="LABEL", help="new label of the action")],
     sensor: SensorOption = None,
 ) -> None:
     """Give an action another label."""
     refuse_length(label)
     segment = _marked(file, segment_id, sensor).segment
     if segment.start_ns is None:
-        fail(f"{segment_id} has no start mark in {file}, which a label belongs to: drop it")
+        fail(
+            f"{segment_id} has no start mark in {file}, which holds the label: delete the action with 'actum takes "
+            "drop'"
+        )
     change_recording(file, relabelled(segment, label))
     say(f"{segment_id} is labelled {label!r} in {file}")
 
@@ -84,37 +89,44 @@ def relabel(
 def trim(
     file: RecordingFile,
     segment_id: SegmentId,
-    start: Annotated[
-        float, typer.Option(help="where it is to start, in seconds from its present start; negative is earlier")
-    ] = 0.0,
-    end: Annotated[
-        float | None, typer.Option(help="where it is to end, in seconds from its present start; default: where it does")
-    ] = None,
+    start: Annotated[float, typer.Option(help="new start, from the present start; negative is earlier (s)")] = 0.0,
+    end: Annotated[float | None, typer.Option(help="new end, from the present start; default: unchanged (s)")] = None,
     sensor: SensorOption = None,
 ) -> None:
     """Move the start and the end of an action; times count from its present start."""
     marked = _marked(file, segment_id, sensor)
     start_ns, end_ns = marked.segment.start_ns, marked.segment.end_ns
     if start_ns is None or end_ns is None:
-        fail(f"{segment_id} has no {'start' if start_ns is None else 'end'} mark in {file}: drop it")
+        fail(
+            f"{segment_id} has no {('start' if start_ns is None else 'end')} mark in {file}: delete the action "
+            "with 'actum takes drop'"
+        )
     duration_s = (end_ns - start_ns) / SECOND_NS
     until_s = duration_s if end is None else end
     if start >= until_s:
-        fail(f"{segment_id} would start at {start:g} s and end at {until_s:g} s of its {duration_s:g} s")
+        fail(
+            f"{segment_id} lasts {duration_s:g} s and cannot run from {start:g} s to {until_s:g} s: the end has to "
+            "be later than the start"
+        )
     if start_ns + start * SECOND_NS < 0:
-        fail(f"{segment_id} would start before its sensor's clock does: at the most {start_ns / SECOND_NS:g} s earlier")
+        fail(
+            f"{segment_id} would start before the sensor's clock does: move the start at most "
+            f"{start_ns / SECOND_NS:g} s earlier"
+        )
     _shift(file, marked, in_ns(start), in_ns(until_s - duration_s))
-    say(f"{segment_id} lasts {until_s - start:.2f} s, and lasted {duration_s:.2f} s before, in {file}")
+    say(f"{segment_id} now lasts {until_s - start:.2f} s (before: {duration_s:.2f} s) in {file}")
 
 
 @app.command("drop")
 def drop(file: RecordingFile, segment_id: SegmentId, sensor: SensorOption = None) -> None:
-    """Delete an action: its marks, what was answered, and the frames of whoever acts in it, unless it has no label or
-    another labelled action of that person needs them."""
+    """Delete an action: its marks, its answers and the frames of the person who acts in it.
+
+    The frames stay if the action has no label, or if another labelled action of that person needs them.
+    """
     marked = _marked(file, segment_id, sensor)
     kept = [other for other in marked.segments if other is not marked.segment]
     change_recording(file, deleted([marked.segment], kept), metadata=fields_after(marked.recording, kept))
-    say(f"{segment_id} is no longer in {file}")
+    say(f"{segment_id} was deleted from {file}")
 
 
 def _show(recording: Recording, actions: Sequence[MarkedAction]) -> None:

@@ -30,12 +30,12 @@ from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
 from som_classifier.segmentation import Segmentation
 
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of them")]
-PresetOption = Annotated[str, typer.Option(help=f"one of {', '.join(PRESETS)}")]
+PresetOption = Annotated[str, typer.Option(help=f"preset of the model: {', '.join(PRESETS)}")]
 SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="NAME=VALUE", help=f"of preset {PAPER.name}, once each: " + SETTINGS),
 ]
-SeedOption = Annotated[int, typer.Option(min=0, help="the same seed makes the same model")]
+SeedOption = Annotated[int, typer.Option(min=0, help="seed of the random numbers; the same seed makes the same model")]
 
 
 def train_command(
@@ -57,7 +57,7 @@ def train_command(
         with bars() as progress:
             samples = samples_from(recordings, progress)
         for unusable in samples.unusable:
-            say(f"left out {unusable.segment_id} of {unusable.file}: {unusable.reason}")
+            say(f"{unusable.segment_id} of {unusable.file} was not used: {unusable.reason}")
         tell_unread(recordings)
         with bars() as progress:
             model = train_to_spot(samples.usable, samples.streams, chosen_preset, seed, progress)
@@ -75,32 +75,37 @@ def train_command(
 @with_search_flags
 def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     given: Given,
-    files: Annotated[list[Path], typer.Argument(help="MODEL and recordings, or only recordings")],
+    files: Annotated[
+        list[Path], typer.Argument(help="a model file and recordings, or with --leave-one-person-out only recordings")
+    ],
     person: PersonOption = None,
-    json_file: Annotated[Path | None, typer.Option("--json", help="write every prediction here")] = None,
+    json_file: Annotated[Path | None, typer.Option("--json", help="a JSON file to write every prediction to")] = None,
     by_person: Annotated[
-        bool, typer.Option("--leave-one-person-out", help="train anew without each person, test on them")
+        bool, typer.Option("--leave-one-person-out", help="train without each person in turn and test on that person")
     ] = False,
     continuous: Annotated[
-        bool, typer.Option("--continuous", help="give whole recordings without their marks: actions are to be found")
+        bool,
+        typer.Option(
+            "--continuous", help="evaluate whole recordings, in which the model has to find the actions without marks"
+        ),
     ] = False,
     preset: PresetOption = DEFAULT.name,
     settings: SetOption = None,
     seed: SeedOption = 0,
     with_excluded: AllOption = False,
 ) -> None:
-    """Test a model on labelled recordings, or a preset on each person with all others as training."""
+    """Test a model on labelled recordings, or test a preset on each person after training on all others."""
     if json_file is not None:
         _refuse_place(json_file)
         refuse_ending(json_file, ".json")
     if not by_person and len(files) == 1:
-        fail(f"{files[0]} alone cannot be evaluated: name a model and then recordings, or use --leave-one-person-out")
+        fail(f"{files[0]} alone cannot be evaluated: name a model and recordings, or use --leave-one-person-out")
     try:
         model = None if by_person else load_model(files[0])
     except ModelError as error:
         fail(str(error))
     if given and not continuous:
-        fail(f"{flag_of(next(iter(given)))} is for what is found without marks: add --continuous")
+        fail(f"{flag_of(next(iter(given)))} applies to actions found without marks: add --continuous")
     recordings = chosen(files if by_person else files[1:], person, with_excluded)
     what = model, recordings, _preset(preset, settings), seed, json_file
     if continuous:
@@ -144,12 +149,15 @@ def _preset(name: str, settings: list[str] | None) -> Preset:
 
 def _show(result: Evaluation, seconds: float) -> None:
     if result.n == 0:
-        fail("no labelled segment in these recordings: a label stands in a start mark, see actum record --label")
+        fail(
+            "these recordings hold no labelled segment: record with 'actum record --label', or label them with "
+            "'actum label'"
+        )
     console.print(report(result, seconds))
 
 
 def _refuse_place(file: Path) -> None:
     """Fail before long work where its result could not be written."""
     if not file.parent.is_dir():
-        fail(f"{file} cannot be written: there is no folder {file.parent}")
+        fail(f"{file} cannot be written: the folder {file.parent} does not exist")
     refuse_unwritable(file)

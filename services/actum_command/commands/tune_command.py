@@ -19,22 +19,26 @@ from som_classifier.segmentation import Segmentation
 
 
 def tune(
-    model: Annotated[Path, typer.Argument(metavar="MODEL", help="the model file")],
-    files: Annotated[list[Path], typer.Argument(metavar="REC...", help="labelled continuous recordings, or folders")],
+    model: Annotated[Path, typer.Argument(metavar="MODEL", help="the model file to tune")],
+    files: Annotated[
+        list[Path], typer.Argument(metavar="REC...", help="labelled continuous recordings, or folders of them")
+    ],
     false_alarms_per_min: Annotated[
         float | None,
-        typer.Option(metavar="X", help="accept so many wrong actions in a minute of other doings; default: any"),
+        typer.Option(
+            metavar="X", help="accepted false alarms per minute of background activity; default: no limit (1/min)"
+        ),
     ] = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="the settings file to write, .toml, for ACTUM_CONFIG")
+        Path | None, typer.Option("-o", "--output", help="the settings file to write (.toml), for ACTUM_CONFIG")
     ] = None,
     person: PersonOption = None,
     with_excluded: AllOption = False,
 ) -> None:
-    """Pick sensitivity, shortest pause, cooldowns and actions to leave out, and say what they cost."""
+    """Choose sensitivity, shortest pause, cooldowns and disabled actions for a model, and print their effect."""
     began_s = time.monotonic()
     if false_alarms_per_min is not None and not 0 < false_alarms_per_min < float("inf"):
-        fail(f"{false_alarms_per_min:g} is no rate to ask for: name more than 0 false alarms a minute")
+        fail(f"--false-alarms-per-min {false_alarms_per_min:g} is not a usable rate: allow more than 0 false alarms")
     if output is not None:
         _refuse(output)
     try:
@@ -50,10 +54,10 @@ def tune(
         say(doubt, style="yellow")
     segmentation = Segmentation(options=result.best.options)
     flags = flags_for(segmentation)
-    say(f"as flags: {flags}" if flags else "the model does best as it is: nothing is to be set")
+    say(f"as flags: {flags}" if flags else "the model works best with its own values: no settings are needed")
     if output is not None:
         write_text(output, settings_file(segmentation, f"picked by actum tune for model {loaded.id}"))
-        say(f"written to {output}: set ACTUM_CONFIG={output}")
+        say(f"written to {output}: set ACTUM_CONFIG={output} to use it")
 
 
 def _refuse(output: Path) -> None:

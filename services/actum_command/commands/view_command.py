@@ -22,15 +22,15 @@ if TYPE_CHECKING:
 def view(
     recording: RecordingArgument = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="write a file that Rerun opens, .rrd, and open no viewer")
+        Path | None, typer.Option("-o", "--output", help="the Rerun file to write (.rrd), in place of opening a viewer")
     ] = None,
-    web: Annotated[bool, typer.Option("--web", help="serve the viewer as a page, to this machine only")] = False,
-    port: Annotated[int, typer.Option(min=1, max=65535, help="where the viewer takes data")] = 9876,
-    web_port: Annotated[int, typer.Option(min=1, max=65535, help="where --web serves its page")] = 9090,
+    web: Annotated[bool, typer.Option("--web", help="serve the viewer as a web page to this machine only")] = False,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="port on which the viewer receives data")] = 9876,
+    web_port: Annotated[int, typer.Option(min=1, max=65535, help="port of the web page with --web")] = 9090,
 ) -> None:
-    """Show live streams, or a recording, in Rerun: people, objects, images, courses, events; until Ctrl-C.
+    """Show live streams or a recording in Rerun, with people, objects, images, curves and events, until Ctrl-C.
 
-    A recording is there as a whole, to go to and fro in.
+    A recording is loaded as a whole, so that its timeline can be scrubbed.
     """
     refuse_without("rerun", "rerun-sdk", "view")
     if output is not None:
@@ -44,7 +44,7 @@ def view(
             streams.give(showing, stop)
             tell_shown(showing, f"written to {output}" if output else "sent to Rerun")
             if recording is not None and output is None:
-                say("Ctrl-C ends it")
+                say("Ctrl-C stops")
                 wait_for(stop)
     except ViewerError as error:
         fail(str(error))
@@ -64,5 +64,5 @@ def _opened(
     address = own_address()
     with viewer(sensors, address, port, web_port if web else None, stop) as stream:
         if web:
-            say(f"open {page(address, port, web_port)}; Ctrl-C ends it")
+            say(f"open {page(address, port, web_port)}; Ctrl-C stops")
         yield stream

@@ -16,7 +16,7 @@ from actum_command.commands.terminal import connect, fail, say
 from actum_command.viewers.showing import LiveStreams, RecordedStreams, Showing, Streams
 
 RecordingArgument = Annotated[
-    Path | None, typer.Argument(metavar="[REC]", help="a recording; default: the live streams of a sensor")
+    Path | None, typer.Argument(metavar="[REC]", help="a recording to show; default: the sensor's live streams")
 ]
 
 
@@ -37,7 +37,7 @@ def streams_of(file: Path | None, pace: Pace | None = None) -> Iterator[Streams]
         recording = Recording(file)
         streams = RecordedStreams(recording, pace)
         if not streams.sensors:
-            fail(f"{file} holds no message of ours: name a recording made by `actum record` or `actum import`")
+            fail(f"{file} holds no message of actum: name a recording made by `actum record` or `actum import`")
         yield streams
     except RecordingError as error:
         fail(str(error))

@@ -20,22 +20,25 @@ BY_DEFAULT = [keys.EVENT]
 
 
 def watch(
-    topics: Annotated[list[str] | None, typer.Argument(help=f"any of {', '.join(WATCHABLE)}; default: event")] = None,
+    topics: Annotated[
+        list[str] | None, typer.Argument(help=f"topics to print: {', '.join(WATCHABLE)}; default: event")
+    ] = None,
     as_json: Annotated[
-        bool, typer.Option("--json", help="one JSON object a line, with all fields; bytes are URL-safe base64")
+        bool, typer.Option("--json", help="print one JSON object per line with all fields; bytes as URL-safe base64")
     ] = False,
     recorded: Annotated[
-        list[Path] | None, typer.Option("--from", help="recordings, or folders of them, instead of what happens now")
+        list[Path] | None,
+        typer.Option("--from", help="recordings to print in place of the live streams, or folders of them"),
     ] = None,
 ) -> None:
-    """Print what happens, one line per message: when, on which key, in which segment, what; until Ctrl-C.
+    """Print each message in one line, with its time, key, segment and content, until Ctrl-C.
 
-    On a terminal, events and actions stand above a line for each person: what they are doing and how far it is. With
-    --from it prints what was recorded, also by 'actum record --events' in a file that is still being written.
+    On a terminal, events and actions stand above a line for each person, which shows the ongoing action and its
+    completeness. With --from it prints recordings, including files that 'actum record --events' is still writing.
     """
     named = {name: WATCHABLE.get(name) or WATCHABLE.get(name.removesuffix("s")) for name in topics or []}
     for name in (name for name, topic in named.items() if topic is None):
-        fail(f"no topic {name!r}: use any of {', '.join(WATCHABLE)}")
+        fail(f"{name!r} is not a topic: use any of {', '.join(WATCHABLE)}")
     wanted = [topic for topic in named.values() if topic is not None] or BY_DEFAULT
     if recorded:
         _show_recorded(recorded, wanted, as_json)
@@ -64,7 +67,7 @@ def _show_recorded(named: list[Path], wanted: list[keys.Topic], as_json: bool) -
     for remark in found.remarks:
         _remark(remark)
     if not found.paths:
-        fail(f"no recordings in {', '.join(map(str, named))}: name files or folders of *.mcap")
+        fail(f"there are no recordings in {', '.join(map(str, named))}: name files or folders of *.mcap")
     try:
         for recording in map(Recording, found.paths):
             for message in recording.messages(wanted):

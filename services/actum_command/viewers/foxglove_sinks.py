@@ -23,7 +23,7 @@ from web_dashboard.server import PageServer, socket_at
 
 log = logging.getLogger("actum")
 
-ADVICE = {FORBIDDEN: "--origin can name it", MISDIRECTED: "open the address that is printed"}
+ADVICE = {FORBIDDEN: "use --origin to admit it", MISDIRECTED: "open the printed address"}
 """What to do where somebody is refused wrongly."""
 Log = Callable[[bytes, int], object]
 """Puts a payload with its time (ns) on a channel."""
@@ -96,12 +96,12 @@ def served(
     try:
         listening = socket_at(host, port)
     except OSError as error:
-        raise ServerError(f"{host}:{port} cannot be served ({error}): name another --port or --host") from None
+        raise ServerError(f"cannot listen on {host}:{port} ({error}): name another --port or --host") from None
     serving = PageServer(server.application(Rule(host, origins=origins, advice=ADVICE), refused), listening, host)
     with serving.serving():
         yield stream, serving.address.replace("http://", "ws://").rstrip("/")
     if server.left_out:
-        log.warning("%d messages were left out for clients that took none for too long", server.left_out)
+        log.warning("%d messages were dropped, because clients were too slow to receive them", server.left_out)
 
 
 @contextmanager

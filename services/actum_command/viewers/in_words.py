@@ -35,4 +35,7 @@ def misfit(image: Image) -> str | None:
     expected = image.height * image.width * PIXEL_BYTES[image.format]
     if len(image.data) == expected:
         return None
-    return f"{len(image.data)} bytes are no {image.format} of {image.width}x{image.height}, which has {expected}"
+    return (
+        f"a {image.format} image of {image.width}x{image.height} has {expected} bytes, but this one has "
+        f"{len(image.data)}"
+    )

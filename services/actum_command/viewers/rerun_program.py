@@ -97,7 +97,9 @@ def _running(address: str, port: int, web_port: int | None) -> Iterator["subproc
     ports = [port] if web_port is None else [port, web_port]
     for needed in ports:
         if _is_listened_on(address, needed):
-            raise ViewerError(f"something listens on port {needed} already: end it, or name another port")
+            raise ViewerError(
+                f"port {needed} is already in use: stop the program that listens there, or name another port"
+            )
     process = subprocess.Popen(
         [_program(), "--bind", address, "--port", str(port), "--expect-data-soon", *page_options],
         env={**os.environ, **QUIET},
@@ -147,10 +149,12 @@ def _wait_until_listening(process: "subprocess.Popen[bytes]", address: str, port
     deadline_s = time.monotonic() + START_S
     while not all(_is_listened_on(address, port) for port in ports):
         if process.poll() is not None:
-            why = "is there a screen? --web needs none"
+            why = "if this machine has no screen, use --web"
             raise ViewerError(f"the Rerun viewer ended at once (code {process.returncode}): {why}")
         if time.monotonic() > deadline_s:
-            raise ViewerError(f"the Rerun viewer does not listen on {', '.join(map(str, ports))} after {START_S:g} s")
+            raise ViewerError(
+                f"the Rerun viewer did not listen on {', '.join(map(str, ports))} within {START_S:g} s: try again"
+            )
         time.sleep(POLL_S)
 
 

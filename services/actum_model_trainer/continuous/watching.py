@@ -21,8 +21,9 @@ class NoSpotterError(ValueError):
 
     def __init__(self, model: Model) -> None:
         super().__init__(
-            f"model {model.id} (preset {model.metadata.preset}) cannot find actions without marks; train it anew with "
-            "preset pyramid, from recordings that also show what people do before, between and after actions"
+            f"model {model.id} (preset {model.metadata.preset}) cannot find actions without marks: train it again "
+            "with preset pyramid, from recordings that also show background activity before, between and after "
+            "the actions"
         )
 
 

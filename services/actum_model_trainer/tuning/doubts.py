@@ -32,24 +32,27 @@ def doubts(
     persons = {each.trial.person for each in weighed}
     if seen := sorted(persons & set(model.metadata.persons) - {""}):
         yield (
-            f"the model was trained on person {', '.join(seen)}: it does better on them than on others; "
-            "tune on somebody else"
+            f"the model was trained on person {', '.join(seen)}, on whom it does better than on others: tune on "
+            "somebody else"
         )
     if "" in persons:
-        yield "a recording names no person: if the model was trained on it, it does better there than elsewhere"
+        yield "a recording names no person: if the model was trained on it, the result is better than elsewhere"
     yield from _too_little(scores, FALSE_ALARMS_PER_MIN if most_per_min is None else most_per_min)
     if model.background_s == 0:
-        yield "no background in the model's training data: it has one sensitivity only, and none is a guess"
+        yield (
+            "the model's training data holds no background, so it has only one sensitivity, and its rejection of "
+            "background is a guess"
+        )
     known = set(model.labels)
     if unknown := sorted({label for label, own in scores.per_action.items() if own.truths} - known):
-        yield f"the model does not know {', '.join(unknown)}, which is done in the recordings: it counts as missed"
+        yield f"the model does not know {', '.join(unknown)}, which the recordings hold: each one counts as missed"
 
 
 def _too_little(scores: ContinuousScores, wanted_per_min: float) -> Iterator[str]:
     if scores.event.truths < FEWEST_ACTIONS:
-        yield f"only {scores.event.truths} actions are done here, too few to tell settings apart: record more"
+        yield f"the recordings hold only {scores.event.truths} actions, too few to compare settings: record more"
     if not scores.background_min:
-        yield "no background in the recordings: false alarms in other doings cannot be counted; record some"
+        yield "the recordings hold no background, so false alarms cannot be counted: record background activity"
         return
     least, most = rate_bounds(scores.false_detections, scores.background_min)
     if least <= wanted_per_min < most:

@@ -18,7 +18,7 @@ from som_classifier.model import Model
 from som_classifier.segmentation import Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
 
-OTHERWISE = "the classifier found something else than the trials did, which is a defect: please tell us"
+OTHERWISE = "the classifier found other segments than the trials did: this is a defect, please report it"
 """What is said where both do not agree; the scores are the classifier's."""
 
 
@@ -26,7 +26,9 @@ class NothingLabelledError(ValueError):
     """No labelled action is in the recordings; the text says what to do."""
 
     def __init__(self) -> None:
-        super().__init__("no labelled action in these recordings, so nothing can be tuned on them: see actum label")
+        super().__init__(
+            "these recordings hold no labelled action, so nothing can be tuned on them: label them with 'actum label'"
+        )
 
 
 @dataclass(frozen=True)

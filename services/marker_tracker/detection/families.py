@@ -93,7 +93,7 @@ def canonical(name: str) -> str:
     official = known.get(upper) or known.get(PREFIX + upper)
     if official is None:
         names = sorted(set(known))
-        raise UnknownFamilyError(f"{name!r} is no marker dictionary: use one of {', '.join(names)}")
+        raise UnknownFamilyError(f"{name!r} is not a marker dictionary: use one of {', '.join(names)}")
     return official
 
 

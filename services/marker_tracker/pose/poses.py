@@ -88,7 +88,9 @@ def measure(objects: Sequence[MarkedObject], camera: CameraModel, counters: Coun
             poses = solve(each.markers, camera)
             if len(each.markers) > 1 and poses[0].error_px > MAX_ERROR_PX:
                 ids = ", ".join(str(marker.id) for marker, _ in each.markers)
-                detail = f"markers {ids} of {each.name} are not where the scene file puts them"
+                detail = (
+                    f"markers {ids} of {each.name} do not lie where the scene file states: measure their places again"
+                )
                 counters.reject("markers_disagree", detail)
                 poses = solve(each.markers[:1], camera)
         except BadPoseError as error:

@@ -51,7 +51,7 @@ def nite() -> Any | None:
     try:
         nite2.initialize(folders)
     except InitializationError as error:
-        log.warning("NiTE cannot be started, so people are looked for in colour: %s", error)
+        log.warning("NiTE cannot be started, so people are found in the colour images: %s", error)
         return None
     return nite2
 

@@ -88,7 +88,8 @@ def recorded_pictures(path: Path, start_ns: int, field_of_view_deg: float = 60.0
         streams = Streams(openni2, _opened_file(openni2, path), SIZE, field_of_view_deg)
     except FILE_ERRORS as error:
         raise VideoError(
-            f"{path}: no recording of colour and depth that OpenNI can play ({error_text(error)})"
+            f"{path} is not a recording of colour and depth that OpenNI can play ({error_text(error)}): name "
+            "another --path"
         ) from None
     try:
         has_frame, has_picture = True, False
@@ -98,7 +99,7 @@ def recorded_pictures(path: Path, start_ns: int, field_of_view_deg: float = 60.0
                 has_picture = True
                 yield picture
         if not has_picture:
-            raise VideoError(f"{path}: the recording has no colour and depth of the same time; record both streams")
+            raise VideoError(f"{path} holds no colour and depth of the same time: record both streams")
     finally:
         streams.close()
 

@@ -15,8 +15,8 @@ class OpenNiError(ValueError):
     """The library is not installed; the message names the remedy and `problem`."""
 
     def __init__(self, problem: str) -> None:
-        remedy = f"{adding('openni2')}; on Debian also apt install libopenni2-0"
-        super().__init__(f"the source openni2 needs OpenNI 2: {remedy} ({problem})")
+        remedy = f"{adding('openni2')}; on Debian also run: apt install libopenni2-0"
+        super().__init__(f"the source openni2 needs OpenNI 2 ({problem}): {remedy}")
 
 
 def library() -> Any:

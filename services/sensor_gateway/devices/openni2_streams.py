@@ -120,7 +120,7 @@ class Streams:
             self.device.set_image_registration_mode(registered)
             self.device.set_depth_color_sync_enabled(True)
         else:
-            log.warning("the driver does not register depth to colour: thin limbs may get the depth beside them")
+            log.warning("the driver does not register depth to colour: a thin limb may get the depth of the background")
 
     def _pixels(self, stream: Any, frame: Any) -> NDArray[Any]:
         """Copy a frame's pixels, unmirrored: (height, width) of depth, (height, width, 3) of colour."""

@@ -52,8 +52,8 @@ def library() -> Any:
         import pyrealsense2
     except ImportError as error:
         raise RealSenseError(
-            f"the source realsense needs pyrealsense2: {adding('realsense')}; on Debian also apt install libusb-1.0-0 "
-            f"({error})"
+            f"the source realsense needs pyrealsense2 ({error}): {adding('realsense')}; on Debian also run: apt "
+            "install libusb-1.0-0"
         ) from None
     return pyrealsense2
 
@@ -152,7 +152,9 @@ def recorded_pictures(path: Path, start_ns: int) -> Generator[Picture, None, Non
         playback.set_real_time(False)
         pipeline.start(config)
     except RuntimeError as error:
-        raise VideoError(f"{path}: no recording that librealsense can play ({error})") from None
+        raise VideoError(
+            f"{path} is not a recording that librealsense can play ({error}): name another --path"
+        ) from None
     try:
         yield from _played(
             pipeline, playback, lambda frames: aligner.picture(frames, lambda f: clock.stamp_ns(_device_ns(f)))
@@ -160,7 +162,7 @@ def recorded_pictures(path: Path, start_ns: int) -> Generator[Picture, None, Non
     finally:
         pipeline.stop()
     if not aligner.made:
-        raise VideoError(f"{path}: the recording has no colour and depth together; record both streams")
+        raise VideoError(f"{path} holds no colour and depth of the same time: record both streams")
 
 
 def _played(

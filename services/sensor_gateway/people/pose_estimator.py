@@ -27,8 +27,8 @@ SEARCH_NS = SECOND_NS
 """Interval of searches for further people while there is one: a search costs three times as much as tracking one."""
 TOGETHER_NS = 2 * SECOND_NS
 """Time after several people were detected in which each image is searched for several: one may be hidden briefly."""
-LIBRARIES = "on Debian and Ubuntu, 'apt install libegl1 libgles2' gets what it needs"
-FETCH = "fetch it with 'actum models fetch', or name a file in ACTUM_POSE_MODEL"
+LIBRARIES = "on Debian and Ubuntu run: apt install libegl1 libgles2"
+FETCH = "download one with 'actum models fetch', or name a file in ACTUM_POSE_MODEL"
 
 
 class PoseModelError(ValueError):
@@ -63,7 +63,7 @@ class PoseEstimator:
 
     def __init__(self, model_path: Path, people: int = 2) -> None:
         if not model_path.is_file():
-            raise PoseModelError(f"no pose model at {model_path}: {FETCH}")
+            raise PoseModelError(f"there is no pose model at {model_path}: {FETCH}")
         self._one = Landmarker(model_path, 1)
         self._several = Landmarker(model_path, people) if people > 1 else None
         self._together_ns: int | None = None
@@ -148,10 +148,10 @@ class Landmarker:
         try:
             return vision.PoseLandmarker.create_from_options(options)
         except PermissionError:
-            raise PoseModelError(f"{model_path}: this user may not read it") from None
+            raise PoseModelError(f"{model_path} cannot be read by this user: give the user read permission") from None
         except (FileNotFoundError, RuntimeError, ValueError) as error:  # "not found": a part within the file
             first = str(error).partition("\n")[0]
-            raise PoseModelError(f"{model_path}: no pose model ({first}): {FETCH}") from None
+            raise PoseModelError(f"{model_path} is not a pose model ({first}): {FETCH}") from None
         except OSError as error:
             raise PoseModelError(f"MediaPipe cannot be loaded ({error}): {LIBRARIES}") from None
 
@@ -175,7 +175,7 @@ def _mediapipe() -> Any:
     try:
         import mediapipe
     except ImportError as error:
-        raise PoseModelError(f"the camera needs MediaPipe: {adding('camera')} ({error})") from None
+        raise PoseModelError(f"the camera needs MediaPipe ({error}): {adding('camera')}") from None
     return mediapipe
 
 

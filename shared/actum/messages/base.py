@@ -36,7 +36,9 @@ _SHORTEST = 1e-3
 
 def _nonzero(direction: list[float]) -> list[float]:
     if not _SHORTEST < math.hypot(*direction) < 1 / _SHORTEST:
-        raise ValueError(f"{direction} has no direction: [0, -1, 0] is up for a level camera")
+        raise ValueError(
+            f"{direction} has length 0: give a direction, such as [0, -1, 0], which is up for a level camera"
+        )
     return direction
 
 

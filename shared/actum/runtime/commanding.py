@@ -58,7 +58,7 @@ class Commander:
                     self._counters.reject("refused_command", str(refusal))
                 query.reply_err(packed({"error": str(refusal)}, encoding), encoding=encoding)
             except Exception:
-                log.exception("a bug, met while obeying %s", query.key_expr)
+                log.exception("a bug occurred while handling the command %s", query.key_expr)
                 query.reply_err(packed({"error": "the service failed: its log says why"}, encoding), encoding=encoding)
                 self._failed()
 
@@ -72,7 +72,7 @@ class Commander:
         if asked.intersects(zenoh.KeyExpr(self._base)):
             meant.append([])
         if len(meant) != 1:
-            raise Refusal(f"{asked} names {len(meant)} commands: ask for one of {', '.join(sorted(self._commands))}")
+            raise Refusal(f"{asked} matches {len(meant)} commands: ask for one of {', '.join(sorted(self._commands))}")
         return meant[0]
 
     def _obey(self, name: list[str], fields: dict[str, Any]) -> dict[str, Any]:
@@ -91,4 +91,4 @@ def _packed_reply(reply: dict[str, Any], encoding: str) -> bytes:
     try:
         return packed(reply, encoding)
     except Refusal as refusal:
-        raise Refusal(f"it was carried out, but its answer cannot be sent: {refusal}") from None
+        raise Refusal(f"the command was carried out, but its reply cannot be sent: {refusal}") from None

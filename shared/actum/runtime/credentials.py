@@ -66,7 +66,9 @@ def login_values(folder: Path) -> dict[str, str]:
     except OSError as error:
         raise SettingsError(_unreadable(file, error)) from None
     except (ValueError, TypeError, KeyError):
-        raise SettingsError(f"credentials: {file} does not hold a user and a password: copy the folder anew") from None
+        raise SettingsError(
+            f"credentials: {file} does not hold a user and a password: copy the credentials folder again"
+        ) from None
 
 
 def check(folder: Path) -> None:
@@ -83,8 +85,10 @@ def check(folder: Path) -> None:
     try:
         ssl.create_default_context(cafile=folder / AUTHORITY).load_cert_chain(folder / CERTIFICATE, folder / KEY)
     except ssl.SSLError as error:
-        problem = error.reason or "no certificates"
-        raise SettingsError(f"credentials: {folder} cannot be used ({problem}): copy the folder anew") from None
+        problem = error.reason or "no certificate"
+        raise SettingsError(
+            f"credentials: {folder} cannot be used ({problem}): copy the credentials folder again"
+        ) from None
 
 
 def is_renewed(folder: Path, shown: bytes) -> bool:
@@ -98,4 +102,4 @@ def is_renewed(folder: Path, shown: bytes) -> bool:
 
 def _unreadable(file: Path, error: OSError) -> str:
     who = f"user {os.getuid()}" if hasattr(os, "getuid") else "this user"
-    return f"credentials: {file} cannot be read by {who} ({error.strerror}): see 'actum deploy init'"
+    return f"credentials: {file} cannot be read by {who} ({error.strerror}): give that user read permission"

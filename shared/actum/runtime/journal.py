@@ -104,7 +104,7 @@ class Journal:
             self._begun_ns = time.time_ns()
             self._opened()
             raise FileNotFoundError(
-                errno.ENOENT, "it was removed with the answers in it, and is begun anew", self._path
+                errno.ENOENT, "the file was removed with its answers, and is created again", self._path
             )
         if self._is_stored:
             return None

@@ -34,14 +34,16 @@ def obstacle(settings: ServiceSettings) -> str:
 def _on_the_way(error: OSError, host: str, port: int) -> str:
     """Say what it means that a host cannot be connected to."""
     if isinstance(error, socket.gaierror):
-        return f"the name {host} is not known here ({error.strerror}): correct it, or use the host's address"
+        return f"this machine cannot resolve the name {host} ({error.strerror}): correct it, or use the host's address"
     if isinstance(error, TimeoutError):
-        return f"{host} does not answer: is it on, is the cable in, does a firewall let port {port} through?"
+        return (
+            f"{host} does not answer: check that the host is on, the cable connected and port {port} open in firewalls"
+        )
     if isinstance(error, ConnectionRefusedError):
-        return f"nothing listens on port {port} of {host}: start one with 'actum router' or set ACTUM_CONNECT"
+        return f"nothing listens on port {port} of {host}: start a router with 'actum router', or set ACTUM_CONNECT"
     if error.errno in NO_ROUTE:
-        return f"no route leads to {host} ({error.strerror}): is this machine on its network?"
-    return f"{host} breaks off ({error.strerror or error}): is port {port} a router's?"
+        return f"there is no route to {host} ({error.strerror}): check this machine's network connection"
+    return f"{host} closes the connection ({error.strerror or error}): check that port {port} is a router's"
 
 
 def _between_sessions(settings: ServiceSettings, host: str, port: int) -> str:
@@ -51,10 +53,13 @@ def _between_sessions(settings: ServiceSettings, host: str, port: int) -> str:
         return refusal(host, port, Tls.of(config)) or _with_user(settings, json.loads(config.get_json(f"{LOGIN}/user")))
     if speaks_tls(host, port):
         address = settings.connect.removeprefix("tcp/")
-        return f"the router there wants TLS: set ACTUM_CONNECT=tls/{address}, and ACTUM_CREDENTIALS to a role's folder"
+        return (
+            f"the router requires TLS: set ACTUM_CONNECT=tls/{address}, and ACTUM_CREDENTIALS to the credentials "
+            "folder of a role"
+        )
     return (
-        f"something listens on port {port} and does not answer as a router: is it frozen, another program, or does it "
-        "ask for a user's name and password?"
+        f"port {port} accepts connections but does not answer as a router: another program may listen there, the "
+        "router may be frozen, or it may require a user name and a password"
     )
 
 
@@ -62,5 +67,5 @@ def _with_user(settings: ServiceSettings, user: str | None) -> str:
     """Say why a router whose certificate fits opens no session."""
     login = login_values(settings.credentials) if settings.credentials else {}
     name = login.get(f"{LOGIN}/user", user)
-    who = f"refuses the user {name} or the password" if name else "asks for a user's name and password"
-    return f"certificates are accepted on both sides, so the router {who}, or is frozen"
+    who = f"refuses user {name} or its password" if name else "requires a user name and a password"
+    return f"both certificates are valid, so the router {who}, or it is frozen"

@@ -67,7 +67,9 @@ class Alone:
         self._unanswered_since_s = self._unanswered_since_s or now_s
         if now_s - self._unanswered_since_s < LOST_S:
             return False
-        log.warning("nobody tells whether this runs twice: allow liveliness_query in the router's access control")
+        log.warning(
+            "cannot check for a second instance of this service: allow liveliness_query in the router's access control"
+        )
         return True
 
 
@@ -143,7 +145,7 @@ class Place:
         if waited_s > LOST_S or self._info_of(holder) is not None:
             return False
         if holder.instance not in silent:
-            log.warning("%s does not answer: waiting until it is given up", holder.instance)
+            log.warning("%s does not answer: waiting until its token expires", holder.instance)
             silent.add(holder.instance)
         return True
 
@@ -195,12 +197,13 @@ class Place:
     def _refusal(self, holder: keys.Claim) -> str:
         info = self._info_of(holder)
         host = f" on {info.host}" if info and info.host else ""
-        other = f"another {self._service} runs for sensor {self._settings.sensor}: {holder.instance}{host}"
+        other = f"another {self._service} already runs for sensor {self._settings.sensor}: {holder.instance}{host}"
         if self._settings.take_over:
-            return f"{other}, and does not make room: stop it there"
+            return f"{other}, and it does not stop when asked to: stop it on its host"
         return (
-            f"{other}. Two would answer everything twice, so this one, {self._settings.instance}, ends: stop the "
-            "other, go on in its place with --take-over (ACTUM_TAKE_OVER=1), or name another viewpoint by --sensor"
+            f"{other}. Two instances would answer everything twice, so this one ({self._settings.instance}) ends. "
+            "Stop the other instance, replace it with --take-over (ACTUM_TAKE_OVER=1), or name another sensor "
+            "with --sensor"
         )
 
     def _declare(self, key: str) -> None:

@@ -68,7 +68,9 @@ class Reporter:
             store()
             successor = place.lost_to()
             if successor is not None:
-                log.warning("%s takes over for sensor %s: this one stops", successor, self._settings.sensor)
+                log.warning(
+                    "%s replaces this instance for sensor %s: this instance stops", successor, self._settings.sensor
+                )
                 stop.set()
 
     def _log_connection(self, now: bool) -> None:

@@ -27,7 +27,10 @@ def check_state_folder(settings: ServiceSettings) -> None:
         if settings.state is not None:
             settings.state.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
     except OSError as error:
-        raise SettingsError(f"state: the folder {settings.state} cannot be made: {error.strerror}") from None
+        raise SettingsError(
+            f"state: the folder {settings.state} cannot be created ({error.strerror}): name another folder in "
+            "ACTUM_STATE"
+        ) from None
 
 
 class Resumption:
@@ -94,7 +97,7 @@ class Resumption:
         reason = f"{error.filename or 'the journal'}: {error.strerror}"
         self._counters.reject("unwritable_state", reason)
         if self._writes:
-            log.warning("answers are not written down, so that a restart may give others: %s", reason)
+            log.warning("answers cannot be written to the journal, so a restart may change them: %s", reason)
         self._writes = False
 
     def _keep(self, frame: Frame) -> None:

@@ -84,7 +84,7 @@ def _opened(listen: str | None, config_file: Path | None, credentials: Path | No
         return zenoh.open(config)
     except zenoh.ZError as error:
         reason = " ".join(str(error).partition(" at /")[0].split())
-        raise SettingsError(f"no router can be started on {listen or config_file}: {reason}") from None
+        raise SettingsError(f"the router cannot start on {listen or config_file}: {reason}") from None
 
 
 def _wait_for_renewal(
@@ -101,7 +101,7 @@ def _wait_for_renewal(
         health.write(any(session.get(f"@/{session.zid()}/router", timeout=LOOK_S)))
         if wait_for(stop, LOOK_S):
             return
-    log.info("the certificate in %s or the configuration was renewed: listening anew", credentials)
+    log.info("the certificate in %s or the configuration has changed: the router restarts its listener", credentials)
 
 
 def _content(file: Path | None) -> bytes:

@@ -88,7 +88,7 @@ class Service(ABC):
         threading.excepthook = ended
 
     def _end_at_bug(self, where: str, error: BaseException, stop: threading.Event) -> None:
-        log.error("a bug, met %s", where, exc_info=error)
+        log.error("a bug occurred %s", where, exc_info=error)
         self.failed = True
         stop.set()
 

@@ -70,7 +70,7 @@ def log_level() -> str:
     """
     named = os.environ.get("ACTUM_LOG") or "INFO"
     if named.upper() not in logging.getLevelNamesMapping():
-        raise SettingsError(f"ACTUM_LOG: there is no level {named!r}: use DEBUG, INFO, WARNING or ERROR")
+        raise SettingsError(f"ACTUM_LOG: {named!r} is not a log level: use DEBUG, INFO, WARNING or ERROR")
     return named.upper()
 
 

@@ -47,7 +47,7 @@ class RouterUnreachableError(RuntimeError):
     """No router answered at the configured endpoint."""
 
     def __init__(self, endpoint: str) -> None:
-        super().__init__(f"no router answers at {endpoint}: start one with 'actum router' or set ACTUM_CONNECT")
+        super().__init__(f"no router answers at {endpoint}: start one with 'actum router', or set ACTUM_CONNECT")
 
 
 def client_config(settings: ServiceSettings) -> zenoh.Config:
@@ -62,7 +62,9 @@ def client_config(settings: ServiceSettings) -> zenoh.Config:
     insert(config, _client_values(settings.connect))
     if settings.credentials is not None:
         if not settings.connect.startswith(ENCRYPTED):
-            raise SettingsError(f"credentials are shown to no router at {settings.connect}: use tls/host:port")
+            raise SettingsError(
+                f"credentials cannot be used with {settings.connect}: set ACTUM_CONNECT to tls/host:port"
+            )
         check(settings.credentials)
         insert(config, client_values(settings.credentials))
     return config
@@ -91,7 +93,7 @@ def _base_config(file: Path) -> zenoh.Config:
         return zenoh.Config.from_file(file)
     except zenoh.ZError as error:
         reason = " ".join(str(error).partition(" at /")[0].split())
-        raise SettingsError(f"zenoh-config: {file} is no Zenoh configuration: {reason}") from None
+        raise SettingsError(f"zenoh-config: {file} is not a Zenoh configuration: {reason}") from None
 
 
 def _client_values(endpoint: str) -> dict[str, Any]:

@@ -18,20 +18,23 @@ NO_CHECK_TIME = ssl.VerifyFlags(0x200000)
 TURNS = 4
 """Turns of both sides in a handshake with oneself: more than TLS 1.3 takes."""
 
-_STRANGER = "the router knows another authority than that of {certificate}: use a folder of its deployment"
-_NO_TLS = "what listens there does not answer in TLS: use tcp/ in ACTUM_CONNECT, unless it is frozen"
+_STRANGER = (
+    "the router trusts another authority than the one that signed {certificate}: use credentials of the router's "
+    "deployment"
+)
+_NO_TLS = "the port does not answer in TLS: use tcp/ in ACTUM_CONNECT, or restart the router if it is frozen"
 _REFUSED = {
-    "CERTIFICATE_REQUIRED": "the router wants a certificate and is shown none: set ACTUM_CREDENTIALS to a folder",
+    "CERTIFICATE_REQUIRED": "the router requires a certificate: set ACTUM_CREDENTIALS to the folder of a role",
     "UNKNOWN_CA": _STRANGER,
     "DECRYPT_ERROR": _STRANGER,  # an authority of the same name, with another key
-    "CERTIFICATE_EXPIRED": "to the router {certificate} is not valid now: is the router's clock right?",
+    "CERTIFICATE_EXPIRED": "the router refuses {certificate} as out of date: check the clock of the router's host",
 }
 """What it means that a router breaks off, by the end of OpenSSL's name for its alert."""
 _DISTRUSTED = {
-    9: "the router's certificate is not valid yet: set this machine's clock, or the router's host's",
+    9: "the router's certificate is not valid yet: check the clocks of this machine and of the router's host",
     10: "the router's certificate expired on {ends}: renew it with 'actum deploy rotate'",
-    62: "the router's certificate is for {names} and not for {host}: connect by one of these names",
-    64: "the router's certificate is for {names} and not for {host}: connect by one of these names",
+    62: "the router's certificate is for {names}, not for {host}: use one of these names in ACTUM_CONNECT",
+    64: "the router's certificate is for {names}, not for {host}: use one of these names in ACTUM_CONNECT",
 }
 """What it means that OpenSSL does not trust a router, by its number of the reason."""
 
@@ -92,12 +95,13 @@ def _own_fault(tls: Tls) -> str | None:
     except ssl.SSLError as error:
         problem = getattr(error, "verify_message", None) or error.reason
         return (
-            f"{tls.certificate} is not signed by the authority in {tls.authority} ({problem}): use files of one folder"
+            f"{tls.certificate} is not signed by the authority in {tls.authority} ({problem}): use the files of "
+            "one credentials folder"
         )
     if time.time() > ssl.cert_time_to_seconds(own["notAfter"]):
         return f"{tls.certificate} expired on {own['notAfter']}: renew it with 'actum deploy rotate'"
     if time.time() < ssl.cert_time_to_seconds(own["notBefore"]):
-        return f"{tls.certificate} is not valid before {own['notBefore']}: set this machine's clock"
+        return f"{tls.certificate} is not valid before {own['notBefore']}: check this machine's clock"
     return None
 
 
@@ -130,9 +134,9 @@ def _routers_fault(host: str, port: int, tls: Tls) -> str | None:
         _connected(context, host, port).close()
     except ssl.SSLCertVerificationError as error:
         if error.verify_code not in _DISTRUSTED:
-            known = f"the authority in {tls.authority}" if tls.authority else "an authority that this machine knows"
+            known = f"the authority in {tls.authority}" if tls.authority else ("an authority that this machine trusts")
             problem = f"the router's certificate is not signed by {known} ({error.verify_message})"
-            return f"{problem}: use a folder of its deployment"
+            return f"{problem}: use credentials of the router's deployment"
         return _DISTRUSTED[error.verify_code].format(host=host, **_routers_certificate(host, port, tls))
     except ssl.SSLError as error:
         return None if "ALERT" in (error.reason or "") else _NO_TLS

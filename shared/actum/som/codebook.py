@@ -52,7 +52,7 @@ class Codebook:
         weights = np.array(self.weights, dtype=float_type(self.weights), order="C")
         fits = weights.ndim == 2 and weights.shape[0] == self.grid.nodes and weights.shape[1] > 0
         if not fits or not np.isfinite(weights).all():
-            raise ValueError(f"weights of shape {weights.shape} are no {self.rows}×{self.cols} finite vectors")
+            raise ValueError(f"weights of shape {weights.shape} are not {self.rows}×{self.cols} finite vectors")
         check_squarable(weights)
         weights.setflags(write=False)
         object.__setattr__(self, "weights", weights)
@@ -124,7 +124,7 @@ class Codebook:
             ValueError: the map has one unit only; or as `bmus`.
         """
         if self.grid.nodes < 2:
-            raise ValueError("a map of one unit has no second-best one")
+            raise ValueError("a map of one unit has no second-best unit")
         rows = numbers(vectors)
         best_units = np.empty((len(rows), 2), np.intp)
         for chunk, scores in self.lookup.scores(rows):

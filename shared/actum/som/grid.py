@@ -39,9 +39,9 @@ class Grid:
 
     def __post_init__(self) -> None:
         if self.topology not in get_args(Topology):
-            raise ValueError(f"topology {self.topology!r} is none of {', '.join(get_args(Topology))}")
+            raise ValueError(f"{self.topology!r} is not a topology: use {', '.join(get_args(Topology))}")
         if self.rows < 1 or self.cols < 1:
-            raise ValueError(f"a grid of {self.rows}×{self.cols} has no units")
+            raise ValueError(f"a grid of {self.rows}×{self.cols} has no units: use at least 1×1")
 
     @property
     def nodes(self) -> int:
@@ -129,7 +129,7 @@ class Grid:
         count = next(iter(known)) if neighbours is None else neighbours
         if count not in known:
             possible = " or ".join(map(str, known))
-            raise ValueError(f"units of a {self.topology} grid have {possible} neighbours, not {count}")
+            raise ValueError(f"a unit of a {self.topology} grid has {possible} neighbours, not {count}")
         return known[count]
 
 

@@ -16,7 +16,7 @@ def some_rows(vectors: ArrayLike) -> Array:
     """
     rows = numbers(vectors)
     if not len(rows):
-        raise ValueError("there are no vectors to measure a map with")
+        raise ValueError("no vectors are given: measuring a map needs at least one")
     return rows
 
 
@@ -51,7 +51,7 @@ def training_vectors(vectors: ArrayLike, dim: int, dtype: np.dtype[np.floating])
     """
     inputs = np.array(vectors, dtype=dtype, order="C")
     if inputs.ndim != 2 or inputs.shape[1] != dim or not len(inputs):
-        raise ValueError(f"cannot train on shape {inputs.shape}: needs n > 0 rows of {dim}")
+        raise ValueError(f"cannot train on vectors of shape {inputs.shape}: give at least one row of {dim} components")
     try:
         is_complete(inputs)
         check_squarable(inputs)
@@ -83,4 +83,4 @@ def check_rows(vectors: Array, dim: int) -> None:
         ValueError: it is not; the text names its shape.
     """
     if vectors.ndim != 2 or vectors.shape[1] != dim:
-        raise ValueError(f"vectors of shape {vectors.shape} are no rows of {dim} components")
+        raise ValueError(f"vectors of shape {vectors.shape} are not rows of {dim} components")

@@ -88,7 +88,9 @@ class Steps:
         """
         alphas, radii = np.array(self.alphas, np.float64), np.array(self.radii, np.float64)
         if alphas.shape != (steps,) or radii.shape != (steps,):
-            raise ValueError(f"{alphas.shape} alphas and {radii.shape} radii are given for {steps} steps")
+            raise ValueError(
+                f"{alphas.shape} alphas and {radii.shape} radii are given for {steps} steps: give one of each per step"
+            )
         return alphas, radii
 
 
@@ -99,7 +101,9 @@ def falling(first: float, last: float, steps: int) -> Array:
         ValueError: first or last is not finite and above 0.
     """
     if not (0 < first < np.inf and 0 < last < np.inf):
-        raise ValueError(f"nothing falls exponentially from {first} to {last}: both must be finite and above 0")
+        raise ValueError(
+            f"an exponential schedule from {first} to {last} is not possible: both values must be finite and above 0"
+        )
     return np.geomspace(first, last, steps)
 
 

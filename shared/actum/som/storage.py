@@ -73,7 +73,7 @@ def refuse_bomb(stored: IO[bytes]) -> None:
         size = sum(max(member.file_size, _array_bytes(archive, member)) for member in archive.infolist())
     most = LEAST_BYTES + MOST_INFLATION * stored.seek(0, os.SEEK_END)
     if size > most:
-        raise ValueError(f"its arrays would take {size} bytes")
+        raise ValueError(f"its arrays would take {size} bytes, more than is allowed")
     stored.seek(0)
 
 
@@ -82,7 +82,7 @@ def _array_bytes(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> int:
     with archive.open(member) as array:
         read_header = HEADERS.get(NPY.read_magic(array))
         if read_header is None:
-            raise ValueError(f"{member.filename} is of a format that NumPy did not write for it")
+            raise ValueError(f"{member.filename} was not written by NumPy in this format")
         shape, _, dtype = read_header(array)
     return int(math.prod(shape) * dtype.itemsize)
 
@@ -97,7 +97,7 @@ def reading(path: Path, file_format: str) -> Iterator[Mapping[str, NDArray[Any]]
     try:
         with path.open("rb") as stored:
             if not zipfile.is_zipfile(stored):
-                raise SomError(path, "this is no npz file")
+                raise SomError(path, "it is not an npz file")
             refuse_bomb(stored)
             with np.load(stored, allow_pickle=False) as file:
                 if str(file["format"]) != file_format:
@@ -108,4 +108,4 @@ def reading(path: Path, file_format: str) -> Iterator[Mapping[str, NDArray[Any]]
     except FileNotFoundError:
         raise SomError(path, "there is no such file") from None
     except UNREADABLE as error:
-        raise SomError(path, f"not of format {file_format!r}, or damaged ({error})") from None
+        raise SomError(path, f"it is not of format {file_format!r}, or it is damaged ({error})") from None

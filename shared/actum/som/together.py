@@ -30,7 +30,10 @@ class Together:
             ValueError: the maps differ in their number of units or their precision.
         """
         if len({(som.grid.nodes, som.dtype) for som in maps}) != 1:
-            raise ValueError(f"maps of {[(som.grid.nodes, str(som.dtype)) for som in maps]} units are not alike")
+            raise ValueError(
+                f"maps of {[(som.grid.nodes, str(som.dtype)) for som in maps]} units differ in their grids or data "
+                "types: give maps of one kind"
+            )
         self._shape = (-1, len(maps), maps[0].grid.nodes)
         self._dtype = maps[0].dtype
         lookups = [som.lookup for som in maps]

@@ -61,7 +61,7 @@ def test_a_single_array_and_a_text_are_no_maps(tmp_path: Path) -> None:
     (tmp_path / "text.npz").write_text("a map")
     (tmp_path / "empty.npz").write_bytes(b"")
     for name in ("array.npy", "text.npz", "empty.npz"):
-        with pytest.raises(SomError, match=f"{name}: this is no npz file"):
+        with pytest.raises(SomError, match=f"{name}: it is not an npz file"):
             Som.load(tmp_path / name)
 
 

@@ -57,7 +57,7 @@ def test_neighbours_that_a_grid_does_not_have_are_refused(topology: str, neighbo
 def test_grids_that_make_no_sense_are_refused() -> None:
     with pytest.raises(ValueError, match="no units"):
         Grid(0, 3)
-    with pytest.raises(ValueError, match="'round' is none of rectangular, hexagonal"):
+    with pytest.raises(ValueError, match="'round' is not a topology: use rectangular, hexagonal"):
         Som(1, 1, np.zeros((1, 1)), "round")  # type: ignore[arg-type]
 
 

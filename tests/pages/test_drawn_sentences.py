@@ -1,0 +1,30 @@
+"""The drawn sentences are those that users meet, and a seed draws the same ones again."""
+
+import pytest
+from docs import drawn_sentences
+
+
+def test_errors_of_services_of_commands_and_of_doctor_are_among_them() -> None:
+    errors = drawn_sentences.errors()
+    assert "the source recording needs --path (ACTUM_PATH), the file or folder to play" in errors
+    assert "{file} is a folder: name the file to write" in errors
+    assert "{name} does not answer on its info key: restart it if this persists" in errors
+
+
+def test_helps_of_commands_of_their_options_and_of_settings_are_among_them() -> None:
+    named = {text.partition(":")[0] for text in drawn_sentences.helps()}
+    assert {"actum takes relabel", "actum takes relabel FILE", "actum calibrate intrinsics --live"} <= named
+    assert {"actum up --camera-size", "python -m sensor_gateway --camera-size TEXT"} <= named
+
+
+def test_paragraphs_hold_neither_tables_nor_code() -> None:
+    assert not [text for text in drawn_sentences.paragraphs() if "| ---" in text or "```" in text]
+
+
+def test_a_seed_draws_the_same_sentences_again(capsys: pytest.CaptureFixture[str]) -> None:
+    drawn = []
+    for _ in range(2):
+        drawn_sentences.main(["--seed", "7"])
+        drawn.append(capsys.readouterr().out)
+    assert drawn[0] == drawn[1]
+    assert drawn[0].startswith("seed 7\n")
