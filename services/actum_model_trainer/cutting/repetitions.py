@@ -8,13 +8,11 @@ import numpy as np
 
 from actum.arrays import Array
 from actum.node import SECOND_NS
-from actum_model_trainer.cutting.choice import MOST_REPETITIONS, Chain, Chains
+from actum_model_trainer.cutting.choice import MARGIN, MOST_REPETITIONS, Chain, Chains
 from actum_model_trainer.cutting.courses import Course
 from actum_model_trainer.cutting.doubts import Doubt, doubts_of
 from actum_model_trainer.cutting.movement import rest_postures
 
-MARGIN = 3
-"""Instants of rest (at `RATE_HZ`) that a cut has before and after its burst, 0.2 s, as marks by hand have."""
 AS_GOOD = 0.1
 """Of people whose repetitions are worth the same within this, the nearest to the camera is meant."""
 LEAST_SPEED_MPS = 0.03
