@@ -136,7 +136,7 @@ def test_what_is_done_five_times_is_counted_cut_and_shown(live: Live, tmp_path: 
 
 def test_what_is_repeated_with_nobody_there_is_told(live: Live, tmp_path: Path) -> None:
     live.comes(skeleton(1))
-    assert "nobody was seen moving" in actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5).stdout
+    assert "nobody was seen" in actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5).stdout
 
 
 def test_times_need_a_label(live: Live, tmp_path: Path) -> None:

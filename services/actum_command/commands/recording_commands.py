@@ -36,7 +36,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     person: Annotated[str, typer.Option(help="who acts; kept in the file, used to split training from test")] = "",
     label: Annotated[str | None, typer.Option(help="what is done in the segments marked while recording")] = None,
     times: Annotated[
-        int | None, typer.Option(min=2, help="how often --label is done in front of the camera: it is cut by itself")
+        int | None, typer.Option(min=1, help="how often --label is done in front of the camera: it is cut by itself")
     ] = None,
     marks: Annotated[
         str | None,
@@ -137,7 +137,7 @@ def _repeating(stream: StreamRecorder, label: str, times: int, stop: threading.E
 def _report_cuts(repeating: RepetitionRecorder, output: Path) -> None:
     """Print the cuts, what may be wrong with them, and how to mend it."""
     if repeating.cuts is None or repeating.first_ns is None:
-        say("nobody was seen moving, so nothing was cut", style="yellow")
+        say(f"this does not count, nothing was cut: {repeating.why_none}, and record it again", style="red")
         return
     for line in cut_lines(repeating.cuts, repeating.first_ns):
         say(line)
