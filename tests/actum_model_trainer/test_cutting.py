@@ -142,10 +142,18 @@ def test_two_that_follow_each_other_almost_at_once_are_two() -> None:
 @pytest.mark.parametrize(
     ("dips", "asked", "doubts"),
     [
-        ([50], 6, ["5 of 6 repetitions found: record the other 1; the second and third may have run together at 3.3 s"]),
+        (
+            [50],
+            6,
+            ["5 of 6 repetitions found: record the other 1; the second and third may have run together at 3.3 s"],
+        ),
         ([50], None, ["the second and third may have run together at 3.3 s"]),
         ([], 6, ["5 of 6 repetitions found: record the other 1"]),
-        ([50, 100], 6, ["5 of 6 repetitions found: record the other 1; the second and third may have run together at 3.3 s"]),
+        (
+            [50, 100],
+            6,
+            ["5 of 6 repetitions found: record the other 1; the second and third may have run together at 3.3 s"],
+        ),
         (
             [50, 100],
             None,

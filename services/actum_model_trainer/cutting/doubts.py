@@ -28,9 +28,7 @@ class Doubt(NamedTuple):
     repetition: int | None
 
 
-def doubts_of(
-    course: Course, activity: Array, chain: Chain, asked: int | None, first_ns: int
-) -> Iterator[Doubt]:
+def doubts_of(course: Course, activity: Array, chain: Chain, asked: int | None, first_ns: int) -> Iterator[Doubt]:
     """Yield what may be wrong with a chain; times count from a stamp.
 
     Args:
@@ -57,7 +55,9 @@ def doubts_of(
     for number, ((start, end), likeness) in enumerate(zip(chain.bursts, chain.likeness, strict=True), start=1):
         if found > 1 and likeness < UNLIKE:
             span = f"{offset_s + start / RATE_HZ:.1f} to {offset_s + end / RATE_HZ:.1f} s"
-            yield Doubt(f"the {_ordinal(number)} ({span}) is unlike the others: look at it, and trim or delete it", number)
+            yield Doubt(
+                f"the {_ordinal(number)} ({span}) is unlike the others: look at it, and trim or delete it", number
+            )
 
 
 def too_few(found: int, asked: int) -> str:

@@ -146,7 +146,9 @@ class TakeCommands:
             self._give_up()
             name, examples = None, 0
         else:
-            added = self._sets.add(take.state.set, finish_take(take.recorder, marking.marks, marking.doubts, marking.uncut))
+            added = self._sets.add(
+                take.state.set, finish_take(take.recorder, marking.marks, marking.doubts, marking.uncut)
+            )
             self._take = None
             self._changes.revision += 1
             name, examples = added.id, len(added.examples)

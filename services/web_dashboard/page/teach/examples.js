@@ -21,7 +21,7 @@ class Examples {
     Object.assign(this, { shown: "", tiles: new Map(), films: Promise.resolve() });
     this.line = outcome();
     this.trouble = outcome();
-    this.redo = button("Redo the last", () => trainer.set && this.redoLast());
+    this.redo = button("Redo the last take", () => trainer.set && this.redoLast());
     this.list = element("div", { class: "groups" });
     const playing = element("input", { type: "checkbox", checked: arePlaying() });
     playing.addEventListener("change", () => play(playing.checked));
@@ -90,7 +90,7 @@ class Examples {
   }
 
   redoLast() {
-    return attempt(this.line, () => trainer.ask("redo_last", { set: trainer.set.name }), "do it once more: it takes the place of the last");
+    return attempt(this.line, () => trainer.ask("redo_last", { set: trainer.set.name }), "do it again: the new take replaces the last one");
   }
 }
 
