@@ -62,29 +62,27 @@ class Result:
         return self.right == self.cut == self.true
 
 
-def by_points(skeletons: Iterable[Skeleton], points_ns: Sequence[int], asked: int | None) -> Result:
-    """Cut a stream and count the cuts that hold exactly one action point."""
-    cuts, _ = cuts_of(skeletons, asked)
-    held = [
-        sum(each.start_ns <= point <= each.end_ns for point in points_ns) for each in (cuts.repetitions if cuts else ())
-    ]
-    return Result(held.count(1), len(held), len(points_ns), cuts.sureness if cuts else 0.0, (), warns(cuts))
+def by_points(skeletons: Iterable[Skeleton], points_ns: Sequence[int]) -> Iterator[Result]:
+    """Cut a stream, told the number and not told, and count the cuts that hold exactly one action point."""
+    for cuts in cuts_of(skeletons, len(points_ns)):
+        spans_ns = [(each.start_ns, each.end_ns) for each in (cuts.repetitions if cuts else ())]
+        held = [sum(start <= point <= end for point in points_ns) for start, end in spans_ns]
+        yield Result(held.count(1), len(held), len(points_ns), cuts.sureness if cuts else 0.0, (), warns(cuts))
 
 
-def by_bounds(skeletons: Iterable[Skeleton], truths_ns: Sequence[tuple[int, int]], asked: int | None) -> Result:
-    """Cut a stream and count the cuts that hold the middle of exactly one repetition; with their IoU."""
-    cuts, _ = cuts_of(skeletons, asked)
-    found = [(each.start_ns, each.end_ns) for each in (cuts.repetitions if cuts else ())]
+def by_bounds(skeletons: Iterable[Skeleton], truths_ns: Sequence[tuple[int, int]]) -> Iterator[Result]:
+    """Cut a stream, told the number and not told, and count the cuts that hold the middle of exactly one repetition."""
     middles = [(start + end) // 2 for start, end in truths_ns]
-    overlaps = []
-    for start, end in found:
-        inside = [truth for truth, middle in zip(truths_ns, middles, strict=True) if start <= middle <= end]
-        if len(inside) == 1:
-            shared = min(end, inside[0][1]) - max(start, inside[0][0])
-            overlaps.append(shared / (max(end, inside[0][1]) - min(start, inside[0][0])))
-    return Result(
-        len(overlaps), len(found), len(truths_ns), cuts.sureness if cuts else 0.0, tuple(overlaps), warns(cuts)
-    )
+    for cuts in cuts_of(skeletons, len(truths_ns)):
+        found = [(each.start_ns, each.end_ns) for each in (cuts.repetitions if cuts else ())]
+        overlaps = []
+        for start, end in found:
+            inside = [truth for truth, middle in zip(truths_ns, middles, strict=True) if start <= middle <= end]
+            if len(inside) == 1:
+                shared = min(end, inside[0][1]) - max(start, inside[0][0])
+                overlaps.append(shared / (max(end, inside[0][1]) - min(start, inside[0][0])))
+        sureness = cuts.sureness if cuts else 0.0
+        yield Result(len(overlaps), len(found), len(truths_ns), sureness, tuple(overlaps), warns(cuts))
 
 
 def warns(cuts: Cuts | None) -> bool:
@@ -92,12 +90,14 @@ def warns(cuts: Cuts | None) -> bool:
     return cuts is not None and any(doubt.repetition is None for doubt in cuts.doubted)
 
 
-def cuts_of(skeletons: Iterable[Skeleton], asked: int | None) -> tuple[Cuts | None, int]:
+def cuts_of(skeletons: Iterable[Skeleton], number: int) -> list[Cuts | None]:
+    """Return what is cut where the number is told, and where it is not."""
     tracks, first_ns = PersonTracks(), 0
     for skeleton in skeletons:
         first_ns = first_ns or skeleton.stamp_ns
         tracks.take(skeleton)
-    return cut(tracks.courses(), asked, first_ns), first_ns
+    courses = tracks.courses()
+    return [cut(courses, asked, first_ns) for asked in (number, None)]
 
 
 def joints_of(frames: Iterable[Skeleton]) -> Array:
@@ -143,16 +143,16 @@ def stretched(part: Array, factor: float) -> Array:
     return slower
 
 
-def natural(people: str, known: bool) -> Iterator[Result]:
+def natural(people: str) -> Iterator[Iterator[Result]]:
     """MSRC-12 as it is: one gesture about ten times in each file."""
     for path, name in msrc12.stream_names(data() / "msrc12"):
         take = msrc12.read_stream(path, name, "kinect0")
         points_ns = [int(point) * 1000 for point in msrc12.stored_stream(path, name).points_us]
         if chosen("msrc12", take.person, people) and len(points_ns) >= FEWEST_POINTS and seen(take):
-            yield by_points(take.frames, points_ns, len(points_ns) if known else None)
+            yield by_points(take.frames, points_ns)
 
 
-def composed(people: str, known: bool, disturbed: bool) -> Iterator[Result]:
+def composed(people: str, disturbed: bool) -> Iterator[Iterator[Result]]:
     """MSR-Action3D: five executions by one person with pauses; disturbed, with walks about it and another action."""
     executions = by_person_and_action(people)
     walks = [joints_of(part) for part in walks_of(people)]
@@ -172,10 +172,10 @@ def composed(people: str, known: bool, disturbed: bool) -> Iterator[Result]:
         skeletons = skeletons_of(joints + rng.normal(0, JITTER_M, joints.shape))
         stamps = [frame.stamp_ns for frame in skeletons]
         truths = [(stamps[a], stamps[b]) for (a, b), (_, true) in zip(bounds, chain, strict=True) if true]
-        yield by_bounds(skeletons, truths, REPETITIONS if known else None)
+        yield by_bounds(skeletons, truths)
 
 
-def scene(people: str, known: bool) -> Iterator[Result]:
+def scene(people: str) -> Iterator[Iterator[Result]]:
     """The simulated scene: each action five times by each of some people; the marks are the scene's."""
     for actor in SCENE_PEOPLE[people]:
         for action in ACTIONS:
@@ -187,7 +187,7 @@ def scene(people: str, known: bool) -> Iterator[Result]:
                     else:
                         marks_ns.append(message.stamp_ns)
             truths = list(zip(marks_ns[::2], marks_ns[1::2], strict=True))
-            yield by_bounds(frames, truths, REPETITIONS if known else None)
+            yield by_bounds(frames, truths)
 
 
 def by_person_and_action(people: str) -> dict[tuple[str, str], list[Array]]:
@@ -248,8 +248,8 @@ def row(name: str, number: str, results: Sequence[Result]) -> str:
 
 SETS = {
     "MSRC-12, as it is": natural,
-    "MSR-Action3D, five with pauses": lambda people, known: composed(people, known, disturbed=False),
-    "the same, walking up and back, another action between": lambda people, known: composed(people, known, True),
+    "MSR-Action3D, five with pauses": lambda people: composed(people, disturbed=False),
+    "the same, walking up and back, another action between": lambda people: composed(people, disturbed=True),
     "simulated scene, five without pauses": scene,
 }
 
@@ -262,10 +262,10 @@ def main() -> None:
     told = parser.parse_args()
     print(HEADER.format(people=told.people))
     for name, measure in SETS.items():
-        for known, number in ((True, "told"), (False, "not told")):
-            if told.only in f"{name}, {number}":
-                print(row(name, number, list(measure(told.people, known))).replace("nan", ""), flush=True)
-                print(f"{name}, {number}: done", file=sys.stderr, flush=True)
+        if told.only in name:
+            for number, results in zip(("told", "not told"), zip(*measure(told.people), strict=True), strict=True):
+                print(row(name, number, results).replace("nan", ""), flush=True)
+            print(f"{name}: done", file=sys.stderr, flush=True)
     print(LIVE_HEADER)
     for name, takes in cutting_live.TAKES.items():
         if told.only in name:
@@ -294,14 +294,14 @@ people of MSRC-12 (1, 5, 9 and so on) and of MSR-Action3D (those with odd number
 LIVE_HEADER = """
 ## Takes that are counted along
 
-What the page and `actum record --times` do while somebody acts: a take ends by itself once as many as were asked for are
+What the page and `actum record --times` do while somebody acts: a take ends by itself once as many as asked for are
 followed by a long rest, and within 30 s of the last one, or not at all. *All right*: it ended by itself, with every
 repetition in one cut and no other cut. *Kept*: examples that are kept where nobody moves, after 20 or 40 s.
 
 Simulated: the person of `actum up --driven`, asked by command. Kinect: people of MSRC-12 in their still moments, joined
 to and fro, alone or before and after one of their streams. Webcam: the first picture of a clip with 4 grey levels of
-noise, swaying by 3 pixels, and waves of the same person, through the pose model. Slow: three times as long as MSR's, held for a
-second in the middle.
+noise, swaying by 3 pixels, and waves of the same person, through the pose model. Slow: three times as long as MSR's,
+held for a second in the middle.
 
 | takes | takes | ended by themselves | all right | kept | end after the last one (s) |
 |---|---:|---:|---:|---:|---:|"""

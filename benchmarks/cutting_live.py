@@ -44,7 +44,7 @@ ACTORS = {"development": range(20, 24), "held-out": range(40, 48)}
 
 @dataclass(frozen=True)
 class Take:
-    """What became of a take: whether it ended by itself, how many examples it has, and whether these are the right ones.
+    """What became of a take: whether it ended by itself, how many examples it has, and whether these are right.
 
     Attributes:
         late_s: from the last repetition to its end.
@@ -230,8 +230,9 @@ def webcam(people: str, moves: bool) -> Iterator[Take]:
 
 
 def waved(person: str, moves: bool) -> tuple[list[NDArray[np.uint8]], list[tuple[int, int]]]:
-    """Return the pictures of standing and, where the person moves, of five waves after it with pauses; and the waves."""
+    """Return the pictures of standing, then of five waves with pauses where the person moves; and the waves' frames."""
     from benchmarks.cutting import data
+
     from sensor_gateway.devices.video import pictures_of
 
     files = sorted((data() / "florence3d_rgb").glob(f"*actor{person}id*category1.mp4"))

@@ -39,6 +39,13 @@ class RepetitionRecorder:
         """Why nothing counts, and what to do."""
         return self._counter.why_none
 
+    @property
+    def lacks_some(self) -> bool:
+        """Whether somebody moved and fewer repetitions were cut than were asked for."""
+        if self.cuts is None:
+            return self._counter.so_far is not None
+        return len(self.cuts.repetitions) < self._counter.asked
+
     def take(self, message: Message, received_ns: int) -> None:
         """Take one message and the time it was received at (ns)."""
         self._stream.take(message, received_ns)

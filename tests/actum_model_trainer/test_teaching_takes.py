@@ -54,8 +54,8 @@ def test_stop_ends_a_take_and_says_that_some_are_missing(teacher: Teacher) -> No
     teacher.ask("record", set="kitchen", label="wave", person="anna", count=5)
     teacher.act(Stream().repeat(WAVES[:3]))
     reply = teacher.ask("stop")
-    assert reply["examples"] == 3 and reply["doubts"] == ["3 of 5 repetitions found: record the other 2"]
-    assert teacher.tick().recording.doubts == ["3 of 5 repetitions found: record the other 2"]
+    assert reply["examples"] == 3 and reply["doubts"] == ["3 of 5 repetitions found: record 2 more"]
+    assert teacher.tick().recording.doubts == ["3 of 5 repetitions found: record 2 more"]
 
 
 def test_a_discarded_take_leaves_nothing(teacher: Teacher) -> None:

@@ -112,7 +112,7 @@ def test_one_is_stopped_another_dropped_and_background_recorded(room: Lesson, te
     room.see(Stream().repeat(WAVES[:2]).skeletons(first_ns=10**12))
     press(teach, "Stop")
     says(teach, "record", "only 2 of 5 of swing recorded")
-    says(teach, "record", "record the other 3")
+    says(teach, "record", "record 3 more")
     press(teach, "Record")
     press(teach, "Discard")
     says(teach, "record", "dropped")

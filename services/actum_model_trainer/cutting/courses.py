@@ -33,7 +33,6 @@ SWAY = 2.0
 """A joint's deviation over a minute of standing, as a multiple of that within `STILL_S` at its stillest."""
 UNEVEN = 3.0
 """No joint is noisier than the median joint by a larger factor: one that seems so moves most of the time."""
-
 SMOOTHING = np.array([1.0, 3.0, 4.0, 3.0, 1.0]) / 12
 """Weights of neighbouring instants, a third of a second in all: one jump of a joint is no movement."""
 

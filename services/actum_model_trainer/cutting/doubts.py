@@ -62,7 +62,7 @@ def doubts_of(course: Course, activity: Array, chain: Chain, asked: int | None, 
 
 def too_few(found: int, asked: int) -> str:
     """Return the doubt about a number of repetitions that is smaller than the one that was asked for."""
-    return f"{found} of {asked} repetitions found: record the other {asked - found}"
+    return f"{found} of {asked} repetitions found: record {asked - found} more"
 
 
 def _seams(activity: Array, chain: Chain) -> Iterator[tuple[int, int, int]]:
