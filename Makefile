@@ -4,11 +4,12 @@ BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 RUNS := $(VENV)/.runs
 STAMP := $(VENV)/.installed
 export OPENBLAS_NUM_THREADS ?= 1
+PYTHONS ?= python3.11 python3.12 python3.13
 
 LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
 LOCKS := deploy/requirements
 
-.PHONY: install demo first-event simulated-model up test fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
+.PHONY: install demo first-event simulated-model up test test-pythons fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -41,6 +42,15 @@ up: $(RUNS)  ## router and all services, until Ctrl-C
 
 test: check  ## static checks, then every test but the long ones
 	$(BIN)/pytest -n 4 --dist worksteal
+
+test-pythons:  ## install and test with each of PYTHONS that is at hand, each in an environment of its own
+	@tested=; for python in $(PYTHONS); do \
+	  if ! command -v $$python > /dev/null; then echo "$$python: not at hand"; continue; fi; \
+	  $(MAKE) --no-print-directory test PYTHON=$$python VENV=.venvs/$$python || { echo "$$python: failed" >&2; exit 1; }; \
+	  tested="$$tested $$python"; \
+	done; \
+	test -n "$$tested" || { echo "none of these is at hand: $(PYTHONS)" >&2; exit 1; }; \
+	echo "passed with:$$tested"
 
 test-data: $(STAMP)  ## only the tests on real recordings; fails without ACTUM_DATA
 	@test -d "$$ACTUM_DATA" || { echo "test-data needs ACTUM_DATA: the folder that holds msr_action3d/ and utkinect/" >&2; exit 1; }
@@ -178,4 +188,4 @@ lock: $(STAMP)  ## pin what the images install, with hashes; make lock UPGRADE=-
 	rm $(LOCKS)/excluded.txt
 
 clean:
-	rm -rf $(VENV) site
+	rm -rf $(VENV) .venvs site

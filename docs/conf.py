@@ -22,26 +22,15 @@ root_doc = "README"
 PAGES = [
     f"docs/{page}"
     for page in (
-        *(
-            "start",
-            "cameras",
-            "objects",
-            "teaching",
-            "messages",
-            "spotting",
-            "som",
-            "operating",
-            "page",
-            "ros2",
-            "viewers",
-        ),
-        "measured",
-        *("paper", "architecture"),
+        *("start", "cameras", "objects", "teaching", "spotting", "page", "messages", "words"),
+        *("operating", "settings", "commands", "two-machines", "containers", "restarts"),
+        *("ros2", "viewers", "som", "measured", "paper", "architecture"),
     )
 ]
 RESULTS = {
     "Recognition": "benchmarks/recognition/results",
     "Recognition: what was tried": "benchmarks/recognition/README",
+    "Recognition: what was tried on MSR": "benchmarks/recognition/msr",
     "Without marks": "benchmarks/continuous/results",
     "Without marks: what was tried": "benchmarks/continuous/README",
     "Objects": "benchmarks/objects/results",
@@ -51,6 +40,7 @@ RESULTS = {
     "Webcam, found live": "benchmarks/camera/continuous",
     "Webcam: what was tried": "benchmarks/camera/README",
     "The paper": "benchmarks/paper/results",
+    "The paper: what was tried": "benchmarks/paper/README",
     "Marker tracker": "benchmarks/tracker/results",
     "Maps": "benchmarks/som",
 }

@@ -32,6 +32,12 @@ UNITS = {
 
 TYPES = {"": "map", "string": "text", "boolean": "true or false"}
 PLURAL = ("integer", "number", "text", "map")
+SHOWN = (
+    *("segment_id", "start_ns", "end_ns", "agent", "action", "confidence", "unknown"),
+    *("object", "hand", "motion", "result", "outcome", "sentence", "valid", "reason"),
+)
+"""Fields of an event that the README shows."""
+
 LONGEST_EXAMPLE = 44
 LONGEST_LINE = 110
 
@@ -113,6 +119,12 @@ def section(message: type[Message]) -> str:
     own = [field for field in fields_of(message) if not _is_common(field)]
     first = _laid_out(_elided(examples()[schema_name(message)][0]))
     return f"### `{schema_name(message)}`\n\n{_sentence(message)} On {on}.\n\n{_table(own)}\n```json\n{first}\n```\n"
+
+
+def shown_event() -> str:
+    """Write one event of a run, without what most readers do not need."""
+    event = examples()["actum.event/1"][0]
+    return f"```json\n{_laid_out({name: event[name] for name in SHOWN})}\n```\n"
 
 
 def _is_common(field: Field) -> bool:

@@ -12,6 +12,7 @@ DOCS = Path(__file__).parents[1]
 PAGES = (*sorted(DOCS.glob("*.md")), *(DOCS.parent / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md")))
 PARTS: Mapping[str, Callable[[], str]] = {
     "fields": fields.sections,
+    "event": fields.shown_event,
     "rejects": rejects.rejects_table,
     "reasons": reasons.reasons_table,
     "absences": reasons.absences_table,

@@ -18,7 +18,7 @@ from collected_texts import reasons, reject_kinds
 
 DOCS = Path(__file__).parents[2] / "docs"
 MESSAGES_PAGE = (DOCS / "messages.md").read_text(encoding="utf-8")
-OPERATING_PAGE = (DOCS / "operating.md").read_text(encoding="utf-8")
+SETTINGS_PAGE = (DOCS / "settings.md").read_text(encoding="utf-8")
 every_message = pytest.mark.parametrize("message", MESSAGES, ids=schema_name)
 
 
@@ -92,7 +92,7 @@ def test_every_explanation_says_what_to_do() -> None:
 
 def test_every_setting_of_every_service_has_a_line() -> None:
     for service in settings.SERVICES:
-        section = OPERATING_PAGE.partition(f"### `{service}`")[2].partition("\n### ")[0]
+        section = SETTINGS_PAGE.partition(f"### `{service}`")[2].partition("\n### ")[0]
         for name in import_module(f"{service}.settings").Settings.model_fields:
-            told = OPERATING_PAGE if name in ServiceSettings.model_fields else section
+            told = SETTINGS_PAGE if name in ServiceSettings.model_fields else section
             assert f"`ACTUM_{name.upper()}`" in told, name

@@ -7,6 +7,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
+from docs.word_counts import counted, lines
 from typer.main import get_command
 
 import actum.som
@@ -21,6 +22,9 @@ PAGES = [
 OURS = "|".join(sorted(file.parent.name for file in ROOT.glob("*/*/__init__.py")))
 FOLDERS = "shared|services|tests|docs|benchmarks|deploy|examples"
 MOST_WORDS = 1300
+MOST_WORDS_OF_A_PAGE = 2500
+PRINTED = ("results.md", "bimacs.md", "cutting.md", "continuous.md", "som.md")
+"""Pages that a benchmark prints, tables above all."""
 
 every_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 
@@ -30,11 +34,26 @@ def found(pattern: str, page: Path) -> list[str]:
 
 
 def blocks(page: Path) -> str:
-    return "\n".join(found(r"(?s)```(?:sh)?\n(.*?)```", page))
+    """Return the blocks of commands of a page; those of other languages are none."""
+    fenced = re.findall(r"(?ms)^```(\w*)$\n(.*?)^```$", page.read_text(encoding="utf-8"))
+    return "\n".join(text for language, text in fenced if language in ("", "sh"))
 
 
 def test_the_readme_is_short() -> None:
     assert len((ROOT / "README.md").read_text(encoding="utf-8").split()) < MOST_WORDS
+
+
+@every_page
+def test_a_page_is_read_in_ten_minutes(page: Path) -> None:
+    _, by_hand = counted(page.read_text(encoding="utf-8"))
+    assert by_hand <= MOST_WORDS_OF_A_PAGE or page.name in PRINTED
+
+
+def test_words_are_counted_with_and_without_what_is_generated() -> None:
+    before = {"README.md": "one two", "docs/a.md": "three\n<!-- generated: fields -->\n\nfour\n<!-- end -->\n"}
+    _, *rows, total = lines(before, {"docs/a.md": "three"})
+    assert [row.split() for row in rows] == [["README.md", "2", "2", "0", "0"], ["docs/a.md", "9", "1", "1", "1"]]
+    assert total.split() == ["sum", "11", "3", "1", "1"]
 
 
 def test_the_readme_leads_to_every_page() -> None:
