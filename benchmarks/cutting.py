@@ -1,7 +1,7 @@
 """The repetitions that are cut out of streams nobody has marked, on public recordings, as a page of Markdown.
 
-python benchmarks/cutting.py [--people development|held-out], by default the people held out; needs ACTUM_DATA.
-benchmarks/cutting.md is what it printed.
+python -m benchmarks.cutting [--people development|held-out] [--only ROW], by default the people held out; needs
+ACTUM_DATA and ACTUM_POSE_MODEL. benchmarks/cutting.md is what it printed.
 """
 
 import argparse
@@ -25,6 +25,8 @@ from actum_model_trainer.cutting.repetitions import OTHER_NUMBER, Cuts, cut
 from actum_model_trainer.evaluation import wilson_interval
 from scene_simulator.programme import ACTIONS, Task
 from scene_simulator.simulator import Simulator
+
+from . import cutting_live
 
 Array = NDArray[np.float64]
 
@@ -53,41 +55,49 @@ class Result:
     true: int
     sureness: float
     overlaps: tuple[float, ...] = ()
+    warned: bool = False
 
     @property
     def exact(self) -> bool:
         return self.right == self.cut == self.true
 
 
-def by_points(skeletons: Iterable[Skeleton], points_ns: Sequence[int], asked: int | None) -> Result:
-    """Cut a stream and count the cuts that hold exactly one action point."""
-    cuts, _ = cuts_of(skeletons, asked)
-    held = [
-        sum(each.start_ns <= point <= each.end_ns for point in points_ns) for each in (cuts.repetitions if cuts else ())
-    ]
-    return Result(held.count(1), len(held), len(points_ns), cuts.sureness if cuts else 0.0)
+def by_points(skeletons: Iterable[Skeleton], points_ns: Sequence[int]) -> Iterator[Result]:
+    """Cut a stream, told the number and not told, and count the cuts that hold exactly one action point."""
+    for cuts in cuts_of(skeletons, len(points_ns)):
+        spans_ns = [(each.start_ns, each.end_ns) for each in (cuts.repetitions if cuts else ())]
+        held = [sum(start <= point <= end for point in points_ns) for start, end in spans_ns]
+        yield Result(held.count(1), len(held), len(points_ns), cuts.sureness if cuts else 0.0, (), warns(cuts))
 
 
-def by_bounds(skeletons: Iterable[Skeleton], truths_ns: Sequence[tuple[int, int]], asked: int | None) -> Result:
-    """Cut a stream and count the cuts that hold the middle of exactly one repetition; with their IoU."""
-    cuts, _ = cuts_of(skeletons, asked)
-    found = [(each.start_ns, each.end_ns) for each in (cuts.repetitions if cuts else ())]
+def by_bounds(skeletons: Iterable[Skeleton], truths_ns: Sequence[tuple[int, int]]) -> Iterator[Result]:
+    """Cut a stream, told the number and not told, and count the cuts that hold the middle of exactly one repetition."""
     middles = [(start + end) // 2 for start, end in truths_ns]
-    overlaps = []
-    for start, end in found:
-        inside = [truth for truth, middle in zip(truths_ns, middles, strict=True) if start <= middle <= end]
-        if len(inside) == 1:
-            shared = min(end, inside[0][1]) - max(start, inside[0][0])
-            overlaps.append(shared / (max(end, inside[0][1]) - min(start, inside[0][0])))
-    return Result(len(overlaps), len(found), len(truths_ns), cuts.sureness if cuts else 0.0, tuple(overlaps))
+    for cuts in cuts_of(skeletons, len(truths_ns)):
+        found = [(each.start_ns, each.end_ns) for each in (cuts.repetitions if cuts else ())]
+        overlaps = []
+        for start, end in found:
+            inside = [truth for truth, middle in zip(truths_ns, middles, strict=True) if start <= middle <= end]
+            if len(inside) == 1:
+                shared = min(end, inside[0][1]) - max(start, inside[0][0])
+                overlaps.append(shared / (max(end, inside[0][1]) - min(start, inside[0][0])))
+        sureness = cuts.sureness if cuts else 0.0
+        yield Result(len(overlaps), len(found), len(truths_ns), sureness, tuple(overlaps), warns(cuts))
 
 
-def cuts_of(skeletons: Iterable[Skeleton], asked: int | None) -> tuple[Cuts | None, int]:
+def warns(cuts: Cuts | None) -> bool:
+    """Tell whether it is said that the number of repetitions may be wrong."""
+    return cuts is not None and any(doubt.repetition is None for doubt in cuts.doubted)
+
+
+def cuts_of(skeletons: Iterable[Skeleton], number: int) -> list[Cuts | None]:
+    """Return what is cut where the number is told, and where it is not."""
     tracks, first_ns = PersonTracks(), 0
     for skeleton in skeletons:
         first_ns = first_ns or skeleton.stamp_ns
         tracks.take(skeleton)
-    return cut(tracks.courses(), asked, first_ns), first_ns
+    courses = tracks.courses()
+    return [cut(courses, asked, first_ns) for asked in (number, None)]
 
 
 def joints_of(frames: Iterable[Skeleton]) -> Array:
@@ -133,16 +143,16 @@ def stretched(part: Array, factor: float) -> Array:
     return slower
 
 
-def natural(people: str, known: bool) -> Iterator[Result]:
+def natural(people: str) -> Iterator[Iterator[Result]]:
     """MSRC-12 as it is: one gesture about ten times in each file."""
     for path, name in msrc12.stream_names(data() / "msrc12"):
         take = msrc12.read_stream(path, name, "kinect0")
         points_ns = [int(point) * 1000 for point in msrc12.stored_stream(path, name).points_us]
         if chosen("msrc12", take.person, people) and len(points_ns) >= FEWEST_POINTS and seen(take):
-            yield by_points(take.frames, points_ns, len(points_ns) if known else None)
+            yield by_points(take.frames, points_ns)
 
 
-def composed(people: str, known: bool, disturbed: bool) -> Iterator[Result]:
+def composed(people: str, disturbed: bool) -> Iterator[Iterator[Result]]:
     """MSR-Action3D: five executions by one person with pauses; disturbed, with walks about it and another action."""
     executions = by_person_and_action(people)
     walks = [joints_of(part) for part in walks_of(people)]
@@ -162,10 +172,10 @@ def composed(people: str, known: bool, disturbed: bool) -> Iterator[Result]:
         skeletons = skeletons_of(joints + rng.normal(0, JITTER_M, joints.shape))
         stamps = [frame.stamp_ns for frame in skeletons]
         truths = [(stamps[a], stamps[b]) for (a, b), (_, true) in zip(bounds, chain, strict=True) if true]
-        yield by_bounds(skeletons, truths, REPETITIONS if known else None)
+        yield by_bounds(skeletons, truths)
 
 
-def scene(people: str, known: bool) -> Iterator[Result]:
+def scene(people: str) -> Iterator[Iterator[Result]]:
     """The simulated scene: each action five times by each of some people; the marks are the scene's."""
     for actor in SCENE_PEOPLE[people]:
         for action in ACTIONS:
@@ -177,7 +187,7 @@ def scene(people: str, known: bool) -> Iterator[Result]:
                     else:
                         marks_ns.append(message.stamp_ns)
             truths = list(zip(marks_ns[::2], marks_ns[1::2], strict=True))
-            yield by_bounds(frames, truths, REPETITIONS if known else None)
+            yield by_bounds(frames, truths)
 
 
 def by_person_and_action(people: str) -> dict[tuple[str, str], list[Array]]:
@@ -227,18 +237,19 @@ def row(name: str, number: str, results: Sequence[Result]) -> str:
     right, found, true = (sum(counts) for counts in zip(*((r.right, r.cut, r.true) for r in results), strict=True))
     exact, sure = sum(r.exact for r in results), [r.exact for r in results if r.sureness > OTHER_NUMBER]
     low, high = wilson_interval(exact, len(results))
+    warned = [r for r in results if r.warned]
     overlaps = [overlap for r in results for overlap in r.overlaps]
     return (
         f"| {name} | {number} | {len(results)} | {exact / len(results):.1%} ({low:.0%}–{high:.0%}) "
         f"| {right / true:.1%} | {right / found:.1%} | {np.median(overlaps) if overlaps else float('nan'):.2f} "
-        f"| {sum(sure)} of {len(sure)} |"
+        f"| {sum(sure)} of {len(sure)} | {sum(not r.exact for r in warned)} of {len(warned)} |"
     )
 
 
 SETS = {
     "MSRC-12, as it is": natural,
-    "MSR-Action3D, five with pauses": lambda people, known: composed(people, known, disturbed=False),
-    "the same, walking up and back, another action between": lambda people, known: composed(people, known, True),
+    "MSR-Action3D, five with pauses": lambda people: composed(people, disturbed=False),
+    "the same, walking up and back, another action between": lambda people: composed(people, disturbed=True),
     "simulated scene, five without pauses": scene,
 }
 
@@ -247,17 +258,24 @@ def main() -> None:
     """Measure all sets and print the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--people", choices=("development", "held-out"), default="held-out")
-    people = parser.parse_args().people
-    print(HEADER.format(people=people))
+    parser.add_argument("--only", default="", help="measure the rows whose name contains this")
+    told = parser.parse_args()
+    print(HEADER.format(people=told.people))
     for name, measure in SETS.items():
-        for known, number in ((True, "told"), (False, "not told")):
-            print(row(name, number, list(measure(people, known))).replace("nan", ""), flush=True)
-            print(f"{name}, {number}: done", file=sys.stderr, flush=True)
+        if told.only in name:
+            for number, results in zip(("told", "not told"), zip(*measure(told.people), strict=True), strict=True):
+                print(row(name, number, results).replace("nan", ""), flush=True)
+            print(f"{name}: done", file=sys.stderr, flush=True)
+    print(LIVE_HEADER)
+    for name, takes in cutting_live.TAKES.items():
+        if told.only in name:
+            print(cutting_live.row(name, list(takes(told.people))), flush=True)
+            print(f"{name}: done", file=sys.stderr, flush=True)
 
 
 HEADER = """# Repetitions cut without marks
 
-`python benchmarks/cutting.py`, {people} people; one core. What `actum record --times` and `actum label cut` do.
+`python -m benchmarks.cutting`, {people} people; one core. What `actum record --times` and `actum label cut` do.
 
 MSRC-12: each file holds one gesture about ten times; a cut is right where it holds exactly one action point. The points
 are where the gesture can be recognised, not its bounds; some lie after the movement. MSR-Action3D: the two or three
@@ -269,9 +287,24 @@ people of MSRC-12 (1, 5, 9 and so on) and of MSR-Action3D (those with odd number
 
 *Exact*: every repetition in one cut and no other cut, with Wilson's 95 % interval. IoU: the median over right cuts.
 *Sure and exact*: of the streams that the command calls sure, so many are exact.
+*Warned and wrong*: of the streams of which it says that the number may be wrong, so many are not exact.
 
-| streams | number | streams | exact | repetitions found | cuts right | IoU | sure and exact |
-|---|---|---:|---|---:|---:|---:|---:|"""
+| streams | number | streams | exact | repetitions found | cuts right | IoU | sure and exact | warned and wrong |
+|---|---|---:|---|---:|---:|---:|---:|---:|"""
+LIVE_HEADER = """
+## Takes that are counted along
+
+What the page and `actum record --times` do while somebody acts: a take ends by itself once as many as asked for are
+followed by a long rest, and within 30 s of the last one, or not at all. *All right*: it ended by itself, with every
+repetition in one cut and no other cut. *Kept*: examples that are kept where nobody moves, after 20 or 40 s.
+
+Simulated: the person of `actum up --driven`, asked by command. Kinect: people of MSRC-12 in their still moments, joined
+to and fro, alone or before and after one of their streams. Webcam: the first picture of a clip with 4 grey levels of
+noise, swaying by 3 pixels, and waves of the same person, through the pose model. Slow: three times as long as MSR's,
+held for a second in the middle.
+
+| takes | takes | ended by themselves | all right | kept | end after the last one (s) |
+|---|---:|---:|---:|---:|---:|"""
 
 
 if __name__ == "__main__":

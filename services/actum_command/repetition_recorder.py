@@ -14,7 +14,7 @@ class RepetitionRecorder:
     """Hands on everything to the recorder of streams, and adds labelled marks of the repetitions when it is closed.
 
     Attributes:
-        cuts: what was cut, after `close`; None where nobody moved.
+        cuts: what was cut, after `close`; None where nothing counts, see `why_none`.
     """
 
     def __init__(
@@ -33,6 +33,18 @@ class RepetitionRecorder:
     def first_ns(self) -> int | None:
         """Stamp of the first skeleton, None before it came."""
         return self._counter.first_ns
+
+    @property
+    def why_none(self) -> str:
+        """Why nothing counts, and what to do."""
+        return self._counter.why_none
+
+    @property
+    def lacks_some(self) -> bool:
+        """Whether somebody moved and fewer repetitions were cut than were asked for."""
+        if self.cuts is None:
+            return self._counter.so_far is not None
+        return len(self.cuts.repetitions) < self._counter.asked
 
     def take(self, message: Message, received_ns: int) -> None:
         """Take one message and the time it was received at (ns)."""

@@ -24,7 +24,7 @@ from actum_model_trainer.cutting import counting
 from actum_model_trainer.samples import select
 from empty_messages import image, mark, skeleton, status
 from people import FRAME_NS
-from repeating import five_waves, rest
+from repeating import Stream, five_waves, rest
 from sensor_gateway.recording_source import RecordingSource
 
 
@@ -136,7 +136,22 @@ def test_what_is_done_five_times_is_counted_cut_and_shown(live: Live, tmp_path: 
 
 def test_what_is_repeated_with_nobody_there_is_told(live: Live, tmp_path: Path) -> None:
     live.comes(skeleton(1))
-    assert "nobody was seen moving" in actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5).stdout
+    assert "nobody was seen" in actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5).stdout
+
+
+def test_standing_still_is_no_example(live: Live, tmp_path: Path) -> None:
+    live.comes(*Stream().then(rest(12)).skeletons(noise_m=0.008))
+    told = actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 3, "--seconds", 3).stdout
+    assert "this does not count, nothing was cut: nobody moved by more than standing still explains" in told
+    assert "marked by cut" not in told
+
+
+def test_a_recording_that_lacks_repetitions_is_left_out_of_training(live: Live, tmp_path: Path) -> None:
+    live.comes(*five_waves().skeletons())
+    told = actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 12, "--seconds", 3).stdout
+    assert "of 12 repetitions found: record " in told
+    assert "left out of training" in told
+    assert Recording(tmp_path / "a.mcap").metadata["excluded"] == "true"
 
 
 def test_times_need_a_label(live: Live, tmp_path: Path) -> None:

@@ -142,10 +142,18 @@ def test_two_that_follow_each_other_almost_at_once_are_two() -> None:
 @pytest.mark.parametrize(
     ("dips", "asked", "doubts"),
     [
-        ([50], 6, ["5 found, 6 asked: the second and third may have run together at 3.3 s"]),
+        (
+            [50],
+            6,
+            ["5 of 6 repetitions found: record 1 more; the second and third may have run together at 3.3 s"],
+        ),
         ([50], None, ["the second and third may have run together at 3.3 s"]),
-        ([], 6, ["5 found, 6 asked"]),
-        ([50, 100], 6, ["5 found, 6 asked: the second and third may have run together at 3.3 s"]),
+        ([], 6, ["5 of 6 repetitions found: record 1 more"]),
+        (
+            [50, 100],
+            6,
+            ["5 of 6 repetitions found: record 1 more; the second and third may have run together at 3.3 s"],
+        ),
         (
             [50, 100],
             None,
@@ -163,9 +171,9 @@ def test_where_one_is_missing_the_place_where_two_may_have_run_together_is_named
     """The second and the third of five bursts are long enough for two; a stop in the first one parts nothing."""
     activity = np.ones(175)
     activity[dips] = 0.1
-    course = Course(1, 0, np.zeros((175, 15, 3)), np.zeros(175), 2.0)
+    course = Course(1, 0, np.zeros((175, 15, 3)), np.zeros(175), np.zeros(15), 2.0)
     chain = Chain(np.array([[0, 20], [30, 70], [80, 120], [130, 150], [155, 175]]), np.ones(5), 1.0)
-    assert [doubt.text for doubt in doubts_of(course, activity, chain, asked, 5, 0)] == doubts
+    assert [doubt.text for doubt in doubts_of(course, activity, chain, asked, 0)] == doubts
 
 
 def test_what_cannot_be_found_is_told() -> None:

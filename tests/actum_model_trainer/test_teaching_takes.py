@@ -6,7 +6,7 @@ import pytest
 
 from actum import keys
 from actum.commands import Refusal, described
-from actum.messages import Segment
+from actum.messages import Segment, Skeleton
 from actum.recording import Recording
 from repeating import FRAME_NS, Stream, rest
 from teaching import GOGGLINGS, WAVES, Teacher, mark
@@ -54,8 +54,8 @@ def test_stop_ends_a_take_and_says_that_some_are_missing(teacher: Teacher) -> No
     teacher.ask("record", set="kitchen", label="wave", person="anna", count=5)
     teacher.act(Stream().repeat(WAVES[:3]))
     reply = teacher.ask("stop")
-    assert reply["examples"] == 3 and reply["doubts"] == ["3 found, 5 asked"]
-    assert teacher.tick().recording.doubts == ["3 found, 5 asked"]
+    assert reply["examples"] == 3 and reply["doubts"] == ["3 of 5 repetitions found: record 2 more"]
+    assert teacher.tick().recording.doubts == ["3 of 5 repetitions found: record 2 more"]
 
 
 def test_a_discarded_take_leaves_nothing(teacher: Teacher) -> None:
@@ -66,11 +66,19 @@ def test_a_discarded_take_leaves_nothing(teacher: Teacher) -> None:
     assert not list(teacher.folder.rglob("*.mcap*"))
 
 
-@pytest.mark.parametrize(("stream", "why"), [(Stream(), "nobody was seen, "), (Stream().then(rest(3)), "seen moving")])
+@pytest.mark.parametrize(
+    ("stream", "why"),
+    [
+        (Stream(), "nobody was seen: stand where"),
+        (Stream().then(rest(30)), "nobody moved by more than standing still explains: do the action with larger"),
+        (Stream().then(rest(4)).repeat(WAVES[:1]), "no two movements were alike, and 5 repetitions were asked for"),
+    ],
+    ids=["nobody", "still", "one movement"],
+)
 def test_a_take_of_nothing_is_not_kept_and_says_why(teacher: Teacher, stream: Stream, why: str) -> None:
     teacher.ask("record", set="kitchen", label="wave")
     if stream.parts:
-        teacher.see(stream.skeletons(noise_m=0.0, first_ns=1))
+        teacher.see(stream.skeletons(noise_m=0.008, first_ns=1))
     reply = teacher.ask("stop")
     assert reply["take"] is None and why in reply["doubts"][0]
     assert not list(teacher.folder.rglob("*.mcap*"))
@@ -110,16 +118,44 @@ def test_marks_that_nobody_put_by_hand_do_not_count(teacher: Teacher, origin: st
     assert [each["origin"] for each in teacher.examples()] == ["cut"] * 5
 
 
-def test_redo_records_the_newest_example_anew_and_drops_the_old_one_then(teacher: Teacher) -> None:
+def test_redo_records_the_newest_take_anew_and_drops_the_old_one_then(teacher: Teacher) -> None:
+    teacher.teach("goggles", GOGGLINGS)
     teacher.teach("wave", WAVES)
     before = [each["id"] for each in teacher.examples()]
     teacher.ask("redo_last", set="kitchen")
     assert [each["id"] for each in teacher.examples()] == before, "until the new one is there"
-    teacher.act(Stream().repeat(WAVES[:1], pause_s=2).then(rest(4)))
+    teacher.act(Stream().repeat(WAVES).then(rest(4)))
     after = teacher.examples()
-    assert len(after) == 5 and [each["id"] for each in after[:4]] == before[:-1]
-    assert (after[-1]["label"], after[-1]["person"], after[-1]["doubts"]) == ("wave", "anna", [])
-    assert 1.0 < (after[-1]["end_ns"] - after[-1]["start_ns"]) / 1e9 < 2.2
+    assert [each["id"] for each in after[:5]] == before[:5]
+    assert not {each["id"] for each in after[5:]} & set(before[5:])
+    assert [(each["label"], each["person"]) for each in after[5:]] == [("wave", "anna")] * 5
+
+
+@pytest.mark.parametrize("asked", [1, 5])
+def test_a_late_start_after_stillness_is_no_example_and_the_take_ends_by_itself(teacher: Teacher, asked: int) -> None:
+    teacher.ask("record", set="kitchen", label="wave", count=asked)
+    stream = Stream().then(rest(25)).repeat(WAVES[:asked])
+    first_ns = 10**9
+    teacher.see(stream.then(rest(4)).skeletons(noise_m=0.008, first_ns=first_ns))
+    told = teacher.tick().recording
+    assert told is not None and (told.phase, told.counted) == ("done", asked)
+    for example, (start, _) in zip(teacher.examples(), stream.truths, strict=True):
+        assert abs(example["start_ns"] - first_ns - start * FRAME_NS) < 5e8
+
+
+def test_uncut_repetitions_of_a_take_that_was_stopped_are_no_background(teacher: Teacher) -> None:
+    teacher.ask("record", set="kitchen", label="wave", count=9)
+    stream = Stream().repeat(WAVES[:3]).repeat(GOGGLINGS[:1])
+    teacher.see(stream.skeletons(first_ns=10**9))
+    assert teacher.ask("stop")["doubts"]
+    bounds = [(each["start_ns"], each["end_ns"]) for each in teacher.examples()]
+    assert 2 <= len(bounds) < 9
+    frames = Recording(teacher.folder / "sets/kitchen/take-0001.mcap").messages((keys.SKELETON,))
+    seen_ns = [frame.stamp_ns for frame in frames if isinstance(frame, Skeleton) and frame.agents]
+    for first, last in stream.truths:
+        middle_ns = 10**9 + (first + last) // 2 * FRAME_NS
+        is_example = any(start <= middle_ns <= end for start, end in bounds)
+        assert is_example or not any(abs(at_ns - middle_ns) < 4e8 for at_ns in seen_ns)
 
 
 @pytest.mark.parametrize("end", ["discard", "stop"])

@@ -94,6 +94,7 @@ def test_a_take_is_begun_by_keys_counted_along_and_ends_by_itself(room: Lesson, 
     fill_in(teach, "swing", "carla", 3)
     teach.keyboard.press("Enter")
     says(teach, "record", "0 of 3")
+    says(teach, "record", "swing, by carla")
     frames = Stream().repeat(WAVES[:3]).then(rest(4)).skeletons(first_ns=10**12)
     room.see(frames[:190])
     says(teach, "record", "2 of 3")
@@ -110,7 +111,8 @@ def test_one_is_stopped_another_dropped_and_background_recorded(room: Lesson, te
     says(teach, "record", "0 of 5")
     room.see(Stream().repeat(WAVES[:2]).skeletons(first_ns=10**12))
     press(teach, "Stop")
-    says(teach, "record", "2 of swing recorded")
+    says(teach, "record", "only 2 of 5 of swing recorded")
+    says(teach, "record", "record 3 more")
     press(teach, "Record")
     press(teach, "Discard")
     says(teach, "record", "Discarded: nothing was kept.")
@@ -202,13 +204,25 @@ def test_an_example_is_relabelled_mirrored_deleted_and_escape_changes_nothing(ro
     assert [each["label"] for each in room.teacher.examples()].count("wave") == 3
 
 
-def test_the_last_is_redone(room: Lesson, teach: Any) -> None:
-    last = room.teacher.examples()[-1]["start_ns"]
-    press(teach, "Redo the last")
-    says(teach, "record", "0 of 1")
-    examples_of(teach, "goggles", 5)
-    room.see(Stream().repeat(GOGGLINGS[:1]).then(rest(4)).skeletons(first_ns=10**12))
-    wait_until(lambda: last not in {each["start_ns"] for each in room.teacher.examples()}, "the old one has gone")
+def test_a_take_in_which_nobody_moves_says_that_it_does_not_count_and_is_not_green(room: Lesson, teach: Any) -> None:
+    fill_in(teach, "swing", "carla", 5)
+    press(teach, "Record")
+    says(teach, "record", "0 of 5")
+    room.see(Stream().then(rest(12)).skeletons(noise_m=0.008, first_ns=10**12))
+    press(teach, "Stop")
+    said = teach.get_by_text("this take of swing does not count")
+    said.wait_for()
+    assert "refused" in said.get_attribute("class")
+    says(teach, "record", "nobody moved by more than standing still explains: do the action with larger movements")
+    examples_of(teach, "swing", 0)
+
+
+def test_the_last_take_is_redone(room: Lesson, teach: Any) -> None:
+    before = {each["id"] for each in room.teacher.examples() if each["label"] == "goggles"}
+    press(teach, "Redo the last take")
+    says(teach, "record", "0 of 5")
+    room.see(Stream().repeat(GOGGLINGS).then(rest(4)).skeletons(first_ns=10**12))
+    wait_until(lambda: not before & {each["id"] for each in room.teacher.examples()}, "the old take has gone")
     examples_of(teach, "goggles", 5)
 
 

@@ -14,6 +14,7 @@ from actum.messages import CUT, MANUAL
 from actum.recorder import Recorder, TakenError, unfinished
 from actum.recording import RecordingError
 from actum.rewriting import finish as finished
+from actum.rewriting import rewrite, unchanged
 from actum.runtime import stop_on_signals
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, refuse_output, tell_unread
 from actum_command.commands.service_flags import with_history_flags
@@ -36,7 +37,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     person: Annotated[str, typer.Option(help="who acts; kept in the file, used to split training from test")] = "",
     label: Annotated[str | None, typer.Option(help="what is done in the segments marked while recording")] = None,
     times: Annotated[
-        int | None, typer.Option(min=2, help="how often --label is done in front of the camera: it is cut by itself")
+        int | None, typer.Option(min=1, help="how often --label is done in front of the camera: it is cut by itself")
     ] = None,
     marks: Annotated[
         str | None,
@@ -136,8 +137,14 @@ def _repeating(stream: StreamRecorder, label: str, times: int, stop: threading.E
 
 def _report_cuts(repeating: RepetitionRecorder, output: Path) -> None:
     """Print the cuts, what may be wrong with them, and how to mend it."""
+    if repeating.lacks_some:
+        rewrite(output, unchanged, metadata={"excluded": "true"})
+        say(
+            "left out of training, or uncut repetitions would be learnt as background: once it is mended, add --all",
+            style="yellow",
+        )
     if repeating.cuts is None or repeating.first_ns is None:
-        say("nobody was seen moving, so nothing was cut", style="yellow")
+        say(f"this does not count, nothing was cut: {repeating.why_none}, and record it again", style="red")
         return
     for line in cut_lines(repeating.cuts, repeating.first_ns):
         say(line)

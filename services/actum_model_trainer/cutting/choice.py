@@ -5,9 +5,9 @@ from functools import cached_property
 
 import numpy as np
 
-from actum.arrays import Array, Indices
+from actum.arrays import Array, Indices, Mask
 from actum_model_trainer.cutting.bursts import bursts_of
-from actum_model_trainer.cutting.courses import RATE_HZ, Course
+from actum_model_trainer.cutting.courses import RATE_HZ, Course, averaged
 from actum_model_trainer.cutting.likeness import likeness_of
 from actum_model_trainer.cutting.movement import movement_about
 
@@ -22,8 +22,14 @@ RESTING = 0.3
 """Price of a second of rest within a repetition."""
 MOST_REPETITIONS = 40
 """Most repetitions that are found where nobody says how many: ten minutes of quick ones."""
-LEAST_WAY_M = 0.08
-"""Least way of any joint within a repetition (m): of somebody who stands still sway and noise stay below 0.05 m."""
+EVIDENT_S = 0.6
+"""Time (s) over which a posture is averaged before its way is measured: outliers are shorter."""
+EVIDENT_NOISE = 3.0
+"""A repetition takes some joint farther than its standing noise by this factor: noise stays below that."""
+LEAST_WAY_M = 0.12
+"""It also takes it at least so far (m): sway and noise stay below it."""
+MARGIN = 3
+"""Instants of rest (at `RATE_HZ`) before and after a burst, 0.2 s, as marks by hand have."""
 IMPOSSIBLE = -1e9
 """Worth of a chain that there is not."""
 
@@ -55,8 +61,8 @@ class Chains:
         self._movement = movement_about(course, rest)
         self.activity = self._movement.activity
         bursts = bursts_of(self._movement)
-        self._bursts = bursts[_ways_m(course, bursts) >= LEAST_WAY_M]
-        self._likeness = likeness_of(course, self._bursts) if len(self._bursts) else np.zeros((0, 0))
+        self._bursts = bursts[_evident(course, bursts)]
+        self._likeness = likeness_of(course, self._movement, self._bursts) if len(self._bursts) else np.zeros((0, 0))
         self._worths: list[Array] = []
         self._before: list[Indices] = []
         if len(self._bursts):
@@ -126,10 +132,13 @@ def _running_maximum(values: Array) -> tuple[Array, Indices]:
     return largest, np.maximum.accumulate(columns, axis=1)
 
 
-def _ways_m(course: Course, bursts: Indices) -> Array:
-    """Return how far the joint that moves most gets from where it was at the start of each burst (b, 2), shape (b,)."""
-    ways_m = np.zeros(len(bursts))
-    for number, (start, end) in enumerate(bursts):
-        away_m = course.postures[start:end] - course.postures[start]
-        ways_m[number] = np.sqrt((away_m**2).sum(axis=2).max())
-    return ways_m
+def _evident(course: Course, bursts: Indices) -> Mask:
+    """Tell of each burst (b, 2) whether some joint goes farther than it does while the person stands still."""
+    least_m = np.maximum(LEAST_WAY_M, EVIDENT_NOISE * course.noise_m)
+    steady = averaged(course.postures, EVIDENT_S)
+    befores = np.maximum(bursts[:, 0] - MARGIN, 0)
+    ways_m = [
+        np.linalg.norm(steady[before : end + MARGIN] - steady[before], axis=2)
+        for before, end in zip(befores, bursts[:, 1], strict=True)
+    ]
+    return np.array([bool((way_m >= least_m).any()) for way_m in ways_m], dtype=bool)

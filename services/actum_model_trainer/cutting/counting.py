@@ -8,7 +8,7 @@ import numpy as np
 from actum.messages import Skeleton
 from actum.node import SECOND_NS
 from actum_model_trainer.cutting.courses import RATE_HZ, Course, PersonTracks
-from actum_model_trainer.cutting.doubts import Doubt
+from actum_model_trainer.cutting.doubts import Doubt, too_few
 from actum_model_trainer.cutting.repetitions import Cuts, cut, cut_so_far
 
 COUNT_EVERY_S = 0.5
@@ -25,7 +25,12 @@ NOW_S = 0.3
 """Time over which it is told whether a person moves now."""
 MOVING = 0.6
 """Activity above which a person moves: it is about 1 in the midst of a movement, and 0.4 in a noisy sensor's rest."""
-
+NOBODY = "nobody was seen: stand where the camera sees all of you"
+STILL = "nobody moved by more than standing still explains: do the action with larger movements, or nearer the camera"
+UNLIKE = (
+    "no two movements were alike, and {} repetitions were asked for: do the same movement each time, and stand still "
+    "for a second or two before and after"
+)
 MUCH_LESS_ALIKE = 0.5
 """Ratio of the least likenesses below which the missing repetitions have only been parted from others."""
 
@@ -81,22 +86,29 @@ class RepetitionCounter:
         return "resting" if self.count else "waiting"
 
     def cuts(self) -> Cuts | None:
-        """Cut as many repetitions as were asked for out of all that came; None where nobody moved.
+        """Cut as many repetitions as were asked for out of all that came; None where nothing counts, see `why_none`.
 
         Where somebody ended it early they are fewer: as many as were counted, if these are much more alike.
         """
-        if self.first_ns is None:
-            return None
         courses = self._courses()
-        all_asked = cut(courses, self.asked, self.first_ns)
-        self.so_far = cut_so_far(courses, self.asked, self.first_ns)
-        if all_asked is None or self.so_far is None or not 1 < len(self.so_far.repetitions) < self.asked:
+        all_asked = cut(courses, self.asked, self.first_ns or 0)
+        self.so_far = cut_so_far(courses, self.asked, self.first_ns or 0)
+        if all_asked is None or self.so_far is None:
+            return None
+        found, alike = len(all_asked.repetitions), len(self.so_far.repetitions)
+        if found < self.asked and alike == 1:
+            return None
+        if not 1 < alike < self.asked or _least_likeness(all_asked) >= MUCH_LESS_ALIKE * _least_likeness(self.so_far):
             return all_asked
-        if _least_likeness(all_asked) >= MUCH_LESS_ALIKE * _least_likeness(self.so_far):
-            return all_asked
-        fewer = len(self.so_far.repetitions)
-        told = Doubt(f"{fewer} found, {self.asked} asked", None)
+        told = Doubt(too_few(alike, self.asked), None)
         return replace(self.so_far, doubted=(told, *self.so_far.doubted))
+
+    @property
+    def why_none(self) -> str:
+        """Why nothing counts where `cuts` returned None, and what to do."""
+        if not self._courses():
+            return NOBODY
+        return STILL if self.so_far is None else UNLIKE.format(self.asked)
 
     @property
     def _resting_s(self) -> float:

@@ -25,8 +25,16 @@ LEAST_FRAMES = 15
 """Frames that a course needs: a second at the slowest camera's rate; less holds no repetition and its rest."""
 NOISE_SHARE = 0.2
 """Share of the time in which a joint is taken to be at rest: its speed then is the sensor's noise."""
-ABOVE_NOISE = 1.5
+ABOVE_NOISE = 2.5
 """A joint moves where it is faster than its noise by this factor."""
+STILL_S = 1.0
+"""Time (s) over which a joint's standing noise is measured: the sensor's jitter, and half a sway."""
+SWAY = 2.0
+"""A joint's deviation over a minute of standing, as a multiple of that within `STILL_S` at its stillest."""
+UNEVEN = 3.0
+"""No joint is noisier than the median joint by a larger factor: one that seems so moves most of the time."""
+SMOOTHING = np.array([1.0, 3.0, 4.0, 3.0, 1.0]) / 12
+"""Weights of neighbouring instants, a third of a second in all: one jump of a joint is no movement."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +46,7 @@ class Course:
         start_ns: stamp of the first of the n instants.
         postures: (n, 15, 3), upright, scaled to the standard body's metres, smoothed; missing joints interpolated.
         speeds_mps: (n,), root mean square over the joints of what exceeds each joint's noise.
+        noise_m: (15,), deviation of each joint from its mean while the person stands still.
         distance_m: median distance from the camera; infinite where unknown.
     """
 
@@ -45,6 +54,7 @@ class Course:
     start_ns: int
     postures: Array
     speeds_mps: Array
+    noise_m: Array
     distance_m: float
 
     def stamp_ns(self, index: float) -> int:
@@ -122,10 +132,43 @@ def course_of(agent: int, stamps_ns: Sequence[int], joints: Array, speeds_mps: A
     times_s = (np.asarray(stamps_ns) - stamps_ns[0]) / SECOND_NS
     even_s = np.arange(int(times_s[-1] * RATE_HZ + 1e-6) + 1) / RATE_HZ
     postures = _resampled(times_s, joints.reshape(len(joints), -1), even_s).reshape(-1, len(JOINTS), 3)
-    speeds = _resampled(times_s, speeds_mps, even_s)
-    noise = ABOVE_NOISE * np.quantile(speeds, NOISE_SHARE, axis=0)
+    speeds = smoothed(_resampled(times_s, speeds_mps, even_s))
+    noise = ABOVE_NOISE * _noise(speeds)
     moving = np.sqrt(np.maximum(speeds**2 - noise**2, 0).mean(axis=1))
-    return Course(agent, stamps_ns[0], postures, moving, distance_m)
+    return Course(agent, stamps_ns[0], postures, moving, SWAY * _noise(_deviations_m(postures)), distance_m)
+
+
+def averaged(values: Array, seconds: float) -> Array:
+    """Average values (n, ...) over the time about each instant."""
+    return _weighted(values, np.full(2 * round(seconds * RATE_HZ / 2) + 1, 1.0))
+
+
+def smoothed(values: Array) -> Array:
+    """Average values (n, ...) with their neighbours."""
+    return _weighted(values, SMOOTHING)
+
+
+def _weighted(values: Array, weights: Array) -> Array:
+    reach = len(weights) // 2
+    padded = np.pad(values, [(reach, reach), *[(0, 0)] * (values.ndim - 1)], mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, len(weights), axis=0)
+    mean: Array = windows @ (weights / weights.sum())
+    return mean
+
+
+def _noise(values: Array) -> Array:
+    """Return each joint's value (15,) while the person stands still, from those of all instants (n, 15)."""
+    still = np.quantile(values, NOISE_SHARE, axis=0)
+    evened: Array = np.minimum(still, UNEVEN * np.median(still))
+    return evened
+
+
+def _deviations_m(postures: Array) -> Array:
+    """Return how far each joint deviates from its mean in the time about each instant, shape (n, 15)."""
+    size = min(round(STILL_S * RATE_HZ), len(postures))
+    windows = np.lib.stride_tricks.sliding_window_view(postures, size, axis=0)
+    deviations: Array = np.sqrt(windows.var(axis=3).sum(axis=2))
+    return deviations
 
 
 def _course(agent: int, instants: Sequence[_Instant]) -> Course:

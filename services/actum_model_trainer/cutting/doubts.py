@@ -28,9 +28,7 @@ class Doubt(NamedTuple):
     repetition: int | None
 
 
-def doubts_of(
-    course: Course, activity: Array, chain: Chain, asked: int | None, likeliest: int, first_ns: int
-) -> Iterator[Doubt]:
+def doubts_of(course: Course, activity: Array, chain: Chain, asked: int | None, first_ns: int) -> Iterator[Doubt]:
     """Yield what may be wrong with a chain; times count from a stamp.
 
     Args:
@@ -38,7 +36,6 @@ def doubts_of(
         activity: (n,), of the course.
         chain: its bursts.
         asked: the number of repetitions there should be; None where nobody knows.
-        likeliest: the number that would explain the movement best.
         first_ns: the stamp.
     """
     offset_s, found = (course.start_ns - first_ns) / SECOND_NS, len(chain.bursts)
@@ -52,15 +49,20 @@ def doubts_of(
     ]
     if asked is not None and found < asked:
         missing = [seam.text for seam in seams[: asked - found]]
-        yield Doubt(": ".join([f"{found} found, {asked} asked", *missing]), None)
-    elif asked is not None and likeliest != found:
-        yield Doubt(f"{asked} were asked for, but {likeliest} would explain the movement better", None)
-    if asked is None or found == asked:
+        yield Doubt("; ".join([too_few(found, asked), *missing]), None)
+    else:
         yield from seams
     for number, ((start, end), likeness) in enumerate(zip(chain.bursts, chain.likeness, strict=True), start=1):
         if found > 1 and likeness < UNLIKE:
             span = f"{offset_s + start / RATE_HZ:.1f} to {offset_s + end / RATE_HZ:.1f} s"
-            yield Doubt(f"the {_ordinal(number)} ({span}) is unlike the others", number)
+            yield Doubt(
+                f"the {_ordinal(number)} ({span}) is unlike the others: look at it, and trim or delete it", number
+            )
+
+
+def too_few(found: int, asked: int) -> str:
+    """Return the doubt about a number of repetitions that is smaller than the one that was asked for."""
+    return f"{found} of {asked} repetitions found: record {asked - found} more"
 
 
 def _seams(activity: Array, chain: Chain) -> Iterator[tuple[int, int, int]]:

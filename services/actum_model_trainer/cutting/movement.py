@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from actum.arrays import Array
-from actum_model_trainer.cutting.courses import RATE_HZ, Course
+from actum_model_trainer.cutting.courses import RATE_HZ, Course, smoothed
 
 RESTS = 3
 """Postures that are tried as the one of rest: a hold in the middle of each repetition may last longer than the rest."""
@@ -23,8 +23,12 @@ STILL_SHARE = 0.1
 """Quantile of the distance from rest that counts as none."""
 HALF_MOVING = 0.25
 """Activity at which an instant counts half as movement."""
-SMOOTHING = np.array([1.0, 3.0, 4.0, 3.0, 1.0]) / 12
-"""Weights of neighbouring instants, a third of a second in all: one jump of a joint is no movement."""
+ABOVE_NOISE = 2.0
+"""A joint is away from its rest where it is farther than its standing noise by this factor."""
+LEAST_AWAY_M = 0.02
+"""Distance from rest (root mean square over the joints, m) of the least movement: one hand by 0.08 m."""
+LEAST_PACE_MPS = 0.05
+"""Speed (root mean square over the joints, m/s) of the least movement: one hand at 0.2 m/s."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,21 +39,24 @@ class Movement:
         activity: (n,), 0 where at rest, about 1 in the midst of a movement: speed and distance from rest together.
         pace: (n,), the speed alone in the same unit.
         moved_s: (n + 1,), running sum of the time in which the person moves.
+        moving: (n,), how much of each instant is movement, 0 to 1.
     """
 
     activity: Array
     pace: Array
     moved_s: Array
+    moving: Array
 
 
 def movement_about(course: Course, rest: Array) -> Movement:
     """Return the movement in a course about a posture of rest (15, 3)."""
-    away_m = np.sqrt(((course.postures - rest) ** 2).sum(axis=2).mean(axis=1))
-    away = _in_units(np.maximum(away_m - np.quantile(away_m, STILL_SHARE), 0))
-    pace = _in_units(course.speeds_mps)
-    activity = _smoothed(np.hypot(pace, away))
+    squares = ((course.postures - rest) ** 2).sum(axis=2) - (ABOVE_NOISE * course.noise_m) ** 2
+    away_m = np.sqrt(np.maximum(squares, 0).mean(axis=1))
+    away = _in_units(np.maximum(away_m - np.quantile(away_m, STILL_SHARE), 0), LEAST_AWAY_M)
+    pace = _in_units(course.speeds_mps, LEAST_PACE_MPS)
+    activity = smoothed(np.hypot(pace, away))
     moving = activity**2 / (activity**2 + HALF_MOVING**2)
-    return Movement(activity, _smoothed(pace), np.concatenate([[0.0], np.cumsum(moving)]) / RATE_HZ)
+    return Movement(activity, smoothed(pace), np.concatenate([[0.0], np.cumsum(moving)]) / RATE_HZ, moving)
 
 
 def rest_postures(course: Course) -> list[Array]:
@@ -68,15 +75,11 @@ def rest_postures(course: Course) -> list[Array]:
     return rests
 
 
-def _in_units(values: Array) -> Array:
-    """Divide values (n,) by their mean weighted by themselves: by that of movements, however long the rests between."""
+def _in_units(values: Array, least: float) -> Array:
+    """Divide values (n,) by their mean weighted by themselves: by that of movements, however long the rests between.
+
+    What is below the least that a movement has stays small.
+    """
     total = float(values.sum())
-    scaled: Array = values * total / float((values**2).sum()) if total > 0 else np.zeros_like(values)
+    scaled: Array = values / max(float((values**2).sum()) / total if total > 0 else 0.0, least)
     return scaled
-
-
-def _smoothed(values: Array) -> Array:
-    """Average values (n,) with their neighbours."""
-    reach = len(SMOOTHING) // 2
-    averaged: Array = np.convolve(np.pad(values, reach, mode="edge"), SMOOTHING, mode="valid").astype(np.float64)
-    return averaged

@@ -8,13 +8,11 @@ import numpy as np
 
 from actum.arrays import Array
 from actum.node import SECOND_NS
-from actum_model_trainer.cutting.choice import MOST_REPETITIONS, Chain, Chains
-from actum_model_trainer.cutting.courses import Course
+from actum_model_trainer.cutting.choice import MARGIN, MOST_REPETITIONS, Chain, Chains
+from actum_model_trainer.cutting.courses import RATE_HZ, Course
 from actum_model_trainer.cutting.doubts import Doubt, doubts_of
 from actum_model_trainer.cutting.movement import rest_postures
 
-MARGIN = 3
-"""Instants of rest (at `RATE_HZ`) that a cut has before and after its burst, 0.2 s, as marks by hand have."""
 AS_GOOD = 0.1
 """Of people whose repetitions are worth the same within this, the nearest to the camera is meant."""
 LEAST_SPEED_MPS = 0.03
@@ -23,6 +21,11 @@ ALIKE = 0.4
 """Repetitions count along while the least like of them is at least so like the most typical one."""
 OTHER_NUMBER = 0.5
 """How sure the cuts are, at most, where another number of repetitions would explain the movement better."""
+
+STIRRING = 0.2
+"""Activity above which a person may be in the midst of a repetition that was not cut."""
+ABOUT_S = 0.5
+"""Time (s) about such movement that may belong to it."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +72,16 @@ class Cuts:
         """The longest time between two repetitions (s); 0 where there are no two."""
         pauses_ns = [after.start_ns - before.end_ns for before, after in pairwise(self.repetitions)]
         return max(pauses_ns, default=0) / SECOND_NS
+
+    @property
+    def uncut_ns(self) -> list[tuple[int, int]]:
+        """From when to when the person moves outside of the repetitions, with some time about it: stamps (ns)."""
+        stamps_ns = np.array([self.course.stamp_ns(index) for index in range(len(self.activity))])
+        moves = np.convolve(self.activity > STIRRING, np.ones(2 * round(ABOUT_S * RATE_HZ) + 1), mode="same") > 0
+        for each in self.repetitions:
+            moves &= (stamps_ns < each.start_ns) | (stamps_ns > each.end_ns)
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], moves, [0]])))
+        return [(int(stamps_ns[a]), int(stamps_ns[b - 1])) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +132,7 @@ def _cut(
     sureness = float(chosen.chain.likeness.min())
     if chosen.likeliest_number != len(repetitions) or asked not in (None, len(repetitions)):
         sureness = min(sureness, OTHER_NUMBER)
-    doubted = doubts_of(chosen.course, chosen.activity, chosen.chain, asked, chosen.likeliest_number, first_ns)
+    doubted = doubts_of(chosen.course, chosen.activity, chosen.chain, asked, first_ns)
     return Cuts(chosen.course, chosen.activity, repetitions, sureness, tuple(doubted))
 
 

@@ -11,6 +11,7 @@ from actum.commands import Command, NoFields, Refusal
 from actum.messages import Segment, Skeleton, TakeState
 from actum.node import Counters
 from actum.recording import RecordingError
+from actum_model_trainer.cutting.choice import MOST_REPETITIONS
 from actum_model_trainer.segment_edits import OF_THE_TAKE
 from actum_model_trainer.teaching.changes import Changes
 from actum_model_trainer.teaching.replies import Done, TakeReply
@@ -98,19 +99,19 @@ class TakeCommands:
         return Done(revision=self._changes.revision)
 
     def _redo_last(self, request: OfSet) -> TakeReply:
-        """Record the newest example of a set anew; the old one goes once the new one is there."""
+        """Record the newest take of a set anew; the old one goes once the new one is there."""
         self._refuse_recording()
         takes = [take for take in self._sets.get(request.set).takes if take.examples]
         if not takes:
             raise Refusal(f"{request.set} has no example yet: record some")
         newest = max(takes, key=lambda take: (take_number(take.id), take.created, take.id))
-        example = newest.examples[-1]
+        example, count = newest.examples[-1], min(len(newest.examples), MOST_REPETITIONS)
         try:
-            anew = Record(set=request.set, label=example.label, person=newest.person, count=1)
+            anew = Record(set=request.set, label=example.label, person=newest.person, count=count)
         except ValidationError:
             raise Refusal(f"{example.id} has a name that no take can have: 'relabel' it, or 'delete' it") from None
         self._begin(anew)
-        self._replaced = example.id
+        self._replaced = newest.id
         return TakeReply(take=None, examples=0, doubts=[])
 
     def _begin(self, request: Record) -> None:
@@ -145,7 +146,9 @@ class TakeCommands:
             self._give_up()
             name, examples = None, 0
         else:
-            added = self._sets.add(take.state.set, finish_take(take.recorder, marking.marks, marking.doubts))
+            added = self._sets.add(
+                take.state.set, finish_take(take.recorder, marking.marks, marking.doubts, marking.uncut)
+            )
             self._take = None
             self._changes.revision += 1
             name, examples = added.id, len(added.examples)
@@ -155,12 +158,11 @@ class TakeCommands:
         return TakeReply(take=name, examples=examples, doubts=doubts)
 
     def _remove_replaced(self, name: str) -> list[str]:
-        """Delete the example that was recorded anew, if it is still there; return why it stays where it has to."""
+        """Delete the take that was recorded anew, if it is still there; return why it stays where it has to."""
         try:
             for take in self._sets.get(name).takes:
-                for example in take.examples:
-                    if example.id == self._replaced:
-                        self._remove(take, [example])
+                if take.id == self._replaced:
+                    self._remove(take, list(take.examples))
         except LOSING as error:
             return [f"{self._replaced}, which it replaces, could not be deleted: {encodable(str(error))}"]
         return []

@@ -16,13 +16,15 @@ from actum.recorder import Recorder
 from actum.recording import Recording, RecordingError
 from actum.rewriting import rewrite, unchanged
 from actum_model_trainer.cutting.marks import free_names, marks_of
-from actum_model_trainer.cutting.repetitions import Cuts
-from actum_model_trainer.segment_edits import DOUBTS, OF_THE_TAKE, TEXTS, Naming, field_of, mirrored_ids
+from actum_model_trainer.cutting.repetitions import OTHER_NUMBER, Cuts
+from actum_model_trainer.segment_edits import DOUBTS, OF_THE_TAKE, TEXTS, Naming, deleted, field_of, mirrored_ids
 
 KIND, CREATED = "kind", "created"
 """Fields of a take's metadata, beside those that say something about its examples: kind and date."""
 AGAIN = "again"
 """The start mark with which a segment's name is used again, among its marks by kind."""
+UNCUT = "uncut"
+"""What a part of a take is called that may hold an action which was not cut."""
 MOST_EXAMPLES = 2000
 """Most examples of a take, some hours of actions: a change of one looks at all others, while the service waits."""
 UNREAD = "skipped while it was read: "
@@ -123,15 +125,36 @@ def read_take(path: Path) -> Take:
     )
 
 
-def finish_take(recorder: Recorder, marks: Iterable[Segment], doubts: Mapping[str, Sequence[str]]) -> Path:
-    """Close a take with its marks and what may be wrong with them, texts by segment id; return its path.
+def finish_take(
+    recorder: Recorder, marks: Iterable[Segment], doubts: Mapping[str, Sequence[str]], uncut: Sequence[Example] = ()
+) -> Path:
+    """Close a take, and return its path.
+
+    Args:
+        recorder: of its frames.
+        marks: of its examples.
+        doubts: what may be wrong with them, texts by segment id.
+        uncut: the parts from which whoever acts is taken out, or they would be learnt as background.
 
     Raises:
         OSError: it cannot be written.
     """
     recorder.close()
-    rewrite(recorder.path, unchanged, marks, {DOUBTS: doubts_field(doubts)})
+    rewrite(recorder.path, deleted(uncut, ()) if uncut else unchanged, marks, {DOUBTS: doubts_field(doubts)})
     return recorder.path
+
+
+def uncut_parts(cuts: Cuts, asked: int | None, sensor: str) -> list[Example]:
+    """Return the parts of a take in which the person may have done the action though no example was cut of it.
+
+    There are none where the cuts are sure and as many as were asked for: then all other movement is background.
+    """
+    if cuts.sureness > OTHER_NUMBER and asked in (None, len(cuts.repetitions)):
+        return []
+    return [
+        Example("", UNCUT, sensor, UNCUT, "", start_ns, end_ns, cuts.course.agent, CUT, mirrored=False, doubts=())
+        for start_ns, end_ns in cuts.uncut_ns
+    ]
 
 
 def cut_marks(cuts: Cuts, label: str, sensor: str) -> tuple[list[Segment], dict[str, list[str]]]:

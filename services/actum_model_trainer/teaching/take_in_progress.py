@@ -9,9 +9,9 @@ from actum.messages import MANUAL, Segment, Skeleton, TakeState, segment_marks
 from actum.node import SECOND_NS
 from actum.recorder import Recorder
 from actum.stamps import Order, StampGuard
-from actum_model_trainer.cutting.counting import LAST_REST_S, RepetitionCounter
+from actum_model_trainer.cutting.counting import LAST_REST_S, NOBODY, RepetitionCounter
 from actum_model_trainer.segment_edits import OF_THE_TAKE
-from actum_model_trainer.teaching.take_files import cut_marks
+from actum_model_trainer.teaching.take_files import Example, cut_marks, uncut_parts
 
 LONGEST_S = 600.0
 """Longest take (s): forty repetitions with pauses, and what a page can show."""
@@ -21,10 +21,9 @@ MOST_MARKED = 500
 """Most segments that somebody marks in a take: one a second."""
 LONGEST_NAME = 50
 """Characters of a segment's name that a refusal quotes."""
-NOBODY = "nobody was seen moving, so nothing was kept"
+NOT_KEPT = "nothing was kept: {}, and record it again"
 BEGUN_ANEW = "the sensor has begun anew meanwhile, so nothing was kept: record it again"
 JUMPED = "the sensor's stamps leap by {:.0f} s, so nothing was kept: see to its clock, and record it again"
-EMPTY = "nobody was seen, so nothing was kept"
 
 
 @dataclass(frozen=True)
@@ -39,10 +38,17 @@ class Marked:
 
 @dataclass(frozen=True)
 class Marking:
-    """The marks of a take that has ended, and what may be wrong with them by segment id; None where none is kept."""
+    """The marks of a take that has ended.
+
+    Attributes:
+        marks: of its examples; None where nothing is kept.
+        doubts: what may be wrong with them, by segment id.
+        uncut: where somebody may have done the action without an example of it.
+    """
 
     marks: Sequence[Segment] | None
     doubts: dict[str, list[str]]
+    uncut: Sequence[Example] = ()
 
 
 class TakeInProgress:
@@ -143,7 +149,7 @@ class TakeInProgress:
     def marking(self) -> Marking:
         """Mark the examples."""
         if self._first_ns is None:
-            return Marking(None, {OF_THE_TAKE: [EMPTY]})
+            return Marking(None, {OF_THE_TAKE: [NOT_KEPT.format(NOBODY)]})
         if self.state.kind == "background":
             return Marking((), {})
         ended, doubts = self._ended(), self._doubts()
@@ -151,9 +157,10 @@ class TakeInProgress:
             return Marking([mark for each in ended for mark in self._marks_of(each)], {OF_THE_TAKE: doubts})
         cuts = self._counter.cuts()
         if cuts is None:
-            return Marking(None, {OF_THE_TAKE: [NOBODY, *doubts]})
+            return Marking(None, {OF_THE_TAKE: [NOT_KEPT.format(self._counter.why_none), *doubts]})
         marks, of_cuts = cut_marks(cuts, self.state.label, self._sensor)
-        return Marking(marks, {**of_cuts, OF_THE_TAKE: [*of_cuts.get(OF_THE_TAKE, []), *doubts]})
+        uncut = uncut_parts(cuts, self.state.asked, self._sensor)
+        return Marking(marks, {**of_cuts, OF_THE_TAKE: [*of_cuts.get(OF_THE_TAKE, []), *doubts]}, uncut)
 
     def _doubts(self) -> list[str]:
         """Return what became of the marks that make no example, in sentences."""

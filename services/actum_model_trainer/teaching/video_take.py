@@ -11,7 +11,7 @@ from actum_model_trainer.cutting.courses import PersonTracks
 from actum_model_trainer.cutting.repetitions import cut
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.segment_edits import OF_THE_TAKE
-from actum_model_trainer.teaching.take_files import CREATED, cut_marks, finish_take
+from actum_model_trainer.teaching.take_files import CREATED, Example, cut_marks, finish_take, uncut_parts
 from sensor_gateway.cameras import estimator_of, optics_of
 from sensor_gateway.devices.video import frame_count, pictures_of
 from sensor_gateway.perceiver import Perceiver
@@ -33,18 +33,18 @@ def take_of_video(
     """
     recorder = Recorder(output, person=person, source=f"video {video.name}", **{CREATED: created})
     try:
-        marks, doubts = _recorded(video, recorder, label, count, progress)
+        marks, doubts, uncut = _recorded(video, recorder, label, count, progress)
     except ValueError as error:
         recorder.discard()
         raise Refusal(str(error)) from None
-    finish_take(recorder, marks, doubts)
+    finish_take(recorder, marks, doubts, uncut)
     return len(marks) // 2, doubts.get(OF_THE_TAKE, [])
 
 
 def _recorded(
     video: Path, recorder: Recorder, label: str, count: int | None, progress: Progress
-) -> tuple[list[Segment], dict[str, list[str]]]:
-    """Store the skeletons of a video; return the marks of what is cut out of them, and doubts by segment id."""
+) -> tuple[list[Segment], dict[str, list[str]], list[Example]]:
+    """Store the skeletons of a video; return the marks of what is cut out, doubts by segment id, and uncut parts."""
     tracks, seen = PersonTracks(), list[Skeleton]()
     for skeleton in _skeletons(video, progress):
         recorder.write(skeleton)
@@ -52,11 +52,11 @@ def _recorded(
         seen += [skeleton] if skeleton.agents else []
     cuts = cut(tracks.courses(), count, 0)
     if cuts is not None:
-        return cut_marks(cuts, label, seen[0].sensor)
+        return *cut_marks(cuts, label, seen[0].sensor), uncut_parts(cuts, count, seen[0].sensor)
     if len(seen) < FEWEST_FRAMES or count not in (None, 1):
         raise Refusal("nobody is seen moving in the video: film the whole person, from the front, in good light")
     whole = seen[0].stamp_ns, seen[-1].stamp_ns, seen[0].sensor
-    return segment_marks(*whole, f"{CUT}-1", label, origin=CUT), {f"{CUT}-1": [WHOLE]}
+    return segment_marks(*whole, f"{CUT}-1", label, origin=CUT), {f"{CUT}-1": [WHOLE]}, []
 
 
 def _skeletons(video: Path, progress: Progress) -> Iterator[Skeleton]:

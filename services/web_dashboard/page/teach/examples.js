@@ -21,7 +21,7 @@ class Examples {
     Object.assign(this, { shown: "", tiles: new Map(), films: Promise.resolve() });
     this.line = outcome();
     this.trouble = outcome();
-    this.redo = button("Redo the last", () => trainer.set && this.redoLast());
+    this.redo = button("Redo the last take", () => trainer.set && this.redoLast());
     this.list = element("div", { class: "groups" });
     const playing = element("input", { type: "checkbox", checked: arePlaying() });
     playing.addEventListener("change", () => play(playing.checked));
@@ -91,7 +91,7 @@ class Examples {
   }
 
   redoLast() {
-    return attempt(this.line, () => trainer.ask("redo_last", { set: trainer.set.name }), "Do the action once more. The new example replaces the last one.");
+    return attempt(this.line, () => trainer.ask("redo_last", { set: trainer.set.name }), "Do the take again. The new take replaces the last one.");
   }
 }
 

@@ -12,10 +12,11 @@ export class TakeView {
   constructor() {
     const canvas = element("canvas", { role: "img", "aria-label": "The person as they are seen now" });
     this.count = element("p", { class: "count", "aria-hidden": "true" });
+    this.what = element("p", { class: "caption" });
     this.phase = element("p", { class: "phase" });
     this.told = element("p", { class: "unseen", role: "status" });
     this.dots = element("p", { class: "dots", "aria-hidden": "true" });
-    this.element = element("div", { class: "stage-box", role: "group", "aria-label": "Take" }, canvas, element("div", { class: "counts-along" }, this.count, this.dots, this.phase, this.told));
+    this.element = element("div", { class: "stage-box", role: "group", "aria-label": "Take" }, canvas, element("div", { class: "counts-along" }, this.what, this.count, this.dots, this.phase, this.told));
     const redraw = drawn(canvas, (context, width, height) => this.draw(context, width, height));
     link.on("frame", () => this.element.offsetParent && redraw());
     this.show(null);
@@ -32,6 +33,7 @@ export class TakeView {
     this.element.dataset.phase = isGoing ? take.phase : "idle";
     const count = !isGoing ? "" : take.kind === "background" ? seconds(take.seconds) : `${take.counted} of ${take.asked}`;
     this.count.textContent = count;
+    this.what.textContent = isGoing ? [take.kind === "background" ? "background" : take.label, take.person].filter(Boolean).join(", by ") : "";
     this.phase.textContent = isGoing ? wording(take) : "";
     const told = isGoing && take.kind === "action" ? `${count}, ${wording(take)}` : "";
     if (this.told.textContent !== told) this.told.textContent = told;
