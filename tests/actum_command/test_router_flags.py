@@ -44,4 +44,4 @@ def test_what_is_no_endpoint_is_refused_as_in_the_environment(monkeypatch: pytes
     monkeypatch.setenv("ACTUM_CONNECT", "tcp/127.0.0.1:1")
     refused = CliRunner().invoke(app, ["doctor", "--connect", "nowhere"])
     assert refused.exit_code == 1
-    assert "'nowhere' is no endpoint" in refused.stderr
+    assert "'nowhere' is not an endpoint" in refused.stderr
