@@ -64,7 +64,7 @@ def test_background_may_be_as_much_as_there_is() -> None:
 def test_without_background_what_is_none_of_the_actions_is_a_guess() -> None:
     (said,) = warnings_of(examples({"push": 6, "pull": 6}), [])
     assert said.startswith(
-        "No segment is labelled idle or background, so the model has to guess what is none of the actions."
+        "The recordings hold less than a minute of background, so the model has to guess what is none of the actions."
     )
     assert warnings_of(examples({"push": 6, "pull": 6, "background": 6}), []) == []
 
