@@ -94,8 +94,8 @@ def _confused_pair(a: str, b: str, times: Mapping[tuple[str, str], int]) -> str:
 def _no_background(counts: Mapping[str, int]) -> Iterator[str]:
     if counts and not any(label in counts for label in BACKGROUND):
         yield (
-            "The recordings hold less than a minute of background, so the model has to guess what is none of the actions. "
-            "Record people who do none of the actions, without --label."
+            "The recordings hold less than a minute of background, so the model has to guess what is none of the "
+            "actions. Record people who do none of the actions, without --label."
         )
 
 
