@@ -261,7 +261,7 @@ def test_a_video_that_is_none_or_without_a_pose_model_fails_with_the_reason(
     teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="wave", person="anna")
     ended = finish(teacher, capsys, monkeypatch)
     assert ended["state"] == "failed"
-    assert any(word in ended["message"] for word in ("no video", "pose model", "MediaPipe", "none.task"))
+    assert any(word in ended["message"] for word in ("not a video", "pose model", "MediaPipe", "none.task"))
     assert len(teacher.examples()) == 20
 
 
