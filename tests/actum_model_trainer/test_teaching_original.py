@@ -60,7 +60,7 @@ def test_what_is_put_into_use_is_stored_for_the_next_run(teacher: Teacher) -> No
 
 def test_a_model_that_was_stored_for_the_next_run_is_kept_before_it_is_replaced(teacher: Teacher) -> None:
     (teacher.folder / "model.npz").write_text("my notes")
-    with pytest.raises(Exception, match=r"model.npz is no model that can be read, and would be lost"):
+    with pytest.raises(Exception, match=r"model.npz cannot be read as a model and would be overwritten"):
         teacher.ask("activate", model=ids(teacher)[1])
     assert (teacher.folder / "model.npz").read_text() == "my notes"
 

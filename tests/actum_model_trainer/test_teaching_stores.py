@@ -111,7 +111,7 @@ def test_a_set_that_is_a_link_loses_the_link_alone(teacher: Teacher, tmp_path: P
 def test_a_file_in_the_place_of_the_model_in_use_is_not_overwritten(teacher: Teacher) -> None:
     (model,) = teacher.ask("list")["models"]
     teacher.model.write_text("my notes")
-    with pytest.raises(Refusal, match="is no model that can be read, and would be lost: move it away"):
+    with pytest.raises(Refusal, match="cannot be read as a model and would be overwritten: move it away"):
         teacher.ask("activate", model=model["id"])
     assert teacher.model.read_text() == "my notes"
 

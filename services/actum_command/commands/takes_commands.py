@@ -52,7 +52,7 @@ def list_command(
     person: PersonOption = None,
     with_excluded: AllOption = False,
 ) -> None:
-    """List the marked actions: segment, label, how long, how many frames, usable for training or why not."""
+    """List the marked actions: segment, label, duration, number of frames, and whether training can use them."""
     recordings = chosen(files, person, with_excluded)
     all_actions: list[MarkedAction] = []
     try:
@@ -89,8 +89,10 @@ def relabel(
 def trim(
     file: RecordingFile,
     segment_id: SegmentId,
-    start: Annotated[float, typer.Option(help="new start, from the present start; negative is earlier (s)")] = 0.0,
-    end: Annotated[float | None, typer.Option(help="new end, from the present start; default: unchanged (s)")] = None,
+    start: Annotated[float, typer.Option(help="how much later the action starts; negative is earlier (s)")] = 0.0,
+    end: Annotated[
+        float | None, typer.Option(help="new end, counted from the present start; default: unchanged (s)")
+    ] = None,
     sensor: SensorOption = None,
 ) -> None:
     """Move the start and the end of an action; times count from its present start."""

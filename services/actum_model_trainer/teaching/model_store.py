@@ -221,7 +221,7 @@ class ModelStore:
             model_id = load_model(place).id
         except ModelError:
             raise Refusal(
-                f"{place} is no model that can be read, and would be lost: move it away, and ask again"
+                f"{place} cannot be read as a model and would be overwritten: move it away, then try again"
             ) from None
         self._keep_copy(place, model_id)
 

@@ -72,7 +72,7 @@ def is_complete(vectors: Array) -> bool:
         raise ValueError(f"row {np.flatnonzero(np.isinf(vectors).any(axis=1))[0]} has an infinite component")
     empty = np.isnan(vectors).all(axis=1)
     if empty.any():
-        raise ValueError(f"row {np.flatnonzero(empty)[0]} has no known component, all are NaN")
+        raise ValueError(f"row {np.flatnonzero(empty)[0]} has only NaN components: remove or fill it")
     return False
 
 

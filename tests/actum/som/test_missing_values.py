@@ -65,9 +65,9 @@ def test_a_row_without_any_known_component_is_refused() -> None:
             lookup(nothing)
     rows = np.stack([np.zeros(2), nothing])
     for lookup in (som.bmus, som.best_two, som.excess2s, som.quantization_error, som.topographic_error):
-        with pytest.raises(ValueError, match="row 1 has no known component"):
+        with pytest.raises(ValueError, match="row 1 has only NaN components"):
             lookup(rows)
-    with pytest.raises(ValueError, match="cannot train.* row 1 has no known component"):
+    with pytest.raises(ValueError, match="cannot train.* row 1 has only NaN components"):
         som.train_batch(rows, 1, (1.0, 1.0))
 
 
