@@ -43,11 +43,11 @@ class Settings(ServiceSettings):
         0.02, ge=0, description="difference of two objects' distances to the hand below which an event names both (m)"
     )
     pointing_uncertainty_deg: float = Field(
-        2.0, ge=0, description="difference of two objects' angles to the arm below which an event names both (deg)"
+        2.0, ge=0, description="an event names two objects if their angles to the pointing arm differ by less (deg)"
     )
     expected_outcomes: dict[str, str] = Field(
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
-        description="expected result of each action on its object; such an action never uses a held object as a tool",
+        description="expected result of each action on its object; for these actions a held object is never the tool",
     )
     world_from_camera: Annotated[str | None, BeforeValidator(as_text)] = Field(
         None,

@@ -99,7 +99,7 @@ def test_a_thousand_small_bombs_in_one_file_are_refused(tmp_path: Path) -> None:
             writer.add_message(channel, i, payload, i)
         writer.finish()
     assert path.stat().st_size < 100_000
-    assert "it holds far more messages than a file of its size can" in refused(path)
+    assert "it claims far more messages than its size allows" in refused(path)
 
 
 def test_a_lens_that_is_covered_makes_no_bomb(tmp_path: Path) -> None:

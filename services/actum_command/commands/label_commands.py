@@ -161,7 +161,7 @@ def add(
 @app.command("cut")
 def cut(
     file: RecordingFile,
-    times: Annotated[int, typer.Argument(metavar="TIMES", min=1, help="number of repetitions in the recording")],
+    times: Annotated[int, typer.Argument(metavar="TIMES", min=1, help="how often the action is done in the recording")],
     label: Label,
 ) -> None:
     """Find the repetitions of one action again, in place of earlier cuts; segments marked by hand stay."""

@@ -33,8 +33,8 @@ def simulate(
     """Write labelled examples of the simulated scene, without images.
 
     With --everyday the person also scratches, phones, walks away and comes back, or reaches for an object and draws
-    back, all without marks: a model should not answer these. Train with "familiar", which leaves out some kinds of
-    activities, and test with "all"; "only" writes no actions.
+    back, all without marks: a model should not answer these. Train with --everyday familiar, which leaves out some
+    kinds of activities, and test with --everyday all. With --everyday only the person does none of the actions.
     """
     refuse_output(output)
     try:

@@ -90,9 +90,7 @@ def trim(
     file: RecordingFile,
     segment_id: SegmentId,
     start: Annotated[float, typer.Option(help="how much later the action starts; negative is earlier (s)")] = 0.0,
-    end: Annotated[
-        float | None, typer.Option(help="new end, counted from the present start; default: unchanged (s)")
-    ] = None,
+    end: Annotated[float | None, typer.Option(help="new end, after the present start; default: unchanged (s)")] = None,
     sensor: SensorOption = None,
 ) -> None:
     """Move the start and the end of an action; times count from its present start."""
