@@ -200,7 +200,7 @@ def _names(file: Path) -> list[str]:
         with file.open("rb") as stored, np.load(stored) as arrays:
             return sorted({array.rpartition(".")[0] for array in arrays.files})
     except DAMAGED:
-        raise DatasetError(f"{file} is not a file of streams: download it again") from None
+        raise DatasetError(f"{file} is not a readable file of MSRC-12 streams: download it again") from None
 
 
 def _skeleton(stamp_us: int, joints_mm: Integers, sensor: str, session_id: str) -> Skeleton:

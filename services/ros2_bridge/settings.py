@@ -33,14 +33,14 @@ class Settings(ServiceSettings):
         "jazzy", description="the ROS 2 distribution of your nodes; humble has no type hashes in its keys"
     )
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
-        frozenset(get_args(TopicName)), description="the topics to publish or subscribe to, such as event,mark"
+        frozenset(get_args(TopicName)), description="the topics to bridge, separated by commas, such as event,mark"
     )
     ros_frame_id: str | None = Field(
         None,
         min_length=1,
         description=(
-            "the camera's optical frame in your robot's tf tree; default: SENSOR_optical_frame, such as "
-            "kinect0_optical_frame, with a transform from kinect0_link on /tf_static"
+            "the camera's optical frame in your robot's tf tree; by default the bridge publishes one of its own on "
+            "/tf_static, SENSOR_optical_frame below SENSOR_link, such as kinect0_optical_frame below kinect0_link"
         ),
     )
 

@@ -20,7 +20,7 @@ class Settings(ServiceSettings):
         0, ge=0, description="number of the simulated person, who has a height, a tempo and a handedness"
     )
     seed: int = Field(1, ge=0, description="seed of the random variation between repetitions")
-    repetitions: int = Field(0, ge=0, description="repetitions of each action; 0 repeats without end")
+    repetitions: int = Field(0, ge=0, description="how often the simulated person does each action; 0: without end")
     image_hz: Annotated[Literal[0, 5, 10, 15, 30], BeforeValidator(_number)] = Field(
         15, description="colour images per second; 0 publishes none"
     )

@@ -38,7 +38,7 @@ class Settings(ServiceSettings):
         None, description="the upward direction in the frame of a tilted camera, as `actum calibrate up` prints it"
     )
     camera: Annotated[str, BeforeValidator(_text)] = Field(
-        "0", description="the camera: a device number or path, a URL, or a video file; for the source camera"
+        "0", description="the camera: a device number or path, a URL, or a video file; only with --source camera"
     )
     camera_size: str | None = Field(
         None,
@@ -55,19 +55,19 @@ class Settings(ServiceSettings):
         ),
     )
     mirrored: bool = Field(
-        False, description="turn back images that the camera delivers mirrored; for the source camera"
+        False, description="turn back images that the camera delivers mirrored; only with --source camera"
     )
     pose_model: Path = Field(
         default_factory=default_pose_model,
-        description="the pose model file that `actum models fetch` downloads; for all cameras",
+        description="the pose model file that `actum models fetch` downloads; used with every kind of camera",
     )
     person_height_m: float | None = Field(
         None,
         gt=0.5,
         lt=2.5,
-        description="height of the person, from which distances are then estimated; for all cameras (m)",
+        description="height of the person, from which distances are then estimated; with every kind of camera (m)",
     )
     images: bool = Field(
         True, description="publish images; use --no-images where a marker-camera of the same sensor publishes them"
     )
-    people: int = Field(2, ge=1, le=4, description="greatest number of people to find in an image; for all cameras")
+    people: int = Field(2, ge=1, le=4, description="greatest number of people to find in an image of a camera")

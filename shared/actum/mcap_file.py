@@ -82,7 +82,7 @@ class McapFile:
                 case Message():
                     channel = channels.get(record.channel_id)
                     if channel is None:
-                        raise self._damaged(f"a message of the unknown channel {record.channel_id}")
+                        raise self._damaged(f"a message refers to the unknown channel {record.channel_id}")
                     encoding = encoding_of(channel, schemas.get(channel.schema_id, ""))
                     yield StoredMessage(record.publish_time, channel.topic, record.data, encoding)
 

@@ -104,7 +104,9 @@ class ServiceSettings(BaseSettings):
         allow_inf_nan=False,
     )
 
-    connect: Annotated[str, AfterValidator(_endpoint)] = Field(DEFAULT_ENDPOINT, description="the router's endpoint")
+    connect: Annotated[str, AfterValidator(_endpoint)] = Field(
+        DEFAULT_ENDPOINT, description="the endpoint of the Zenoh router, such as tcp/192.168.1.5:7447"
+    )
     sensor: str = Field(
         "kinect0",
         pattern=f"^{CHUNK.pattern}$",
@@ -129,8 +131,8 @@ class ServiceSettings(BaseSettings):
     state: Path | None = Field(
         None,
         description=(
-            "a folder in which the classifier and the fusion keep their last answers, so that a restart does not "
-            "change them"
+            "a folder for the last answers of the classifier and the fusion, which they repeat after a restart; other "
+            "services ignore it"
         ),
     )
     health_file: Path | None = Field(

@@ -133,7 +133,7 @@ def test_a_file_that_is_no_model_is_refused_without_advice_to_load_it_unsafely(t
 
 
 def test_a_model_alone_is_nothing_to_evaluate() -> None:
-    assert "name a model and recordings" in refusal("evaluate", "m.npz")
+    assert "a model and at least one recording are needed" in refusal("evaluate", "m.npz")
 
 
 @pytest.mark.parametrize(

@@ -95,7 +95,7 @@ def test_a_folder_without_the_set_is_an_error(tmp_path: Path) -> None:
 @pytest.mark.parametrize("content", [b"", b"nothing of the kind", b"PK\x03\x04 broken off"])
 def test_a_file_that_holds_no_arrays_is_an_error_that_names_it(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "p01.npz").write_bytes(content)
-    with pytest.raises(DatasetError, match=r"p01\.npz is not a file of streams: download it again"):
+    with pytest.raises(DatasetError, match=r"p01\.npz is not a readable file of MSRC-12 streams: download it again"):
         stream_names(tmp_path)
 
 

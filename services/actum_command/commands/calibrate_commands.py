@@ -31,7 +31,7 @@ app = PlainTyper(
 app.command("up")(up)
 
 Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration file to write (YAML)")]
-Squares = Annotated[str, typer.Option("--board", help="number of squares of the board, across x down")]
+Squares = Annotated[str, typer.Option("--board", help="columns x rows of the board's squares, such as 7x5")]
 SquareMm = Annotated[float, typer.Option(help="side of a square, as measured on the print (mm)")]
 MarkerMm = Annotated[float, typer.Option(help="side of a marker on the board (mm)")]
 Family = Annotated[str, typer.Option(help="OpenCV's name of the board's marker dictionary")]

@@ -99,7 +99,10 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         _refuse_place(json_file)
         refuse_ending(json_file, ".json")
     if not by_person and len(files) == 1:
-        fail(f"{files[0]} alone cannot be evaluated: name a model and recordings, or use --leave-one-person-out")
+        fail(
+            f"a model and at least one recording are needed, but only {files[0]} was named: name both, or use "
+            "--leave-one-person-out with recordings alone"
+        )
     try:
         model = None if by_person else load_model(files[0])
     except ModelError as error:

@@ -109,7 +109,10 @@ class TakeCommands:
         try:
             anew = Record(set=request.set, label=example.label, person=newest.person, count=count)
         except ValidationError:
-            raise Refusal(f"{example.id} has a name that no take can have: 'relabel' it, or 'delete' it") from None
+            raise Refusal(
+                f"{example.label!r} or {newest.person!r} cannot be the name of an action or a person in a new take: "
+                "relabel the example, or delete it"
+            ) from None
         self._begin(anew)
         self._replaced = newest.id
         return TakeReply(take=None, examples=0, doubts=[])

@@ -101,7 +101,9 @@ def reading(path: Path, file_format: str) -> Iterator[Mapping[str, NDArray[Any]]
             refuse_bomb(stored)
             with np.load(stored, allow_pickle=False) as file:
                 if str(file["format"]) != file_format:
-                    raise SomError(path, f"its format is {str(file['format'])!r}, not {file_format!r}")
+                    raise SomError(
+                        path, f"the file has the format {str(file['format'])!r}, but {file_format!r} is needed here"
+                    )
                 yield file
     except SomError:
         raise
