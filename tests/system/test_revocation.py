@@ -11,6 +11,7 @@ import zenoh
 
 from actum import keys
 from actum.runtime import Client, NotAnsweredError, RouterUnreachableError
+from actum.runtime.credentials import USERS
 from actum.runtime.session import secret_config
 from actum.settings import ServiceSettings
 from actum_deployer.writing import write_deployment
@@ -128,3 +129,14 @@ def test_a_router_goes_on_with_a_file_that_is_half_copied(tmp_path: Path) -> Non
         write_deployment(replace(running.deployment, images_cross=True), running.root, days=30)
         wait_until(lambda: router.said().count("listens on") == 2, "the whole file is used")
         assert router.process.poll() is None
+
+
+def test_a_router_takes_up_a_list_of_users_that_is_written_after_its_certificate(tmp_path: Path) -> None:
+    with deployed(tmp_path, passwords=True) as running:
+        users = running.root / "compute" / "credentials" / "router" / USERS
+        [router] = [each for each in running.running if each.log.name.startswith("router-compute")]
+        with running.client("viewer", "compute"):
+            users.write_text("\n".join(line for line in users.read_text().splitlines() if "viewer" not in line))
+        wait_until(lambda: router.said().count("listens on") == 2, "the router listens with the other list")
+        with pytest.raises(RouterUnreachableError):
+            running.client("viewer", "compute", wait_s=REFUSED_S)

@@ -91,15 +91,6 @@ def check(folder: Path) -> None:
         ) from None
 
 
-def is_renewed(folder: Path, shown: bytes) -> bool:
-    """Tell whether a folder's certificate is another one than `shown` (PEM), of files that go together."""
-    try:
-        check(folder)
-        return (folder / CERTIFICATE).read_bytes() != shown
-    except (OSError, SettingsError):
-        return False
-
-
 def _unreadable(file: Path, error: OSError) -> str:
     who = f"user {os.getuid()}" if hasattr(os, "getuid") else "this user"
     return f"credentials: {file} cannot be read by {who} ({error.strerror}): give that user read permission"

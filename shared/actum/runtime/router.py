@@ -6,7 +6,7 @@ from pathlib import Path
 
 import zenoh
 
-from actum.runtime.credentials import CERTIFICATE, USERS, check, is_renewed, login_values, router_values
+from actum.runtime.credentials import CERTIFICATE, USERS, check, login_values, router_values
 from actum.runtime.health_file import HealthFile
 from actum.runtime.session import TRANSPORT, insert
 from actum.runtime.waiting import wait_for
@@ -67,11 +67,11 @@ def serve_router(
     """
     health = HealthFile(health_file)
     while not stop.is_set():
-        read = _content(config_file)
+        read = _contents(config_file, credentials)
         session = _opened(listen, config_file, credentials, link)
         log.info("router %s listens on %s", session.zid(), listen or config_file)
         try:
-            _wait_for_renewal(session, credentials, config_file, read, health, stop)
+            _wait_for_change(session, credentials, config_file, read, health, stop)
         finally:
             session.close()
 
@@ -87,39 +87,48 @@ def _opened(listen: str | None, config_file: Path | None, credentials: Path | No
         raise SettingsError(f"the router cannot start on {listen or config_file}: {reason}") from None
 
 
-def _wait_for_renewal(
+def _wait_for_change(
     session: zenoh.Session,
     credentials: Path | None,
     config_file: Path | None,
-    read: bytes,
+    read: list[bytes],
     health: HealthFile,
     stop: threading.Event,
 ) -> None:
-    """Wait until stopped, or until certificate or configuration are others that can be used; keep the health file."""
-    shown = _content(credentials / CERTIFICATE) if credentials else b""
-    while credentials is None or not (is_renewed(credentials, shown) or _is_changed(config_file, read)):
+    """Wait until stopped, or until the files that were read are others that can be used; keep the health file."""
+    while _contents(config_file, credentials) == read or not _usable(config_file, credentials):
         health.write(any(session.get(f"@/{session.zid()}/router", timeout=LOOK_S)))
         if wait_for(stop, LOOK_S):
             return
-    log.info("the certificate in %s or the configuration has changed: the router restarts its listener", credentials)
+    log.info("the credentials in %s or the configuration has changed: the router restarts its listener", credentials)
 
 
-def _content(file: Path | None) -> bytes:
-    """Return what a file holds, nothing where it cannot be read now."""
+def _contents(config_file: Path | None, credentials: Path | None) -> list[bytes]:
+    """Return what the files hold that a router reads when it begins to listen; nothing where one cannot be read.
+
+    They are read before it begins: a deployment writes them one after another, while the router runs.
+    """
+    files = [config_file] if config_file else []
+    if credentials:
+        files += [credentials / CERTIFICATE, credentials / USERS]
+    return [_content(file) for file in files]
+
+
+def _content(file: Path) -> bytes:
     try:
-        return file.read_bytes() if file else b""
+        return file.read_bytes()
     except OSError:
         return b""
 
 
-def _is_changed(config_file: Path | None, read: bytes) -> bool:
-    """Tell whether a file of configuration is another than the one that was read, and whole."""
-    content = _content(config_file)
-    if content in (b"", read):
-        return False
+def _usable(config_file: Path | None, credentials: Path | None) -> bool:
+    """Tell whether a router could begin to listen with the files as they are now: whole, and of one another."""
     try:
-        zenoh.Config.from_json5(content.decode())
-    except (zenoh.ZError, UnicodeDecodeError):
+        if config_file:
+            zenoh.Config.from_json5(config_file.read_text(encoding="utf-8"))
+        if credentials:
+            check(credentials)
+    except (OSError, UnicodeDecodeError, zenoh.ZError, SettingsError):
         return False
     return True
 
