@@ -34,8 +34,8 @@ def linked_systems(folder: Path) -> Iterator[LinkedSystems]:
         configuration = folder / "camera.json5"
         configuration.write_text(json.dumps(router_configuration(f"tcp/127.0.0.1:{link.port}")))
         try:
-            compute.start_router()
-            camera.start_router(configuration)
+            compute.start_router_process()
+            camera.start_router_process(configuration)
             yield LinkedSystems(camera, compute, link)
         finally:
             camera.stop()

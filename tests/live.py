@@ -13,8 +13,11 @@ from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
 
+import zenoh
+
 from actum.messages import Info, Message
 from actum.runtime import Client, Listening
+from actum.runtime.router import router_config
 from actum.settings import ServiceSettings
 
 PATIENCE_S = 30.0
@@ -98,6 +101,8 @@ class System:
     running: list[Running] = field(default_factory=list)
     variables: dict[str, str] = field(default_factory=dict)
     """What stands in the environment besides."""
+    routers: list[zenoh.Session] = field(default_factory=list)
+    """Routers in this process."""
 
     @property
     def environment(self) -> dict[str, str]:
@@ -117,7 +122,11 @@ class System:
         """Start a script, which can import what lies beside it."""
         return self._start(script.stem, str(script), *arguments)
 
-    def start_router(self, configuration: Path | None = None) -> Running:
+    def start_router(self) -> None:
+        """Start a router in this process, which costs no start of a process: it cannot be killed."""
+        self.routers.append(zenoh.open(router_config(self.settings.connect, None)))
+
+    def start_router_process(self, configuration: Path | None = None) -> Running:
         given = [] if configuration is None else [str(configuration)]
         return self._start("router", "-c", ROUTER, self.settings.connect, *given)
 
@@ -155,6 +164,8 @@ class System:
                 running.process.terminate()
         for running in self.running:
             running.process.wait(timeout=PATIENCE_S)
+        for router in self.routers:
+            router.close()
 
 
 @contextmanager

@@ -46,6 +46,17 @@ def _texture(dictionary: str, marker_id: int) -> Array:
     return cv2.copyMakeBorder(square, border, border, border, border, cv2.BORDER_CONSTANT, value=255)
 
 
+def _box(fine_from_texture: Array, texels: int, size: tuple[int, int]) -> tuple[int, int, int, int]:
+    """Return the part of an image that a texture covers at most (left, top, right, bottom), of a pixel at least."""
+    corners = np.array([[-1, -1, 1], [texels, -1, 1], [texels, texels, 1], [-1, texels, 1]]) @ fine_from_texture.T
+    if (corners[:, 2] <= 0).any():
+        return (0, 0, *size)
+    x, y = (corners[:, :2] / corners[:, 2:]).T
+    left, top = (min(max(int(least) - 1, 0), end - 1) for least, end in zip((x.min(), y.min()), size, strict=True))
+    right, bottom = (max(min(int(most) + 2, end), 1) for most, end in zip((x.max(), y.max()), size, strict=True))
+    return left, top, max(right, left + 1), max(bottom, top + 1)
+
+
 def _render(markers: Markers, dictionary: str) -> Array:
     """Draw markers on a grey wall, as grey levels of shape (HEIGHT, WIDTH)."""
     fine = (WIDTH * SUPERSAMPLING, HEIGHT * SUPERSAMPLING)
@@ -56,9 +67,12 @@ def _render(markers: Markers, dictionary: str) -> Array:
         texture = _texture(dictionary, marker_id)
         image_from_plane = np.reshape(K, (3, 3)) @ image_from_marker[:3][:, [0, 1, 3]]
         fine_from_texture = fine_from_image @ image_from_plane @ _marker_from_texture(size_m, len(texture))
-        drawn = cv2.warpPerspective(texture, fine_from_texture, fine)
-        covered = cv2.warpPerspective(np.full_like(texture, 255), fine_from_texture, fine)
-        canvas = np.where(covered > 127, drawn, canvas)
+        left, top, right, bottom = _box(fine_from_texture, len(texture), fine)
+        box_from_texture = np.array([[1, 0, -left], [0, 1, -top], [0, 0, 1]]) @ fine_from_texture
+        box = (right - left, bottom - top)
+        drawn = cv2.warpPerspective(texture, box_from_texture, box)
+        covered = cv2.warpPerspective(np.full_like(texture, 255), box_from_texture, box)
+        canvas[top:bottom, left:right][covered > 127] = drawn[covered > 127]
     return cv2.resize(canvas, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)
 
 

@@ -71,7 +71,7 @@ class Hosts:
     compute: System
 
     def start_routers(self) -> None:
-        self.camera.start_router()
+        self.camera.start_router_process()
         linked = self.compute.folder / "router.json5"
         linked.write_text(json.dumps({"mode": "router", "connect": {"endpoints": [self.camera.settings.connect]}}))
         self.compute.start(

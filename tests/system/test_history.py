@@ -83,7 +83,7 @@ def test_a_killed_one_leaves_what_it_was_told_and_the_next_goes_on(running: Syst
 
 def test_the_router_may_go_and_come_back(running: System, tmp_path: Path) -> None:
     folder = tmp_path / "history"
-    router = running.start_router()
+    router = running.start_router_process()
     recorder = started(running, folder)
     with running.client() as client:
         running.wait_for_services(client, "event_recorder")
@@ -91,7 +91,7 @@ def test_the_router_may_go_and_come_back(running: System, tmp_path: Path) -> Non
         wait_until(lambda: events_in(folder) == ["before"], "it is written")
         router.process.kill()
         wait_until(lambda: "lost the router" in recorder.said(), "it notices")
-        running.start_router()
+        running.start_router_process()
         wait_until(client.connected, "the router is back")
         running.wait_for_services(client, "event_recorder")
         put(client, "after")

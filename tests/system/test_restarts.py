@@ -9,11 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from action_fusion.node import WAIT_NS
 from actum import keys
 from actum.messages import Action, Event, Message, Posture, Segment, Status
 from actum.node import SECOND_NS
 from actum.runtime import Client, Listening
-from actum.runtime.inbox import HISTORY_S
+from fusion_with_short_history import HISTORY_S
 from live import Running, System, collect, wait_until
 from people import FRAME_NS, reaches
 from pose_preprocessor.node import PosePreprocessor
@@ -25,6 +26,7 @@ PUSH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65))
 SCENE = [*PUSH.postures(), *PUSH.sightings(), action("push")]
 LATER_S = 30.0
 LONG_S = 60.0
+FUSION = Path(__file__).parents[1] / "fusion_with_short_history.py"
 pytestmark = pytest.mark.system
 
 
@@ -92,7 +94,7 @@ def state(tmp_path: Path) -> tuple[str, str]:
 def test_a_fusion_started_anew_does_not_answer_old_segments_again(running: System) -> None:
     """Publishers keep their last messages for those who come late: those of the last seconds, and not for ever."""
     running.start_router()
-    fusion = running.start("action_fusion")
+    fusion = running.start_script(FUSION)
     with running.client() as client:
         running.wait_for_services(client, "action_fusion")
         events = events_of(client)
@@ -101,7 +103,7 @@ def test_a_fusion_started_anew_does_not_answer_old_segments_again(running: Syste
         answered_s = time.monotonic()
         wait_until(lambda: time.monotonic() > answered_s + HISTORY_S + 0.5, "the answer is old")
         fusion.terminate()
-        running.start("action_fusion")
+        running.start_script(FUSION)
         running.wait_for_services(client, "action_fusion")
         put_all(client, [later(m) for m in SCENE])
         found = collect(events, Event, lambda found: any(event.segment_id != "s1" for event in found))
@@ -110,13 +112,13 @@ def test_a_fusion_started_anew_does_not_answer_old_segments_again(running: Syste
 
 def test_who_takes_over_does_not_answer_again_what_was_just_answered(running: System) -> None:
     running.start_router()
-    fusion = running.start("action_fusion", "--instance", "one")
+    fusion = running.start_script(FUSION, "--instance", "one")
     with running.client() as client:
         running.wait_for_services(client, "action_fusion")
         events = events_of(client)
         put_all(client, SCENE)
         assert [event.segment_id for event in collect(events, Event, bool)] == ["s1"]
-        running.start("action_fusion", "--instance", "two", "--take-over")
+        running.start_script(FUSION, "--instance", "two", "--take-over")
         wait_until(lambda: fusion.process.poll() is not None, "the first has left")
         running.wait_for_services(client, "action_fusion")
         there_s = time.monotonic()
@@ -256,7 +258,7 @@ def test_a_fusion_that_is_stopped_for_seconds_goes_on_as_if_nothing_had_been(run
             if message.stamp_ns >= at(1.0):
                 client.put(message)
         stopped_s = time.monotonic()
-        wait_until(lambda: time.monotonic() > stopped_s + HISTORY_S, "it has been stopped for long")
+        wait_until(lambda: time.monotonic() > stopped_s + 1.1 * WAIT_NS / SECOND_NS, "it has been stopped for long")
         fusion.process.send_signal(signal.SIGCONT)
         (event,) = collect(events, Event, bool)
     assert event.valid and event.result == "0.20 m away"
@@ -267,7 +269,7 @@ def test_what_was_put_while_a_link_was_cut_arrives_once_it_is_back(running: Syst
     running.start_router()
     port = int(running.settings.connect.rpartition(":")[2])
     with TcpProxy(port) as link:
-        running.start("action_fusion", "--connect", f"tcp/127.0.0.1:{link.port}", *state)
+        running.start_script(FUSION, "--connect", f"tcp/127.0.0.1:{link.port}", *state)
         with running.client() as client:
             running.wait_for_services(client, "action_fusion")
             events = events_of(client)
@@ -278,7 +280,7 @@ def test_what_was_put_while_a_link_was_cut_arrives_once_it_is_back(running: Syst
             for message in [m for m in SCENE if at(0.5) <= m.stamp_ns < at(3.0)]:
                 client.put(message)
             cut_s = time.monotonic()
-            wait_until(lambda: time.monotonic() > cut_s + HISTORY_S + 1.0, "it has been cut for long")
+            wait_until(lambda: time.monotonic() > cut_s + HISTORY_S + 0.5, "it has been cut for long")
             link.mend()
             wait_until(lambda: bool(client.alive()), "the link is back")
             for message in [m for m in SCENE if m.stamp_ns >= at(3.0)]:
@@ -288,7 +290,7 @@ def test_what_was_put_while_a_link_was_cut_arrives_once_it_is_back(running: Syst
 
 
 def test_a_router_that_is_killed_and_started_again_loses_nothing(running: System, state: tuple[str, str]) -> None:
-    router = running.start_router()
+    router = running.start_router_process()
     running.start("action_fusion", *state)
     with running.client() as client:
         running.wait_for_services(client, "action_fusion")
@@ -299,7 +301,7 @@ def test_a_router_that_is_killed_and_started_again_loses_nothing(running: System
         wait_until(lambda: not client.connected(), "the router is gone")
         for message in [m for m in SCENE if at(0.5) <= m.stamp_ns < at(3.0)]:
             client.put(message)
-        running.start_router()
+        running.start_router_process()
         running.wait_for_services(client, "action_fusion")
         for message in [m for m in SCENE if m.stamp_ns >= at(3.0)]:
             client.put(message)

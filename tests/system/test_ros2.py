@@ -206,9 +206,7 @@ def test_marks_become_segments_and_what_is_none_is_counted(running: System, node
 
 
 def test_the_bridge_survives_its_routers_death(running: System, node: RosNode, bridge: Running) -> None:
-    router = running.running[0]
-    router.process.kill()
-    router.process.wait()
+    running.routers.pop().close()
     running.start_router()
     wait_until(lambda: node.topics() == TOPICS, "the topics are announced again")
     with running.client() as client:

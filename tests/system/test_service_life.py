@@ -62,13 +62,13 @@ def test_services_that_never_found_their_router_leave_cleanly_too(waiting: dict[
 
 
 def test_a_service_survives_its_routers_death(running: System) -> None:
-    router = running.start_router()
+    router = running.start_router_process()
     preprocessor = running.start("pose_preprocessor")
     with running.client() as client:
         running.wait_for_services(client, "pose_preprocessor")
         router.process.kill()
         router.process.wait()
-        running.start_router()
+        running.start_router_process()
         wait_until(client.connected, "the session has its router again")
         postures = client.listen(keys.pattern(keys.POSTURE, client.sensor))
         running.wait_for_services(client, "pose_preprocessor")

@@ -80,13 +80,13 @@ def test_a_camera_file_that_is_not_there_is_named_and_that_it_came(running: Syst
 
 
 def test_a_router_that_is_lost_and_comes_back_is_told(running: System) -> None:
-    router = running.start_router()
+    router = running.start_router_process()
     service = running.start("action_fusion")
     with running.client() as client:
         running.wait_for_services(client, "action_fusion")
         router.process.kill()
         wait_for_line(service, f"lost the router at {running.settings.connect}: waiting for it")
-        running.start_router()
+        running.start_router_process()
         wait_for_line(service, f"connected to {running.settings.connect} again")
 
 
