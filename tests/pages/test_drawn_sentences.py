@@ -4,8 +4,12 @@ import pytest
 from docs import drawn_sentences
 
 
-def test_errors_of_services_of_commands_and_of_doctor_are_among_them() -> None:
-    errors = drawn_sentences.errors()
+@pytest.fixture(scope="module")
+def errors() -> set[str]:
+    return drawn_sentences.errors()
+
+
+def test_errors_of_services_of_commands_and_of_doctor_are_among_them(errors: set[str]) -> None:
     assert "the source recording needs --path (ACTUM_PATH), the file or folder to play" in errors
     assert "{file} is a folder: name the file to write" in errors
     assert "{name} does not answer on its info key: restart it if this persists" in errors
@@ -21,7 +25,10 @@ def test_paragraphs_hold_neither_tables_nor_code() -> None:
     assert not [text for text in drawn_sentences.paragraphs() if "| ---" in text or "```" in text]
 
 
-def test_a_seed_draws_the_same_sentences_again(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_seed_draws_the_same_sentences_again(
+    errors: set[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(drawn_sentences, "errors", lambda: errors)
     drawn = []
     for _ in range(2):
         drawn_sentences.main(["--seed", "7"])
