@@ -36,8 +36,8 @@ app = PlainTyper(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    help="Recognise online what a person does and to which object. Start with 'actum up', which runs everything on this "
-    "machine, and 'actum watch', which prints the recognised events.",
+    help="Recognise online what a person does and to which object. Start with 'actum up', which runs everything on "
+    "this machine, and 'actum watch', which prints the recognised events.",
 )
 
 

@@ -17,7 +17,7 @@ from actum_deployer.deployment import Deployment, Host, hosts_of
 
 app = PlainTyper(
     no_args_is_help=True,
-    help="Write the files with which several hosts run actum together: containers, routers, systemd units, credentials.",
+    help="Write the files for running actum on several hosts: routers, containers, systemd units, credentials.",
 )
 
 DirArgument = Annotated[

@@ -14,7 +14,10 @@ from scene_simulator.everyday import Choice, Pauses
 
 def simulate(
     output: Annotated[Path, typer.Argument(help="the recording to write")],
-    repetitions: Annotated[int, typer.Option(min=1, help="repetitions of each of the five actions")] = 12,
+    repetitions: Annotated[
+        int,
+        typer.Option(min=1, help="number of times that each of the five actions is done; ignored with --everyday only"),
+    ] = 12,
     actor: Annotated[
         int,
         typer.Option(
