@@ -23,8 +23,8 @@ class Settings(ServiceSettings):
         0.25,
         gt=0,
         description=(
-            "maximum distance between a hand and an object's marker; an object farther away is never "
-            "chosen, except by pointing (m)"
+            "maximum distance between a hand and the marker of an object that it can reach; a tool in "
+            "the hand adds --grasp-m (m)"
         ),
     )
     grasp_m: float = Field(

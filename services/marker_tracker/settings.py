@@ -43,7 +43,7 @@ class Settings(ServiceSettings):
         1.0,
         gt=0,
         le=60,
-        description=("how long an object is still published at its last position after its marker is hidden (s)"),
+        description=("how long an object is still published after its marker was last seen (s)"),
     )
     calibrated_size_px: tuple[Pixels, Pixels] | None = Field(
         None,

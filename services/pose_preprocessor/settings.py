@@ -12,13 +12,13 @@ class Settings(ServiceSettings):
         10.0,
         gt=0,
         le=1000,
-        description="maximum distance of a joint from the camera; joints farther away are ignored (m)",
+        description="maximum distance of a joint from the camera; frames that exceed it are rejected (m)",
     )
     bone_limit_m: float = Field(
         1.5,
         gt=0,
         le=1000,
-        description="maximum distance between two connected joints; joints farther apart are ignored (m)",
+        description="maximum length of a bone between two joints; frames that exceed it are rejected (m)",
     )
 
     @classmethod

@@ -32,7 +32,8 @@ class Settings(ServiceSettings):
         ),
     )
     ros_distro: Literal["humble", "jazzy", "kilted"] = Field(
-        "jazzy", description="the ROS 2 distribution that your nodes use; nodes of another one receive nothing"
+        "jazzy",
+        description="the ROS 2 distribution that your nodes use; the topics of humble are named differently in Zenoh",
     )
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
         frozenset(get_args(TopicName)),

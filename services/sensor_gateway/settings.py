@@ -44,8 +44,8 @@ class Settings(ServiceSettings):
     calibration: Path | None = Field(
         None,
         description=(
-            "the camera's calibration file, which `actum calibrate` wrote; default: the lens is "
-            "estimated from --field-of-view-deg"
+            "the camera's calibration file, which `actum calibrate` wrote; default: the device's own "
+            "lens data, or --field-of-view-deg"
         ),
     )
     up_in_camera: Direction | None = Field(

@@ -31,30 +31,17 @@ app = PlainTyper(
 app.command("up")(up)
 
 Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration file to write (YAML)")]
-Squares = Annotated[
-    str,
-    typer.Option(
-        "--board", help="number of the board's squares, columns x rows; the default fits 'actum markers --board'"
-    ),
-]
-SquareMm = Annotated[
-    float, typer.Option(help="side length of one of the board's squares, as measured on the print (mm)")
-]
-MarkerMm = Annotated[
-    float, typer.Option(help="side length of one of the board's markers, as measured on the print (mm)")
-]
-Family = Annotated[
-    str, typer.Option(help="the marker family on the board, by OpenCV's name; as given to 'actum markers --board'")
-]
+Squares = Annotated[str, typer.Option("--board", help="columns x rows of squares on the board")]
+SquareMm = Annotated[float, typer.Option(help="side of one square on the board, as measured (mm)")]
+MarkerMm = Annotated[float, typer.Option(help="side of one marker on the board, as measured (mm)")]
+Family = Annotated[str, typer.Option(help="OpenCV's name of the marker family printed on the board")]
 Existing = typer.Option(exists=True, dir_okay=False)
 
 
 @app.command("intrinsics")
 def intrinsics(
     output: Output,
-    images: Annotated[
-        list[Path] | None, typer.Argument(help="pictures of the board, or folders of them; needed without --live")
-    ] = None,
+    images: Annotated[list[Path] | None, typer.Argument(help="pictures of the board, or folders of them")] = None,
     live: Annotated[
         bool,
         typer.Option("--live", help="take the pictures from the running camera, in place of files"),
@@ -105,12 +92,7 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     ] = None,
     live: Annotated[
         str | None,
-        typer.Option(
-            help=(
-                "take the pictures from two running cameras, in place of files: the sensor that sees the "
-                "markers, then the one that sees the people, such as kinect0,kinect1"
-            )
-        ),
+        typer.Option(help="take pictures live from two sensors, the markers' first, such as kinect1,kinect0"),
     ] = None,
     board: Squares = "7x5",
     square_mm: SquareMm = 35.0,

@@ -15,7 +15,9 @@ MOST_IDS = 1000  # as many as the largest family has
 
 def markers(
     output: Annotated[Path, typer.Option("-o", "--output", help="the PDF file to write")],
-    family: Annotated[str, typer.Option(help="the marker family that was printed, by OpenCV's name")] = "DICT_4X4_50",
+    family: Annotated[
+        str, typer.Option(help="OpenCV's name of the marker family to print; ignored with --board")
+    ] = "DICT_4X4_50",
     ids: Annotated[
         str, typer.Option(help="ids of the markers to print, such as 1,2,3 or 0-9; ignored with --board")
     ] = "0-3",

@@ -34,9 +34,7 @@ AgentOption = Annotated[
         help=("track number of the person who acts (agent in the messages); default: the person nearest to the camera"),
     ),
 ]
-HandOption = Annotated[
-    str | None, typer.Option(help="the hand that acts, left or right; default: determined from the movement")
-]
+HandOption = Annotated[str | None, typer.Option(help="the hand that acts, left or right; default: not specified")]
 LabelOption = Annotated[
     str | None,
     typer.Option(help=("label of the action, such as wave, stored by 'actum record' for training; default: no label")),
