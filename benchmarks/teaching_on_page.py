@@ -16,6 +16,7 @@ from tempfile import TemporaryDirectory
 from playwright.sync_api import Page, sync_playwright
 from playwright.sync_api import TimeoutError as TookTooLong
 
+from actum.messages import Info
 from actum.runtime import Client
 from actum.settings import ServiceSettings
 from actum_command import processes
@@ -99,9 +100,11 @@ def live() -> Iterator[tuple[Client, str]]:
             system = processes.system(settings, "simulator", None, ModelInUse(taught_model(given)), given)
             for program in processes.with_page(settings, system):
                 supervisor.start(program)
-            while not (pages := [info.page for info in client.infos() if info.page]):
+            infos: dict[str, Info] = {}
+            while not {"web_dashboard", "model_trainer"} <= infos.keys():
                 time.sleep(0.1)
-            yield client, pages[0]
+                infos = {info.service: info for info in client.infos()}
+            yield client, infos["web_dashboard"].page or ""
 
 
 @contextmanager
