@@ -170,7 +170,10 @@ def test_a_job_that_the_service_did_not_outlive_counts_as_cancelled(teacher: Tea
     begun = teacher.ask("train", set="kitchen")
     teacher.begin()
     found = teacher.ask("job", job=begun["id"])
-    assert (found["state"], found["message"]) == ("cancelled", "the service ended while it ran: start it again")
+    assert (found["state"], found["message"]) == (
+        "cancelled",
+        "the service ended while this job ran: start the job again",
+    )
     assert teacher.tick().job.state == "cancelled"
 
 

@@ -176,7 +176,7 @@ def test_one_thing_is_recorded_at_a_time(teacher: Teacher) -> None:
         teacher.ask("delete_set", set="kitchen")
     teacher.ask("discard")
     for command in ("stop", "discard"):
-        with pytest.raises(Refusal, match="nothing is being recorded: begin with 'record'"):
+        with pytest.raises(Refusal, match="no take is being recorded: start one first"):
             teacher.ask(command)
     teacher.ask("delete_set", set="kitchen")
 

@@ -72,7 +72,7 @@ def test_a_camera_file_that_is_not_there_is_named_and_that_it_came(running: Syst
     gateway = running.start("sensor_gateway", *marker_camera(tmp_path, missing))
     lost = f"camera lost: it cannot be opened (file {missing} (marker camera))"
     wait_for_line(gateway, lost)
-    assert f"marker_camera: {lost}; the service retries by itself" in diagnosed(running)
+    assert f"marker_camera: {lost}; it retries by itself" in diagnosed(running)
     write_video(tmp_path / "arriving.avi").rename(missing)
     wait_for_line(gateway, "running again")
     wait_for_line(gateway, lost)

@@ -65,7 +65,7 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
 ) -> None:
     """Write a folder for each host and one for people's programs; a later run renews them."""
     if not_secured and passwords:
-        fail("--open disables passwords: leave out --open or --passwords")
+        fail("--open and --passwords exclude each other: leave out one of them")
     try:
         placed = hosts_of(hosts, sensors)
     except (SettingsError, InvalidKeyError) as error:

@@ -104,7 +104,7 @@ def export(
 ) -> None:
     """Write a recording in a format that other programs open; --foxglove is the only one."""
     if not for_foxglove:
-        fail("no format is chosen: add --foxglove")
+        fail("no output format is given: add --foxglove")
     refuse_without("foxglove", "foxglove-sdk", "foxglove")
     refuse_output(output)
     from actum_command.viewers.foxglove_sinks import written

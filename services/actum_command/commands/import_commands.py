@@ -58,7 +58,7 @@ def msrc12(
 ) -> None:
     """Import MSRC-12: one recording per stream, with a labelled segment of up to 3 s about each action point."""
     if trimmed and composed:
-        fail("--composed already trims its segments: leave out --trimmed")
+        fail("--composed and --trimmed exclude each other, because --composed trims by itself: leave out --trimmed")
     importer = import_msrc12_composed if composed else import_msrc12_trimmed if trimmed else import_msrc12
     _run(importer, source, out)
 
