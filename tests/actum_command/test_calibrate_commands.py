@@ -80,7 +80,7 @@ def test_a_picture_that_would_be_overwritten_is_named_before_anything_is_looked_
     photograph_file.write_bytes(b"a photograph")
     said = run("calibrate", "intrinsics", folder, photograph_file, "-o", tmp_path / "x" / ".." / "cam.yaml", code=1)
     assert "cam-coverage.png is one of the pictures and would be overwritten" in said
-    assert "is no image" not in said
+    assert "is not an image" not in said
     assert [file.read_bytes() for file in tmp_path.iterdir()] == [b"a photograph"]
 
 
@@ -112,7 +112,7 @@ def test_too_few_pictures_are_refused(folder: Path, tmp_path: Path) -> None:
 def test_broken_and_foreign_pictures_are_named(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "broken.png").write_bytes(b"no picture")
     said = run("calibrate", "intrinsics", tmp_path / "broken.png", folder, "-o", tmp_path / "c.yaml")
-    assert "broken.png: is no image" in said
+    assert "broken.png: the file is not an image" in said
 
 
 @pytest.mark.parametrize(

@@ -208,7 +208,7 @@ def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
 
 def test_a_picture_of_another_kind_is_refused(path: Path, tmp_path: Path) -> None:
     assert "does not end in .png or .svg" in refused("picture", path, "-o", tmp_path / "a.gif")
-    assert "no such file" in refused("picture", path, "-o", tmp_path / "a.png", "--model", tmp_path / "m.npz").lower()
+    assert "does not exist" in refused("picture", path, "-o", tmp_path / "a.png", "--model", tmp_path / "m.npz").lower()
 
 
 def test_segments_of_several_sensors_are_listed_and_changed_one_by_one(path: Path, waves: Stream) -> None:

@@ -178,6 +178,8 @@ def test_what_is_told_in_part() -> None:
     answered = [answer(GATEWAY, 0.0, 0.001)]
     assert list(partly_denied(Heard({GATEWAY: ["a"]}, answered, {GATEWAY: known}, {}))) == []
     [line] = partly_denied(Heard({}, answered, {GATEWAY: known}, {}))
-    assert line.startswith("services run, but none of them shows its token")
+    assert line.startswith(
+        "services run, but the router's access control denies this program permission to read their liveliness"
+    )
     [line] = partly_denied(Heard({GATEWAY: ["a"]}, answered, {}, {}))
     assert line.startswith("services run, but no status arrives")

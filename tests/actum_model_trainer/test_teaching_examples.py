@@ -141,7 +141,7 @@ def test_a_name_that_is_refused_is_refused_in_a_sentence_without_the_command_or_
             teacher.ask("create_set", set=name)
     with pytest.raises(Refusal, match="^the name is empty: enter one$"):
         teacher.ask("create_set", set="")
-    with pytest.raises(Refusal, match="^a name has at most 64 characters, and this one has 65: shorten it$"):
+    with pytest.raises(Refusal, match="^the name has 65 characters: use at most 64$"):
         teacher.ask("create_set", set="x" * 65)
 
 

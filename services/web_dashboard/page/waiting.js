@@ -37,16 +37,16 @@ function unreached() {
   const { connected, silent, refused, router, connect } = link.state;
   if (refused === 401) return trouble("The page needs its token: add ?token=… with ACTUM_PAGE_TOKEN to its address");
   if (!connected && performance.now() - began < 1000) return trouble("Connecting …");
-  if (!connected) return trouble("web_dashboard, which serves this page, does not answer. Start it; the page tries again by itself …");
+  if (!connected) return trouble("Waiting for web_dashboard, which serves this page: start it. Trying again …");
   if (silent) return trouble("No data has arrived for a while. Check the network; the page goes on waiting …");
-  if (!router) return trouble(`There is no router at ${connect}: start one with 'actum router' or 'actum up'`);
+  if (!router) return trouble(`Waiting for the router at ${connect}: start one with 'actum router' or 'actum up'`);
   return null;
 }
 
 function withoutSensor() {
   if (!isSensorStill()) return null;
   const { state } = (isThere("sensor_gateway") && statusOf("sensor_gateway")) || {};
-  if (!state) return trouble("No sensor is running: start sensor_gateway or scene_simulator", "sensorless");
+  if (!state) return trouble("Waiting for a sensor: start sensor_gateway or scene_simulator", "sensorless");
   if (state === "source ended") return trouble("The video or recording has ended. Teaching from videos and training still work", "sensorless");
   if (state.startsWith("camera lost")) return trouble(`The sensor publishes nothing: ${state}`, "sensorless");
   return trouble("Waiting for a skeleton from the sensor …", "sensorless");
@@ -54,7 +54,7 @@ function withoutSensor() {
 
 function withoutService() {
   const missing = NEEDED.filter((service) => !isThere(service));
-  if (missing.length) return { kind: "idle", text: `Not running: ${missing.join(", ")}` };
+  if (missing.length) return { kind: "idle", text: `Waiting for ${missing.join(", ")}` };
   const { state } = statusOf("som_classifier") ?? {};
   if (state?.startsWith("no model")) return { kind: "idle", text: "The classifier has no model, so nothing is recognised: train one" };
   return null;

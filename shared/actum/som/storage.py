@@ -41,7 +41,7 @@ class SomError(ValueError):
     ...     Som.load("nowhere.npz")
     ... except SomError as error:
     ...     print(error)
-    nowhere.npz: there is no such file
+    nowhere.npz: the file does not exist
     """
 
     def __init__(self, path: Path, problem: str) -> None:
