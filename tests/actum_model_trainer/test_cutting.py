@@ -145,25 +145,21 @@ def test_two_that_follow_each_other_almost_at_once_are_two() -> None:
         (
             [50],
             6,
-            [
-                "5 of 6 repetitions found: record 1 more; the second and third repetition may be one example, joined at 3.3 s"
-            ],
+            ["5 of 6 repetitions found: record 1 more; the second and third repetition may be joined at 3.3 s"],
         ),
-        ([50], None, ["the second and third repetition may be one example, joined at 3.3 s"]),
+        ([50], None, ["the second and third repetition may be joined at 3.3 s"]),
         ([], 6, ["5 of 6 repetitions found: record 1 more"]),
         (
             [50, 100],
             6,
-            [
-                "5 of 6 repetitions found: record 1 more; the second and third repetition may be one example, joined at 3.3 s"
-            ],
+            ["5 of 6 repetitions found: record 1 more; the second and third repetition may be joined at 3.3 s"],
         ),
         (
             [50, 100],
             None,
             [
-                "the second and third repetition may be one example, joined at 3.3 s",
-                "the fourth and fifth repetition may be one example, joined at 6.7 s",
+                "the second and third repetition may be joined at 3.3 s",
+                "the fourth and fifth repetition may be joined at 6.7 s",
             ],
         ),
         ([10], 5, []),

@@ -41,7 +41,7 @@ def doubts_of(course: Course, activity: Array, chain: Chain, asked: int | None, 
     offset_s, found = (course.start_ns - first_ns) / SECOND_NS, len(chain.bursts)
     seams = [
         Doubt(
-            f"the {_ordinal(number)} and {_ordinal(number + 1)} repetition may be one example, joined "
+            f"the {_ordinal(number)} and {_ordinal(number + 1)} repetition may be joined "
             f"at {offset_s + at / RATE_HZ:.1f} s",
             burst,
         )
