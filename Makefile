@@ -107,7 +107,7 @@ bench-camera-continuous: $(STAMP)  ## real people in joined clips, found live wi
 bench-camera-latency: $(STAMP)  ## from a picture's capture to the event, beside the pose model's own time
 	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera-latency needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
 	@test -d "$$ACTUM_DATA" || { echo "bench-camera-latency needs ACTUM_DATA: the folder that holds florence3d_rgb/" >&2; exit 1; }
-	$(BIN)/python benchmarks/camera_latency.py
+	$(BIN)/python -m benchmarks.camera_latency
 
 bench-continuous: $(STAMP)  ## finding actions that nobody marked, beside peers given the same frames
 	@test -d "$$ACTUM_DATA" || { echo "bench-continuous needs ACTUM_DATA: the folder that holds utkinect/ and msrc12/" >&2; exit 1; }
@@ -116,7 +116,7 @@ bench-continuous: $(STAMP)  ## finding actions that nobody marked, beside peers 
 
 bench-maps: $(STAMP)  ## the map library beside MiniSom
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
-	$(BIN)/python benchmarks/som.py
+	$(BIN)/python -m benchmarks.som
 
 bench-recognition: $(STAMP)  ## the recogniser beside its peers on public recordings, about three quarters of an hour
 	@test -d "$$ACTUM_DATA" || { echo "bench-recognition needs ACTUM_DATA: the folder that holds msr_action3d/, utkinect/ and msrc12/" >&2; exit 1; }
@@ -131,7 +131,7 @@ bench-paper: $(STAMP)  ## preset paper by the paper's own protocols, step by ste
 	$(BIN)/python -m benchmarks.paper
 
 bench-page: $(STAMP)  ## what the page costs with several browsers, some minutes; needs Chromium
-	$(BIN)/python benchmarks/page_cost.py
+	$(BIN)/python -m benchmarks.page_cost
 
 bench-tracker: $(STAMP)  ## what the marker tracker costs for an image and how exact it is, beside OpenCV, about ten minutes
 	$(BIN)/python -m benchmarks.tracker

@@ -76,7 +76,8 @@ def helps() -> set[str]:
     found = set(_of_command(typer.main.get_command(app), "actum"))
     for service, settings in SETTINGS.items():
         for name, field in settings.model_fields.items():
-            found.add(f"python -m {service} --{name.replace('_', '-')} {placeholder(field)}: {explained(field)}")
+            flag = f"--{name.replace('_', '-')} {placeholder(field)}".rstrip()
+            found.add(f"python -m {service} {flag}: {explained(field)}")
     return found
 
 

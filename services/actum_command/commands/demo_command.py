@@ -38,17 +38,28 @@ TERMINATED = 128 + signal.SIGTERM  # the exit code that a shell reports for a pr
 
 def demo(
     people: Annotated[
-        int, typer.Option(min=0, help="how many other people do the test; 0: one of the training")
+        int,
+        typer.Option(
+            min=0,
+            help=(
+                "number of simulated people to test on, none of whom the model was trained on; 0 tests on"
+                " one person of the training"
+            ),
+        ),
     ] = SHOWN,
-    repetitions: Annotated[int, typer.Option(min=1, help="test samples of each action and person")] = 1,
+    repetitions: Annotated[int, typer.Option(min=1, help="number of times that each person does each action")] = 1,
     marked: Annotated[
-        bool, typer.Option("--marked", help="as in the paper: one person teaches, all actions are marked")
+        bool,
+        typer.Option(
+            "--marked",
+            help=("repeat the paper's experiment: train on one person, and mark the start and end of every action"),
+        ),
     ] = False,
 ) -> None:
-    """Recognise simulated people whom the model has never seen, live, beside the paper's own results.
+    """Test recognition on simulated people whom the model has never seen, and print the results beside the paper's.
 
-    They act in continuous scenes, do everyday things in between, and nobody marks where an action starts or ends. Each
-    person takes 45 s; --people 9 is the whole experiment.
+    It needs no camera and no other running program. The people also do other things, and nobody marks where an action
+    starts or ends. Each person takes 45 s; --people 9 is the whole experiment.
     """
     here = settings()
     try:

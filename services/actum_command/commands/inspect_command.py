@@ -27,19 +27,29 @@ def inspect(
     output: Annotated[
         Path,
         typer.Option(
-            "-o", "--output", help="the folder for pictures and index.html; files of an earlier run in it are removed"
+            "-o", "--output", help="the folder for the pictures and index.html; pictures of an earlier run are removed"
         ),
     ],
     files: Annotated[
-        list[Path] | None, typer.Argument(metavar="[REC]...", help="recordings to try the model on, or folders of them")
+        list[Path] | None,
+        typer.Argument(
+            metavar="[REC]...",
+            help=(
+                "recordings, or folders of them, whose actions the model is to explain; default: only the"
+                " model is drawn"
+            ),
+        ),
     ] = None,
     person: PersonOption = None,
     picture_format: Annotated[
-        str, typer.Option("--format", help=f"format of the pictures: {', '.join(FORMATS)}")
+        str, typer.Option("--format", help=f"file format of the pictures: {' or '.join(FORMATS)}")
     ] = "png",
     with_excluded: AllOption = False,
 ) -> None:
-    """Draw what a model has learnt and, for recordings, how and why it recognises their actions."""
+    """Draw what a model has learnt and, for given recordings, why it recognises each action as it does.
+
+    It writes pictures and a page, index.html, that shows them.
+    """
     began_s = time.monotonic()
     if picture_format not in FORMATS:
         fail(f"--format {picture_format!r} is not known: use one of {', '.join(FORMATS)}")

@@ -15,9 +15,23 @@ from actum.rewriting import Change, rewrite
 from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
 from actum_model_trainer.samples import select
 
-PersonOption = Annotated[str | None, typer.Option(help="use recordings of these people only, such as 1,3,5")]
+PersonOption = Annotated[
+    str | None,
+    typer.Option(
+        help=(
+            "use only recordings of these people, named as in 'actum record --person', such as 1,3,5;"
+            " default: everybody"
+        )
+    ),
+]
 RecordingFile = Annotated[Path, typer.Argument(metavar="REC", help="the recording file", exists=True, dir_okay=False)]
-AllOption = Annotated[bool, typer.Option("--all", help="use recordings marked as excluded as well")]
+AllOption = Annotated[
+    bool,
+    typer.Option(
+        "--all",
+        help=("also use recordings marked as excluded, such as those in which 'actum record --times' miscounted"),
+    ),
+]
 
 LONGEST_LABEL = 200  # characters allowed in the field of a mark
 
