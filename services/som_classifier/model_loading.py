@@ -36,7 +36,7 @@ def load_model(path: Path) -> Model:
             metadata, arrays = _parts(path, stored)
         kind = json.loads(metadata).get("kind")
         if kind not in KINDS:
-            raise ModelError(path, f"its kind of model, {kind!r}, is not known to this version of actum")
+            raise ModelError(path, f"it is of kind {kind!r}, which this version of actum does not know")
         return KINDS[kind].restored(metadata, arrays)
     except ModelError:
         raise

@@ -187,7 +187,7 @@ def test_times_in_doubts_count_from_the_given_stamp() -> None:
     skeletons = stream.skeletons(first_ns=10**18)
     cuts = cut(seen(skeletons), 4, 10**18)
     assert cuts is not None
-    assert any("the fourth (" in doubt and "unlike" in doubt for doubt in cuts.doubts)
+    assert any("the fourth repetition (" in doubt and "unlike" in doubt for doubt in cuts.doubts)
     assert all(float(word) < 60 for doubt in cuts.doubts for word in doubt.replace("(", "").split() if "." in word)
 
 

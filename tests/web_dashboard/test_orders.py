@@ -47,7 +47,7 @@ def test_a_mark_that_nobody_listens_for_is_refused(page: Served) -> None:
     with page.browser() as browser:
         refused = answered(browser, {"id": 1, "mark": {"kind": "start", "segment_id": "a"}})
     page.colleague.listened = True
-    assert "is the classifier running?" in refused["error"]
+    assert "no service receives marks" in refused["error"]
 
 
 def test_a_browser_that_goes_ends_the_segments_that_it_has_left_open_and_no_others() -> None:
@@ -112,7 +112,10 @@ def test_a_command_that_is_wrong_is_refused_with_words(page: Served, ask: dict[s
 def test_without_a_router_it_says_so(page: Served) -> None:
     page.colleague.router = False
     with page.browser() as browser:
-        assert "no router" in answered(browser, {"id": 1, "ask": {"service": "a", "command": "b"}})["error"]
+        assert (
+            "not connected to a router"
+            in answered(browser, {"id": 1, "ask": {"service": "a", "command": "b"}})["error"]
+        )
     page.colleague.router = True
 
 
