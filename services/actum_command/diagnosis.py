@@ -184,7 +184,7 @@ def _remarks(name: str, status: Status) -> Iterator[str]:
         )
     if ignored := status.counts.get(MARKS_IGNORED):
         yield (
-            f"{name} rejected {ignored} marks, because its setting segments is auto: use --segments both to accept "
+            f"{name} rejected {ignored} marks, because it runs with --segments auto: use --segments both to accept "
             "marks as well"
         )
     if status.state.startswith(AND):

@@ -27,6 +27,7 @@ class Settings(ServiceSettings):
     original_model: Path | None = Field(
         None,
         description=(
-            "a model file that is copied to --model whenever it changes and never written itself; default: none"
+            "a model file to start from: whenever it changes, it is copied over --model. The trainer never "
+            "writes to it. Default: none"
         ),
     )

@@ -57,7 +57,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
             min=1,
             help=(
                 "number of times that the person does --label; the recording stops after the last, and "
-                "each repetition is found and labelled without a switch"
+                "each repetition is found and labelled automatically"
             ),
         ),
     ] = None,
@@ -94,7 +94,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
 ) -> None:
     """Record a sensor's streams and marks to a file, for training or to play them again.
 
-    With --label and --times, the recording is labelled without a switch, such as actum record wave.mcap --label wave
+    With --label and --times, the recording is labelled automatically, such as actum record wave.mcap --label wave
     --times 5.
 
     No file is ever overwritten. If recording was interrupted, run the command with the same OUTPUT and --finish.

@@ -71,7 +71,7 @@ def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
 @app.command()
 @with_router_flags
 def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOption = None) -> None:
-    """Mark actions with the keyboard: Enter starts an action, Enter ends it and prints the answer, Ctrl-D quits."""
+    """Mark actions with the keyboard: Enter starts one, Enter again ends it and prints the answer, Ctrl-D quits."""
     with connect() as client:
         answers, number = Answers(client), 0
         while _waits_for_enter(f"press Enter to start action {number + 1}, Ctrl-D to quit "):

@@ -39,10 +39,10 @@ PresetOption = Annotated[
     ),
 ]
 SET_HELP = (
-    f"change a setting of --preset {PAPER.name}; may be repeated. axes: body axes of each frame (posture) or vertical "
-    "and smoothed (upright, default). origin: the point that positions are relative to, torso (default) or hips. "
-    f"attention: the body part that is looked at, one of {', '.join(ATTENTIONS)}; moving (default) is the part that "
-    "moves most"
+    f"change a setting of --preset {PAPER.name}; may be repeated. axes: posture (axes of the body, computed "
+    "anew in each frame) or upright (vertical and smoothed over time; default). origin: torso (default) or hips; "
+    f"positions are relative to it. attention: the body part that is looked at, one of {', '.join(ATTENTIONS)}; moving "
+    "(default) is the part that moves most"
 )
 SetOption = Annotated[
     list[str] | None,
