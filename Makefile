@@ -112,7 +112,7 @@ bench-camera-continuous: test-benchmarks  ## real people in joined clips, found 
 bench-camera-latency: test-benchmarks  ## from a picture's capture to the event, beside the pose model's own time
 	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera-latency needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
 	@test -d "$$ACTUM_DATA" || { echo "bench-camera-latency needs ACTUM_DATA: the folder that holds florence3d_rgb/" >&2; exit 1; }
-	$(BIN)/python benchmarks/camera_latency.py
+	$(BIN)/python -m benchmarks.camera_latency
 
 bench-continuous: test-benchmarks  ## finding actions that nobody marked, beside peers given the same frames
 	@test -d "$$ACTUM_DATA" || { echo "bench-continuous needs ACTUM_DATA: the folder that holds utkinect/ and msrc12/" >&2; exit 1; }
@@ -121,7 +121,7 @@ bench-continuous: test-benchmarks  ## finding actions that nobody marked, beside
 
 bench-maps: test-benchmarks  ## the map library beside MiniSom
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
-	$(BIN)/python benchmarks/som.py
+	$(BIN)/python -m benchmarks.som
 
 bench-recognition: test-benchmarks  ## the recogniser beside its peers on public recordings, about three quarters of an hour
 	@test -d "$$ACTUM_DATA" || { echo "bench-recognition needs ACTUM_DATA: the folder that holds msr_action3d/, utkinect/ and msrc12/" >&2; exit 1; }
@@ -136,7 +136,7 @@ bench-paper: test-benchmarks  ## preset paper by the paper's own protocols, step
 	$(BIN)/python -m benchmarks.paper
 
 bench-page: test-benchmarks  ## what the page costs with several browsers, some minutes; needs Chromium
-	$(BIN)/python benchmarks/page_cost.py
+	$(BIN)/python -m benchmarks.page_cost
 
 bench-tracker: test-benchmarks  ## what the marker tracker costs for an image and how exact it is, beside OpenCV, about ten minutes
 	$(BIN)/python -m benchmarks.tracker

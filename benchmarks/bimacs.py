@@ -1,6 +1,6 @@
 """Which object the hands of the OptiTrack takes act on: the plain proximity measure and the joint one, as Markdown.
 
-python benchmarks/bimacs.py DIR [--varied], the folder of the takes (see actum_dataset_importer.bimacs). Fusion gets the
+python -m benchmarks.bimacs DIR [--varied], the folder of the takes (see actum_dataset_importer.bimacs). Fusion gets the
 hands, objects and the bounds of each segment; what is done in it, and to what, is compared afterwards. The takes have
 no bodies, in which a classifier could find segments by itself: instead, the marked bounds are moved by as much as those
 found in the simulated scene are off. With --varied fusion gets hands and objects also as another person, other things
@@ -17,8 +17,8 @@ from operator import attrgetter
 from pathlib import Path
 
 import numpy as np
-from bimacs_tracks import read, written
-from bimacs_variations import VARIATIONS, Change, bounds_as_found
+from benchmarks.bimacs_tracks import read, written
+from benchmarks.bimacs_variations import VARIATIONS, Change, bounds_as_found
 
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
@@ -78,14 +78,15 @@ def trials(folder: Path) -> Iterator[Trial]:
 
 
 def _trials(heard: Sequence[Message], measures: Mapping[str, Settings] = MEASURES) -> Iterator[Trial]:
-    starts = {m.segment_id: m for m in heard if isinstance(m, Segment) and m.kind == "start"}
-    ends = {m.segment_id: m for m in heard if isinstance(m, Segment) and m.kind == "end"}
+    marks = [m for m in heard if isinstance(m, Segment)]
+    starts = {m.segment_id: m for m in marks if m.kind == "start"}
+    ends = {m.segment_id: m for m in marks if m.kind == "end"}
     truths = {m.segment_id: m for m in heard if isinstance(m, Truth)}
     events = {name: _events(heard, starts, ends, settings) for name, settings in measures.items()}
     tools = _tools(starts, truths)
     for number, start in starts.items():
         target = truths[number].object_id if number in truths else None
-        seconds = (ends[number].stamp_ns - start.stamp_ns) / 1e9
+        seconds = (stamp_of(ends[number]) - stamp_of(start)) / 1e9
         found = {name: of_segment[number] for name, of_segment in events.items()}
         yield Trial(str(start.label), seconds, target, tools.get(number), found)
 
@@ -101,14 +102,20 @@ def _events(
     return {event.segment_id: event for event in answered if isinstance(event, Event)}
 
 
+def stamp_of(mark: Segment) -> int:
+    """Return the stamp that the importer gave a mark."""
+    assert mark.stamp_ns is not None
+    return mark.stamp_ns
+
+
 def _nameless(start: Segment, end: Segment) -> Action:
     return Action(
-        stamp_ns=end.stamp_ns,
+        stamp_ns=stamp_of(end),
         sensor=start.sensor,
         agent=start.agent or 0,
         segment_id=start.segment_id,
-        start_ns=start.stamp_ns,
-        end_ns=end.stamp_ns,
+        start_ns=stamp_of(start),
+        end_ns=stamp_of(end),
         final=True,
         action=NAMELESS,
         confidence=1.0,

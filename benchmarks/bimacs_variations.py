@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from bimacs_tracks import Array, Tracks
+from benchmarks.bimacs_tracks import Array, Tracks
 from numpy.typing import NDArray
 
 from actum.messages import Hand

@@ -12,10 +12,12 @@ from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Literal
 
 import cv2
 import zenoh
-from latency import percentiles, trained
+from benchmarks.latency.__main__ import trained
+from benchmarks.latency.stopwatch import percentiles
 from rich.console import Console
 from rich.table import Table
 
@@ -139,7 +141,8 @@ def mark(client: Client, watch: Stopwatch, first_ns: int) -> None:
         segment_id, last_ns = f"s{first}", stamp_of(first_ns, first + SEGMENT_FRAMES)
         watch.last_pictures_ns[segment_id] = last_ns
         time.sleep(max(stamp_of(first_ns, first) - time.time_ns(), 0) / SECOND_NS)
-        for kind, stamp_ns in (("start", stamp_of(first_ns, first)), ("end", last_ns)):
+        bounds: dict[Literal["start", "end"], int] = {"start": stamp_of(first_ns, first), "end": last_ns}
+        for kind, stamp_ns in bounds.items():
             client.put(
                 Segment(
                     stamp_ns=stamp_ns - HALF_FRAME_NS, sensor=client.sensor, kind=kind, segment_id=segment_id, agent=1

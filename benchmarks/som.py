@@ -18,7 +18,7 @@ from statistics import median
 from typing import Any
 
 import numpy as np
-from minisom import MiniSom  # type: ignore[import-untyped]
+from minisom import MiniSom
 from numpy.typing import NDArray
 
 from actum.som import BatchTraining, SequentialTraining, Som, Steps, adapt_in_numpy

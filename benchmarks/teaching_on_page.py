@@ -16,9 +16,11 @@ from tempfile import TemporaryDirectory
 from playwright.sync_api import Page, sync_playwright
 from playwright.sync_api import TimeoutError as TookTooLong
 
+from actum.messages import Info
 from actum.runtime import Client
 from actum.settings import ServiceSettings
 from actum_command import processes
+from actum_command.model_in_use import ModelInUse, taught_model
 from actum_command.service_settings import Given
 from actum_command.supervising import Supervisor
 from scene_simulator.programme import ACTIONS
@@ -46,8 +48,8 @@ def main() -> None:
                 page.set_default_timeout(PATIENCE_MS)
                 page.goto(f"{address}#teach")
                 began_s = time.monotonic()
-                press(page, "Make set")
-                page.get_by_text("made", exact=True).locator("visible=true").wait_for()
+                press(page, "Create set")
+                page.get_by_text("created.").locator("visible=true").wait_for()
                 chosen = [ACTIONS[(EACH * (run - 1) + number) % len(ACTIONS)] for number in range(EACH)]
                 taken = [taught(page, client, action) for action in chosen]
                 right += all(taken)
@@ -95,11 +97,14 @@ def live() -> Iterator[tuple[Client, str]]:
         given: Given = {"driven": True, "segments": ["auto"], "trainer_data": [folder]}
         supervisor.start(processes.router(settings))
         with Client(settings, wait_s=60.0) as client:
-            for program in processes.with_page(settings, processes.system(settings, "simulator", None, None, given)):
+            system = processes.system(settings, "simulator", None, ModelInUse(taught_model(given)), given)
+            for program in processes.with_page(settings, system):
                 supervisor.start(program)
-            while not (pages := [info.page for info in client.infos() if info.page]):
+            infos: dict[str, Info] = {}
+            while not {"web_dashboard", "model_trainer"} <= infos.keys():
                 time.sleep(0.1)
-            yield client, pages[0]
+                infos = {info.service: info for info in client.infos()}
+            yield client, infos["web_dashboard"].page or ""
 
 
 @contextmanager

@@ -83,7 +83,7 @@ class Watched:
             if a.valid and a.action is not None and a.end_ns is not None
         ]
         truths = [
-            Truth(video, ANYBODY, *(self.first_ns + stamp_ns(frame) for frame in (part.first, part.last)), part.label)
+            Truth(video, ANYBODY, self.first_ns + stamp_ns(part.first), self.first_ns + stamp_ns(part.last), part.label)
             for part in (joined.actions if joined else ())
         ]
         seen = Stretch(video, ANYBODY, self.first_ns, self.skeletons[-1][0].stamp_ns)

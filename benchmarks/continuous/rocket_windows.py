@@ -145,7 +145,8 @@ def decoded(stream: Stream, own: Scored, classes: Sequence[str], thresholds: tup
     for step, end in enumerate(own.ends.tolist()):
         if best and stream.stamps_ns[end] - stream.stamps_ns[best[2]] >= hold_s * SECOND_NS:
             detections.append(decide(best, end))
-            best, free_from = None, best[2]
+            free_from = best[2]
+            best = None
         starts = own.starts[step]
         allowed = starts + OVERLAP * (end - starts) >= free_from
         margins = np.where(allowed, own.margins[step], -np.inf)

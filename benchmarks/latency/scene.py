@@ -96,7 +96,7 @@ def bare(client: Client, watch: Stopwatch, sizes: Mapping[str, int]) -> Iterator
     for message in stream():
         if not isinstance(message, Segment):
             yield message.stamp_ns + BARE_AFTER_NS, due("bench/frame/0", message.stamp_ns)
-        elif message.kind == "end":
+        elif message.kind == "end" and message.stamp_ns is not None:
             yield message.stamp_ns + MARK_AFTER_NS + BARE_AFTER_NS, due("bench/mark/0", message.segment_id)
 
 

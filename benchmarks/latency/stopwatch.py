@@ -44,6 +44,7 @@ class Stopwatch:
         key = str(sample.key_expr)
         with self._lock:
             if key.startswith("bench/"):
+                assert sample.attachment is not None
                 number = msgpack.unpackb(sample.attachment.to_bytes())
                 self._since(key, "/".join(key.split("/")[:2]), number, now_ns)
             else:
@@ -61,9 +62,8 @@ class Stopwatch:
                 self._since(f"frame {name}", "frame", message.stamp_ns, now_ns)
 
     def _event(self, event: Event, now_ns: int) -> None:
-        reached_ns = min(
-            put for (what, stamp), put in self._put_ns.items() if what == "objects" and stamp >= event.end_ns
-        )
+        put_ns = ((stamp, put) for (what, stamp), put in self._put_ns.items() if what == "objects")
+        reached_ns = min(put for stamp, put in put_ns if isinstance(stamp, int) and stamp >= event.end_ns)
         wait_ms = max(reached_ns - self._final_ns.get(event.segment_id, reached_ns), 0) / 1e6
         self.took_ms["wait"].append(wait_ms)
         total_ms = (now_ns - self._put_ns["mark", event.segment_id]) / 1e6

@@ -1,6 +1,6 @@
 """Three things that are not as the paper prints them: its axes, its neighbourhood, its activity."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -44,7 +44,7 @@ def turns_deg(joints_m: Floats) -> Floats:
     return degrees
 
 
-def _arm(postures: Sequence[Floats]) -> Floats:
+def _arm(postures: Floats) -> Floats:
     arm = PART_NAMES.index("right_arm")
     return np.stack([ARM.rows(posture, posture)[arm] for posture in postures])
 

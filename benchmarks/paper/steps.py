@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 from benchmarks.recognition.scores import table
 
@@ -16,7 +17,7 @@ NO_CONTRAST = 1e9
 WINNER_ALONE = 1e-9
 
 
-def _layer1(**changes: object) -> PaperPreset:
+def _layer1(**changes: Any) -> PaperPreset:
     return replace(PAPER, layer1=replace(PAPER.layer1, **changes))
 
 

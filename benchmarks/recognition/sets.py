@@ -73,7 +73,7 @@ def _measured(bench: Bench, development: DevelopmentSet) -> Errors:
 
 
 def _cell(own: Errors, row: int) -> str:
-    wrong, asked, sequences = own.wrong[row].sum(), own.asked.sum(), np.count_nonzero(own.asked)
+    wrong, asked, sequences = own.wrong[row].sum(), own.asked.sum(), int(np.count_nonzero(own.asked))
     low, high = wilson_interval(round(sequences * wrong / asked), sequences)
     return f"{wrong:.0f} of {asked:.0f} ({percent(wrong / asked)}; {percent(low)}–{percent(high)})"
 
@@ -83,8 +83,8 @@ def _ratio_rows(measured: Sequence[Errors], names: Sequence[str]) -> Iterator[li
     seen = [own.log_ratio(np.ones(len(own.asked))) for own in measured]
     resampled = [own.log_ratio(_times(len(own.asked), rng)) for own in measured]
     for own, at, drawn in zip(measured, seen, resampled, strict=True):
-        yield [own.of.name, names[own.best_peer], *_ratio_cells(at, drawn)]
-    yield ["geometric mean", "", *_ratio_cells(np.mean(seen), np.mean(resampled, axis=0))]
+        yield [own.of.name, names[own.best_peer], *_ratio_cells(float(at), drawn)]
+    yield ["geometric mean", "", *_ratio_cells(float(np.mean(seen)), np.mean(resampled, axis=0))]
 
 
 def _times(sequences: int, rng: np.random.Generator) -> Floats:
@@ -92,6 +92,6 @@ def _times(sequences: int, rng: np.random.Generator) -> Floats:
     return rng.multinomial(sequences, np.full(sequences, 1 / sequences), size=RESAMPLES)
 
 
-def _ratio_cells(log_ratio: Floats, resampled: Floats) -> list[str]:
+def _ratio_cells(log_ratio: float, resampled: Floats) -> list[str]:
     low, high = np.exp(np.quantile(resampled, (0.025, 0.975)))
     return [f"{np.exp(log_ratio):.2f}", f"{low:.2f}–{high:.2f}"]

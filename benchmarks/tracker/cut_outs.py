@@ -1,6 +1,7 @@
 """Large markers that were cut out of their paper with hardly any white, on something dark."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import cv2
 import numpy as np
@@ -47,7 +48,7 @@ def _side_px(corners_px: np.ndarray) -> float:
 def _drawn(number: int, edge_px: int, angle_deg: float) -> Pixels:
     printed = cv2.aruco.generateImageMarker(family_of(FAMILY).dictionary, number, SIDE_PX)
     paper = np.pad(np.where(printed > 0, PAPER, DARK).astype(np.uint8), edge_px, constant_values=PAPER)
-    turned = cv2.getRotationMatrix2D((len(paper) / 2, len(paper) / 2), angle_deg, 1.0)
-    turned[:, 2] += (WIDTH / 2 - len(paper) / 2, HEIGHT / 2 - len(paper) / 2)
-    drawn: Pixels = cv2.warpAffine(paper, turned, (WIDTH, HEIGHT), borderMode=cv2.BORDER_CONSTANT, borderValue=DARK)
-    return drawn
+    turned: Any = cv2.getRotationMatrix2D((len(paper) / 2, len(paper) / 2), angle_deg, 1.0)
+    turned[:, 2] += np.array([WIDTH - len(paper), HEIGHT - len(paper)]) / 2
+    drawn: Any = cv2.warpAffine(paper, turned, (WIDTH, HEIGHT), borderMode=cv2.BORDER_CONSTANT, borderValue=DARK)
+    return np.asarray(drawn, np.uint8)

@@ -94,7 +94,12 @@ class Placed:
 
 
 def placed(
-    printed: Print, centre_px: Sequence[float], side_px: float, steep_rad: float, turn_rad: float, axis_rad: float
+    printed: Print,
+    centre_px: Sequence[float] | Array,
+    side_px: float,
+    steep_rad: float,
+    turn_rad: float,
+    axis_rad: float,
 ) -> Placed:
     """Place a marker whose side would be `side_px` if it faced the camera.
 

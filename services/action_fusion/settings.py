@@ -15,48 +15,69 @@ class Settings(ServiceSettings):
     measure: Literal["joint", "proximity"] = Field(
         "joint",
         description=(
-            "how to choose the object: joint weighs closeness, reach and common motion over the segment; "
-            "proximity takes the smallest distance, as the paper does"
+            "how to decide which object an action was done to: joint weighs distance, reaching and "
+            "moving together; proximity takes the object nearest to a hand"
         ),
     )
     reach_m: float = Field(
         0.25,
         gt=0,
-        description="greatest distance between a hand and the marker of an object that it can reach (m)",
+        description=(
+            "maximum distance between a hand and the marker of an object that it can reach; a tool in "
+            "the hand adds --grasp-m (m)"
+        ),
     )
     grasp_m: float = Field(
         0.20,
         gt=0,
-        description="greatest distance between the centres of a hand and of an object that it can hold (m)",
+        description="maximum distance between the centres of a hand and an object that counts as held (m)",
     )
-    moved_m: float = Field(0.03, gt=0, description="least displacement at which an object counts as moved (m)")
+    moved_m: float = Field(0.03, gt=0, description="minimum displacement of an object that counts as moved (m)")
     pointing_labels: frozenset[str] = Field(
-        frozenset({"point"}), description="actions whose object is the one that the arm points to, at any distance"
+        frozenset({"point"}), description="actions that point at their object, at any distance, such as point,show"
     )
     pointing_limit_deg: float = Field(
         30.0,
         gt=0,
         lt=180,
-        description="greatest angle between the arm and the direction to an object that it points to (deg)",
+        description=(
+            "maximum angle between the pointing arm and the direction to an object; other objects are"
+            " not pointed at (deg)"
+        ),
     )
     uncertainty_m: float = Field(
-        0.02, ge=0, description="difference of two objects' distances to the hand below which an event names both (m)"
+        0.02,
+        ge=0,
+        description=("an event names two possible objects if their distances to the hand differ by less than this (m)"),
     )
     pointing_uncertainty_deg: float = Field(
-        2.0, ge=0, description="an event names two objects if their angles to the pointing arm differ by less (deg)"
+        2.0,
+        ge=0,
+        description=(
+            "an event names two possible objects if their angles to the pointing arm differ by less than this (deg)"
+        ),
     )
     expected_outcomes: dict[str, str] = Field(
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
-        description="expected result of each action on its object; for these actions a held object is never the tool",
+        description=(
+            "what each action does to its object, such as lift=lifted,push=pushed; an object that is "
+            "held during these actions is their object, not a tool"
+        ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(as_text)] = Field(
         None,
         description=(
-            "rigid transform from the skeletons' camera frame to a fixed frame, in which events then give the "
-            "object's pose as well: 16 numbers, row-major, or a file of them"
+            "transform from camera coordinates to those of a room or robot: a 4 x 4 matrix as 16 "
+            "numbers, row by row, or a file of them. Events then give object poses in both. Default: "
+            "camera coordinates only"
         ),
     )
-    world_frame: str = Field("world", min_length=1, max_length=200, description="name of that fixed frame in events")
+    world_frame: str = Field(
+        "world",
+        min_length=1,
+        max_length=200,
+        description="name in events of the frame that --world-from-camera transforms to",
+    )
 
     @property
     def fixed_from_camera(self) -> Array | None:

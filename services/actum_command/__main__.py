@@ -36,8 +36,8 @@ app = PlainTyper(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    help="Online recognition of what a person does and to which object. ACTUM_CONNECT names the router, "
-    "ACTUM_SENSOR the viewpoint.",
+    help="Recognise online what a person does and to which object. Start with 'actum up', which runs everything on "
+    "this machine, and 'actum watch', which prints the recognised events.",
 )
 
 
@@ -50,7 +50,7 @@ def _show_version(asked: bool) -> None:
 @app.callback()
 def _actum(
     _version: Annotated[
-        bool, typer.Option("--version", is_eager=True, callback=_show_version, help="print the version and end")
+        bool, typer.Option("--version", is_eager=True, callback=_show_version, help="print the version and exit")
     ] = False,
 ) -> None:
     """Take what goes before every command."""

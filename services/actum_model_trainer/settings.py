@@ -15,11 +15,19 @@ class Settings(ServiceSettings):
 
     trainer_data: Path = Field(
         default_factory=lambda: data_folder() / "teaching",
-        description="the folder in which the trainer keeps sets, models and jobs",
+        description=("the folder in which the trainer keeps recorded examples, models and the results of trainings"),
     )
     model: Path | None = Field(
-        None, description="the model file that the classifier watches; default: model.npz in the trainer's folder"
+        None,
+        description=(
+            "the file to which the trainer copies the model in use, for the classifier to load; "
+            "default: model.npz in --trainer-data"
+        ),
     )
     original_model: Path | None = Field(
-        None, description="a model file that is only read: it is copied to the model in use whenever it changes"
+        None,
+        description=(
+            "a model file to start from: whenever it changes, it is copied over --model. The trainer never "
+            "writes to it. Default: none"
+        ),
     )

@@ -25,25 +25,31 @@ class Settings(ServiceSettings):
 
     scene: Path | None = Field(
         None,
-        description="a YAML scene file of objects and their markers; replaces dictionary, marker-size-m and objects",
+        description=(
+            "a YAML file that describes the objects and their markers; replaces --dictionary, "
+            "--marker-size-m and --objects"
+        ),
     )
-    dictionary: str = Field("DICT_4X4_50", description="OpenCV's name of the marker dictionary")
-    marker_size_m: float = Field(0.08, gt=0, le=10, description="side of a marker's black square (m)")
+    dictionary: str = Field("DICT_4X4_50", description="the marker family that was printed, by OpenCV's name")
+    marker_size_m: float = Field(0.08, gt=0, le=10, description="side length of a marker's black square (m)")
     objects: dict[int, ObjectSpec] = Field(
         default_factory=dict,
         description=(
-            'the object that carries each marker, such as {"3": {"name": "cup", "size_m": 0.05}}; empty: '
-            "each marker is an object of its own"
+            "the object that each marker id belongs to, with the marker's size if it differs, such as"
+            ' {"3": {"name": "cup", "size_m": 0.05}}. Default: each marker is an object of its own'
         ),
     )
     memory_s: float = Field(
-        1.0, gt=0, le=60, description="time for which a hidden object is still published, by stamps (s)"
+        1.0,
+        gt=0,
+        le=60,
+        description=("how long an object is still published after its marker was last seen (s)"),
     )
     calibrated_size_px: tuple[Pixels, Pixels] | None = Field(
         None,
         description=(
-            "width and height of the images that the camera was calibrated with; needed where images may have "
-            "another size (px)"
+            "width and height of the images used for calibration, such as 1280,720; needed if the "
+            "camera now delivers another size (px)"
         ),
     )
 

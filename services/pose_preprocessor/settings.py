@@ -9,9 +9,17 @@ class Settings(ServiceSettings):
     """What the preprocessor can be told beside what every service can."""
 
     reach_limit_m: float = Field(
-        10.0, gt=0, le=1000, description="greatest accepted distance of a joint from the camera (m)"
+        10.0,
+        gt=0,
+        le=1000,
+        description="maximum distance of a joint from the camera; frames that exceed it are rejected (m)",
     )
-    bone_limit_m: float = Field(1.5, gt=0, le=1000, description="greatest accepted length of a bone (m)")
+    bone_limit_m: float = Field(
+        1.5,
+        gt=0,
+        le=1000,
+        description="maximum length of a bone between two joints; frames that exceed it are rejected (m)",
+    )
 
     @classmethod
     def defaults(cls) -> "Settings":

@@ -27,20 +27,25 @@ class Settings(ServiceSettings):
     ros_domain_id: int = Field(0, ge=0, le=HIGHEST_DOMAIN, description="the ROS_DOMAIN_ID of your ROS 2 nodes")
     ros_namespace: str | None = Field(
         None,
-        description="namespace of all topics but /tf and /tf_static; default: actum/ and the sensor's name",
+        description=(
+            "ROS namespace of all topics except /tf and /tf_static; default: actum/SENSOR, such as actum/kinect0"
+        ),
     )
     ros_distro: Literal["humble", "jazzy", "kilted"] = Field(
-        "jazzy", description="the ROS 2 distribution of your nodes; humble has no type hashes in its keys"
+        "jazzy",
+        description="the ROS 2 distribution that your nodes use; the topics of humble are named differently in Zenoh",
     )
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
-        frozenset(get_args(TopicName)), description="the topics to bridge, separated by commas, such as event,mark"
+        frozenset(get_args(TopicName)),
+        description="the topics to exchange with ROS 2, separated by commas, such as event,mark",
     )
     ros_frame_id: str | None = Field(
         None,
         min_length=1,
         description=(
-            "the camera's optical frame in your robot's tf tree; by default the bridge publishes one of its own on "
-            "/tf_static, SENSOR_optical_frame below SENSOR_link, such as kinect0_optical_frame below kinect0_link"
+            "name of the camera's optical frame in your robot's tf tree, which the bridge then does "
+            "not publish. Default: the bridge publishes SENSOR_link and, below it, "
+            "SENSOR_optical_frame on /tf_static"
         ),
     )
 

@@ -17,22 +17,52 @@ class Settings(ServiceSettings):
     """The simulated scene's settings, beside those of every service."""
 
     actor: int = Field(
-        0, ge=0, description="number of the simulated person, who has a height, a tempo and a handedness"
+        0,
+        ge=0,
+        description=("which simulated person acts: each number has another body height, tempo and preferred hand"),
     )
-    seed: int = Field(1, ge=0, description="seed of the random variation between repetitions")
-    repetitions: int = Field(0, ge=0, description="how often the simulated person does each action; 0: without end")
+    seed: int = Field(
+        1, ge=0, description="seed of the random variation between repetitions; the same seed gives the same movements"
+    )
+    repetitions: int = Field(
+        0,
+        ge=0,
+        description=("how often the simulated person does each action; 0 repeats them until the service is stopped"),
+    )
     image_hz: Annotated[Literal[0, 5, 10, 15, 30], BeforeValidator(_number)] = Field(
-        15, description="colour images per second; 0 publishes none"
+        15, description="colour images per second; 0 publishes no images (1/s)"
     )
-    everyday: Choice = Field("none", description="everyday activities between the actions; only: no actions at all")
+    everyday: Choice = Field(
+        "none",
+        description=(
+            "background activity between the actions, such as scratching: none; familiar (some kinds,"
+            " for training); all (every kind, for tests); only (every kind, but no actions)"
+        ),
+    )
     minutes: float = Field(
-        1.0, ge=0, description="least length of a scene with everyday activities, which fill the remaining time (min)"
+        1.0,
+        ge=0,
+        description=(
+            "minimum length of the scene; background activity fills the time after the last action. "
+            "Without effect if --everyday is none (min)"
+        ),
     )
     pauses: Pauses = Field(
         "long",
-        description="pauses between actions; long: up to three everyday activities and rests; short: at most one",
+        description=(
+            "what happens between two actions: long is up to three background activities and rests, "
+            "short is at most one. Without effect if --everyday is none"
+        ),
     )
-    driven: bool = Field(False, description="stand still until the command 'perform' asks for an action")
+    driven: bool = Field(
+        False,
+        description=(
+            "let the simulated person stand still until an action is chosen on the web page or by the command 'perform'"
+        ),
+    )
     actors: int = Field(
-        1, ge=1, le=MOST_PEOPLE, description="people who act side by side; more than one publishes no images"
+        1,
+        ge=1,
+        le=MOST_PEOPLE,
+        description="number of simulated people who act side by side; images are published only if it is 1",
     )

@@ -27,7 +27,7 @@ def _pairs(value: Any) -> Any:
     if not isinstance(value, str):
         return value
     if lacking := next((name for name in _names(value) if "=" not in name), None):
-        raise ValueError(f"{lacking!r} has no time: write each action with its seconds, such as wave=3,clap=1")
+        raise ValueError(f"{lacking!r} has no time: give each action its seconds, such as wave=3,clap=1")
     return {action.strip(): seconds for action, _, seconds in (pair.rpartition("=") for pair in _names(value))}
 
 
@@ -37,15 +37,21 @@ Names = Annotated[frozenset[str], NoDecode, BeforeValidator(_names)]
 class Settings(ServiceSettings):
     """What the classifier can be told beside what every service can."""
 
-    model: Path | None = Field(None, description="the model file; the classifier loads it when it appears or changes")
+    model: Path | None = Field(
+        None,
+        description=(
+            "the model file (.npz), loaded whenever it appears or changes; without one no action is recognised"
+        ),
+    )
     publish_maps: bool = Field(
-        False, description="publish the activities of the maps and the trace with each final action"
+        False,
+        description=("publish, with each final action, how the model's maps responded to it; the web page draws this"),
     )
     segments: WantedSegments = Field(
         "both",
         description=(
-            "the segments to answer: marked ones (marks), those that the classifier finds by itself (auto), or "
-            "both; marks take precedence"
+            "which actions to recognise: those between start and end marks (marks), those that the "
+            "classifier finds without marks (auto), or both, where marks take precedence"
         ),
     )
     false_alarms_per_min: float | None = Field(
@@ -53,24 +59,30 @@ class Settings(ServiceSettings):
         gt=0,
         allow_inf_nan=False,
         description=(
-            "accepted false alarms per minute of background activity; a higher value misses fewer actions; "
-            "default: the value in the model (1/min)"
+            "accepted false alarms per minute in which no action is done; a higher value misses fewer"
+            " actions. Default: the value in the model (1/min)"
         ),
     )
-    shortest_pause_s: Seconds = Field(0.0, description="minimum pause between two actions found without marks (s)")
+    shortest_pause_s: Seconds = Field(
+        0.0, description="minimum pause between two actions that the classifier finds without marks (s)"
+    )
     cooldown_s: Annotated[dict[str, Seconds], NoDecode, BeforeValidator(_pairs)] = Field(
         {},
-        description="minimum time between two actions of the same label found without marks, such as wave=3,clap=1 (s)",
+        description=(
+            "minimum time until the same action is published again, by action, such as wave=3,clap=1;"
+            " marked actions are not affected. Default: 0 for all (s)"
+        ),
     )
     enabled_actions: Names = Field(
         frozenset(),
         description=(
-            "the only actions to publish among those found without marks, such as wave,clap; default: all actions "
-            "of the model"
+            "publish only these actions, such as wave,clap; marked actions are not affected. Default:"
+            " all actions of the model"
         ),
     )
     disabled_actions: Names = Field(
-        frozenset(), description="actions to leave out among those found without marks, such as wave,clap"
+        frozenset(),
+        description=("never publish these actions, such as wave,clap; marked actions are not affected. Default: none"),
     )
 
     @property

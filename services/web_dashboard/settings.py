@@ -29,27 +29,31 @@ class Settings(ServiceSettings):
     """What the page's service can be told beside what every service can."""
 
     page_host: str = Field(
-        "127.0.0.1", description="the address to listen on; 0.0.0.0 admits other machines and needs a page-token"
+        "127.0.0.1",
+        description=("address that the web page listens on; 0.0.0.0 admits other machines and requires --page-token"),
     )
     page_port: int | None = Field(
-        None, ge=0, le=HIGHEST_PORT, description="the page's port; default: 8080, or the next free one"
+        None, ge=0, le=HIGHEST_PORT, description="port of the web page; default: 8080, or the next free port"
     )
     page_token: str | None = Field(
         None,
         min_length=SHORTEST_TOKEN,
         pattern=r"^[A-Za-z0-9_.~-]+$",
-        description="the secret that opens the page; required where other machines can reach the page",
+        description=("secret that a browser needs to open the web page; required if --page-host admits other machines"),
     )
     page_guarded: bool = Field(
         False,
         description=(
-            "require no page-token, because something else controls access to page-host, such as a container's "
-            "port published on 127.0.0.1 alone"
+            "do not require --page-token; use this only if something else controls access, such as a "
+            "container whose port is published on 127.0.0.1 only"
         ),
     )
     page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(
         frozenset(),
-        description="names by which browsers may address this machine, in addition to its own name and its addresses",
+        description=(
+            "further host names in the page's address, such as lab.example.org; requests for other "
+            "names are refused. Default: this machine's own name and addresses"
+        ),
     )
 
     @model_validator(mode="after")

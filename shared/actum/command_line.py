@@ -1,6 +1,5 @@
 """A service's settings as flags, with help in plain words in place of Python's types and values."""
 
-import json
 import types
 from collections.abc import Sequence
 from pathlib import Path
@@ -65,8 +64,8 @@ def _worded(default: Any) -> str:
         case bool():
             return "on" if default else "off"
         case frozenset():
-            return json.dumps(sorted(default))
+            return ",".join(sorted(default))
         case dict():
-            return json.dumps(default)
+            return ",".join(f"{name}={value}" for name, value in default.items())
         case _:
             return str(default)

@@ -105,38 +105,53 @@ class ServiceSettings(BaseSettings):
     )
 
     connect: Annotated[str, AfterValidator(_endpoint)] = Field(
-        DEFAULT_ENDPOINT, description="the endpoint of the Zenoh router, such as tcp/192.168.1.5:7447"
+        DEFAULT_ENDPOINT, description="address of the Zenoh router, such as tcp/192.168.1.5:7447"
     )
     sensor: str = Field(
         "kinect0",
         pattern=f"^{CHUNK.pattern}$",
-        description="the sensor's name, which is the chunk after actum/ in every key",
+        description=(
+            "name of the sensor, such as kinect0; a program exchanges messages only with programs of the same sensor"
+        ),
     )
     instance: str = Field(
         default_factory=default_instance,
         pattern=f"^{CHUNK.pattern}$",
-        description="the name of this process among the instances of the service",
+        description=(
+            "name that tells this process from others of the same service; made from host name and "
+            "process id where none is given"
+        ),
     )
     take_over: bool = Field(
         False, description="stop the instance of this service that already runs for this sensor, and replace it"
     )
     zenoh_config: Path | None = Field(
         None,
-        description="a JSON5 file of Zenoh settings, such as TLS and users; actum's own settings override it",
+        description=(
+            "a Zenoh configuration file (JSON5), such as for TLS and user names; the other settings "
+            "here take precedence"
+        ),
     )
     credentials: Path | None = Field(
         None,
-        description="a folder of credentials that `actum deploy` wrote for one role; needs a router at tls/host:port",
+        description=(
+            "a folder of certificate and key that `actum deploy` wrote, such as credentials/viewer; "
+            "needs --connect tls/host:port"
+        ),
     )
     state: Path | None = Field(
         None,
         description=(
-            "a folder for the last answers of the classifier and the fusion, which they repeat after a restart; other "
-            "services ignore it"
+            "a folder in which the classifier and the fusion keep their last answers, to publish them"
+            " again after a restart; other services ignore it. Default: none are kept"
         ),
     )
     health_file: Path | None = Field(
-        None, description="a file to touch every second while the service is connected and working"
+        None,
+        description=(
+            "a file whose time is renewed every second while the service works, for a container's "
+            "health check; default: none"
+        ),
     )
 
     @classmethod
@@ -158,7 +173,9 @@ class ServiceSettings(BaseSettings):
 
 def _file_source(settings_cls: type[BaseSettings], name: str | None) -> TomlConfigSettingsSource:
     if name and not Path(name).is_file():
-        raise SettingsError(f"ACTUM_CONFIG names {name}, which is not a file: correct or unset ACTUM_CONFIG")
+        raise SettingsError(
+            f"ACTUM_CONFIG names {name}, which does not exist or is not a file: correct or unset ACTUM_CONFIG"
+        )
     try:
         return TomlConfigSettingsSource(settings_cls, toml_file=name or None)
     except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:

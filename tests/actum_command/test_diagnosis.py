@@ -240,7 +240,7 @@ def test_what_was_found_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_marks_that_are_not_used_are_told() -> None:
     (remark,) = examined(counts={"marks_ignored": 4}).remarks
     assert remark == (
-        "som_classifier rejected 4 marks, because its setting segments is auto: "
+        "som_classifier rejected 4 marks, because it runs with --segments auto: "
         "use --segments both to accept marks as well"
     )
 

@@ -26,34 +26,38 @@ from actum_command.live_calibration import SilentStreamError, collect_pairs, col
 
 app = PlainTyper(
     no_args_is_help=True,
-    help="Calibrate cameras with the board that 'actum markers --board' prints, or with a standing person (up).",
+    help="Measure a camera: its lens and position with the board of 'actum markers --board', its tilt with a person.",
 )
 app.command("up")(up)
 
 Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration file to write (YAML)")]
-Squares = Annotated[str, typer.Option("--board", help="columns x rows of the board's squares, such as 7x5")]
-SquareMm = Annotated[float, typer.Option(help="side of a square, as measured on the print (mm)")]
-MarkerMm = Annotated[float, typer.Option(help="side of a marker on the board (mm)")]
-Family = Annotated[str, typer.Option(help="OpenCV's name of the board's marker dictionary")]
+Squares = Annotated[str, typer.Option("--board", help="columns x rows of squares on the board")]
+SquareMm = Annotated[float, typer.Option(help="side of one square on the board, as measured (mm)")]
+MarkerMm = Annotated[float, typer.Option(help="side of one marker on the board, as measured (mm)")]
+Family = Annotated[str, typer.Option(help="OpenCV's name of the marker family printed on the board")]
 Existing = typer.Option(exists=True, dir_okay=False)
 
 
 @app.command("intrinsics")
 def intrinsics(
     output: Output,
-    images: Annotated[list[Path] | None, typer.Argument(help="pictures of the board, or folders of pictures")] = None,
+    images: Annotated[list[Path] | None, typer.Argument(help="pictures of the board, or folders of them")] = None,
     live: Annotated[
         bool,
-        typer.Option("--live", help="take the pictures from the sensor's colour stream"),
+        typer.Option("--live", help="take the pictures from the running camera, in place of files"),
     ] = False,
     board: Squares = "7x5",
     square_mm: SquareMm = 35.0,
     marker_mm: MarkerMm = 26.0,
     family: Family = "DICT_5X5_100",
 ) -> None:
-    """Find a camera's focal lengths, centre and distortion from 15 to 20 pictures of the board."""
+    """Find a camera's focal lengths, centre and distortion from 15 to 20 pictures of the board.
+
+    Do this once per camera, for exact positions of people and objects. It writes the calibration file that the camera's
+    service reads (--calibration), and beside it a picture of where the board was seen.
+    """
     if live == bool(images):
-        fail("name either pictures of the board, or --live")
+        fail("give either pictures of the board, or --live")
     files = _files(images or [])
     picture = _coverage_picture_of(output, files)
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
@@ -81,25 +85,27 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
         list[Path] | None,
         typer.Argument(
             help=(
-                "pairs NAME_a.png (from the camera that sees the markers) and NAME_b.png (from the one that sees the "
-                "people), or two folders"
+                "pairs of pictures taken at the same time: NAME_a.png from the camera that sees the "
+                "markers, NAME_b.png from the one that sees the people. Two folders of them do as well"
             )
         ),
     ] = None,
     live: Annotated[
-        str | None, typer.Option(help="take the pictures from two sensors, MARKERS,PEOPLE, such as kinect0,kinect1")
+        str | None,
+        typer.Option(help="take pictures live from two sensors, the markers' first, such as kinect1,kinect0"),
     ] = None,
     board: Squares = "7x5",
     square_mm: SquareMm = 35.0,
     marker_mm: MarkerMm = 26.0,
     family: Family = "DICT_5X5_100",
 ) -> None:
-    """Find the transform from the camera that sees the markers to the one that sees the people, from 6 to 10 pairs.
+    """Find where a camera that sees the markers is, relative to the camera that sees the people.
 
-    Writes the marker camera's calibration with skeleton_from_image in it.
+    This is needed only if these are two cameras. It takes 6 to 10 pairs of pictures of the board and writes a
+    calibration file for the camera that sees the markers.
     """
     if (live is not None) == bool(pairs):
-        fail("name either pairs of pictures, or --live MARKERS,PEOPLE")
+        fail("give either pairs of pictures, or --live with the two sensors, such as --live kinect0,kinect1")
     refuse_ending(output, ".yaml", ".yml")
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
     try:
@@ -129,7 +135,7 @@ def _extrinsics(
 def _board(squares: str, square_mm: float, marker_mm: float, family: str) -> Board:
     columns, _, rows = squares.partition("x")
     if not (columns.isdecimal() and rows.isdecimal()):
-        fail(f"--board {squares!r} is not a number of squares: give them across x down, such as 7x5")
+        fail(f"--board {squares!r} is not a number of squares: give columns x rows, such as 7x5")
     try:
         return Board(int(columns), int(rows), square_mm / 1000, marker_mm / 1000, family)
     except PatternError as error:
@@ -147,7 +153,7 @@ def _coverage_picture_of(output: Path, pictures: Sequence[Path]) -> Path:
     inputs = {file.resolve() for file in pictures}
     for written in (output, picture):
         if written.resolve() in inputs:
-            fail(f"{written} is one of the pictures and would be overwritten: name another output with -o")
+            fail(f"{written} is one of the pictures and would be overwritten: give another output file with -o")
     return picture
 
 

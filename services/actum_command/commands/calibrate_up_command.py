@@ -20,10 +20,16 @@ PAUSE_NS = SECOND_NS // 2  # shortest time between two instructions, so that eac
 
 def up(
     recording: Annotated[
-        Path | None, typer.Argument(exists=True, dir_okay=False, help="a recording to use in place of the live stream")
+        Path | None,
+        typer.Argument(
+            exists=True, dir_okay=False, help="a recording of the standing person; default: the running camera"
+        ),
     ] = None,
 ) -> None:
-    """Find the tilt of a camera from one person who stands upright and still before it, arms down, for two seconds."""
+    """Find how a camera is tilted, from one person who stands upright and still before it, arms down, for two seconds.
+
+    Prints the value to set as ACTUM_UP_IN_CAMERA.
+    """
     frames = _live() if recording is None else _recorded(recording)
     estimator, instruction, instructed_ns = UpDirectionEstimator(), "", -PAUSE_NS
     for frame in frames:

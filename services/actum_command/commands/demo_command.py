@@ -38,17 +38,28 @@ TERMINATED = 128 + signal.SIGTERM  # the exit code that a shell reports for a pr
 
 def demo(
     people: Annotated[
-        int, typer.Option(min=0, help="how many other people do the test; 0: one of the training")
+        int,
+        typer.Option(
+            min=0,
+            help=(
+                "number of simulated people to test on, none of whom the model was trained on; 0 tests on"
+                " one person of the training"
+            ),
+        ),
     ] = SHOWN,
-    repetitions: Annotated[int, typer.Option(min=1, help="test samples of each action and person")] = 1,
+    repetitions: Annotated[int, typer.Option(min=1, help="number of times that each person does each action")] = 1,
     marked: Annotated[
-        bool, typer.Option("--marked", help="as in the paper: one person teaches, all actions are marked")
+        bool,
+        typer.Option(
+            "--marked",
+            help=("repeat the paper's experiment: train on one person, and mark the start and end of every action"),
+        ),
     ] = False,
 ) -> None:
-    """Recognise simulated people whom the model has never seen, live, beside the paper's own results.
+    """Test recognition on simulated people whom the model has never seen, and print the results beside the paper's.
 
-    They act in continuous scenes, do everyday things in between, and nobody marks where an action starts or ends. Each
-    person takes 45 s; --people 9 is the whole experiment.
+    It needs no camera and no other running program. The people also do other things, and nobody marks where an action
+    starts or ends. Each person takes 45 s; --people 9 is the whole experiment.
     """
     here = settings()
     try:
@@ -75,7 +86,9 @@ def _marked(here: ServiceSettings, people: int, repetitions: int) -> str | None:
         score = run_marked(_live(here), here, model, actors, repetitions)
     console.print(table(score))
     console.print(summary(score, learned, baseline, people), soft_wrap=True)
-    return f"only {len(score.events)} of {score.expected} events came" if len(score.events) < score.expected else None
+    return (
+        f"only {len(score.events)} of {score.expected} events arrived" if len(score.events) < score.expected else None
+    )
 
 
 def _unmarked(here: ServiceSettings, people: int, repetitions: int) -> str | None:
@@ -88,8 +101,8 @@ def _unmarked(here: ServiceSettings, people: int, repetitions: int) -> str | Non
     console.print(unmarked_summary(performances, learned, people), soft_wrap=True)
     unfinished = [performance.person for performance in performances if not performance.over]
     if unfinished:
-        return f"not everything of {', '.join(unfinished)} came"
-    return None if any(performance.events for performance in performances) else "no event came"
+        return f"the scene of {', '.join(unfinished)} did not end in time"
+    return None if any(performance.events for performance in performances) else "no event arrived"
 
 
 def _live(here: ServiceSettings) -> LiveTest:

@@ -17,11 +17,12 @@ from actum_deployer.deployment import Deployment, Host, hosts_of
 
 app = PlainTyper(
     no_args_is_help=True,
-    help="Write and renew the files that each host of a deployment needs: compose file, router, units, credentials.",
+    help="Write the files for running actum on several hosts: routers, containers, systemd units, credentials.",
 )
 
 DirArgument = Annotated[
-    Path, typer.Argument(metavar="DIR", help="the deployment's folder, which has to be kept private")
+    Path,
+    typer.Argument(metavar="DIR", help="the folder of all hosts' files; it holds private keys, so keep it private"),
 ]
 YEAR = 365
 """How long certificates are valid (days) where nothing else is said."""
@@ -39,33 +40,51 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             metavar="NAME=ADDRESS,…",
             help=(
-                "the hosts, as camera=ADDRESS,compute=ADDRESS; further ones as camera2=…; append :PORT for another port"
+                "the hosts and their addresses, such as camera=192.168.1.5,compute=192.168.1.6. Name "
+                "further ones camera2, compute2; append :PORT if a router needs another port"
             ),
         ),
     ],
     sensors: Annotated[
         str | None,
-        typer.Option(metavar="NAME,…", help="the sensors' names, one per camera; default: kinect0,kinect1,…"),
+        typer.Option(
+            metavar="NAME,…",
+            help=("the sensors' names, one for each camera host, such as door,window; default: kinect0,kinect1,…"),
+        ),
     ] = None,
-    one_router: Annotated[bool, typer.Option("--one-router", help="run a router on the first host only")] = False,
+    one_router: Annotated[
+        bool, typer.Option("--one-router", help="run a single router, on the first host; default: one on each host")
+    ] = False,
     passwords: Annotated[
-        bool, typer.Option("--passwords", help="require user names and passwords in addition to certificates")
+        bool,
+        typer.Option(
+            "--passwords",
+            help="require user names and passwords in addition to certificates; default: certificates only",
+        ),
     ] = False,
-    images: Annotated[bool, typer.Option("--images", help="allow images to leave the camera's host")] = False,
-    simulate: Annotated[
-        bool, typer.Option("--simulate", help="run the simulated scene in place of the cameras")
+    images: Annotated[
+        bool, typer.Option("--images", help="let images cross to other hosts; default: they stay on the camera's host")
     ] = False,
+    simulate: Annotated[bool, typer.Option("--simulate", help="run the simulated scene in place of cameras")] = False,
     ros2: Annotated[
         int | None,
-        typer.Option(metavar="DOMAIN", min=0, max=232, help="add the bridge to ROS 2 in this domain, usually 0"),
+        typer.Option(
+            metavar="DOMAIN",
+            min=0,
+            max=232,
+            help=("add the bridge to ROS 2, for nodes with this ROS_DOMAIN_ID (usually 0); default: no bridge"),
+        ),
     ] = None,
     not_secured: Annotated[
         bool, typer.Option("--open", help="disable TLS, passwords and access control; use it only on a trusted network")
     ] = False,
 ) -> None:
-    """Write a folder for each host and one for people's programs; a later run renews them."""
+    """Write one folder of files for each host of a deployment, and one of credentials for the programs of users.
+
+    Copy each folder to its host. Run the command again to change the deployment.
+    """
     if not_secured and passwords:
-        fail("--open disables passwords: leave out --open or --passwords")
+        fail("--open and --passwords exclude each other: leave out one of them")
     try:
         placed = hosts_of(hosts, sensors)
     except (SettingsError, InvalidKeyError) as error:
@@ -92,17 +111,23 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
 def rotate(
     folder: DirArgument,
     days: Annotated[
-        float, typer.Option(min=LEAST_DAYS, max=MOST_DAYS, help="time for which the new credentials are valid (days)")
+        float, typer.Option(min=LEAST_DAYS, max=MOST_DAYS, help="validity of the new certificates (days)")
     ] = YEAR,
     revoke: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="make routers refuse the old credentials of this folder, such as viewer"),
+        typer.Option(
+            metavar="NAME",
+            help=(
+                "make routers refuse the old certificate of this credentials folder, such as viewer; may "
+                "be repeated. Default: none is refused"
+            ),
+        ),
     ] = None,
 ) -> None:
-    """Renew all certificates and their keys; after copying, services use them without a restart.
+    """Renew all certificates and keys, before they expire or after some were lost.
 
-    Run with --revoke NAME once for each folder of credentials that was lost or stolen. Routers refuse the old
-    certificate as soon as they have their new router.json5.
+    Copy the folders to the hosts afterwards; services read the new certificates without a restart. If credentials were
+    lost or stolen, name their folder with --revoke. Routers refuse them once the new router.json5 has been copied.
     """
     with _refusing(), needs_extra("deploy"):
         from actum_deployer.writing import alone, write_deployment

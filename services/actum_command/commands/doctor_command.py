@@ -23,7 +23,10 @@ SOURCES = {"sensor_gateway": "sensor", "marker_camera": "marker camera"}
 
 
 def doctor() -> None:
-    """Check the router, services, streams, versions, clocks and names of settings; exit with 1 on any problem."""
+    """Check the running system and print what is wrong: router, services, streams, versions, clocks, names of settings.
+
+    Run it when events are missing. It exits with 1 if it finds a problem.
+    """
     with connect() as client:
         found = examine(client)
     show(found.findings, console)

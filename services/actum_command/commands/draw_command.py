@@ -21,12 +21,13 @@ def draw(
     count: Annotated[
         int, typer.Option("--pictures", min=1, max=30, help="number of pictures, spread evenly over the video")
     ] = 6,
-    people: Annotated[int, typer.Option(min=1, max=4, help="greatest number of people to find in a picture")] = 2,
+    people: Annotated[int, typer.Option(min=1, max=4, help="maximum number of people to find in a picture")] = 2,
 ) -> None:
-    """Draw the fifteen joints of the people in a video, to check detection, left and right, and the lens.
+    """Draw the joints that are found in people of a video, to check the camera before use.
 
-    The settings of the camera are the gateway's: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION,
-    ACTUM_MIRRORED.
+    It writes one image with several pictures of the video: look whether people are found, and left and right are
+    correct. The camera's settings are read from the environment: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or
+    ACTUM_CALIBRATION, ACTUM_MIRRORED.
     """
     if not cv2.haveImageWriter(str(output)):
         fail(f"{output} does not end in the name of a picture format: use .png or .jpg")

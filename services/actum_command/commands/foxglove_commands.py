@@ -23,21 +23,28 @@ SUBSCRIBING_S = 0.5  # from a client's first subscription to its last: a viewer'
 def foxglove(
     recording: RecordingArgument = None,
     host: Annotated[
-        str, typer.Option(help="the address to listen on; any other than 127.0.0.1 shows people to your network")
+        str,
+        typer.Option(help="address to listen on; with any other than 127.0.0.1, everybody on your network can watch"),
     ] = ("127.0.0.1"),
-    port: Annotated[int, typer.Option(min=0, max=65535, help="the port to listen on; 0 picks a free one")] = 8765,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="port to listen on; 0 picks a free port")] = 8765,
     origin: Annotated[
         list[str] | None,
-        typer.Option(help="a site whose pages may connect, such as https://app.foxglove.dev; may be repeated"),
+        typer.Option(
+            help=(
+                "a website that may connect, such as https://app.foxglove.dev; may be repeated. Default: "
+                "only programs, no websites"
+            )
+        ),
     ] = None,
     speed: Annotated[
-        float, typer.Option(min=0.01, help="speed at which a recording is played; 1 is the speed of its capture")
+        float, typer.Option(min=0.01, help="playback speed of a recording; 1 is real time, 2 is twice as fast")
     ] = 1.0,
 ) -> None:
-    """Serve live streams or a recording to Foxglove, with people, objects, images and events, until Ctrl-C.
+    """Serve live streams or a recording to the Foxglove viewer, with people, objects, images and events, until Ctrl-C.
 
-    Programs on this machine may connect. Websites need --origin; refused ones are printed. A recording starts to play
-    when a client subscribes. To scrub through a recording, write a file with actum export.
+    Foxglove's desktop program can connect at once; a website needs --origin, and refused websites are printed. A
+    recording starts to play when a viewer connects. To move back and forth in a recording, convert it with 'actum
+    export' instead.
     """
     refuse_without("foxglove", "foxglove-sdk", "foxglove")
     from actum_command.viewers.foxglove_sinks import ServerError, served
@@ -98,13 +105,16 @@ def _wait_for_subscriber(subscribed: Flag, stop: Flag) -> None:
 
 
 def export(
-    file: Annotated[Path, typer.Argument(metavar="REC", help="a recording of actum")],
-    output: Annotated[Path, typer.Argument(metavar="OUT", help="the .mcap file to write")],
-    for_foxglove: Annotated[bool, typer.Option("--foxglove", help="use Foxglove's schemas")] = False,
+    file: Annotated[Path, typer.Argument(metavar="REC", help="the recording to convert (.mcap, written by actum)")],
+    output: Annotated[Path, typer.Argument(metavar="OUT", help="the file to write (.mcap)")],
+    for_foxglove: Annotated[
+        bool,
+        typer.Option("--foxglove", help="write Foxglove's message types; required, as there is no other format yet"),
+    ] = False,
 ) -> None:
-    """Write a recording in a format that other programs open; --foxglove is the only one."""
+    """Convert a recording to a file that Foxglove opens, such as actum export --foxglove REC OUT."""
     if not for_foxglove:
-        fail("no format is chosen: add --foxglove")
+        fail("no output format is given: add --foxglove")
     refuse_without("foxglove", "foxglove-sdk", "foxglove")
     refuse_output(output)
     from actum_command.viewers.foxglove_sinks import written

@@ -26,21 +26,24 @@ from actum_dataset_importer.takes import DatasetError
 from sensor_gateway.cameras import estimator_of, optics_of
 from sensor_gateway.settings import Settings
 
-app = PlainTyper(no_args_is_help=True, help="Turn public data sets and video clips into recordings.")
+app = PlainTyper(
+    no_args_is_help=True,
+    help="Convert public data sets and video clips to recordings, to train or test a model on them.",
+)
 
-Source = Annotated[Path, typer.Argument(help="the folder of the data set", exists=True)]
-Out = Annotated[Path, typer.Argument(help="the folder to write to")]
+Source = Annotated[Path, typer.Argument(help="the folder of the downloaded data set", exists=True)]
+Out = Annotated[Path, typer.Argument(help="the folder for the recordings")]
 
 
 @app.command("msr-action3d")
 def msr_action3d(source: Source, out: Out) -> None:
-    """Import MSR Action3D: one recording per sequence."""
+    """Import the data set MSR Action3D: one recording per sequence, which is one labelled action."""
     _run(import_msr_action3d, source, out)
 
 
 @app.command("utkinect")
 def utkinect(source: Source, out: Out) -> None:
-    """Import UTKinect-Action3D: one recording per file, with its labelled segments."""
+    """Import the data set UTKinect-Action3D: one recording per file, with its labelled segments."""
     _run(import_utkinect, source, out)
 
 
@@ -49,23 +52,39 @@ def msrc12(
     source: Source,
     out: Out,
     trimmed: Annotated[
-        bool, typer.Option("--trimmed", help="bound segments by the visible start and end of the gesture")
+        bool,
+        typer.Option(
+            "--trimmed",
+            help=(
+                "start and end each segment where the movement visibly starts and ends; default: a fixed "
+                "time about each action point"
+            ),
+        ),
     ] = False,
     composed: Annotated[
         bool,
-        typer.Option("--composed", help="compose two streams of mixed gestures per person, with trimmed segments"),
+        typer.Option(
+            "--composed",
+            help=(
+                "join the gestures of each person to two recordings of mixed gestures, with segments as "
+                "with --trimmed; default: one recording per original file"
+            ),
+        ),
     ] = False,
 ) -> None:
-    """Import MSRC-12: one recording per stream, with a labelled segment of up to 3 s about each action point."""
+    """Import the data set MSRC-12: one recording per file, with labelled segments.
+
+    The data set gives one point in time per gesture; a segment covers up to 3 s about it.
+    """
     if trimmed and composed:
-        fail("--composed already trims its segments: leave out --trimmed")
+        fail("--composed and --trimmed exclude each other, because --composed trims by itself: leave out --trimmed")
     importer = import_msrc12_composed if composed else import_msrc12_trimmed if trimmed else import_msrc12
     _run(importer, source, out)
 
 
 @app.command("bimacs")
 def bimacs(source: Source, out: Out) -> None:
-    """Import OptiTrack takes of two hands and objects: one recording per take, with each hand's labelled segments."""
+    """Import OptiTrack data of two hands and objects: one recording per file, with each hand's labelled segments."""
     _run(import_bimacs, source, out)
 
 
@@ -76,16 +95,24 @@ def video(
     pattern: Annotated[
         str,
         typer.Option(
-            help="regular expression that matches a file name without its ending, with the groups action and person"
+            help=(
+                "regular expression for the file names without their ending; its named groups action and "
+                "person supply label and person"
+            )
         ),
     ] = DEFAULT_PATTERN,
-    names: Annotated[str, typer.Option(help="names of the actions, such as 1=wave,2=drink")] = "",
-    people: Annotated[int, typer.Option(min=1, max=4, help="greatest number of people to find in a clip")] = 1,
+    names: Annotated[
+        str,
+        typer.Option(
+            help=("what the actions in file names are called, such as 1=wave,2=drink; default: as in the file names")
+        ),
+    ] = "",
+    people: Annotated[int, typer.Option(min=1, max=4, help="maximum number of people to find in a clip")] = 1,
 ) -> None:
-    """Import video clips named after their action (wave_anna_2.mp4): one recording per clip, one segment per recording.
+    """Import video clips of one action each, named after action and person (wave_anna_2.mp4).
 
-    The settings of the camera are the gateway's: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION,
-    ACTUM_MIRRORED, ACTUM_PERSON_HEIGHT_M. Recordings hold no images.
+    Each clip becomes a recording with one labelled segment, without images. The camera's settings are read from the
+    environment: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION, ACTUM_MIRRORED, ACTUM_PERSON_HEIGHT_M.
     """
     try:
         naming, settings = Naming.of(pattern, names), Settings(people=people)

@@ -27,26 +27,36 @@ def inspect(
     output: Annotated[
         Path,
         typer.Option(
-            "-o", "--output", help="the folder for pictures and index.html; files of an earlier run in it are removed"
+            "-o", "--output", help="the folder for the pictures and index.html; pictures of an earlier run are removed"
         ),
     ],
     files: Annotated[
-        list[Path] | None, typer.Argument(metavar="[REC]...", help="recordings to try the model on, or folders of them")
+        list[Path] | None,
+        typer.Argument(
+            metavar="[REC]...",
+            help=(
+                "recordings, or folders of them, whose actions the model is to explain; default: only the"
+                " model is drawn"
+            ),
+        ),
     ] = None,
     person: PersonOption = None,
     picture_format: Annotated[
-        str, typer.Option("--format", help=f"format of the pictures: {', '.join(FORMATS)}")
+        str, typer.Option("--format", help=f"file format of the pictures: {' or '.join(FORMATS)}")
     ] = "png",
     with_excluded: AllOption = False,
 ) -> None:
-    """Draw what a model has learnt and, for recordings, how and why it recognises their actions."""
+    """Draw what a model has learnt and, for given recordings, why it recognises each action as it does.
+
+    It writes pictures and a page, index.html, that shows them.
+    """
     began_s = time.monotonic()
     if picture_format not in FORMATS:
         fail(f"--format {picture_format!r} is not known: use one of {', '.join(FORMATS)}")
     if output.suffix.lower() in FILES:
-        fail(f"{output} has the name of a file: name a folder for the pictures and index.html")
+        fail(f"{output} looks like a file: give a folder for the pictures and index.html")
     if output.exists() and not output.is_dir():
-        fail(f"{output} is not a folder: name a folder for the pictures")
+        fail(f"{output} is not a folder: give a folder for the pictures")
     if find_spec("matplotlib") is None:
         fail(f"matplotlib, which draws the pictures, is not installed: {adding('model-inspector')}")
     try:

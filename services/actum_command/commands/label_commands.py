@@ -40,21 +40,27 @@ app = PlainTyper(
     cls=ListingGroup,
     no_args_is_help=True,
     help=(
-        "List the segments of a recording (actum label REC), draw and correct them. Times are seconds from the "
-        "start of the recording."
+        "List the labelled segments of a recording (actum label REC), draw and correct them by number. Times are "
+        "seconds from the start of the recording."
     ),
 )
 
-Number = Annotated[int, typer.Argument(metavar="N", help="number of the segment in the list")]
-Label = Annotated[str, typer.Argument(metavar="LABEL", help="label of the action")]
+Number = Annotated[
+    int, typer.Argument(metavar="N", help="number of the segment in the first column of 'actum label REC'")
+]
+Label = Annotated[str, typer.Argument(metavar="LABEL", help="label of the action, such as wave")]
 Agent = Annotated[
-    int | None, typer.Option(min=1, help="number of the person who acts; default: the person nearest to the camera")
+    int | None,
+    typer.Option(
+        min=1,
+        help=("track number of the person who acts (agent in the messages); default: the person nearest to the camera"),
+    ),
 ]
 
 
 @app.command(LISTS)
 def list_command(file: RecordingFile) -> None:
-    """List the segments: number, start, end, label, who marked it, who acts, the recorded answer.
+    """List the segments: number, start, end, duration, label, who marked it, who acts, the recorded answer.
 
     In a recording of several sensors each line ends in the sensor.
     """
@@ -79,14 +85,23 @@ def move(
     number: Number,
     start: Annotated[
         str | None,
-        typer.Option(help="new start (s), such as 12.3; +0.2 moves it later, -0.1 earlier; default: unchanged"),
+        typer.Option(
+            help=(
+                "new start, such as 12.3; with a sign it is relative: +0.2 is later, -0.1 earlier. "
+                "Default: unchanged (s)"
+            )
+        ),
     ] = None,
     end: Annotated[
         str | None,
-        typer.Option(help="new end (s), such as 14.1; +0.2 moves it later, -0.1 earlier; default: unchanged"),
+        typer.Option(
+            help=(
+                "new end, such as 14.1; with a sign it is relative: +0.2 is later, -0.1 earlier. Default: unchanged (s)"
+            )
+        ),
     ] = None,
 ) -> None:
-    """Move the start or the end of a segment; recorded answers stay."""
+    """Move the start or the end of a segment; the answers in the recording stay as they are."""
     recording, segments, first_ns = _opened(file)
     segment = _of_number(segments, number)
     if segment.start_ns is None or segment.end_ns is None:
@@ -130,7 +145,7 @@ def rename(file: RecordingFile, number: Number, label: Label) -> None:
     segment = _of_number(segments, number)
     refuse_length(label)
     if segment.start_ns is None:
-        fail(f"segment {number} has no start mark, which holds the label: delete the segment")
+        fail(f"segment {number} has no start mark to hold the label: delete the segment")
     change_recording(file, relabelled(segment, label))
     say(f"segment {number} is labelled {label!r} in {file}")
 
@@ -138,12 +153,12 @@ def rename(file: RecordingFile, number: Number, label: Label) -> None:
 @app.command("add")
 def add(
     file: RecordingFile,
-    start: Annotated[float, typer.Argument(metavar="START", help="start (s)")],
-    end: Annotated[float, typer.Argument(metavar="END", help="end (s)")],
+    start: Annotated[float, typer.Argument(metavar="START", help="start, from the beginning of the recording (s)")],
+    end: Annotated[float, typer.Argument(metavar="END", help="end, from the beginning of the recording (s)")],
     label: Label,
     agent: Agent = None,
 ) -> None:
-    """Add a segment."""
+    """Add a labelled segment, such as actum label add REC 12.3 14.1 wave."""
     recording, segments, first_ns = _opened(file)
     refuse_length(label)
     start_ns, end_ns = (first_ns + in_ns(seconds) for seconds in (start, end))
@@ -161,10 +176,16 @@ def add(
 @app.command("cut")
 def cut(
     file: RecordingFile,
-    times: Annotated[int, typer.Argument(metavar="TIMES", min=1, help="how often the action is done in the recording")],
+    times: Annotated[
+        int, typer.Argument(metavar="TIMES", min=1, help="number of times that the action is done in the recording")
+    ],
     label: Label,
 ) -> None:
-    """Find the repetitions of one action again, in place of earlier cuts; segments marked by hand stay."""
+    """Find the repetitions of one action in the recording again, and label each.
+
+    Use it if 'actum record --times' miscounted. Repetitions that were found before are replaced; segments marked by
+    hand stay.
+    """
     recording, segments, first_ns = _opened(file)
     refuse_length(label)
     try:
@@ -188,10 +209,15 @@ def picture(
     output: Annotated[Path, typer.Option("-o", "--output", help="the picture to write (.png or .svg)")],
     model: Annotated[
         Path | None,
-        typer.Option(help="a model file whose answers are drawn in place of the recorded ones, with and without marks"),
+        typer.Option(
+            help=(
+                "a model file to run on the recording; its answers, with marks and without, are drawn in "
+                "place of the recorded ones"
+            )
+        ),
     ] = None,
 ) -> None:
-    """Draw the recording's motion over time, with the labelled segments and the answers."""
+    """Draw the motion over time, with the labelled segments and the recorded answers, to check the labels."""
     if find_spec("matplotlib") is None:
         fail(f"matplotlib, which draws the picture, is not installed: {adding('model-inspector')}")
     from actum_command.recording_picture import write_picture

@@ -12,7 +12,9 @@ from actum_command.commands.terminal import errors, fail, refuse_ending, say
 from actum_command.model_download import POSE_MODEL, FetchError, Published, fetch
 from sensor_gateway.settings import default_pose_model
 
-app = PlainTyper(no_args_is_help=True, help="Download the model that finds people's poses in the images of a camera.")
+app = PlainTyper(
+    no_args_is_help=True, help="Download the model that finds people in camera images; needed before a camera is used."
+)
 
 
 @app.callback()
@@ -23,11 +25,19 @@ def _models() -> None:
 @app.command("fetch")
 def fetch_command(
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="the file to write; default: the path that the gateway reads")
+        Path | None,
+        typer.Option(
+            "-o", "--output", help="the file to write (.task); default: where the camera's service looks for it"
+        ),
     ] = None,
-    url: Annotated[str, typer.Option(help="another address of the same file")] = POSE_MODEL.url,
+    url: Annotated[
+        str, typer.Option(help="address to download from, such as a mirror; the file has to be the same")
+    ] = POSE_MODEL.url,
 ) -> None:
-    """Download MediaPipe's pose model (9 MB, Apache-2.0) and check its digest."""
+    """Download MediaPipe's pose model (9 MB, Apache-2.0) and check that the file is the expected one.
+
+    Do this once before a camera is used.
+    """
     if output is not None:
         refuse_ending(output, ".task")
     path = output or default_pose_model()

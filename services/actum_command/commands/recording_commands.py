@@ -33,37 +33,74 @@ ALL = "all"
 
 @with_history_flags
 def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
-    output: Annotated[Path, typer.Argument(help="the file to write; with --events a folder")],
-    person: Annotated[str, typer.Option(help="who acts; kept in the file, used to split training from test")] = "",
-    label: Annotated[str | None, typer.Option(help="what is done in the segments marked while recording")] = None,
+    output: Annotated[
+        Path, typer.Argument(help="the recording to write (.mcap); with --events the folder for the history")
+    ],
+    person: Annotated[
+        str,
+        typer.Option(
+            help=(
+                "name or number of the person who acts; stored in the file, so that a model can be tested"
+                " on people it was not trained on"
+            )
+        ),
+    ] = "",
+    label: Annotated[
+        str | None,
+        typer.Option(
+            help=("label of the actions that are marked during the recording, such as wave; default: as each mark says")
+        ),
+    ] = None,
     times: Annotated[
-        int | None, typer.Option(min=1, help="how often --label is done in front of the camera: it is cut by itself")
+        int | None,
+        typer.Option(
+            min=1,
+            help=(
+                "number of times that the person does --label; the recording stops after the last, and "
+                "each repetition is found and labelled automatically"
+            ),
+        ),
     ] = None,
     marks: Annotated[
         str | None,
         typer.Option(
-            help="whose marks are stored: manual (yours and your programs'), simulator, replay, auto (found by the "
-            "classifier); or all  "
-            "[default: manual, with --times none]"
+            help=(
+                "which marks to store, separated by commas: manual (by people and programs), simulator, "
+                "replay (by actum play), auto (found by the classifier); or all. Default: manual; with "
+                "--times none"
+            )
         ),
     ] = None,
-    images: Annotated[bool, typer.Option(help="also store images (faces are personal data)")] = False,
-    seconds: Annotated[float | None, typer.Option(min=0, help="stop by itself; default: at Ctrl-C")] = None,
+    images: Annotated[bool, typer.Option(help="also store images; they show faces, which are personal data")] = False,
+    seconds: Annotated[
+        float | None, typer.Option(min=0, help="length of the recording; default: until Ctrl-C (s)")
+    ] = None,
     finish: Annotated[
-        bool, typer.Option("--finish", help="record nothing: finish the file that a killed process or full disk left")
+        bool,
+        typer.Option(
+            "--finish",
+            help=("record nothing; make a recording of OUTPUT.part, which a killed process or a full disk left"),
+        ),
     ] = False,
     events: Annotated[
-        bool, typer.Option("--events", help="keep events, final actions and all marks for months: files in a folder")
+        bool,
+        typer.Option(
+            "--events",
+            help=("keep a history of events, final actions and all marks for months, as files in the folder OUTPUT"),
+        ),
     ] = False,
     *,
     given: Given,
 ) -> None:
-    """Record a sensor's streams and your marks to a file; with --times, mark the repetitions of one action.
+    """Record a sensor's streams and marks to a file, for training or to play them again.
 
-    No file is ever overwritten: after a crash --finish makes a recording of what had been stored, OUTPUT.part.
+    With --label and --times, the recording is labelled automatically, such as actum record wave.mcap --label wave
+    --times 5.
 
-    With --events it is a service that waits for the router, reports its status, and keeps files of events in the folder
-    that OUTPUT names.
+    No file is ever overwritten. If recording was interrupted, run the command with the same OUTPUT and --finish.
+
+    With --events it runs as a service that stores only events, actions and marks in the folder OUTPUT; the --history
+    options apply to it alone.
     """
     if events:
         keep_events(output, given)
@@ -73,7 +110,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         return
     refuse_output(output)
     if times is not None and label is None:
-        fail("--times needs --label: what is done so many times?")
+        fail("--times needs the name of the repeated action: add --label")
     stop = stop_on_signals()
     deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
     topics = STREAMS | IMAGES if images else STREAMS
@@ -95,7 +132,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
 
 def _fail_unfinished(output: Path, error: OSError) -> NoReturn:
     """Fail, naming what was stored before the error and what to do with it."""
-    left = f"; what was stored lies in {unfinished(output)}: make a recording of it by actum record {output} --finish"
+    left = f"; {unfinished(output)} holds what was stored: finish it with 'actum record {output} --finish'"
     fail(f"{output} cannot be written ({error.strerror})" + (left if unfinished(output).exists() else ""))
 
 
@@ -105,13 +142,13 @@ def _finish(output: Path) -> None:
     try:
         count = finished(output)
     except FileNotFoundError:
-        fail(f"nothing to finish: there is no {unfinished(output)}")
+        fail(f"there is no unfinished recording {unfinished(output)}")
     except RecordingError as error:
-        fail(f"{error.path} cannot be finished ({error.problem}): it is as it was; move it away or remove it")
+        fail(f"{error.path} cannot be turned into a recording ({error.problem}); it was not changed: move or delete it")
     except TakenError as error:
         fail(str(error))
     except OSError as error:
-        fail(f"{output} cannot be written ({error.strerror}); {unfinished(output)} is as it was")
+        fail(f"{output} cannot be written ({error.strerror}); {unfinished(output)} was not changed")
     say(f"{count} messages, up to where it breaks off, written to {output}")
 
 
@@ -178,16 +215,16 @@ def _listed(counts: Counter[str]) -> str:
 
 def play(
     files: Annotated[list[Path], typer.Argument(help="recordings, or folders of them, played one after another")],
-    speed: Annotated[float, typer.Option(min=0.01, help="1 is the pace at which it was captured")] = 1.0,
+    speed: Annotated[float, typer.Option(min=0.01, help="playback speed; 1 is real time, 2 is twice as fast")] = 1.0,
     person: PersonOption = None,
     with_excluded: AllOption = False,
 ) -> None:
-    """Put recordings on their keys as a live sensor would, with their marks but without their labels."""
+    """Play recordings as if they were a live sensor: publish their frames and marks, but not their labels."""
     recordings = chosen(files, person, with_excluded)
     stop = stop_on_signals()
     with connect() as client:
         if not client.wait_for_subscriber(keys.SKELETON, WAIT_S):
-            fail(f"nobody listens on {keys.key(keys.SKELETON, client.sensor)}: is the preprocessor running?")
+            fail(f"no service reads {keys.key(keys.SKELETON, client.sensor)}: start pose_preprocessor")
         try:
             count = put_all(client, recordings, speed, stop)
         except RecordingError as error:

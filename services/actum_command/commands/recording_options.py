@@ -15,9 +15,23 @@ from actum.rewriting import Change, rewrite
 from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
 from actum_model_trainer.samples import select
 
-PersonOption = Annotated[str | None, typer.Option(help="use recordings of these people only, such as 1,3,5")]
+PersonOption = Annotated[
+    str | None,
+    typer.Option(
+        help=(
+            "use only recordings of these people, named as in 'actum record --person', such as 1,3,5;"
+            " default: everybody"
+        )
+    ),
+]
 RecordingFile = Annotated[Path, typer.Argument(metavar="REC", help="the recording file", exists=True, dir_okay=False)]
-AllOption = Annotated[bool, typer.Option("--all", help="use recordings marked as excluded as well")]
+AllOption = Annotated[
+    bool,
+    typer.Option(
+        "--all",
+        help=("also use recordings marked as excluded, such as those in which 'actum record --times' miscounted"),
+    ),
+]
 
 LONGEST_LABEL = 200  # characters allowed in the field of a mark
 
@@ -63,7 +77,7 @@ def unread(recordings: Iterable[Recording]) -> Iterator[str]:
 def refuse_length(label: str) -> None:
     """Fail where a label is empty, or too long for a mark."""
     if not 0 < len(label) <= LONGEST_LABEL:
-        fail(f"the label has to have 1 to {LONGEST_LABEL} characters")
+        fail(f"the label must have 1 to {LONGEST_LABEL} characters")
 
 
 def in_ns(seconds: float) -> int:
@@ -83,4 +97,4 @@ def change_recording(
     except RecordingError as error:
         fail(str(error))
     except OSError as error:
-        fail(f"{file} cannot be changed ({error.strerror}): the recording is as it was")
+        fail(f"{file} cannot be written ({error.strerror}): the recording was not changed")

@@ -8,9 +8,9 @@ from ros2_bridge.settings import Settings
 
 @with_bridge_flags
 def ros2(*, given: Given) -> None:
-    """Publish skeletons, objects and events on ROS 2 topics over rmw_zenoh, and receive marks, until Ctrl-C.
+    """Exchange messages with ROS 2 until Ctrl-C: publish skeletons, objects and events, and receive marks.
 
-    ROS 2 need not be installed here. ACTUM_CONNECT names the router, which the ROS 2 nodes share.
+    The ROS 2 nodes have to use rmw_zenoh and the same router (--connect). ROS 2 need not be installed on this machine.
     """
     with needs_extra("ros2"):
         from ros2_bridge.bridge import Ros2Bridge

@@ -14,27 +14,56 @@ from scene_simulator.everyday import Choice, Pauses
 
 def simulate(
     output: Annotated[Path, typer.Argument(help="the recording to write")],
-    repetitions: Annotated[int, typer.Option(min=1, help="repetitions of each of the five actions")] = 12,
-    actor: Annotated[int, typer.Option(min=0, help="number of the simulated person")] = 0,
-    seed: Annotated[int, typer.Option(min=0, help="seed of the random variation between repetitions")] = 0,
+    repetitions: Annotated[
+        int,
+        typer.Option(min=1, help="number of times that each of the five actions is done; ignored with --everyday only"),
+    ] = 12,
+    actor: Annotated[
+        int,
+        typer.Option(
+            min=0, help=("which simulated person acts: each number has another body height, tempo and preferred hand")
+        ),
+    ] = 0,
+    seed: Annotated[
+        int,
+        typer.Option(
+            min=0, help="seed of the random variation between repetitions; the same seed gives the same movements"
+        ),
+    ] = 0,
     everyday: Annotated[
-        Choice, typer.Option(help="everyday activities between the actions; only: no actions at all")
+        Choice,
+        typer.Option(
+            help=(
+                "background activity between the actions, such as scratching: none; familiar (some kinds,"
+                " for training); all (every kind, for tests); only (every kind, but no actions)"
+            )
+        ),
     ] = "none",
     minutes: Annotated[
-        float, typer.Option(min=0, help="least length with everyday activities, which fill the remaining time (min)")
+        float,
+        typer.Option(
+            min=0,
+            help=(
+                "minimum length of the scene; background activity fills the time after the last action. "
+                "Without effect if --everyday is none (min)"
+            ),
+        ),
     ] = 1.0,
     pauses: Annotated[
         Pauses,
         typer.Option(
-            help="pauses between actions; long: up to three everyday activities and rests; short: at most one"
+            help=(
+                "what happens between two actions: long is up to three background activities and rests, "
+                "short is at most one. Without effect if --everyday is none"
+            )
         ),
     ] = "long",
 ) -> None:
-    """Write labelled examples of the simulated scene, without images.
+    """Write a recording of simulated actions with their labels, without images, for training or testing.
 
-    With --everyday the person also scratches, phones, walks away and comes back, or reaches for an object and draws
-    back, all without marks: a model should not answer these. Train with --everyday familiar, which leaves out some
-    kinds of activities, and test with --everyday all. With --everyday only the person does none of the actions.
+    With --everyday the person also does other things that are no action, such as scratching, phoning or walking away. A
+    model should not answer these. Train with --everyday familiar and test with --everyday all, which has further kinds
+    of them.
     """
     refuse_output(output)
     try:
@@ -46,6 +75,9 @@ def simulate(
 
 
 def scene() -> None:
-    """Publish the start and end marks of the simulated scene, as an ordinary client does."""
+    """Publish start and end marks for the actions of the simulated scene, until Ctrl-C.
+
+    Use it to try recognition with marks if the scene runs without 'actum up --marked'.
+    """
     with connect_whenever() as client:
         mark_truth(client, stop_on_signals())

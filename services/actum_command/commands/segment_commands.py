@@ -17,15 +17,31 @@ from actum_command.commands.terminal import connect, console, fail, say, setting
 
 WAIT_S = 5.0  # how long to wait for a classifier that is starting to subscribe
 
-app = PlainTyper(no_args_is_help=True, help="Mark the start and the end of an action.")
+app = PlainTyper(
+    no_args_is_help=True, help="Mark the start and the end of an action by hand, for recordings or exact recognition."
+)
 
-Id = Annotated[str, typer.Argument(help="name of the segment, which has to be new for each action")]
-AgentOption = Annotated[
-    int | None, typer.Option(min=1, help="number of the person who acts; default: the person nearest to the camera")
+Id = Annotated[
+    str,
+    typer.Argument(
+        help=("any name for this action, such as a1; start and end use the same name, and each action needs a new one")
+    ),
 ]
-HandOption = Annotated[str | None, typer.Option(help="the hand that acts: left or right")]
-LabelOption = Annotated[str | None, typer.Option(help="label of the action, for recording examples")]
-StampOption = Annotated[int | None, typer.Option(min=0, help="capture time on the sensor's clock; default: now (ns)")]
+AgentOption = Annotated[
+    int | None,
+    typer.Option(
+        min=1,
+        help=("track number of the person who acts (agent in the messages); default: the person nearest to the camera"),
+    ),
+]
+HandOption = Annotated[str | None, typer.Option(help="the hand that acts, left or right; default: not specified")]
+LabelOption = Annotated[
+    str | None,
+    typer.Option(help=("label of the action, such as wave, stored by 'actum record' for training; default: no label")),
+]
+StampOption = Annotated[
+    int | None, typer.Option(min=0, help="time of the mark on the sensor's clock; default: now (ns)")
+]
 
 
 @app.command()
@@ -37,7 +53,7 @@ def start(
     label: LabelOption = None,
     stamp_ns: StampOption = None,
 ) -> None:
-    """Mark the start of an action."""
+    """Mark the start of an action; mark its end with 'actum segment end' and the same SEGMENT_ID."""
     mark = _mark("start", segment_id, agent, hand, label, stamp_ns)
     with connect() as client:
         _put(client, mark)
@@ -46,7 +62,7 @@ def start(
 @app.command()
 @with_router_flags
 def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
-    """Mark the end of an action."""
+    """Mark the end of the action that was started with this SEGMENT_ID; the classifier then answers."""
     mark = _mark("end", segment_id, stamp_ns=stamp_ns)
     with connect() as client:
         _put(client, mark)
@@ -55,7 +71,7 @@ def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
 @app.command()
 @with_router_flags
 def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOption = None) -> None:
-    """Mark actions from the keyboard: Enter starts an action, Enter ends it and prints the answer, Ctrl-D quits."""
+    """Mark actions with the keyboard: Enter starts one, Enter again ends it and prints the answer, Ctrl-D quits."""
     with connect() as client:
         answers, number = Answers(client), 0
         while _waits_for_enter(f"press Enter to start action {number + 1}, Ctrl-D to quit "):

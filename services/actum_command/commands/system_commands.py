@@ -27,16 +27,33 @@ SOURCES = [name for name in get_args(SourceName) if name != "marker-camera"]
 
 
 def router(
-    listen: Annotated[str | None, typer.Option(help=f"endpoint; default {DEFAULT_ENDPOINT} unless --config")] = None,
-    config: Annotated[Path | None, typer.Option(help="a Zenoh JSON5 configuration", exists=True)] = None,
+    listen: Annotated[
+        str | None, typer.Option(help=f"address to listen on; default: {DEFAULT_ENDPOINT}, or as --config says")
+    ] = None,
+    config: Annotated[
+        Path | None, typer.Option(help="a Zenoh router configuration (JSON5); default: actum's own", exists=True)
+    ] = None,
     credentials: Annotated[
-        Path | None, typer.Option(help="the folder of a router's credentials", envvar="ACTUM_CREDENTIALS")
+        Path | None,
+        typer.Option(
+            help=("the folder with a router's certificate and key, as written by 'actum deploy'; default: no TLS"),
+            envvar="ACTUM_CREDENTIALS",
+        ),
     ] = None,
     link: Annotated[
-        str | None, typer.Option(help="endpoint of another host's router, to be one system with it")
+        str | None,
+        typer.Option(
+            help=(
+                "address of a router on another host, such as tcp/192.168.1.6:7447; the programs of both "
+                "hosts then see each other. Default: none"
+            )
+        ),
     ] = None,
 ) -> None:
-    """Run the embedded Zenoh router; with credentials it listens anew by itself when these are renewed."""
+    """Run the Zenoh router alone, for services that are started one by one or on several hosts.
+
+    'actum up' already runs one. With --credentials, renewed certificates are used without a restart.
+    """
     logging.basicConfig(level="INFO", format="router: %(message)s")
     here = settings()
     endpoint = listen or (None if config else here.connect)
@@ -55,29 +72,47 @@ def up(
     source: Annotated[
         str | None,
         typer.Option(
-            help=f"simulator, {', '.join(SOURCES)} or none; default: camera where --camera names one, else simulator"
+            help=f"where skeletons come from: {', '.join(SOURCES)}, simulator (a simulated person), or "
+            "none (another process). Default: camera if --camera is given, otherwise simulator"
         ),
     ] = None,
-    path: Annotated[Path | None, typer.Option(help="what a source from files plays")] = None,
+    path: Annotated[
+        Path | None,
+        typer.Option(
+            help=("the recording to play with --source recording: a file, or a folder whose files are played in order")
+        ),
+    ] = None,
     model: Annotated[
         Path | None,
         typer.Option(
-            help="the model, which is only read and may come or change later; default: the one that was put into use "
-            "last, at first, for the simulated scene, the one that ships",
+            help=(
+                "the model file (.npz), loaded whenever it appears or changes. Default: the model last "
+                "put into use on the web page or, for the simulated scene, the one supplied with actum"
+            ),
             envvar="ACTUM_MODEL",
         ),
     ] = None,
     marked: Annotated[
-        bool, typer.Option("--marked", help="the simulated scene marks its own actions, as a switch would")
+        bool,
+        typer.Option(
+            "--marked",
+            help=(
+                "publish start and end marks of the simulated person's actions; default: the classifier "
+                "has to find them itself"
+            ),
+        ),
     ] = False,
-    page: Annotated[bool, typer.Option("--page/--no-page", help="serve the web page, whose address is printed")] = True,
+    page: Annotated[bool, typer.Option("--page/--no-page", help="serve the web page and print its address")] = True,
     *,
     given: Given,
 ) -> None:
-    """Run router and all services here, restart what ends, until Ctrl-C."""
+    """Run the whole system on this machine until Ctrl-C: the router, all services and the web page.
+
+    Without options it shows the simulated scene; use --camera 0 for a webcam. A service that ends is started again.
+    """
     here = settings()
     if here.credentials is not None:
-        fail("everything of 'actum up' runs on this machine and shows no credentials: leave ACTUM_CREDENTIALS unset")
+        fail("'actum up' runs everything on this machine, without credentials: unset ACTUM_CREDENTIALS")
     try:
         source = chosen_source(source, given, path)
         segments = segments_of(given)

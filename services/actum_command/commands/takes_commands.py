@@ -37,12 +37,15 @@ from actum_model_trainer.segment_edits import deleted, fields_after, in_turn
 app = PlainTyper(
     cls=ListingGroup,
     no_args_is_help=True,
-    help="List the marked actions of recordings (actum takes REC…) and correct them.",
+    help="List the marked actions of several recordings (actum takes REC…), and correct them by segment id.",
 )
 
-SegmentId = Annotated[str, typer.Argument(metavar="SEGMENT", help="segment id of the action in the list")]
+SegmentId = Annotated[
+    str, typer.Argument(metavar="SEGMENT", help="segment id of the action, in the first column of 'actum takes REC'")
+]
 SensorOption = Annotated[
-    str | None, typer.Option(help="sensor of the action, needed where several sensors have the same segment id")
+    str | None,
+    typer.Option(help="sensor that recorded the action; needed only if several sensors have the same segment id"),
 ]
 
 
@@ -52,7 +55,7 @@ def list_command(
     person: PersonOption = None,
     with_excluded: AllOption = False,
 ) -> None:
-    """List the marked actions: segment, label, duration, number of frames, and whether training can use them."""
+    """List the marked actions: segment id, label, duration, number of frames, and whether training can use them."""
     recordings = chosen(files, person, with_excluded)
     all_actions: list[MarkedAction] = []
     try:
@@ -77,10 +80,7 @@ def relabel(
     refuse_length(label)
     segment = _marked(file, segment_id, sensor).segment
     if segment.start_ns is None:
-        fail(
-            f"{segment_id} has no start mark in {file}, which holds the label: delete the action with 'actum takes "
-            "drop'"
-        )
+        fail(f"{segment_id} has no start mark in {file} to hold the label: delete the action with 'actum takes drop'")
     change_recording(file, relabelled(segment, label))
     say(f"{segment_id} is labelled {label!r} in {file}")
 
@@ -89,11 +89,18 @@ def relabel(
 def trim(
     file: RecordingFile,
     segment_id: SegmentId,
-    start: Annotated[float, typer.Option(help="how much later the action starts; negative is earlier (s)")] = 0.0,
-    end: Annotated[float | None, typer.Option(help="new end, after the present start; default: unchanged (s)")] = None,
+    start: Annotated[
+        float, typer.Option(help="new start, counted from the present start; a negative value is earlier (s)")
+    ] = 0.0,
+    end: Annotated[
+        float | None, typer.Option(help="new end, counted from the present start; default: unchanged (s)")
+    ] = None,
     sensor: SensorOption = None,
 ) -> None:
-    """Move the start and the end of an action; times count from its present start."""
+    """Move the start and the end of an action, such as actum takes trim REC a1 --start 0.2 --end 1.5.
+
+    Both times count from the present start of the action (s).
+    """
     marked = _marked(file, segment_id, sensor)
     start_ns, end_ns = marked.segment.start_ns, marked.segment.end_ns
     if start_ns is None or end_ns is None:
@@ -110,7 +117,7 @@ def trim(
         )
     if start_ns + start * SECOND_NS < 0:
         fail(
-            f"{segment_id} would start before the sensor's clock does: move the start at most "
+            f"{segment_id} would start before time 0 of the sensor's clock: move the start by at most "
             f"{start_ns / SECOND_NS:g} s earlier"
         )
     _shift(file, marked, in_ns(start), in_ns(until_s - duration_s))

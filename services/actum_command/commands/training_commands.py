@@ -15,7 +15,7 @@ from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
 from actum_command.commands.service_flags import with_search_flags
 from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say, write_text
-from actum_command.preset_settings import SETTINGS, PresetError, preset_named
+from actum_command.preset_settings import PresetError, preset_named
 from actum_command.search_settings import segmentation_of
 from actum_command.service_settings import Given, flag_of
 from actum_model_trainer.cross_validation import leave_one_person_out
@@ -24,18 +24,33 @@ from actum_model_trainer.report import report
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import TrainingError, train_to_spot
 from actum_model_trainer.warnings import warnings_of
+from som_classifier.attention import ATTENTIONS
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
 from som_classifier.segmentation import Segmentation
 
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of them")]
-PresetOption = Annotated[str, typer.Option(help=f"preset of the model: {', '.join(PRESETS)}")]
+PresetOption = Annotated[
+    str,
+    typer.Option(
+        metavar=f"<{'|'.join(PRESETS)}>",
+        help=f"kind of model to train: {DEFAULT.name} is more accurate; {PAPER.name} is the published method",
+    ),
+]
+SET_HELP = (
+    f"change a setting of --preset {PAPER.name}; may be repeated. axes: posture (axes of the body, computed "
+    "anew in each frame) or upright (vertical and smoothed over time; default). origin: torso (default) or hips; "
+    f"positions are relative to it. attention: the body part that is looked at, one of {', '.join(ATTENTIONS)}; moving "
+    "(default) is the part that moves most"
+)
 SetOption = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="NAME=VALUE", help=f"of preset {PAPER.name}, once each: " + SETTINGS),
+    typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP),
 ]
-SeedOption = Annotated[int, typer.Option(min=0, help="seed of the random numbers; the same seed makes the same model")]
+SeedOption = Annotated[
+    int, typer.Option(min=0, help="seed of the random numbers; the same seed and recordings give the same model")
+]
 
 
 def train_command(
@@ -47,7 +62,7 @@ def train_command(
     seed: SeedOption = 0,
     with_excluded: AllOption = False,
 ) -> None:
-    """Train a model on labelled recordings."""
+    """Train a model on labelled recordings, and write it to a file for 'actum up --model'."""
     began_s = time.monotonic()
     _refuse_place(output)
     refuse_ending(output, ".npz")
@@ -76,17 +91,33 @@ def train_command(
 def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     given: Given,
     files: Annotated[
-        list[Path], typer.Argument(help="a model file and recordings, or with --leave-one-person-out only recordings")
+        list[Path],
+        typer.Argument(
+            help=("a model file, then recordings or folders of them; with --leave-one-person-out only recordings")
+        ),
     ],
     person: PersonOption = None,
-    json_file: Annotated[Path | None, typer.Option("--json", help="a JSON file to write every prediction to")] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", help="also write every prediction to this file (.json)")
+    ] = None,
     by_person: Annotated[
-        bool, typer.Option("--leave-one-person-out", help="train without each person in turn and test on that person")
+        bool,
+        typer.Option(
+            "--leave-one-person-out",
+            help=(
+                "in place of testing a model file, train on all people but one and test on that one, for "
+                "each person in turn"
+            ),
+        ),
     ] = False,
     continuous: Annotated[
         bool,
         typer.Option(
-            "--continuous", help="evaluate whole recordings, in which the model has to find the actions without marks"
+            "--continuous",
+            help=(
+                "test whether the model finds the actions by itself; default: it is given the start and "
+                "end of each labelled action"
+            ),
         ),
     ] = False,
     preset: PresetOption = DEFAULT.name,
@@ -94,13 +125,16 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     seed: SeedOption = 0,
     with_excluded: AllOption = False,
 ) -> None:
-    """Test a model on labelled recordings, or test a preset on each person after training on all others."""
+    """Test how well actions are recognised in labelled recordings, and print the scores.
+
+    Name a model file to test that model, or use --leave-one-person-out to learn how well a model works with new people.
+    """
     if json_file is not None:
         _refuse_place(json_file)
         refuse_ending(json_file, ".json")
     if not by_person and len(files) == 1:
         fail(
-            f"a model and at least one recording are needed, but only {files[0]} was named: name both, or use "
+            f"a model and at least one recording are needed, but only {files[0]} was given: give both, or use "
             "--leave-one-person-out with recordings alone"
         )
     try:
@@ -108,7 +142,7 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     except ModelError as error:
         fail(str(error))
     if given and not continuous:
-        fail(f"{flag_of(next(iter(given)))} applies to actions found without marks: add --continuous")
+        fail(f"{flag_of(next(iter(given)))} works only together with --continuous: add --continuous")
     recordings = chosen(files if by_person else files[1:], person, with_excluded)
     what = model, recordings, _preset(preset, settings), seed, json_file
     if continuous:
@@ -153,7 +187,7 @@ def _preset(name: str, settings: list[str] | None) -> Preset:
 def _show(result: Evaluation, seconds: float) -> None:
     if result.n == 0:
         fail(
-            "these recordings hold no labelled segment: record with 'actum record --label', or label them with "
+            "these recordings contain no labelled segment: record with 'actum record --label', or label them with "
             "'actum label'"
         )
     console.print(report(result, seconds))

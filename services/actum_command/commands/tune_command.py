@@ -21,24 +21,40 @@ from som_classifier.segmentation import Segmentation
 def tune(
     model: Annotated[Path, typer.Argument(metavar="MODEL", help="the model file to tune")],
     files: Annotated[
-        list[Path], typer.Argument(metavar="REC...", help="labelled continuous recordings, or folders of them")
+        list[Path],
+        typer.Argument(
+            metavar="REC...",
+            help=("recordings, or folders of them, in which all actions are labelled and people also do other things"),
+        ),
     ],
     false_alarms_per_min: Annotated[
         float | None,
         typer.Option(
-            metavar="X", help="accepted false alarms per minute of background activity; default: no limit (1/min)"
+            metavar="X",
+            help=("maximum number of false alarms per minute in which no action is done; default: no limit (1/min)"),
         ),
     ] = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="the settings file to write (.toml), for ACTUM_CONFIG")
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            help=(
+                "write the chosen settings to this file (.toml); services read it if ACTUM_CONFIG names "
+                "it. Default: they are only printed"
+            ),
+        ),
     ] = None,
     person: PersonOption = None,
     with_excluded: AllOption = False,
 ) -> None:
-    """Choose sensitivity, shortest pause, cooldowns and disabled actions for a model, and print their effect."""
+    """Choose settings with which a model finds actions without marks best, and print the settings and their effect.
+
+    It chooses --false-alarms-per-min, --shortest-pause-s, --cooldown-s and --disabled-actions of the classifier.
+    """
     began_s = time.monotonic()
     if false_alarms_per_min is not None and not 0 < false_alarms_per_min < float("inf"):
-        fail(f"--false-alarms-per-min {false_alarms_per_min:g} is not a usable rate: allow more than 0 false alarms")
+        fail(f"--false-alarms-per-min {false_alarms_per_min:g} is not a usable rate: give a number above 0")
     if output is not None:
         _refuse(output)
     try:

@@ -22,15 +22,17 @@ if TYPE_CHECKING:
 def view(
     recording: RecordingArgument = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="the Rerun file to write (.rrd), in place of opening a viewer")
+        Path | None, typer.Option("-o", "--output", help="write a Rerun file (.rrd) in place of opening a viewer")
     ] = None,
-    web: Annotated[bool, typer.Option("--web", help="serve the viewer as a web page to this machine only")] = False,
-    port: Annotated[int, typer.Option(min=1, max=65535, help="port on which the viewer receives data")] = 9876,
-    web_port: Annotated[int, typer.Option(min=1, max=65535, help="port of the web page with --web")] = 9090,
+    web: Annotated[
+        bool, typer.Option("--web", help="show the viewer in a browser on this machine, in place of a window")
+    ] = False,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="port at which the Rerun viewer receives data")] = 9876,
+    web_port: Annotated[int, typer.Option(min=1, max=65535, help="port of the web page; only with --web")] = 9090,
 ) -> None:
-    """Show live streams or a recording in Rerun, with people, objects, images, curves and events, until Ctrl-C.
+    """Show live streams or a recording in the Rerun viewer: people, objects, images, curves and events, until Ctrl-C.
 
-    A recording is loaded as a whole, so that its timeline can be scrubbed.
+    A recording is loaded as a whole, so that you can move back and forth in it.
     """
     refuse_without("rerun", "rerun-sdk", "view")
     if output is not None:

@@ -21,20 +21,25 @@ BY_DEFAULT = [keys.EVENT]
 
 def watch(
     topics: Annotated[
-        list[str] | None, typer.Argument(help=f"topics to print: {', '.join(WATCHABLE)}; default: event")
+        list[str] | None,
+        typer.Argument(help=f"kinds of messages to print, one or more of {', '.join(WATCHABLE)}; default: event"),
     ] = None,
     as_json: Annotated[
-        bool, typer.Option("--json", help="print one JSON object per line with all fields; bytes as URL-safe base64")
+        bool,
+        typer.Option(
+            "--json",
+            help=("print each message with all its fields as one line of JSON; binary fields are base64 (URL-safe)"),
+        ),
     ] = False,
     recorded: Annotated[
         list[Path] | None,
-        typer.Option("--from", help="recordings to print in place of the live streams, or folders of them"),
+        typer.Option("--from", help="recordings, or folders of them, to print in place of live messages"),
     ] = None,
 ) -> None:
-    """Print each message in one line, with its time, key, segment and content, until Ctrl-C.
+    """Print live messages, one per line with time, key, segment and content, until Ctrl-C.
 
-    On a terminal, events and actions stand above a line for each person, which shows the ongoing action and its
-    completeness. With --from it prints recordings, including files that 'actum record --events' is still writing.
+    On a terminal, a line at the bottom also shows each person's ongoing action and how complete it is. With --from it
+    prints recordings instead, even those that 'actum record --events' is still writing.
     """
     named = {name: WATCHABLE.get(name) or WATCHABLE.get(name.removesuffix("s")) for name in topics or []}
     for name in (name for name, topic in named.items() if topic is None):
