@@ -65,7 +65,7 @@ def test_the_advice_about_marks_follows_the_environment_too(
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
-        (["--source", "camera", "--marked"], "only the simulated scene marks its own actions"),
+        (["--source", "camera", "--marked"], "--marked works only with --source simulator"),
         (["--segments", "auto", "--marked"], "--segments auto ignores marks"),
     ],
 )
