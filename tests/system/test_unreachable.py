@@ -80,7 +80,7 @@ def test_a_host_to_which_no_route_leads(running: System) -> None:
 
 
 def test_a_router_that_is_frozen(running: System) -> None:
-    router = running.start_router()
+    router = running.start_router_process()
     with running.client():
         pass
     router.process.send_signal(signal.SIGSTOP)
