@@ -11,7 +11,7 @@ PYTHONS ?= python3.11 python3.12 python3.13
 LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
 LOCKS := deploy/requirements
 
-.PHONY: install demo first-event simulated-model up test test-pythons fuzz soak test-browser test-long test-benchmarks test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
+.PHONY: install demo first-event simulated-model up test test-pythons fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -42,11 +42,8 @@ first-event:  ## seconds from a clone in an empty folder to the first event of t
 up: $(RUNS)  ## router and all services, until Ctrl-C
 	$(BIN)/actum up
 
-test: check  ## static checks, then every test but the long ones and those of benchmarks
-	$(BIN)/pytest -n 4 --dist worksteal --ignore tests/benchmarks
-
-test-benchmarks: $(STAMP)  ## the tests of what is in benchmarks; each benchmark runs them first
-	$(BIN)/pytest -n 2 tests/benchmarks
+test: check  ## static checks, then every test but the long ones
+	$(BIN)/pytest -n 4 --dist worksteal
 
 test-pythons:  ## install and test with each of PYTHONS that is at hand, each in an environment of its own
 	@tested=; for python in $(PYTHONS); do \
@@ -86,62 +83,62 @@ fuzz: $(STAMP)  ## hostile messages by the hundred thousand to every service, th
 	PYTHONPATH=tests $(BIN)/python -m fuzzing
 
 MINUTES ?= 20
-soak: test-benchmarks  ## all services with four people and images for MINUTES=20: memory, losses, latency by the minute
+soak: $(STAMP)  ## all services with four people and images for MINUTES=20: memory, losses, latency by the minute
 	$(BIN)/python -m benchmarks.soak --minutes $(MINUTES)
 
-check: $(STAMP)  ## format, lint, types, layers
+check: docs  ## format, lint, types, layers, pages
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/ruff check --quiet .
 	$(BIN)/mypy --no-error-summary
 	$(BIN)/lint-imports --no-cache > /dev/null || $(BIN)/lint-imports
 
-bench: test-benchmarks  ## latency beside a bare Zenoh chain and behind a secured router, and throughput
+bench: $(STAMP)  ## latency beside a bare Zenoh chain and behind a secured router, and throughput
 	$(BIN)/python -m benchmarks.latency
 
-bench-camera: test-benchmarks  ## real people in video clips, beside the same peers, about five minutes
+bench-camera: $(STAMP)  ## real people in video clips, beside the same peers, about five minutes
 	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
 	@test -d "$$ACTUM_DATA" || { echo "bench-camera needs ACTUM_DATA: the folder that holds florence3d_rgb/" >&2; exit 1; }
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
 	$(BIN)/python -m benchmarks.camera
 
-bench-camera-continuous: test-benchmarks  ## real people in joined clips, found live without marks, about ten minutes
+bench-camera-continuous: $(STAMP)  ## real people in joined clips, found live without marks, about ten minutes
 	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera-continuous needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
 	@test -d "$$ACTUM_DATA" || { echo "bench-camera-continuous needs ACTUM_DATA: the folder that holds florence3d_rgb/ and people_video/" >&2; exit 1; }
 	$(BIN)/python -m benchmarks.camera.continuous
 
-bench-camera-latency: test-benchmarks  ## from a picture's capture to the event, beside the pose model's own time
+bench-camera-latency: $(STAMP)  ## from a picture's capture to the event, beside the pose model's own time
 	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera-latency needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
 	@test -d "$$ACTUM_DATA" || { echo "bench-camera-latency needs ACTUM_DATA: the folder that holds florence3d_rgb/" >&2; exit 1; }
 	$(BIN)/python -m benchmarks.camera_latency
 
-bench-continuous: test-benchmarks  ## finding actions that nobody marked, beside peers given the same frames
+bench-continuous: $(STAMP)  ## finding actions that nobody marked, beside peers given the same frames
 	@test -d "$$ACTUM_DATA" || { echo "bench-continuous needs ACTUM_DATA: the folder that holds utkinect/ and msrc12/" >&2; exit 1; }
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
 	$(BIN)/python -m benchmarks.continuous
 
-bench-maps: test-benchmarks  ## the map library beside MiniSom
+bench-maps: $(STAMP)  ## the map library beside MiniSom
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
 	$(BIN)/python -m benchmarks.som
 
-bench-recognition: test-benchmarks  ## the recogniser beside its peers on public recordings, about three quarters of an hour
+bench-recognition: $(STAMP)  ## the recogniser beside its peers on public recordings, about three quarters of an hour
 	@test -d "$$ACTUM_DATA" || { echo "bench-recognition needs ACTUM_DATA: the folder that holds msr_action3d/, utkinect/ and msrc12/" >&2; exit 1; }
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
 	$(BIN)/python -m benchmarks.recognition
 
-bench-objects: test-benchmarks  ## the right object in simulated scenes that are hard to see, about fifteen minutes
+bench-objects: $(STAMP)  ## the right object in simulated scenes that are hard to see, about fifteen minutes
 	$(BIN)/python -m benchmarks.objects
 
-bench-paper: test-benchmarks  ## preset paper by the paper's own protocols, step by step, and its figures
+bench-paper: $(STAMP)  ## preset paper by the paper's own protocols, step by step, and its figures
 	@test -d "$$ACTUM_DATA" || { echo "bench-paper needs ACTUM_DATA: the folder that holds gharaee_set1/, msr_action3d/ and utkinect/" >&2; exit 1; }
 	$(BIN)/python -m benchmarks.paper
 
-bench-page: test-benchmarks  ## what the page costs with several browsers, some minutes; needs Chromium
+bench-page: $(STAMP)  ## what the page costs with several browsers, some minutes; needs Chromium
 	$(BIN)/python -m benchmarks.page_cost
 
-bench-tracker: test-benchmarks  ## what the marker tracker costs for an image and how exact it is, beside OpenCV, about ten minutes
+bench-tracker: $(STAMP)  ## what the marker tracker costs for an image and how exact it is, beside OpenCV, about ten minutes
 	$(BIN)/python -m benchmarks.tracker
 
-chaos: test-benchmarks  ## 40 times a service or router is killed, paused or cut off, and every answer judged; ten minutes; SEED=1
+chaos: $(STAMP)  ## 40 times a service or router is killed, paused or cut off, and every answer judged; ten minutes; SEED=1
 	$(BIN)/python -m benchmarks.chaos $(if $(SEED),--seed $(SEED))
 
 picture: $(STAMP)  ## the README's pictures

@@ -86,7 +86,7 @@ def _trials(heard: Sequence[Message], measures: Mapping[str, Settings] = MEASURE
     tools = _tools(starts, truths)
     for number, start in starts.items():
         target = truths[number].object_id if number in truths else None
-        seconds = (stamp_of(ends[number]) - stamp_of(start)) / 1e9
+        seconds = (_stamp_of(ends[number]) - _stamp_of(start)) / 1e9
         found = {name: of_segment[number] for name, of_segment in events.items()}
         yield Trial(str(start.label), seconds, target, tools.get(number), found)
 
@@ -102,7 +102,7 @@ def _events(
     return {event.segment_id: event for event in answered if isinstance(event, Event)}
 
 
-def stamp_of(mark: Segment) -> int:
+def _stamp_of(mark: Segment) -> int:
     """Return the stamp that the importer gave a mark."""
     assert mark.stamp_ns is not None
     return mark.stamp_ns
@@ -110,12 +110,12 @@ def stamp_of(mark: Segment) -> int:
 
 def _nameless(start: Segment, end: Segment) -> Action:
     return Action(
-        stamp_ns=stamp_of(end),
+        stamp_ns=_stamp_of(end),
         sensor=start.sensor,
         agent=start.agent or 0,
         segment_id=start.segment_id,
-        start_ns=stamp_of(start),
-        end_ns=stamp_of(end),
+        start_ns=_stamp_of(start),
+        end_ns=_stamp_of(end),
         final=True,
         action=NAMELESS,
         confidence=1.0,

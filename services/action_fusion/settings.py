@@ -15,22 +15,20 @@ class Settings(ServiceSettings):
     measure: Literal["joint", "proximity"] = Field(
         "joint",
         description=(
-            "how to decide which object an action was done to: joint weighs distance, reaching and "
-            "moving together; proximity takes the object nearest to a hand"
+            "how to decide which object an action was done to: joint weighs distance, reaching and moving together; "
+            "proximity takes the object nearest to a hand"
         ),
     )
     reach_m: float = Field(
         0.25,
         gt=0,
         description=(
-            "maximum distance between a hand and the marker of an object that it can reach; a tool in "
-            "the hand adds --grasp-m (m)"
+            "maximum distance between a hand and the marker of an object that it can reach; a tool in the hand adds "
+            "--grasp-m (m)"
         ),
     )
     grasp_m: float = Field(
-        0.20,
-        gt=0,
-        description="maximum distance between the centres of a hand and an object that counts as held (m)",
+        0.20, gt=0, description="maximum distance between the centres of a hand and an object that counts as held (m)"
     )
     moved_m: float = Field(0.03, gt=0, description="minimum displacement of an object that counts as moved (m)")
     pointing_labels: frozenset[str] = Field(
@@ -41,35 +39,32 @@ class Settings(ServiceSettings):
         gt=0,
         lt=180,
         description=(
-            "maximum angle between the pointing arm and the direction to an object; other objects are"
-            " not pointed at (deg)"
+            "maximum angle between the pointing arm and the direction to an object; other objects are not pointed "
+            "at (deg)"
         ),
     )
     uncertainty_m: float = Field(
         0.02,
         ge=0,
-        description=("an event names two possible objects if their distances to the hand differ by less than this (m)"),
+        description="an event names two possible objects if their distances to the hand differ by less than this (m)",
     )
     pointing_uncertainty_deg: float = Field(
         2.0,
         ge=0,
-        description=(
-            "an event names two possible objects if their angles to the pointing arm differ by less than this (deg)"
-        ),
+        description="an event names two possible objects if their angles to the arm differ by less than this (deg)",
     )
     expected_outcomes: dict[str, str] = Field(
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description=(
-            "what each action does to its object, such as lift=lifted,push=pushed; an object that is "
-            "held during these actions is their object, not a tool"
+            "what each action does to its object, such as lift=lifted,push=pushed; an object that is held during "
+            "these actions is their object, not a tool"
         ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(as_text)] = Field(
         None,
         description=(
-            "transform from camera coordinates to those of a room or robot: a 4 x 4 matrix as 16 "
-            "numbers, row by row, or a file of them. Events then give object poses in both. Default: "
-            "camera coordinates only"
+            "transform from camera coordinates to those of a room or robot: a 4 x 4 matrix as 16 numbers, row by "
+            "row, or a file of them. Events then give object poses in both. Default: camera coordinates only"
         ),
     )
     world_frame: str = Field(

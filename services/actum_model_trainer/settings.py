@@ -15,19 +15,19 @@ class Settings(ServiceSettings):
 
     trainer_data: Path = Field(
         default_factory=lambda: data_folder() / "teaching",
-        description=("the folder in which the trainer keeps recorded examples, models and the results of trainings"),
+        description="the folder in which the trainer keeps recorded examples, models and the results of trainings",
     )
     model: Path | None = Field(
         None,
         description=(
-            "the file to which the trainer copies the model in use, for the classifier to load; "
-            "default: model.npz in --trainer-data"
+            "the file to which the trainer copies the model in use, for the classifier to load; default: model.npz "
+            "in --trainer-data"
         ),
     )
     original_model: Path | None = Field(
         None,
         description=(
-            "a model file to start from: whenever it changes, it is copied over --model. The trainer never "
-            "writes to it. Default: none"
+            "a model file to start from: whenever it changes, it is copied over --model. The trainer never writes "
+            "to it. Default: none"
         ),
     )

@@ -26,8 +26,8 @@ class Settings(ServiceSettings):
     scene: Path | None = Field(
         None,
         description=(
-            "a YAML file that describes the objects and their markers; replaces --dictionary, "
-            "--marker-size-m and --objects"
+            "a YAML file that describes the objects and their markers; replaces --dictionary, --marker-size-m and "
+            "--objects"
         ),
     )
     dictionary: str = Field("DICT_4X4_50", description="the marker family that was printed, by OpenCV's name")
@@ -40,16 +40,13 @@ class Settings(ServiceSettings):
         ),
     )
     memory_s: float = Field(
-        1.0,
-        gt=0,
-        le=60,
-        description=("how long an object is still published after its marker was last seen (s)"),
+        1.0, gt=0, le=60, description="how long an object is still published after its marker was last seen (s)"
     )
     calibrated_size_px: tuple[Pixels, Pixels] | None = Field(
         None,
         description=(
-            "width and height of the images used for calibration, such as 1280,720; needed if the "
-            "camera now delivers another size (px)"
+            "width and height of the images used for calibration, such as 1280,720; needed if the camera now "
+            "delivers another size (px)"
         ),
     )
 

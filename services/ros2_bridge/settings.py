@@ -27,9 +27,7 @@ class Settings(ServiceSettings):
     ros_domain_id: int = Field(0, ge=0, le=HIGHEST_DOMAIN, description="the ROS_DOMAIN_ID of your ROS 2 nodes")
     ros_namespace: str | None = Field(
         None,
-        description=(
-            "ROS namespace of all topics except /tf and /tf_static; default: actum/SENSOR, such as actum/kinect0"
-        ),
+        description="ROS namespace of all topics but /tf and /tf_static; default: actum/SENSOR, such as actum/kinect0",
     )
     ros_distro: Literal["humble", "jazzy", "kilted"] = Field(
         "jazzy",
@@ -43,9 +41,8 @@ class Settings(ServiceSettings):
         None,
         min_length=1,
         description=(
-            "name of the camera's optical frame in your robot's tf tree, which the bridge then does "
-            "not publish. Default: the bridge publishes SENSOR_link and, below it, "
-            "SENSOR_optical_frame on /tf_static"
+            "name of the camera's optical frame in your robot's tf tree, which the bridge then does not publish. "
+            "Default: the bridge publishes SENSOR_link and, below it, SENSOR_optical_frame on /tf_static"
         ),
     )
 

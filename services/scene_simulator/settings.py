@@ -19,7 +19,7 @@ class Settings(ServiceSettings):
     actor: int = Field(
         0,
         ge=0,
-        description=("which simulated person acts: each number has another body height, tempo and preferred hand"),
+        description="which simulated person acts: each number has another body height, tempo and preferred hand",
     )
     seed: int = Field(
         1, ge=0, description="seed of the random variation between repetitions; the same seed gives the same movements"
@@ -27,7 +27,7 @@ class Settings(ServiceSettings):
     repetitions: int = Field(
         0,
         ge=0,
-        description=("how often the simulated person does each action; 0 repeats them until the service is stopped"),
+        description="how often the simulated person does each action; 0 repeats them until the service is stopped",
     )
     image_hz: Annotated[Literal[0, 5, 10, 15, 30], BeforeValidator(_number)] = Field(
         15, description="colour images per second; 0 publishes no images (1/s)"
@@ -35,30 +35,28 @@ class Settings(ServiceSettings):
     everyday: Choice = Field(
         "none",
         description=(
-            "background activity between the actions, such as scratching: none; familiar (some kinds,"
-            " for training); all (every kind, for tests); only (every kind, but no actions)"
+            "background activity between the actions, such as scratching: none; familiar (some kinds, for "
+            "training); all (every kind, for tests); only (every kind, but no actions)"
         ),
     )
     minutes: float = Field(
         1.0,
         ge=0,
         description=(
-            "minimum length of the scene; background activity fills the time after the last action. "
-            "Without effect if --everyday is none (min)"
+            "minimum length of the scene; background activity fills the time after the last action. Without effect "
+            "if --everyday is none (min)"
         ),
     )
     pauses: Pauses = Field(
         "long",
         description=(
-            "what happens between two actions: long is up to three background activities and rests, "
-            "short is at most one. Without effect if --everyday is none"
+            "what happens between two actions: long is up to three background activities and rests, short is at "
+            "most one. Without effect if --everyday is none"
         ),
     )
     driven: bool = Field(
         False,
-        description=(
-            "let the simulated person stand still until an action is chosen on the web page or by the command 'perform'"
-        ),
+        description="let the simulated person stand still until the page or the command 'perform' asks for an action",
     )
     actors: int = Field(
         1,

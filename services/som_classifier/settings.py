@@ -39,19 +39,17 @@ class Settings(ServiceSettings):
 
     model: Path | None = Field(
         None,
-        description=(
-            "the model file (.npz), loaded whenever it appears or changes; without one no action is recognised"
-        ),
+        description="the model file (.npz), loaded whenever it appears or changes; without one no action is recognised",
     )
     publish_maps: bool = Field(
         False,
-        description=("publish, with each final action, how the model's maps responded to it; the web page draws this"),
+        description="publish, with each final action, how the model's maps responded to it; the web page draws this",
     )
     segments: WantedSegments = Field(
         "both",
         description=(
-            "which actions to recognise: those between start and end marks (marks), those that the "
-            "classifier finds without marks (auto), or both, where marks take precedence"
+            "which actions to recognise: those between start and end marks (marks), those that the classifier finds "
+            "without marks (auto), or both, where marks take precedence"
         ),
     )
     false_alarms_per_min: float | None = Field(
@@ -59,8 +57,8 @@ class Settings(ServiceSettings):
         gt=0,
         allow_inf_nan=False,
         description=(
-            "accepted false alarms per minute in which no action is done; a higher value misses fewer"
-            " actions. Default: the value in the model (1/min)"
+            "accepted false alarms per minute in which no action is done; a higher value misses fewer actions. "
+            "Default: the value in the model (1/min)"
         ),
     )
     shortest_pause_s: Seconds = Field(
@@ -69,20 +67,20 @@ class Settings(ServiceSettings):
     cooldown_s: Annotated[dict[str, Seconds], NoDecode, BeforeValidator(_pairs)] = Field(
         {},
         description=(
-            "minimum time until the same action is published again, by action, such as wave=3,clap=1;"
-            " marked actions are not affected. Default: 0 for all (s)"
+            "minimum time until the same action is published again, by action, such as wave=3,clap=1; marked "
+            "actions are not affected. Default: 0 for all (s)"
         ),
     )
     enabled_actions: Names = Field(
         frozenset(),
         description=(
-            "publish only these actions, such as wave,clap; marked actions are not affected. Default:"
-            " all actions of the model"
+            "publish only these actions, such as wave,clap; marked actions are not affected. Default: all actions "
+            "of the model"
         ),
     )
     disabled_actions: Names = Field(
         frozenset(),
-        description=("never publish these actions, such as wave,clap; marked actions are not affected. Default: none"),
+        description="never publish these actions, such as wave,clap; marked actions are not affected. Default: none",
     )
 
     @property

@@ -30,7 +30,7 @@ class Settings(ServiceSettings):
 
     page_host: str = Field(
         "127.0.0.1",
-        description=("address that the web page listens on; 0.0.0.0 admits other machines and requires --page-token"),
+        description="address that the web page listens on; 0.0.0.0 admits other machines and requires --page-token",
     )
     page_port: int | None = Field(
         None, ge=0, le=HIGHEST_PORT, description="port of the web page; default: 8080, or the next free port"
@@ -39,20 +39,20 @@ class Settings(ServiceSettings):
         None,
         min_length=SHORTEST_TOKEN,
         pattern=r"^[A-Za-z0-9_.~-]+$",
-        description=("secret that a browser needs to open the web page; required if --page-host admits other machines"),
+        description="secret that a browser needs to open the web page; required if --page-host admits other machines",
     )
     page_guarded: bool = Field(
         False,
         description=(
-            "do not require --page-token; use this only if something else controls access, such as a "
-            "container whose port is published on 127.0.0.1 only"
+            "do not require --page-token; use this only if something else controls access, such as a container "
+            "whose port is published on 127.0.0.1 only"
         ),
     )
     page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(
         frozenset(),
         description=(
-            "further host names in the page's address, such as lab.example.org; requests for other "
-            "names are refused. Default: this machine's own name and addresses"
+            "further host names in the page's address, such as lab.example.org; requests for other names are "
+            "refused. Default: this machine's own name and addresses"
         ),
     )
 

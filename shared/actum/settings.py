@@ -110,16 +110,14 @@ class ServiceSettings(BaseSettings):
     sensor: str = Field(
         "kinect0",
         pattern=f"^{CHUNK.pattern}$",
-        description=(
-            "name of the sensor, such as kinect0; a program exchanges messages only with programs of the same sensor"
-        ),
+        description="name of the sensor, such as kinect0; programs exchange messages only within one sensor",
     )
     instance: str = Field(
         default_factory=default_instance,
         pattern=f"^{CHUNK.pattern}$",
         description=(
-            "name that tells this process from others of the same service; made from host name and "
-            "process id where none is given"
+            "name that tells this process from others of the same service; made from host name and process id where "
+            "none is given"
         ),
     )
     take_over: bool = Field(
@@ -128,29 +126,29 @@ class ServiceSettings(BaseSettings):
     zenoh_config: Path | None = Field(
         None,
         description=(
-            "a Zenoh configuration file (JSON5), such as for TLS and user names; the other settings "
-            "here take precedence"
+            "a Zenoh configuration file (JSON5), such as for TLS and user names; the other settings here take "
+            "precedence"
         ),
     )
     credentials: Path | None = Field(
         None,
         description=(
-            "a folder of certificate and key that `actum deploy` wrote, such as credentials/viewer; "
-            "needs --connect tls/host:port"
+            "a folder of certificate and key that `actum deploy` wrote, such as credentials/viewer; needs --connect "
+            "tls/host:port"
         ),
     )
     state: Path | None = Field(
         None,
         description=(
-            "a folder in which the classifier and the fusion keep their last answers, to publish them"
-            " again after a restart; other services ignore it. Default: none are kept"
+            "a folder in which the classifier and the fusion keep their last answers, to publish them again after a "
+            "restart; other services ignore it. Default: none are kept"
         ),
     )
     health_file: Path | None = Field(
         None,
         description=(
-            "a file whose time is renewed every second while the service works, for a container's "
-            "health check; default: none"
+            "a file whose time is renewed every second while the service works, for a container's health check; "
+            "default: none"
         ),
     )
 

@@ -361,7 +361,7 @@ def test_a_video_whose_job_cannot_be_started_can_be_imported_again(taught: Path,
     assert list((teacher.folder / "jobs").iterdir()) == [] and teacher.tick().job is None
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.tuples(st.sampled_from("abc"), st.integers(0, 60), st.booleans(), st.booleans()), max_size=15))
 def test_uploads_never_take_more_than_the_total(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, pieces: list[tuple[str, int, bool, bool]]

@@ -43,8 +43,7 @@ def intrinsics(
     output: Output,
     images: Annotated[list[Path] | None, typer.Argument(help="pictures of the board, or folders of them")] = None,
     live: Annotated[
-        bool,
-        typer.Option("--live", help="take the pictures from the running camera, in place of files"),
+        bool, typer.Option("--live", help="take the pictures from the running camera, in place of files")
     ] = False,
     board: Squares = "7x5",
     square_mm: SquareMm = 35.0,
@@ -85,8 +84,8 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
         list[Path] | None,
         typer.Argument(
             help=(
-                "pairs of pictures taken at the same time: NAME_a.png from the camera that sees the "
-                "markers, NAME_b.png from the one that sees the people. Two folders of them do as well"
+                "pairs of pictures taken at the same time: NAME_a.png from the camera that sees the markers, "
+                "NAME_b.png from the one that sees the people. Two folders of them do as well"
             )
         ),
     ] = None,

@@ -42,8 +42,8 @@ def demo(
         typer.Option(
             min=0,
             help=(
-                "number of simulated people to test on, none of whom the model was trained on; 0 tests on"
-                " one person of the training"
+                "number of simulated people to test on, none of whom the model was trained on; 0 tests on one "
+                "person of the training"
             ),
         ),
     ] = SHOWN,
@@ -52,7 +52,7 @@ def demo(
         bool,
         typer.Option(
             "--marked",
-            help=("repeat the paper's experiment: train on one person, and mark the start and end of every action"),
+            help="repeat the paper's experiment: train on one person, and mark the start and end of every action",
         ),
     ] = False,
 ) -> None:

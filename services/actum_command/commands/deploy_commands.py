@@ -40,8 +40,8 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             metavar="NAME=ADDRESS,…",
             help=(
-                "the hosts and their addresses, such as camera=192.168.1.5,compute=192.168.1.6. Name "
-                "further ones camera2, compute2; append :PORT if a router needs another port"
+                "the hosts and their addresses, such as camera=192.168.1.5,compute=192.168.1.6. Name further ones "
+                "camera2, compute2; append :PORT if a router needs another port"
             ),
         ),
     ],
@@ -49,7 +49,7 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str | None,
         typer.Option(
             metavar="NAME,…",
-            help=("the sensors' names, one for each camera host, such as door,window; default: kinect0,kinect1,…"),
+            help="the sensors' names, one for each camera host, such as door,window; default: kinect0,kinect1,…",
         ),
     ] = None,
     one_router: Annotated[
@@ -72,7 +72,7 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
             metavar="DOMAIN",
             min=0,
             max=232,
-            help=("add the bridge to ROS 2, for nodes with this ROS_DOMAIN_ID (usually 0); default: no bridge"),
+            help="add the bridge to ROS 2, for nodes with this ROS_DOMAIN_ID (usually 0); default: no bridge",
         ),
     ] = None,
     not_secured: Annotated[
@@ -118,8 +118,8 @@ def rotate(
         typer.Option(
             metavar="NAME",
             help=(
-                "make routers refuse the old certificate of this credentials folder, such as viewer; may "
-                "be repeated. Default: none is refused"
+                "make routers refuse the old certificate of this credentials folder, such as viewer; may be "
+                "repeated. Default: none is refused"
             ),
         ),
     ] = None,

@@ -31,8 +31,8 @@ def foxglove(
         list[str] | None,
         typer.Option(
             help=(
-                "a website that may connect, such as https://app.foxglove.dev; may be repeated. Default: "
-                "only programs, no websites"
+                "a website that may connect, such as https://app.foxglove.dev; may be repeated. Default: only "
+                "programs, no websites"
             )
         ),
     ] = None,

@@ -56,8 +56,8 @@ def msrc12(
         typer.Option(
             "--trimmed",
             help=(
-                "start and end each segment where the movement visibly starts and ends; default: a fixed "
-                "time about each action point"
+                "start and end each segment where the movement visibly starts and ends; default: a fixed time about "
+                "each action point"
             ),
         ),
     ] = False,
@@ -66,8 +66,8 @@ def msrc12(
         typer.Option(
             "--composed",
             help=(
-                "join the gestures of each person to two recordings of mixed gestures, with segments as "
-                "with --trimmed; default: one recording per original file"
+                "join the gestures of each person to two recordings of mixed gestures, with segments as with "
+                "--trimmed; default: one recording per original file"
             ),
         ),
     ] = False,
@@ -96,15 +96,15 @@ def video(
         str,
         typer.Option(
             help=(
-                "regular expression for the file names without their ending; its named groups action and "
-                "person supply label and person"
+                "regular expression for the file names without their ending; its named groups action and person "
+                "supply label and person"
             )
         ),
     ] = DEFAULT_PATTERN,
     names: Annotated[
         str,
         typer.Option(
-            help=("what the actions in file names are called, such as 1=wave,2=drink; default: as in the file names")
+            help="what the actions in file names are called, such as 1=wave,2=drink; default: as in the file names"
         ),
     ] = "",
     people: Annotated[int, typer.Option(min=1, max=4, help="maximum number of people to find in a clip")] = 1,

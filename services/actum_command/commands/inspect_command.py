@@ -35,8 +35,8 @@ def inspect(
         typer.Argument(
             metavar="[REC]...",
             help=(
-                "recordings, or folders of them, whose actions the model is to explain; default: only the"
-                " model is drawn"
+                "recordings, or folders of them, whose actions the model is to explain; default: only the model is "
+                "drawn"
             ),
         ),
     ] = None,

@@ -53,7 +53,7 @@ Agent = Annotated[
     int | None,
     typer.Option(
         min=1,
-        help=("track number of the person who acts (agent in the messages); default: the person nearest to the camera"),
+        help="track number of the person who acts (agent in the messages); default: the person nearest to the camera",
     ),
 ]
 
@@ -86,18 +86,13 @@ def move(
     start: Annotated[
         str | None,
         typer.Option(
-            help=(
-                "new start, such as 12.3; with a sign it is relative: +0.2 is later, -0.1 earlier. "
-                "Default: unchanged (s)"
-            )
+            help="new start, such as 12.3, or relative to the old: +0.2 is later, -0.1 earlier; default: unchanged (s)"
         ),
     ] = None,
     end: Annotated[
         str | None,
         typer.Option(
-            help=(
-                "new end, such as 14.1; with a sign it is relative: +0.2 is later, -0.1 earlier. Default: unchanged (s)"
-            )
+            help="new end, such as 14.1, or relative to the old: +0.2 is later, -0.1 earlier; default: unchanged (s)"
         ),
     ] = None,
 ) -> None:
@@ -211,8 +206,8 @@ def picture(
         Path | None,
         typer.Option(
             help=(
-                "a model file to run on the recording; its answers, with marks and without, are drawn in "
-                "place of the recorded ones"
+                "a model file to run on the recording; its answers, with marks and without, are drawn in place of "
+                "the recorded ones"
             )
         ),
     ] = None,

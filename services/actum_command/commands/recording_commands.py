@@ -40,15 +40,15 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str,
         typer.Option(
             help=(
-                "name or number of the person who acts; stored in the file, so that a model can be tested"
-                " on people it was not trained on"
+                "name or number of the person who acts; stored in the file, so that a model can be tested on people "
+                "it was not trained on"
             )
         ),
     ] = "",
     label: Annotated[
         str | None,
         typer.Option(
-            help=("label of the actions that are marked during the recording, such as wave; default: as each mark says")
+            help="label of the actions that are marked during the recording, such as wave; default: as each mark says"
         ),
     ] = None,
     times: Annotated[
@@ -56,8 +56,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             min=1,
             help=(
-                "number of times that the person does --label; the recording stops after the last, and "
-                "each repetition is found and labelled automatically"
+                "number of times that the person does --label; the recording stops after the last, and each "
+                "repetition is found and labelled automatically"
             ),
         ),
     ] = None,
@@ -65,9 +65,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str | None,
         typer.Option(
             help=(
-                "which marks to store, separated by commas: manual (by people and programs), simulator, "
-                "replay (by actum play), auto (found by the classifier); or all. Default: manual; with "
-                "--times none"
+                "which marks to store, separated by commas: manual (by people and programs), simulator, replay (by "
+                "actum play), auto (found by the classifier); or all. Default: manual; with --times none"
             )
         ),
     ] = None,
@@ -79,14 +78,14 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         bool,
         typer.Option(
             "--finish",
-            help=("record nothing; make a recording of OUTPUT.part, which a killed process or a full disk left"),
+            help="record nothing; make a recording of OUTPUT.part, which a killed process or a full disk left",
         ),
     ] = False,
     events: Annotated[
         bool,
         typer.Option(
             "--events",
-            help=("keep a history of events, final actions and all marks for months, as files in the folder OUTPUT"),
+            help="keep a history of events, final actions and all marks for months, as files in the folder OUTPUT",
         ),
     ] = False,
     *,

@@ -19,8 +19,8 @@ PersonOption = Annotated[
     str | None,
     typer.Option(
         help=(
-            "use only recordings of these people, named as in 'actum record --person', such as 1,3,5;"
-            " default: everybody"
+            "use only recordings of these people, named as in 'actum record --person', such as 1,3,5; default: "
+            "everybody"
         )
     ),
 ]
@@ -28,8 +28,7 @@ RecordingFile = Annotated[Path, typer.Argument(metavar="REC", help="the recordin
 AllOption = Annotated[
     bool,
     typer.Option(
-        "--all",
-        help=("also use recordings marked as excluded, such as those in which 'actum record --times' miscounted"),
+        "--all", help="also use recordings marked as excluded, such as those in which 'actum record --times' miscounted"
     ),
 ]
 

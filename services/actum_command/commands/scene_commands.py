@@ -21,7 +21,7 @@ def simulate(
     actor: Annotated[
         int,
         typer.Option(
-            min=0, help=("which simulated person acts: each number has another body height, tempo and preferred hand")
+            min=0, help="which simulated person acts: each number has another body height, tempo and preferred hand"
         ),
     ] = 0,
     seed: Annotated[
@@ -34,8 +34,8 @@ def simulate(
         Choice,
         typer.Option(
             help=(
-                "background activity between the actions, such as scratching: none; familiar (some kinds,"
-                " for training); all (every kind, for tests); only (every kind, but no actions)"
+                "background activity between the actions, such as scratching: none; familiar (some kinds, for "
+                "training); all (every kind, for tests); only (every kind, but no actions)"
             )
         ),
     ] = "none",
@@ -44,8 +44,8 @@ def simulate(
         typer.Option(
             min=0,
             help=(
-                "minimum length of the scene; background activity fills the time after the last action. "
-                "Without effect if --everyday is none (min)"
+                "minimum length of the scene; background activity fills the time after the last action. Without "
+                "effect if --everyday is none (min)"
             ),
         ),
     ] = 1.0,
@@ -53,8 +53,8 @@ def simulate(
         Pauses,
         typer.Option(
             help=(
-                "what happens between two actions: long is up to three background activities and rests, "
-                "short is at most one. Without effect if --everyday is none"
+                "what happens between two actions: long is up to three background activities and rests, short is at "
+                "most one. Without effect if --everyday is none"
             )
         ),
     ] = "long",

@@ -24,20 +24,20 @@ app = PlainTyper(
 Id = Annotated[
     str,
     typer.Argument(
-        help=("any name for this action, such as a1; start and end use the same name, and each action needs a new one")
+        help="any name for this action, such as a1; start and end use the same name, and each action needs a new one"
     ),
 ]
 AgentOption = Annotated[
     int | None,
     typer.Option(
         min=1,
-        help=("track number of the person who acts (agent in the messages); default: the person nearest to the camera"),
+        help="track number of the person who acts (agent in the messages); default: the person nearest to the camera",
     ),
 ]
 HandOption = Annotated[str | None, typer.Option(help="the hand that acts, left or right; default: not specified")]
 LabelOption = Annotated[
     str | None,
-    typer.Option(help=("label of the action, such as wave, stored by 'actum record' for training; default: no label")),
+    typer.Option(help="label of the action, such as wave, stored by 'actum record' for training; default: no label"),
 ]
 StampOption = Annotated[
     int | None, typer.Option(min=0, help="time of the mark on the sensor's clock; default: now (ns)")

@@ -36,7 +36,7 @@ def router(
     credentials: Annotated[
         Path | None,
         typer.Option(
-            help=("the folder with a router's certificate and key, as written by 'actum deploy'; default: no TLS"),
+            help="the folder with a router's certificate and key, as written by 'actum deploy'; default: no TLS",
             envvar="ACTUM_CREDENTIALS",
         ),
     ] = None,
@@ -44,8 +44,8 @@ def router(
         str | None,
         typer.Option(
             help=(
-                "address of a router on another host, such as tcp/192.168.1.6:7447; the programs of both "
-                "hosts then see each other. Default: none"
+                "address of a router on another host, such as tcp/192.168.1.6:7447; the programs of both hosts then "
+                "see each other. Default: none"
             )
         ),
     ] = None,
@@ -79,15 +79,15 @@ def up(
     path: Annotated[
         Path | None,
         typer.Option(
-            help=("the recording to play with --source recording: a file, or a folder whose files are played in order")
+            help="the recording to play with --source recording: a file, or a folder whose files are played in order"
         ),
     ] = None,
     model: Annotated[
         Path | None,
         typer.Option(
             help=(
-                "the model file (.npz), loaded whenever it appears or changes. Default: the model last "
-                "put into use on the web page or, for the simulated scene, the one supplied with actum"
+                "the model file (.npz), loaded whenever it appears or changes. Default: the model last put into use "
+                "on the web page or, for the simulated scene, the one supplied with actum"
             ),
             envvar="ACTUM_MODEL",
         ),
@@ -97,8 +97,8 @@ def up(
         typer.Option(
             "--marked",
             help=(
-                "publish start and end marks of the simulated person's actions; default: the classifier "
-                "has to find them itself"
+                "publish start and end marks of the simulated person's actions; default: the classifier has to find "
+                "them itself"
             ),
         ),
     ] = False,

@@ -44,10 +44,7 @@ SET_HELP = (
     f"positions are relative to it. attention: the body part that is looked at, one of {', '.join(ATTENTIONS)}; moving "
     "(default) is the part that moves most"
 )
-SetOption = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP),
-]
+SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP)]
 SeedOption = Annotated[
     int, typer.Option(min=0, help="seed of the random numbers; the same seed and recordings give the same model")
 ]
@@ -93,7 +90,7 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     files: Annotated[
         list[Path],
         typer.Argument(
-            help=("a model file, then recordings or folders of them; with --leave-one-person-out only recordings")
+            help="a model file, then recordings or folders of them; with --leave-one-person-out only recordings"
         ),
     ],
     person: PersonOption = None,
@@ -105,8 +102,8 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--leave-one-person-out",
             help=(
-                "in place of testing a model file, train on all people but one and test on that one, for "
-                "each person in turn"
+                "in place of testing a model file, train on all people but one and test on that one, for each "
+                "person in turn"
             ),
         ),
     ] = False,
@@ -115,8 +112,8 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--continuous",
             help=(
-                "test whether the model finds the actions by itself; default: it is given the start and "
-                "end of each labelled action"
+                "test whether the model finds the actions by itself; default: it is given the start and end of each "
+                "labelled action"
             ),
         ),
     ] = False,

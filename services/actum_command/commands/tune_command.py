@@ -24,14 +24,14 @@ def tune(
         list[Path],
         typer.Argument(
             metavar="REC...",
-            help=("recordings, or folders of them, in which all actions are labelled and people also do other things"),
+            help="recordings, or folders of them, in which all actions are labelled and people also do other things",
         ),
     ],
     false_alarms_per_min: Annotated[
         float | None,
         typer.Option(
             metavar="X",
-            help=("maximum number of false alarms per minute in which no action is done; default: no limit (1/min)"),
+            help="maximum number of false alarms per minute in which no action is done; default: no limit (1/min)",
         ),
     ] = None,
     output: Annotated[
@@ -40,8 +40,8 @@ def tune(
             "-o",
             "--output",
             help=(
-                "write the chosen settings to this file (.toml); services read it if ACTUM_CONFIG names "
-                "it. Default: they are only printed"
+                "write the chosen settings to this file (.toml); services read it if ACTUM_CONFIG names it. "
+                "Default: they are only printed"
             ),
         ),
     ] = None,

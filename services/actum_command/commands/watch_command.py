@@ -28,7 +28,7 @@ def watch(
         bool,
         typer.Option(
             "--json",
-            help=("print each message with all its fields as one line of JSON; binary fields are base64 (URL-safe)"),
+            help="print each message with all its fields as one line of JSON; binary fields are base64 (URL-safe)",
         ),
     ] = False,
     recorded: Annotated[

@@ -18,5 +18,5 @@ class Settings(ServiceSettings):
     history_keep_mb: float | None = Field(
         None,
         gt=0,
-        description=("maximum total size of the finished files; the oldest are deleted. Default: all are kept (MB)"),
+        description="maximum total size of the finished files; the oldest are deleted. Default: all are kept (MB)",
     )
