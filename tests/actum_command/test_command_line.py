@@ -279,7 +279,7 @@ def test_where_nothing_can_be_written_nothing_is_trained_or_evaluated(
         ("ACTUM_CONNECT", "127.0.0.1:7551", "'127.0.0.1:7551' is not an endpoint: use tcp/host:port"),
         ("ACTUM_CONNECT", "foo", "'foo' is not an endpoint: use tcp/host:port"),
         ("ACTUM_ZENOH_CONFIG", "/nowhere.json5", "/nowhere.json5 is not a Zenoh configuration"),
-        ("ACTUM_CONFIG", "/nowhere.toml", "/nowhere.toml, which is not a file"),
+        ("ACTUM_CONFIG", "/nowhere.toml", "/nowhere.toml, which does not exist or is not a file"),
     ],
 )
 @pytest.mark.parametrize("command", ["doctor", "watch", "scene", "segment end a"])

@@ -88,8 +88,8 @@ def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("init", "--hosts", "camera=a"), "at least one camera… and one compute…"),
-        (("init", *HOSTS, "--open", "--passwords"), "--open disables passwords"),
+        (("init", "--hosts", "camera=a"), "give at least one camera=ADDRESS and one compute=ADDRESS"),
+        (("init", *HOSTS, "--open", "--passwords"), "--open and --passwords exclude each other"),
         (("rotate",), "holds no deployment.json"),
     ],
 )

@@ -172,7 +172,7 @@ def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) 
             recorder.write(frame)
     assert label(path).endswith("0 segments\n")
     assert "0 segments drawn" in label("picture", path, "-o", tmp_path / "bare.png")
-    assert "shows nobody moving" in refused("cut", path, 5, "wave")
+    assert "shows no person who moves" in refused("cut", path, 5, "wave")
     label("add", path, 0.5, 1.5, "stand")
     assert rows(path) == ["1 0.50 s 1.50 s (1.00 s) stand manual nearest"]
 

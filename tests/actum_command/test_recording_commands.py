@@ -155,7 +155,7 @@ def test_a_recording_that_lacks_repetitions_is_left_out_of_training(live: Live, 
 
 
 def test_times_need_a_label(live: Live, tmp_path: Path) -> None:
-    assert "--times needs --label" in refused("record", tmp_path / "a.mcap", "--times", 5)
+    assert "add --label" in refused("record", tmp_path / "a.mcap", "--times", 5)
 
 
 def test_marks_by_hand_are_stored_beside_the_cuts_where_they_are_asked_for(live: Live, tmp_path: Path) -> None:
@@ -189,7 +189,7 @@ def test_what_a_crash_left_is_not_recorded_over_but_finished(live: Live, tmp_pat
     assert f"1 messages, up to where it breaks off, written to {path}" in actum("record", path, "--finish").stdout
     assert [message.stamp_ns for message in Recording(path).messages()] == [1]
     assert "already exists" in refused("record", path)
-    assert "nothing to finish: there is no" in refused("record", path, "--finish")
+    assert "there is no unfinished recording" in refused("record", path, "--finish")
 
 
 def test_what_cannot_be_finished_is_told_and_left(tmp_path: Path) -> None:

@@ -66,8 +66,8 @@ def test_a_name_tells_action_and_person(name: str, pattern: str, told: tuple[str
     [
         ("(", "", "not a regular expression"),
         (r"(?P<person>.*)", "", "no group"),
-        (DEFAULT_PATTERN, "1", "not a list of names: write it like 1=wave"),
-        (DEFAULT_PATTERN, "1=", "not a list of names: write it like 1=wave"),
+        (DEFAULT_PATTERN, "1", "not a list of names: write it as NUMBER=NAME, such as 1=wave"),
+        (DEFAULT_PATTERN, "1=", "not a list of names: write it as NUMBER=NAME, such as 1=wave"),
     ],
 )
 def test_options_that_cannot_be_used_are_refused(pattern: str, names: str, complaint: str) -> None:
@@ -125,7 +125,7 @@ def test_a_clip_that_was_imported_is_refused_before_any_is_read(tmp_path: Path) 
 
 
 def test_a_broken_clip_and_an_empty_folder_are_named(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match="holds no video"):
+    with pytest.raises(DatasetError, match="contains no video"):
         imported(tmp_path, tmp_path / "out")
     (tmp_path / "wave_anna.mp4").write_text("no video")
     with pytest.raises(DatasetError, match=r"wave_anna\.mp4 is not a video"):

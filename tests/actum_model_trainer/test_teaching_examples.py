@@ -105,9 +105,9 @@ def test_everything_is_listed_with_dates_and_people(teacher: Teacher) -> None:
 
 @pytest.mark.parametrize("name", ["con", "NUL", "com1.old", "Aux"])
 def test_a_set_is_not_called_as_a_device_of_windows_but_an_action_may_be(teacher: Teacher, name: str) -> None:
-    with pytest.raises(Refusal, match="is the name of a device on Windows"):
+    with pytest.raises(Refusal, match="is reserved for a device on Windows"):
         teacher.ask("create_set", set=name)
-    with pytest.raises(Refusal, match="is the name of a device on Windows"):
+    with pytest.raises(Refusal, match="is reserved for a device on Windows"):
         teacher.ask("rename_set", set="kitchen", name=name)
     teacher.ask("relabel", set="kitchen", example=teacher.examples()[0]["id"], label=name)
     assert name in teacher.ask("list")["sets"][0]["actions"]

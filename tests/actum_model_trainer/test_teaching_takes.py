@@ -182,11 +182,11 @@ def test_one_thing_is_recorded_at_a_time(teacher: Teacher) -> None:
 
 
 def test_what_is_recorded_needs_a_name_and_a_set(teacher: Teacher) -> None:
-    with pytest.raises(Refusal, match="Give a label"):
+    with pytest.raises(Refusal, match="the take has no label"):
         teacher.ask("record", set="kitchen")
     with pytest.raises(Refusal, match=r"no set 'garden': use one of those there are \(kitchen\)"):
         teacher.ask("record", set="garden", label="wave")
-    with pytest.raises(Refusal, match="no example yet"):
+    with pytest.raises(Refusal, match="no take to redo"):
         teacher.ask("redo_last", set="kitchen")
 
 

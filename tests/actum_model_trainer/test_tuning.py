@@ -134,7 +134,7 @@ def test_what_speaks_against_the_choice_is_said(model: Model, recordings: list[R
     skeletons, _ = performance(["lift"])
     marks = performance(["lift"], frames=25)[1]
     bare = tuned(model, [record("bare", *skeletons, *marks, person="")]).doubts
-    assert any("the recordings hold no background" in doubt for doubt in bare)
+    assert any("the recordings contain no background" in doubt for doubt in bare)
     assert any("names no person" in doubt for doubt in bare)
 
 

@@ -409,7 +409,7 @@ def test_names_that_are_none_are_refused_and_that_is_shown(room: Lesson, teach: 
         "(it, name) => { it.value = name }", name
     )
     press(teach, "Record")
-    says(teach, "record", said if name else "Give a label")
+    says(teach, "record", said if name else "the take has no label")
     assert teach.locator("#set img, #record img").count() == 0
     assert [each["name"] for each in room.teacher.ask("list")["sets"]] == [SET]
 
@@ -428,7 +428,7 @@ def sent(room: Lesson) -> list[Path]:
 
 def test_a_page_whose_trainer_is_silent_says_so(open_page: Open, scene: Any) -> None:
     page = open_page(f"{scene.page.address}#teach")
-    page.get_by_role("status").filter(has_text="The trainer does not answer").wait_for()
+    page.get_by_role("status").filter(has_text="The service model_trainer does not answer").wait_for()
 
 
 @pytest.mark.parametrize("panel", ["teach", "models", "parameters"])

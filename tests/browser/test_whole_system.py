@@ -41,6 +41,6 @@ def test_it_waits_for_router_and_sensor_and_comes_back_after_each(
     running.start_router_process()
     wait_for_state(page, "Waiting for pose_preprocessor")
     dashboard.terminate()
-    wait_for_state(page, "Waiting for the page's service")
+    wait_for_state(page, "Waiting for web_dashboard")
     running.start("web_dashboard", "--page-port", port)
     wait_for_state(page, "Waiting for pose_preprocessor")

@@ -85,7 +85,7 @@ def test_what_is_no_recording_is_refused_at_once(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_recordings_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(RecordingError, match=r"no \*\.mcap there"):
+    with pytest.raises(RecordingError, match=r"contains no \*\.mcap"):
         RecordingSource(tmp_path, "kinect0")
 
 

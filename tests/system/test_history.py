@@ -90,7 +90,7 @@ def test_the_router_may_go_and_come_back(running: System, tmp_path: Path) -> Non
         put(client, "before")
         wait_until(lambda: events_in(folder) == ["before"], "it is written")
         router.process.kill()
-        wait_until(lambda: "lost the router" in recorder.said(), "it notices")
+        wait_until(lambda: "the connection to the router" in recorder.said(), "it notices")
         running.start_router_process()
         wait_until(client.connected, "the router is back")
         running.wait_for_services(client, "event_recorder")
@@ -116,4 +116,4 @@ def test_it_is_a_service_that_says_how_it_does(running: System, tmp_path: Path) 
 def test_a_file_is_no_folder(running: System, tmp_path: Path) -> None:
     refused = running.actum("record", str(tmp_path / "a.mcap"), "--events")
     assert refused.returncode == 2
-    assert "has the name of a file: with --events name a folder" in refused.stderr
+    assert "looks like a file: give --events a folder" in refused.stderr

@@ -85,7 +85,9 @@ def test_a_router_that_is_lost_and_comes_back_is_told(running: System) -> None:
     with running.client() as client:
         running.wait_for_services(client, "action_fusion")
         router.process.kill()
-        wait_for_line(service, f"lost the router at {running.settings.connect}: waiting for it")
+        wait_for_line(
+            service, f"the connection to the router at {running.settings.connect} is lost: waiting for the router"
+        )
         running.start_router_process()
         wait_for_line(service, f"connected to {running.settings.connect} again")
 

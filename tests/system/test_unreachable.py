@@ -51,7 +51,7 @@ def test_a_host_that_does_not_answer(running: System) -> None:
         with full(silent.getsockname()):
             port = silent.getsockname()[1]
             assert said(running, f"tcp/127.0.0.1:{port}").startswith(
-                "127.0.0.1 does not answer: check that the host is on, the cable connected"
+                "127.0.0.1 does not answer: check that it is switched on and connected"
             )
 
 

@@ -113,7 +113,7 @@ def test_others_are_not_let_in_without_a_token() -> None:
 def test_a_port_that_is_taken_is_refused_and_the_next_one_taken_where_none_is_set() -> None:
     with bound_socket("127.0.0.1", None) as first, bound_socket("127.0.0.1", None) as second:
         assert first.getsockname()[1] < second.getsockname()[1]
-        with pytest.raises(SettingsError, match="name another --page-port"):
+        with pytest.raises(SettingsError, match="choose another --page-port"):
             bound_socket("127.0.0.1", first.getsockname()[1])
 
 
