@@ -68,7 +68,7 @@ OF_SEGMENTS: Mapping[str, Problem] = {
     "the classifier was not there: no frame has come since": Problem(
         "The classifier was started after the segment, and no frame has arrived yet.", "Check that the gateway runs."
     ),
-    "the classifier had only just started: it cannot tell when a mark without a stamp was put": Problem(
+    "the classifier had only just started, so it could not date a mark without a stamp": Problem(
         "Such a mark means *now*, but may have been published while the classifier was away.",
         "Mark the action again, or stamp marks on the sensor's clock.",
     ),
@@ -121,23 +121,27 @@ OF_FRAMES: Mapping[str, Problem] = {
     ),
     "it gives no more pictures": Problem("A device or stream has stopped.", "Check cable and network."),
     "it was closed": Problem("The gateway is stopping.", "Nothing."),
-    "no picture for … s": Problem("The device opened, but is silent.", "Unplug it and plug it in again."),
+    "no picture came for … s": Problem("The device opened, but is silent.", "Unplug it and plug it in again."),
     "OpenCV says: …": Problem("OpenCV failed on the device or stream.", "See its message."),
     "no RealSense camera is connected": Problem("librealsense finds no camera.", "Check USB 3 cable and udev rules."),
     "the RealSense … was unplugged": Problem("The camera was unplugged.", "Plug it in."),
     "librealsense says: …": Problem("librealsense failed.", "See its message."),
-    "colour comes as …, not as one of bgr8, …": Problem(
+    "the camera sends colour as …, not as bgr8, …": Problem(
         "The RealSense gives another format.", "Set it to one of these."
     ),
-    "no camera is connected that OpenNI 2 has a driver for": Problem(
+    "no camera that OpenNI 2 supports is connected": Problem(
         "OpenNI 2 finds no camera.", "Install the camera's driver; see [cameras](cameras.md#depth-cameras)."
     ),
     "… was unplugged": Problem("The OpenNI device was unplugged.", "Plug it in."),
-    "another driver took it": Problem(
+    "OpenNI opened it as a camera, not as a file": Problem(
         "A driver that does not play files claims the recording.", "Remove that driver from OpenNI's folder."
     ),
-    "the device has no colour and depth": Problem("One of the two streams is missing.", "Use another camera."),
-    "colour comes as …, not as RGB888": Problem("The OpenNI driver gives another format.", "Use another driver."),
+    "the camera does not have both colour and depth": Problem(
+        "One of the two streams is missing.", "Use another camera."
+    ),
+    "the camera sends colour as …, not as RGB888": Problem(
+        "The OpenNI driver gives another format.", "Use another driver."
+    ),
     "OpenNI says: …": Problem("OpenNI failed.", "See its message."),
     "black: nothing can be seen; is the lens covered?": Problem(
         "Images have been black for half a second.", "Uncover the lens, or add light."

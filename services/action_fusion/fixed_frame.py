@@ -8,7 +8,7 @@ import numpy as np
 from actum import geometry
 from actum.arrays import Array
 
-FORM = "16 numbers of a rigid 4x4 transform (rows one after the other, metres), or a file that holds just these"
+FORM = "a rigid transform: give the 16 numbers of a 4x4 matrix, row by row, in metres, or a file that holds only them"
 MOST_CHARACTERS = 10_000
 """Characters read of a file: 16 numbers take 400 at most."""
 
@@ -34,7 +34,9 @@ def as_text(value: object) -> str | None:
     if numbers is None or len(numbers) != 16:
         raise ValueError(f"{text!r} is not {FORM}")
     if not geometry.is_rigid(np.array(numbers).reshape(4, 4), FURTHEST_M):
-        raise ValueError(f"{text!r} is no rigid transform: a rotation, a position, and 0 0 0 1 below them")
+        raise ValueError(
+            f"{text!r} is not a rigid transform: give a rotation, a position in metres, and 0 0 0 1 as the last row"
+        )
     return " ".join(map(repr, numbers))
 
 
@@ -56,4 +58,4 @@ def _content(name: str) -> str:
         with Path(name).open(encoding="utf-8") as file:
             return file.read(MOST_CHARACTERS)
     except (OSError, ValueError) as error:
-        raise ValueError(f"{name!r} is not {FORM}: {error}") from None
+        raise ValueError(f"{name!r} is not {FORM} ({error})") from None

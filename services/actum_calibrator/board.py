@@ -81,11 +81,11 @@ class Board:
     def __post_init__(self) -> None:
         if not all(FEWEST_SQUARES <= count <= MOST_SQUARES for count in (self.columns, self.rows)):
             raise PatternError(
-                f"a board of {self.columns}x{self.rows} squares is not possible: use 3 to 50 squares in each direction"
+                f"a board of {self.columns}x{self.rows} squares cannot be made: use 3 to 50 squares in each direction"
             )
         if not 0 < self.marker_m < self.square_m <= LARGEST_SQUARE_M:
             raise PatternError(
-                f"markers of {self.marker_m * 1000:g} mm do not fit squares of {self.square_m * 1000:g} mm: a "
+                f"markers of {self.marker_m * 1000:g} mm do not fit into squares of {self.square_m * 1000:g} mm: a "
                 "marker has to be smaller than its square, and a square at most 1 m"
             )
         if (needed := self.columns * self.rows // 2) > (there := len(dictionary_of(self.family).bytesList)):

@@ -68,7 +68,9 @@ class BoardFinder:
         height, width = pixels.shape
         blur = blur_px(pixels, self._board, ids, corners_px)
         if blur > (limit_px := _most_blur_px(pixels)):
-            raise BlurredError(name, f"blurred by {blur:.1f} px; at most {limit_px:.1f} px are accepted")
+            raise BlurredError(
+                name, f"the picture is blurred by {blur:.1f} px, more than {limit_px:.1f} px: hold the board still"
+            )
         return View(name, (width, height), self._board, ids, corners_px, blur)
 
     def _refined(self, pixels: Pixels, ids: list[int], corners_px: Array) -> Array:

@@ -39,7 +39,7 @@ def read_grey(path: Path) -> Pixels:
     try:
         return decode_grey(path.read_bytes(), path.name)
     except OSError as error:
-        raise UnusablePictureError(path.name, f"cannot be read: {error.strerror}") from None
+        raise UnusablePictureError(path.name, f"the file cannot be read: {error.strerror}") from None
 
 
 def grey_from_message(image: Image, name: str) -> Pixels:
@@ -51,10 +51,10 @@ def grey_from_message(image: Image, name: str) -> Pixels:
     if image.format == "jpeg":
         pixels = decode_grey(image.data, name)
         if pixels.shape != (image.height, image.width):
-            raise UnusablePictureError(name, "has another size than its message states")
+            raise UnusablePictureError(name, "the JPEG has another size than its message states")
         return pixels
     if image.format != "bgr8" or len(image.data) != image.width * image.height * 3:
-        raise UnusablePictureError(name, f"is not a complete colour image of {image.width}x{image.height}")
+        raise UnusablePictureError(name, f"the data are not a complete colour image of {image.width}x{image.height}")
     colours = np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
     return cv2.cvtColor(colours, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
 
@@ -70,14 +70,14 @@ def decode_grey(data: bytes, name: str) -> Pixels:
     except (ValueError, struct.error):
         width, height = -1, -1
     if width <= 0 or height <= 0:
-        raise UnusablePictureError(name, "is no image")
+        raise UnusablePictureError(name, "the file is not an image")
     if width * height > LARGEST_PIXELS:
-        raise UnusablePictureError(name, f"is too large ({width}x{height})")
+        raise UnusablePictureError(name, f"the image is too large ({width}x{height}; at most {LARGEST_PIXELS} pixels)")
     if has_too_many_scans(data):
-        raise UnusablePictureError(name, "is too large (a JPEG of too many scans)")
+        raise UnusablePictureError(name, "the JPEG has too many scans: save it again as a baseline JPEG")
     pixels = _decoded(data)
     if pixels is None:
-        raise UnusablePictureError(name, "is damaged")
+        raise UnusablePictureError(name, "the image is damaged")
     return pixels.astype(np.uint8, copy=False)
 
 

@@ -40,11 +40,11 @@ def pair_files(paths: Sequence[Path]) -> list[tuple[str, Path, Path]]:
         files = [file for path in paths for file in (pictures_in(path) if path.is_dir() else [path])]
         if strays := [file.name for file in files if not file.stem.endswith(SUFFIXES)]:
             raise PairingError(
-                f"{strays[0]} has no camera in its name: name pictures NAME_a and NAME_b, or give two folders"
+                f"the name {strays[0]} does not end in _a or _b: rename it, or give one folder per camera"
             )
         sides = [_by_name([f for f in files if f.stem.endswith(end)], lambda f: f.stem[:-2]) for end in SUFFIXES]
     if alone := sorted(set(sides[0]) ^ set(sides[1])):
-        raise PairingError(f"{', '.join(alone)}: the other camera's picture is missing; add it, or leave this one out")
+        raise PairingError(f"{', '.join(alone)}: the other camera's picture is missing: add it, or remove this one")
     return [(name, sides[0][name], sides[1][name]) for name in sorted(sides[0])]
 
 
@@ -57,6 +57,6 @@ def _by_name(files: Sequence[Path], name_of: Callable[[Path], str]) -> dict[str,
     named: dict[str, Path] = {}
     for file in files:
         if name_of(file) in named:
-            raise PairingError(f"{file.name}: two pictures have this name; keep one")
+            raise PairingError(f"two pictures are named {name_of(file)}: keep one of them")
         named[name_of(file)] = file
     return named

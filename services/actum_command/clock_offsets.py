@@ -46,4 +46,4 @@ def remarks(found: dict[str, ClockOffset]) -> Iterator[str]:
         each = found[hosts[0]]
         apart = f"{abs(each.ahead_s):.2f} s {'ahead of' if each.ahead_s > 0 else 'behind'} this one's"
         clock = f"the clock of {', '.join(sorted(hosts))} is {apart}, ± {each.uncertainty_s:.3f} s"
-        yield f"{clock}: events do not depend on it; to make times in logs agree, run NTP on both hosts"
+        yield f"{clock}: recognition is not affected; for equal times in the logs, run NTP on both hosts"

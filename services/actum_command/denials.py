@@ -31,7 +31,7 @@ def everything_denied(heard: Heard, client: Asking, expected: Iterable[str]) -> 
         return None
     return (
         "the router accepts this program but answers no query: its access control denies this program all "
-        f"reading, or no service runs and the router is set to answer none. If services should run, {ROLE}"
+        f"reading, or no service runs. If services should run, {ROLE}"
     )
 
 
@@ -39,10 +39,11 @@ def partly_denied(heard: Heard) -> Iterator[str]:
     """Yield what is missing of services that are known otherwise."""
     answering = {answer.info.service for answer in heard.answers}
     running = heard.tokens.keys() | heard.statuses.keys() | answering
-    for what, known in (("its token", heard.tokens.keys()), ("its description", answering)):
+    for what, known in (("their liveliness tokens", heard.tokens.keys()), ("their info keys", answering)):
         if running and not known:
-            yield f"services run, but none of them shows {what}: the router's access control denies it; {ROLE}"
+            yield f"services run, but the router's access control denies this program permission to read {what}: {ROLE}"
     if heard.tokens and not heard.statuses:
         yield (
-            f"services run, but no status arrives: the router's access control denies it, or all services hang; {ROLE}"
+            "services run, but no status arrives: all services hang, or the router's access control denies this "
+            f"program their status. In that case, {ROLE}"
         )

@@ -160,7 +160,7 @@ def _who(infos: list[Info], instances: list[str]) -> str:
 def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
     """Yield the problems that a service's own state names; `source` is the source that it reads, in brackets."""
     if status.state.startswith("camera lost"):
-        yield f"{name}: {status.state}{source}; the service retries by itself"
+        yield f"{name}: {status.state}{source}; it retries by itself"
     elif status.state == SOURCE_ENDED:
         endless = "--repetitions 0" if DESCRIPTION in source else "--loop"
         yield (

@@ -33,7 +33,7 @@ def write_inspection(
     segments = answered_segments(maps, recordings, progress)
     if recordings and not segments:
         raise NoSegmentError(
-            "these recordings hold no segment: mark actions while recording (see 'actum segment --help') or with "
+            "these recordings contain no segment: mark actions while recording (see 'actum segment --help') or with "
             "'actum label'"
         )
     labelled = any(segment.label is not None for segment in segments)

@@ -78,7 +78,7 @@ def first_stamp_ns(recording: Recording) -> int:
         first = next(iter(recording.messages(topics)), None)
         if first is not None and first.stamp_ns is not None:
             return first.stamp_ns
-    raise LabellingError(f"{recording.path} holds neither frames nor marks: name a recording of a person")
+    raise LabellingError(f"{recording.path} contains neither skeletons nor marks: give a recording of a person")
 
 
 def labelled_segments(recording: Recording) -> list[LabelledSegment]:
@@ -130,7 +130,7 @@ def check_span(
             f"the segment would run from {start_s:.2f} s to {end_s:.2f} s: the end has to be later than the start"
         )
     if start_ns < first_ns:
-        raise LabellingError(f"the segment would start at {start_s:.2f} s, before the recording does: use 0 or later")
+        raise LabellingError(f"the segment would start at {start_s:.2f} s, before the recording: use 0 or later")
     for other in segments:
         if other.overlaps(start_ns, end_ns, sensor, agent):
             assert other.start_ns is not None and other.end_ns is not None
@@ -178,7 +178,7 @@ def only_sensor(recording: Recording) -> str:
     names = sorted({sensor for topic in FRAMES for sensor in recording.sensors(topic)})
     if len(names) != 1:
         raise LabellingError(
-            f"{recording.path} holds frames of {', '.join(names) or 'nobody'}: labelling needs a recording of "
+            f"{recording.path} contains skeletons of {', '.join(names) or 'nobody'}: labelling needs a recording of "
             "exactly one sensor"
         )
     return names[0]
@@ -194,7 +194,9 @@ def cut_anew(recording: Recording, segments: Sequence[LabelledSegment], asked: i
     sensor, first_ns = only_sensor(recording), first_stamp_ns(recording)
     cuts = cut(recorded_courses(recording, sensor), asked, first_ns)
     if cuts is None:
-        raise LabellingError(f"{recording.path} shows nobody moving, so no repetitions can be found")
+        raise LabellingError(
+            f"{recording.path} shows no person who moves, so no repetitions can be found: record the action again"
+        )
     kept = [segment for segment in segments if segment.origin != CUT]
     for repetition in cuts.repetitions:
         check_span(kept, repetition.start_ns, repetition.end_ns, sensor, cuts.course.agent, first_ns)

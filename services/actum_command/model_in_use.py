@@ -76,7 +76,9 @@ def _folder_of_run(trainer_data: Path) -> Iterator[Path]:
         trainer_data.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
         folder = TemporaryDirectory(prefix="run-", dir=trainer_data, ignore_cleanup_errors=True)
     except OSError as error:
-        raise SettingsError(f"{trainer_data} cannot be used ({error}): name another in ACTUM_TRAINER_DATA") from None
+        raise SettingsError(
+            f"{trainer_data} cannot be used ({error}): set ACTUM_TRAINER_DATA to another folder"
+        ) from None
     with folder as name:
         yield Path(name)
 

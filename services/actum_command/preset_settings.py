@@ -28,8 +28,10 @@ def preset_named(name: str, settings: Sequence[str] = ()) -> Preset:
     if not changes:
         return preset
     if not isinstance(preset, PaperPreset):
-        raise PresetError(f"preset {name} has no settings; preset {PAPER.name} has {', '.join(CHOICES)}")
+        raise PresetError(
+            f"preset {name} has no settings: leave them out, or use preset {PAPER.name}, which has {', '.join(CHOICES)}"
+        )
     for setting, value in changes.items():
         if value not in CHOICES.get(setting, ()):
-            raise PresetError(f"preset {name} has no setting {setting}={value}; its settings: {SETTINGS}")
+            raise PresetError(f"{setting}={value} is not a setting of preset {name}: use some of {SETTINGS}")
     return replace(preset, posture=replace(preset.posture, **changes))

@@ -36,19 +36,18 @@ def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
     """
     source = named or ("camera" if "camera" in given else "simulator")
     if "camera" in given and source in WITHOUT_CAMERA:
-        raise SettingsError(f"source {source} takes no --camera: leave --source out, or name camera")
+        raise SettingsError(f"--source {source} uses no camera: leave out --camera, or use --source camera")
     sensor = SENSORS.get(source, "sensor_gateway")
     behind = (*SERVICES, TRAINER, PAGE)
     started = behind if sensor is None else (*behind, sensor)
     of_started = {name for service in started for name in DECLARED[service].model_fields}
     for name in (name for name in given if name not in of_started):
-        subject = f"{sensor} takes no {flag_of(name)}: it" if source == "simulator" else flag_of(name)
-        remedy = "" if named else "; name another source"
+        remedy = "" if named else ": use another --source"
         raise SettingsError(
-            f"{subject} is a setting of {service_of(name)}, which --source {source} does not start{remedy}"
+            f"{flag_of(name)} is a setting of {service_of(name)}, which --source {source} does not start{remedy}"
         )
     if path is not None and source in FILES_ELSEWHERE:
-        raise SettingsError(f"source {source} takes no --path: to have {path} played, name {FILES_ELSEWHERE[source]}")
+        raise SettingsError(f"--source {source} plays no file: to play {path}, use {FILES_ELSEWHERE[source]}")
     return source
 
 
@@ -59,9 +58,9 @@ def refuse_marks(marked: bool, source: str, segments: str) -> None:
         SettingsError: the source is no simulated scene, or marks are not answered.
     """
     if marked and source != "simulator":
-        raise SettingsError(f"source {source} takes no --marked: only the simulated scene marks its own actions")
+        raise SettingsError(f"--marked works only with --source simulator, not with --source {source}: leave it out")
     if marked and segments == "auto":
-        raise SettingsError("--segments auto answers no marks: leave --marked out, or name --segments both")
+        raise SettingsError("--segments auto ignores marks: leave out --marked, or use --segments both")
 
 
 def refuse_taken(endpoint: str) -> None:
@@ -77,7 +76,8 @@ def refuse_taken(endpoint: str) -> None:
         _bind(*address)
     except OSError as error:
         raise SettingsError(
-            f"{endpoint} cannot be listened on ({error.strerror}): stop what runs there or set ACTUM_CONNECT"
+            f"the router cannot listen at {endpoint} ({error.strerror}): stop the program that uses this port, or set "
+            "ACTUM_CONNECT to another one"
         ) from None
 
 

@@ -70,8 +70,8 @@ def _slow_source(infos: Sequence[Info], put_hz: float, skeletons: Watched) -> It
             )
     if 0 < skeletons.rate_hz < SLOW * skeletons.stamped_hz:
         yield (
-            f"{skeletons.rate_hz:.0f} skeletons arrive per second, but by their stamps there are "
-            f"{skeletons.stamped_hz:.0f}: the source is late or publishes too slowly"
+            f"{skeletons.rate_hz:.0f} skeletons arrive per second, but their stamps are those of "
+            f"{skeletons.stamped_hz:.0f} per second: the source or the network is too slow"
         )
 
 
@@ -87,9 +87,9 @@ def _stopped(statuses: Statuses) -> Iterator[str]:
 def _frozen(streams: Mapping[Topic, Watched]) -> Iterator[str]:
     for topic, words in ((keys.SKELETON, "skeletons"), (keys.COLOR, "images")):
         if streams[topic].stands_still:
-            yield f"the stamps of {words} do not rise, so all but the first are refused: restart the sensor"
+            yield f"the stamps of {words} do not increase, so all but the first are refused: restart the sensor service"
         elif streams[topic].repeats:
-            yield f"{words} repeat bit for bit, so the camera is frozen: unplug it and plug it in again"
+            yield f"{words} are all identical, so the camera is frozen: unplug it and plug it in again"
 
 
 def _readers(statuses: Statuses, put_hz: Mapping[Topic, float]) -> Iterator[str]:

@@ -94,7 +94,7 @@ def take_files(folder: Path) -> list[Path]:
     """
     files = [file for file in folder.glob(PATTERN) if NAME.fullmatch(file.stem)]
     if not files:
-        raise DatasetError(f"{folder} holds no {PATTERN}: name the folder that holds the takes")
+        raise DatasetError(f"{folder} contains no {PATTERN}: give the folder of the takes")
     return sorted(files, key=lambda file: tuple(map(int, re.findall(r"\d+", file.stem))))
 
 
@@ -173,7 +173,7 @@ def _bodies(rows: Sequence[Row]) -> dict[int, str]:
 def _check_targets(labels: Sequence[Label], bodies: Mapping[int, str]) -> None:
     for label in labels:
         if label.target is not None and label.target not in bodies:
-            raise ValueError(f"its labels name a {OBJECTS[label.target]}, which has no columns")
+            raise ValueError(f"the labels refer to a {OBJECTS[label.target]}, for which the table has no columns")
 
 
 def _objects(rows: Sequence[Row], stamps_ns: Sequence[int], sensor: str, session_id: str) -> list[Objects]:
@@ -209,14 +209,14 @@ def _labels(folder: Path, person: str, take: str) -> list[Label]:
     files = sorted(folder.glob(f"labels_subject_{person}/*/take_{take}.json"))
     if not files:
         raise DatasetError(
-            f"{folder} holds no labels_subject_{person}/*/take_{take}.json: put the labels next to the takes"
+            f"{folder} contains no labels_subject_{person}/*/take_{take}.json: put the labels next to the takes"
         )
     try:
         content = json.loads(files[0].read_text())
         return [label for hand in HANDS for label in _hand_labels(hand, content[f"{hand}_hand"])]
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise DatasetError(
-            f"{files[0]} does not alternate frames and labels for each hand ({error!r}): download it again"
+            f"{files[0]} does not alternate frame numbers and labels for each hand ({error!r}): download it again"
         ) from None
 
 

@@ -49,7 +49,9 @@ class Naming:
             raise DatasetError(f"--pattern {pattern!r} has no group for the action: add (?P<action>…)")
         pairs = [pair.partition("=") for pair in names.split(",") if pair]
         if not all(key.strip() and name.strip() for key, _, name in pairs):
-            raise DatasetError(f"--names {names!r} is not a list of names: write it like 1=wave,2=drink")
+            raise DatasetError(
+                f"--names {names!r} is not a list of names: write it as NUMBER=NAME, such as 1=wave,2=drink"
+            )
         return cls(compiled, {key.strip(): name.strip() for key, _, name in pairs})
 
     def read(self, path: Path) -> tuple[str, str]:
@@ -77,7 +79,7 @@ def clip_files(folder: Path) -> list[Path]:
     """
     files = sorted(file for file in folder.rglob("*") if file.suffix.lower() in SUFFIXES)
     if not files:
-        raise DatasetError(f"{folder} holds no video ({', '.join(sorted(SUFFIXES))})")
+        raise DatasetError(f"{folder} contains no video ({', '.join(sorted(SUFFIXES))})")
     return files
 
 

@@ -50,7 +50,7 @@ def files_of(path: Path, pattern: str) -> list[Path]:
     """
     files = [path] if path.is_file() else sorted(path.glob(pattern))
     if not files:
-        raise DatasetError(f"{path} holds no {pattern}: name such a file or the folder that holds them")
+        raise DatasetError(f"{path} contains no {pattern}: give such a file, or the folder of such files")
     return files
 
 

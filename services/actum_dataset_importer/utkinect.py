@@ -81,7 +81,9 @@ def read_labelled(path: Path, sensor: str, labels: dict[str, list[LabelledSegmen
     """
     name = path.stem.removeprefix("joints_")
     if name not in labels:
-        raise DatasetError(f"{path}: {LABELS} has no entry {name}; use the label file that belongs to the data set")
+        raise DatasetError(
+            f"{path}: {LABELS} has no entry named {name}; use the label file that belongs to the data set"
+        )
     return read_recording(path, sensor, labels[name])
 
 

@@ -116,9 +116,9 @@ def authority_of(root: Path, may_be_made: bool) -> Signed:
             raise ValueError(f"it expired at {found.certificate.not_valid_after_utc:%Y-%m-%d %H:%M} UTC")
     except (OSError, ValueError) as error:
         raise SettingsError(
-            f"the authority in {folder} cannot be used ({error}): restore its two files; or delete the folder, run "
-            "'actum deploy init' and copy all folders again, because no router trusts what another authority has "
-            "signed"
+            f"the authority in {folder} cannot be used ({error}): restore its two files. Or delete the folder, run "
+            "'actum deploy init' and copy all credentials folders again: routers do not trust certificates of another "
+            "authority"
         ) from None
     return found
 

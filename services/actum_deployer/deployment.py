@@ -171,12 +171,14 @@ class Deployment:
             read = TypeAdapter(cls).validate_json((folder / FILE).read_bytes())
             _check(read.hosts)
         except FileNotFoundError:
-            raise SettingsError(f"{folder} holds no {FILE}: create the deployment with 'actum deploy init'") from None
+            raise SettingsError(
+                f"{folder} contains no {FILE}: create the deployment with 'actum deploy init'"
+            ) from None
         except (OSError, ValidationError, SettingsError, InvalidKeyError) as error:
             told = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
             raise SettingsError(
-                f"{folder / FILE} cannot be used ({told}): correct it, because it lists the revoked credentials; "
-                "or delete it and authority/, run 'actum deploy init' and copy all folders again"
+                f"{folder / FILE} cannot be used ({told}): correct it, because it lists the revoked credentials. "
+                "Or delete it and authority/, run 'actum deploy init' and copy all folders again"
             ) from None
         return read
 
@@ -195,16 +197,17 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
     computing = [host for host in hosts if host.kind == "compute"]
     named = sensors.split(",") if sensors is not None else [f"kinect{number}" for number in range(len(cameras))]
     if not cameras or not computing or len({host.name for host in hosts}) < len(hosts):
-        raise SettingsError(f"hosts: {text!r}: name at least one camera… and one compute…, each once")
+        raise SettingsError(
+            f"hosts: {text!r}: give at least one camera=ADDRESS and one compute=ADDRESS, with different names"
+        )
     if len(named) != len(cameras) or len(set(named)) < len(named):
-        raise SettingsError(f"sensors: {sensors!r}: name as many sensors as cameras ({len(cameras)}), each once")
+        raise SettingsError(f"sensors: {sensors!r}: give one sensor name per camera ({len(cameras)}), all different")
     places = [_normal(host.endpoint) for host in hosts]
     if len({*places}) < len(places):
-        raise SettingsError(f"hosts: {text!r}: two hosts have the same address and port")
+        raise SettingsError(f"hosts: {text!r}: two hosts have the same address and port: change one")
     if len(computing) > len(named):
         raise SettingsError(
-            f"hosts: {len(computing)} hosts to compute are more than the cameras ({len(named)}): name at most one "
-            "per camera"
+            f"hosts: {len(computing)} compute hosts are too many for {len(named)} cameras: give at most one per camera"
         )
     its: dict[str, tuple[str, ...]] = {host.name: (chunk(sensor),) for host, sensor in zip(cameras, named, strict=True)}
     its |= {host.name: tuple(named[i :: len(computing)]) for i, host in enumerate(computing)}
@@ -214,7 +217,7 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
 def _check(hosts: Sequence[Host]) -> None:
     """Check what a file says of hosts as if it had been said to `actum deploy init`."""
     if not hosts:
-        raise SettingsError("no hosts are named")
+        raise SettingsError("the list of hosts is empty")
     for host in hosts:
         _host(f"{host.name}={host.endpoint}")
         for sensor in host.sensors:
@@ -228,13 +231,15 @@ def _host(text: str) -> Host:
         address, own_port = place, str(DEFAULT_PORT)
     chunk(name)
     if not any(name.startswith(kind) for kind in KINDS):
-        raise SettingsError(f"hosts: {text!r}: names begin with {' or '.join(KINDS)}, such as camera=192.168.1.5")
+        raise SettingsError(
+            f"hosts: {text!r}: a host name begins with {' or '.join(KINDS)}, such as camera=192.168.1.5"
+        )
     if not address or not own_port.isdecimal() or not 0 < int(own_port) <= HIGHEST_PORT:
         raise SettingsError(f"hosts: {text!r}: use NAME=ADDRESS or NAME=ADDRESS:PORT")
     address = address.removeprefix("[").removesuffix("]")
     if not _can_be_reached(address):
         raise SettingsError(
-            f"hosts: {text!r}: {address!r} cannot stand in a certificate: use a host name or an IP address"
+            f"hosts: {text!r}: {address!r} is not valid in a certificate: use a host name or an IP address"
         )
     return Host(name, address, int(own_port))
 

@@ -25,9 +25,7 @@ def actions_of(samples: Sequence[SegmentSample]) -> list[str]:
     labels = sorted({sample.label for sample in samples})
     if len(labels) < 2:
         there = f"there is only {labels[0]!r}" if labels else "there is none"
-        raise TrainingError(
-            f"a model needs examples of at least two actions, to tell them apart, and {there}: record another action"
-        )
+        raise TrainingError(f"a model needs examples of at least two actions, and {there}: record another action")
     return labels
 
 

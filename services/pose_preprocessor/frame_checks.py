@@ -49,14 +49,14 @@ def check_frame(joints: Array, missing: Sequence[int], reach_limit_m: float, bon
 
 def _require_trunk(missing: Sequence[str]) -> None:
     if not _NEEDED.isdisjoint(missing) or not any(pair.isdisjoint(missing) for pair in _PAIRS):
-        raise BadFrameError("missing_joint", f"no {', '.join(missing)}")
+        raise BadFrameError("missing_joint", f"these joints are missing: {', '.join(missing)}")
 
 
 def _require_near(joints: Array, missing: Sequence[int], reach_limit_m: float) -> None:
     known = [i for i in range(len(JOINTS)) if i not in missing]
     for i in known:
         if not np.isfinite(joints[i]).all():
-            raise BadFrameError("not_finite", f"{JOINTS[i]} is not a finite position")
+            raise BadFrameError("not_finite", f"the position of {JOINTS[i]} is not finite")
     for i in known:
         if np.abs(joints[i]).max() > reach_limit_m:
             raise BadFrameError("absurd_joint", f"{JOINTS[i]} is more than {reach_limit_m:g} m away")

@@ -42,7 +42,7 @@ def optics_of(settings: Settings) -> Optics:
     calibration = None if path is None else Calibration.load(path)
     if calibration is not None and calibration.skeleton_from_image not in (None, SAME_CAMERA):
         raise CalibrationError(
-            f"{path} is the calibration of a second camera, because it has a skeleton_from_image; for a camera "
+            f"{path} is the calibration of a second camera, because it contains skeleton_from_image: for a camera "
             "that sees the people, use its own file of 'actum calibrate intrinsics', or start this one with "
             "--source marker-camera"
         )

@@ -33,7 +33,7 @@ class RecordingSource:
         self._sensor = sensor
         found = recording_files([path])
         if not found.paths:
-            raise RecordingError(path, "no *.mcap there", "name such a file or the folder that holds them")
+            raise RecordingError(path, "it contains no *.mcap file", "give such a file, or a folder of such files")
         for problem in found.left_out:
             self.counters.reject("damaged_recording", problem)
         self._recordings = [Recording(file) for file in found.paths]

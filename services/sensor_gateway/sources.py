@@ -34,7 +34,7 @@ def source_of(settings: Settings, start_ns: int) -> Source:
     """
     if settings.source is None:
         raise SourceError(
-            "no source is named: set --source (ACTUM_SOURCE); for the simulated scene start the service scene_simulator"
+            "no source is set: set --source (ACTUM_SOURCE), or start scene_simulator instead for a simulated scene"
         )
     if settings.source == "recording":
         source = _recording(settings, start_ns)

@@ -52,7 +52,9 @@ class PostureInput:
     def __post_init__(self) -> None:
         for name, choices in CHOICES.items():
             if getattr(self, name) not in choices:
-                raise ValueError(f"{name} {getattr(self, name)!r} is not known: use one of {', '.join(choices)}")
+                raise ValueError(
+                    f"{name} {getattr(self, name)!r} is not a valid value: use one of {', '.join(choices)}"
+                )
 
     @property
     def size(self) -> int:

@@ -10,7 +10,7 @@ from som_classifier.streams import Streams
 
 NO_END = "start without end: no end within 60 s"
 """The reason of a segment that is longer than any may be."""
-UNPLACED = "the classifier had only just started: it cannot tell when a mark without a stamp was put"
+UNPLACED = "the classifier had only just started, so it could not date a mark without a stamp"
 """The reason of a segment whose mark may have waited for the classifier."""
 LOST_NS = SECOND_NS // 2
 """A part lost that is no longer than this (ns) tells little: most of an action is left."""

@@ -31,29 +31,29 @@ def load_model(path: Path) -> Model:
     """
     try:
         if path.exists() and not path.is_file():
-            raise ModelError(path, "no file")
+            raise ModelError(path, "it is not a file")
         with path.open("rb") as stored:
             metadata, arrays = _parts(path, stored)
         kind = json.loads(metadata).get("kind")
         if kind not in KINDS:
-            raise ModelError(path, f"a model of kind {kind!r}, which this version of actum does not know")
+            raise ModelError(path, f"it is of kind {kind!r}, which this version of actum does not know")
         return KINDS[kind].restored(metadata, arrays)
     except ModelError:
         raise
     except FileNotFoundError:
-        raise ModelError(path, "there is no such file") from None
+        raise ModelError(path, "the file does not exist") from None
     except ValidationError as error:
         first = error.errors(include_input=False, include_url=False)[0]
         field = ".".join(str(part) for part in first["loc"])
-        raise ModelError(path, f"not a model of actum: metadata {field}: {first['msg']}") from None
+        raise ModelError(path, f"it is not a model of actum (metadata {field}: {first['msg']})") from None
     except (*UNREADABLE, AttributeError) as error:
-        raise ModelError(path, f"not a model of actum, or damaged ({error})") from None
+        raise ModelError(path, f"it is not a model of actum, or it is damaged ({error})") from None
 
 
 def _parts(path: Path, stored: IO[bytes]) -> tuple[str, Arrays]:
     """Return the metadata as JSON, and the arrays by name."""
     if not zipfile.is_zipfile(stored):  # NumPy's own error would advise to read it as a pickle
-        raise ModelError(path, "not a model of actum, or damaged")
+        raise ModelError(path, "it is not a model of actum, or it is damaged")
     refuse_bomb(stored)
     with np.load(stored, allow_pickle=False) as file:
         return str(file["metadata"]), {name: file[name] for name in file.files if name != "metadata"}

@@ -26,7 +26,7 @@ AT_ONCE = 8
 """Commands that wait for services' answers at the same time, of all browsers."""
 OURS = frozenset({"self", "service", "command", "timeout_s"})
 """Names that `Client.ask` has taken for itself."""
-NO_ROUTER = "there is no router, so nobody can be asked"
+NO_ROUTER = "the page is not connected to a router: start one with 'actum router', or 'actum up'"
 
 Chunk = Annotated[str, Field(pattern=f"^{keys.CHUNK.pattern}$")]
 
@@ -43,7 +43,7 @@ class Ask(BaseModel):
     @classmethod
     def _check_names(cls, fields: dict[str, Any]) -> dict[str, Any]:
         if taken := fields.keys() & OURS:
-            raise ValueError(f"no command has a field {', '.join(sorted(taken))}")
+            raise ValueError(f"a command cannot have the field {', '.join(sorted(taken))}")
         return fields
 
 
@@ -67,7 +67,7 @@ class Order(BaseModel):
     @model_validator(mode="after")
     def _check_one(self) -> Self:
         if (self.ask is None) == (self.mark is None):
-            raise ValueError("one of `ask` and `mark` belongs in it")
+            raise ValueError("the message has to have exactly one of `ask` and `mark`")
         return self
 
 
@@ -104,8 +104,8 @@ class Orders:
         except (ValueError, NotAnsweredError) as error:
             return self.refuse(order.id, str(error))
         except Exception:
-            log.exception("a bug occurred while carrying out an order")
-            return self.refuse(order.id, "the page's service failed: its log says why")
+            log.exception("a bug occurred while handling a message from the page")
+            return self.refuse(order.id, "a bug occurred in web_dashboard: see its log")
 
     def refuse(self, number: int | None, refusal: str, refused: bool = False) -> str:
         """Count a refusal, and return it as an answer; `refused` says that the service itself does not do it."""
@@ -122,12 +122,12 @@ class Orders:
             try:
                 self._put(self._connected(), mark.model_copy(update={"kind": "end"}))
             except Exception as error:
-                self.refused.append(f"{mark.segment_id} was left open by a page that has gone: {error}")
+                self.refused.append(f"{mark.segment_id} was not ended when its page was closed: {error}")
 
     def _mark(self, number: int, mark: Mark, browser: object) -> str:
         client = self._connected()
         if mark.kind == "start" and not client.wait_for_subscriber(keys.SEGMENT, CLASSIFIER_S):
-            raise ValueError("nobody listens for marks: is the classifier running?")
+            raise ValueError("no service receives marks: start som_classifier, or 'actum up'")
         self._put(client, mark)
         self._open.pop(mark.segment_id, None)
         if mark.kind == "start":

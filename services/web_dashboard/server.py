@@ -38,7 +38,7 @@ def bound_socket(host: str, port: int | None) -> socket.socket:
         except OSError as error:
             trouble = error
     raise SettingsError(
-        f"the page cannot be served at {host}, port {port or PORTS.start}: {trouble}; name another --page-port"
+        f"the page cannot be served at {host}, port {port or PORTS.start} ({trouble}): choose another --page-port"
     )
 
 

@@ -87,21 +87,21 @@ class Calibration(_Part):
     @classmethod
     def _pinhole(cls, numbers: list[float]) -> list[float]:
         if numbers[0] <= 0 or numbers[4] <= 0 or numbers[6:] != [0, 0, 1]:
-            raise ValueError("must be [fx, 0, cx, 0, fy, cy, 0, 0, 1] with fx and fy above 0")
+            raise ValueError("it must be [fx, 0, cx, 0, fy, cy, 0, 0, 1] with fx and fy above 0")
         return numbers
 
     @field_validator("distortion")
     @classmethod
     def _complete(cls, coefficients: list[float]) -> list[float]:
         if len(coefficients) not in DISTORTION_LENGTHS:
-            raise ValueError(f"has {len(coefficients)} coefficients; use one of the lengths {DISTORTION_LENGTHS}")
+            raise ValueError(f"it has {len(coefficients)} coefficients: use one of the lengths {DISTORTION_LENGTHS}")
         return coefficients
 
     @field_validator("skeleton_from_image")
     @classmethod
     def _rigid(cls, numbers: list[float] | None) -> list[float] | None:
         if numbers is not None and not geometry.is_rigid(geometry.from_flat(numbers), FURTHEST_M):
-            raise ValueError("is not a rigid transform: give rotation and position as 4x4 numbers, row-major")
+            raise ValueError("it is not a rigid transform: give rotation and position as a 4x4 matrix, row by row")
         return numbers
 
     @property
@@ -143,7 +143,7 @@ class Calibration(_Part):
         try:
             return cls.model_validate(content)
         except ValidationError as error:
-            raise CalibrationError(f"{path}: not a calibration: {_first(error)}; {REMEDY}") from None
+            raise CalibrationError(f"{path} is not a calibration ({_first(error)}): {REMEDY}") from None
 
     def save(self, path: Path) -> None:
         """Write the calibration file, replacing an existing one."""

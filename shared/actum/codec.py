@@ -82,7 +82,9 @@ def decode(key: str, payload: bytes, encoding: str = "") -> Message:
         raise DecodeError("unknown_key", str(error)) from None
     topic = address.topic
     if len(payload) > topic.max_bytes:
-        raise DecodeError("too_large", f"{len(payload)} bytes on {key}; at most {topic.max_bytes} are allowed")
+        raise DecodeError(
+            "too_large", f"the message on {key} has {len(payload)} bytes; at most {topic.max_bytes} are allowed"
+        )
     _check_encoding(encoding, topic.message)
     return _validated(key, address, _unpack(key, payload))
 
@@ -95,12 +97,12 @@ def _check_encoding(encoding: str, expected: type[Message]) -> None:
         return
     if match["schema"] != expected.SCHEMA:
         raise DecodeError(
-            "wrong_schema", f"the encoding names the schema {match['schema']}; this key carries {expected.SCHEMA}"
+            "wrong_schema", f"the encoding names the schema {match['schema']}; the key is for {expected.SCHEMA}"
         )
     if int(match["version"]) > expected.VERSION:
         raise DecodeError(
             "higher_version",
-            f"{encoding} is a newer version; this program knows version {expected.VERSION} of {expected.SCHEMA}: "
+            f"the message has the newer version {encoding}; this program knows version {expected.VERSION}: "
             "update actum",
         )
 
@@ -132,7 +134,7 @@ def with_different_names(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
     """
     made = dict(pairs)
     if len(made) < len(pairs):
-        raise ValueError("a name occurs twice in a map")
+        raise ValueError("a map contains the same name twice")
     return made
 
 
@@ -176,7 +178,7 @@ def _validated(key: str, address: keys.Address, fields: dict[str, Any]) -> Messa
     except (ValidationError, keys.InvalidKeyError) as error:
         raise DecodeError("wrong_fields", f"{key}: {_first_line(error)}") from None
     if actual != key:
-        raise DecodeError("wrong_key", f"the message belongs to {actual} but came on {key}")
+        raise DecodeError("wrong_key", f"the fields belong to the key {actual}, but the message came on {key}")
     return message
 
 

@@ -175,7 +175,7 @@ def _check_encodable(fields: dict[str, Any]) -> None:
         values = [inner for value in values for inner in _inner(value)]
         if not values:
             return
-    raise Refusal(f"the request is nested deeper than {MOST_LEVELS} levels")
+    raise Refusal(f"the request is nested too deeply: use at most {MOST_LEVELS} levels")
 
 
 def _inner(value: Any) -> Iterator[Any]:
@@ -189,15 +189,15 @@ def _inner(value: Any) -> Iterator[Any]:
         case list():
             yield from value
         case str() if encodable(value) != value:
-            raise Refusal("a text in the request holds half of a surrogate pair: send valid UTF-8")
+            raise Refusal("a text in the request is not valid Unicode (half of a surrogate pair): send valid UTF-8")
         case float() if not math.isfinite(value):
-            raise Refusal(f"the request holds the number {value}: send finite numbers")
+            raise Refusal(f"the request contains the number {value}: send finite numbers")
         case int() if value not in INTEGERS:
-            raise Refusal("the request holds an integer of more than 64 bits")
+            raise Refusal("the request contains an integer of more than 64 bits: send a smaller one")
         case None | str() | float() | int() | bytes():
             return
         case _:
-            raise Refusal(f"the request holds a {type(value).__name__}: use the types of JSON, or bytes")
+            raise Refusal(f"the request contains a {type(value).__name__}: use the types of JSON, or bytes")
 
 
 def problems(error: ValidationError) -> str:

@@ -120,7 +120,7 @@ def key(topic: Topic, sensor: str, name: str | int | None = None) -> str:
         InvalidKeyError: the topic needs a name and none is given, or has none and one is given, or a chunk is invalid.
     """
     if ("{}" in topic.leaf) != (name is not None):
-        raise InvalidKeyError(f"the topic {topic.leaf!r} cannot be used with the name {name!r}")
+        raise InvalidKeyError(f"the topic {topic.leaf!r} does not fit the name {name!r}")
     leaf = topic.leaf if name is None else topic.leaf.format(chunk(str(name)))
     return f"{BASE}/{chunk(sensor)}/{leaf}"
 

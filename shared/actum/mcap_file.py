@@ -24,7 +24,7 @@ MOST_INFLATION = 5000
 """How many times its size a file may grow by decompression: recordings do twenty times, raw black images two thousand.
 Files made to fill memory and time do more."""
 
-REMEDY = "name a recording made by `actum record` or `actum import`"
+REMEDY = "give a recording made by `actum record` or `actum import`"
 """What to do about a file that cannot be used."""
 
 
@@ -107,18 +107,20 @@ class McapFile:
     def _opened(self) -> BinaryIO:
         try:
             if self.path.exists() and not (self.path.is_file() or self.path.is_dir()):
-                raise RecordingError(self.path, "not a regular file", REMEDY)  # reading a named pipe would never end
+                raise RecordingError(
+                    self.path, "it is not a regular file", REMEDY
+                )  # reading a named pipe would never end
             file = self.path.open("rb")
         except OSError as error:
             raise RecordingError(self.path, error.strerror or str(error), REMEDY) from None
         if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
             file.close()
-            raise RecordingError(self.path, "not an MCAP file", REMEDY)
+            raise RecordingError(self.path, "it is not an MCAP file", REMEDY)
         file.seek(0)
         return file
 
     def _damaged(self, what: str) -> RecordingError:
-        return RecordingError(self.path, f"damaged ({what})", "record or import it again")
+        return RecordingError(self.path, f"it is damaged ({what})", "record or import it again")
 
 
 class _Exact:
@@ -130,7 +132,7 @@ class _Exact:
 
     def read(self, length: int) -> bytes:
         if length < 0:
-            raise ValueError(f"a record claims {length} bytes")
+            raise ValueError(f"a record has the length {length}")
         if length > self._remaining:
             raise EndOfFile
         self._remaining -= length
@@ -152,10 +154,10 @@ class _Chunks:
         size = chunk.uncompressed_size
         self._left -= size
         if size > LARGEST_CHUNK or self._left < 0:
-            raise ValueError(f"{len(chunk.data)} bytes of a chunk decompress to {size}")
+            raise ValueError(f"a chunk of {len(chunk.data)} bytes would decompress to {size}, which is too large")
         data = _decompressed(chunk)
         if len(data) != size:
-            raise ValueError(f"a chunk does not decompress to its stated {size} bytes")
+            raise ValueError(f"a chunk does not have its stated size of {size} bytes after decompression")
         return breakup_chunk(replace(chunk, compression="", data=data), validate_crc=True)
 
 

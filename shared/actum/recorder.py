@@ -154,7 +154,7 @@ class Recorder:
             OSError: the disk takes no more; nothing can be written after that.
         """
         if message.stamp_ns is None:
-            raise ValueError(f"the message has no stamp, which a recording needs: {message!r}")
+            raise ValueError(f"the message has no stamp, so it cannot be recorded: {message!r}")
         numbered = self._numbering.numbered(message)
         frame = codec.encode(numbered)
         assert numbered.seq is not None

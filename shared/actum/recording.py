@@ -135,7 +135,9 @@ class Recording:
                 else:
                     left -= MESSAGE_BYTES + len(stored.payload)
                     if left < 0:
-                        raise RecordingError(self.path, "it claims far more messages than its size allows", REMEDY)
+                        raise RecordingError(
+                            self.path, "it has far more messages than a file of its size can hold", REMEDY
+                        )
                     without_images.append(stored)
         within = [each for each in without_images if _may_be_read(addresses[each.key], each.publish_ns, spans)]
         if len(within) < len(without_images):

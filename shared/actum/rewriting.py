@@ -45,7 +45,9 @@ def rewrite(
     target = path.resolve()
     if target.suffix == UNFINISHED:
         finished = path.with_suffix("")
-        raise RecordingError(path, "an unfinished recording", f"finish it with 'actum record {finished} --finish'")
+        raise RecordingError(
+            path, "it is an unfinished recording", f"finish it with 'actum record {finished} --finish'"
+        )
     with replaced(target) as file:
         _copy(McapFile(path), file, change, added, metadata or {})
         shutil.copymode(target, file.name)
@@ -63,7 +65,7 @@ def finish(path: Path) -> int:
     part = unfinished(path)
     with part.open("r+b") as claimed:  # to write, or a network file system gives no lock
         if not claim(claimed) or not os.path.samestat(os.fstat(claimed.fileno()), part.stat()):
-            raise TakenError(part, f"{part} is being written by another process: wait for that process, or stop it")
+            raise TakenError(part, f"{part} is being written by another process: wait until it ends, or stop it")
         if os.path.lexists(path):
             raise TakenError(path, f"{path} already exists, so {part} cannot be renamed to it: rename one of them")
         with created(path) as file:
@@ -84,7 +86,7 @@ def _copy(
             copying.take(record)
         except KeyError as error:
             raise RecordingError(
-                source.path, f"damaged (a message belongs to the unknown channel {error})", REMEDY
+                source.path, f"it is damaged (a message belongs to the unknown channel {error})", REMEDY
             ) from None
     if metadata and not copying.described:
         writer.add_metadata(METADATA, dict(metadata))

@@ -171,7 +171,9 @@ class ServiceSettings(BaseSettings):
 
 def _file_source(settings_cls: type[BaseSettings], name: str | None) -> TomlConfigSettingsSource:
     if name and not Path(name).is_file():
-        raise SettingsError(f"ACTUM_CONFIG names {name}, which is not a file: correct or unset ACTUM_CONFIG")
+        raise SettingsError(
+            f"ACTUM_CONFIG names {name}, which does not exist or is not a file: correct or unset ACTUM_CONFIG"
+        )
     try:
         return TomlConfigSettingsSource(settings_cls, toml_file=name or None)
     except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:

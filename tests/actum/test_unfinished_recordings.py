@@ -80,7 +80,7 @@ def recorded(path: Path, *stamps_ns: int) -> None:
 def test_what_a_killed_process_left_is_not_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     left = killed(path)
-    with pytest.raises(FileExistsError, match=r"a\.mcap\.part is an unfinished recording \(0\.\d MB.*--finish"):
+    with pytest.raises(FileExistsError, match=r"a\.mcap\.part is it is an unfinished recording \(0\.\d MB.*--finish"):
         recorded(path, 1)
     assert part_of(path).read_bytes() == left
 
@@ -197,7 +197,7 @@ def test_what_cannot_be_finished_stays_as_it_is(tmp_path: Path) -> None:
     assert path.read_bytes() == b"mine"
     path.unlink()
     part_of(path).write_bytes(b"")
-    with pytest.raises(RecordingError, match="not an MCAP file"):
+    with pytest.raises(RecordingError, match="it is not an MCAP file"):
         finish(path)
     part_of(path).write_bytes(left)
     finish(path)

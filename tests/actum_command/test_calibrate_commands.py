@@ -80,7 +80,7 @@ def test_a_picture_that_would_be_overwritten_is_named_before_anything_is_looked_
     photograph_file.write_bytes(b"a photograph")
     said = run("calibrate", "intrinsics", folder, photograph_file, "-o", tmp_path / "x" / ".." / "cam.yaml", code=1)
     assert "cam-coverage.png is one of the pictures and would be overwritten" in said
-    assert "is no image" not in said
+    assert "is not an image" not in said
     assert [file.read_bytes() for file in tmp_path.iterdir()] == [b"a photograph"]
 
 
@@ -112,7 +112,7 @@ def test_too_few_pictures_are_refused(folder: Path, tmp_path: Path) -> None:
 def test_broken_and_foreign_pictures_are_named(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "broken.png").write_bytes(b"no picture")
     said = run("calibrate", "intrinsics", tmp_path / "broken.png", folder, "-o", tmp_path / "c.yaml")
-    assert "broken.png: is no image" in said
+    assert "broken.png: the file is not an image" in said
 
 
 @pytest.mark.parametrize(
@@ -120,7 +120,7 @@ def test_broken_and_foreign_pictures_are_named(folder: Path, tmp_path: Path) -> 
     [
         (["--board", "7by5"], "give columns x rows, such as 7x5"),
         (["--family", "DICT"], "not a marker family"),
-        (["--live"], "name either pictures of the board, or --live"),
+        (["--live"], "give either pictures of the board, or --live"),
     ],
 )
 def test_impossible_options_are_refused(folder: Path, tmp_path: Path, options: list[str], reason: str) -> None:
@@ -168,7 +168,7 @@ def test_how_a_camera_is_tilted_is_found_in_a_recording(tmp_path: Path) -> None:
     assert pitch_deg == pytest.approx(12.0, abs=3.0)
     assert up == pytest.approx([0.0, -np.cos(np.radians(pitch_deg)), np.sin(np.radians(pitch_deg))], abs=0.01)
     assert "nobody stood upright and still for long enough" in run("calibrate", "up", acting, code=1)
-    assert "not an MCAP file" in run("calibrate", "up", Path(__file__), code=1)
+    assert "it is not an MCAP file" in run("calibrate", "up", Path(__file__), code=1)
 
 
 def test_who_flickers_in_and_out_of_view_is_told_what_to_do_no_more_than_twice_a_second(

@@ -188,7 +188,7 @@ def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) 
         (("move", 1, "--start", "soon"), "'soon' is not a time"),
         (("move", 1, "--start", "nan"), "'nan' is not a time"),
         (("add", 2.0, 3.0, "wave"), "overlaps segment 1"),
-        (("rename", 1, ""), "the label has to have 1 to 200 characters"),
+        (("rename", 1, ""), "the label must have 1 to 200 characters"),
         (("cut", 5, "wave"), "overlaps segment 1"),
     ],
 )
@@ -203,12 +203,12 @@ def test_what_cannot_be_done_is_refused_and_changes_nothing(
 
 def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_text("nothing")
-    assert "not an MCAP file" in refused(tmp_path / "a.mcap")
+    assert "it is not an MCAP file" in refused(tmp_path / "a.mcap")
 
 
 def test_a_picture_of_another_kind_is_refused(path: Path, tmp_path: Path) -> None:
     assert "does not end in .png or .svg" in refused("picture", path, "-o", tmp_path / "a.gif")
-    assert "no such file" in refused("picture", path, "-o", tmp_path / "a.png", "--model", tmp_path / "m.npz").lower()
+    assert "does not exist" in refused("picture", path, "-o", tmp_path / "a.png", "--model", tmp_path / "m.npz").lower()
 
 
 def test_segments_of_several_sensors_are_listed_and_changed_one_by_one(path: Path, waves: Stream) -> None:

@@ -136,13 +136,13 @@ def test_what_is_done_five_times_is_counted_cut_and_shown(live: Live, tmp_path: 
 
 def test_what_is_repeated_with_nobody_there_is_told(live: Live, tmp_path: Path) -> None:
     live.comes(skeleton(1))
-    assert "nobody was seen" in actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5).stdout
+    assert "nobody was in view" in actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5).stdout
 
 
 def test_standing_still_is_no_example(live: Live, tmp_path: Path) -> None:
     live.comes(*Stream().then(rest(12)).skeletons(noise_m=0.008))
     told = actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 3, "--seconds", 3).stdout
-    assert "this does not count, nothing was cut: nobody moved by more than standing still explains" in told
+    assert "this does not count, nothing was cut: the movement was no larger than the noise" in told
     assert "marked by cut" not in told
 
 
@@ -182,7 +182,7 @@ def test_what_a_crash_left_is_not_recorded_over_but_finished(live: Live, tmp_pat
     left = (tmp_path / "a.mcap.part").read_bytes()
     live.comes(skeleton(2))
     told = refused("record", path)
-    assert "a.mcap.part is an unfinished recording (0.0 MB, last written 2" in told
+    assert "a.mcap.part is it is an unfinished recording (0.0 MB, last written 2" in told
     assert f"actum record {path} --finish" in told
     assert (tmp_path / "a.mcap.part").read_bytes() == left
     assert live.take() is not None, "nobody has listened"
@@ -195,7 +195,10 @@ def test_what_a_crash_left_is_not_recorded_over_but_finished(live: Live, tmp_pat
 def test_what_cannot_be_finished_is_told_and_left(tmp_path: Path) -> None:
     (tmp_path / "a.mcap.part").write_bytes(b"torn")
     told = refused("record", tmp_path / "a.mcap", "--finish")
-    assert "a.mcap.part cannot be finished (not an MCAP file): it is as it was; move it away or remove it" in told
+    assert (
+        "a.mcap.part cannot be turned into a recording (it is not an MCAP file); it was not changed: move or delete it"
+        in told
+    )
     assert (tmp_path / "a.mcap.part").read_bytes() == b"torn"
 
 
@@ -339,7 +342,7 @@ class TestUnfinishedInAFolder:
 
     def told_of(self, text: str, folder: Path) -> None:
         assert f"{folder / 'b.mcap.part'} is not finished: its messages so far are read" in text
-        assert f"not read: {folder / 'c.mcap.part'}: not an MCAP file" in text
+        assert f"not read: {folder / 'c.mcap.part'}: it is not an MCAP file" in text
         assert f"{folder / 'a.mcap.part'} is not read, because the finished recording {folder / 'a.mcap'}" in text
 
     def test_commands_read_them_and_say_so(self, folder: Path) -> None:
@@ -355,7 +358,7 @@ class TestUnfinishedInAFolder:
 
     def test_a_file_that_is_named_is_read_or_refused(self, folder: Path) -> None:
         assert "newest" in actum("watch", "segment", "--from", folder / "b.mcap.part").stdout
-        assert "not an MCAP file" in refused("watch", "segment", "--from", folder / "c.mcap.part")
+        assert "it is not an MCAP file" in refused("watch", "segment", "--from", folder / "c.mcap.part")
 
     def test_what_takes_folders_by_itself_logs_it(self, folder: Path, caplog: pytest.LogCaptureFixture) -> None:
         assert [recording.path.name for recording in select([folder])] == ["a.mcap", "b.mcap.part"]

@@ -81,10 +81,10 @@ def test_a_service_understands_what_it_is_told(started: BY_NAME, monkeypatch: py
         ),
         (
             ("--people", "3"),
-            "scene_simulator takes no --people: it is a setting of sensor_gateway, which --source simulator does not",
+            "--people is a setting of sensor_gateway, which --source simulator does not",
         ),
         (("--camera", "0", "--actor", "3"), "--actor is a setting of scene_simulator, which --source camera does not"),
-        (("--source", "simulator", "--camera", "1"), "source simulator takes no --camera"),
+        (("--source", "simulator", "--camera", "1"), "--source simulator uses no camera"),
     ],
 )
 def test_what_nobody_would_heed_is_refused(arguments: tuple[str, ...], reason: str, started: BY_NAME) -> None:

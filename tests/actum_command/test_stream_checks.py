@@ -78,7 +78,7 @@ def test_a_source_that_gives_fewer_frames_than_it_is_set_to(put_hz: float, told:
 
 def test_skeletons_that_come_slower_than_they_are_stamped() -> None:
     [line] = said(streams={keys.SKELETON: watched(people(30), apart_s=1 / 12)})
-    assert line.startswith("12 skeletons arrive per second, but by their stamps there are 30")
+    assert line.startswith("12 skeletons arrive per second, but their stamps are those of 30")
 
 
 def test_images_that_have_stopped() -> None:
@@ -178,6 +178,8 @@ def test_what_is_told_in_part() -> None:
     answered = [answer(GATEWAY, 0.0, 0.001)]
     assert list(partly_denied(Heard({GATEWAY: ["a"]}, answered, {GATEWAY: known}, {}))) == []
     [line] = partly_denied(Heard({}, answered, {GATEWAY: known}, {}))
-    assert line.startswith("services run, but none of them shows its token")
+    assert line.startswith(
+        "services run, but the router's access control denies this program permission to read their liveliness"
+    )
     [line] = partly_denied(Heard({GATEWAY: ["a"]}, answered, {}, {}))
     assert line.startswith("services run, but no status arrives")

@@ -112,7 +112,7 @@ def test_an_action_is_dropped_with_its_answers_and_the_person_in_its_frames(path
     ("arguments", "reason"),
     [
         (("drop", "wole"), "no 'wole' in .*anna.mcap: is whole meant"),
-        (("relabel", "whole", ""), "the label has to have 1 to 200 characters"),
+        (("relabel", "whole", ""), "the label must have 1 to 200 characters"),
         (("trim", "whole", "--start", "2"), "s and cannot run from 2 s to 0.96"),
         (("trim", "whole", "--start", "-2"), "before time 0 of the sensor's clock"),
         (("trim", "whole", "--end", "3600"), "3600.00 s lies outside the recording's frames"),

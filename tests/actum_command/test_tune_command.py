@@ -77,7 +77,7 @@ def test_several_recordings_are_also_held_against_settings_picked_on_the_others(
     [
         (("--disabled-actions", "wvae"), "settings name actions that the model does not know: wvae"),
         (("--shortest-pause-s", "-1"), "shortest_pause_s"),
-        (("--cooldown-s", "lift"), "'lift' has no time: write each action with its seconds, such as wave=3,clap=1"),
+        (("--cooldown-s", "lift"), "'lift' has no time: give each action its seconds, such as wave=3,clap=1"),
     ],
 )
 def test_settings_that_cannot_be_used_are_refused(desk: Desk, options: tuple[str, str], reason: str) -> None:
@@ -86,7 +86,7 @@ def test_settings_that_cannot_be_used_are_refused(desk: Desk, options: tuple[str
 
 def test_settings_of_the_search_are_refused_where_nothing_is_searched(desk: Desk) -> None:
     said = refused("evaluate", desk.model, desk.third, "--shortest-pause-s", "1")
-    assert "--shortest-pause-s applies to actions found without marks: add --continuous" in said
+    assert "--shortest-pause-s works only together with --continuous: add --continuous" in said
 
 
 def test_what_cannot_be_tuned_is_refused_before_the_work(desk: Desk, tmp_path: Path) -> None:

@@ -145,21 +145,21 @@ def test_two_that_follow_each_other_almost_at_once_are_two() -> None:
         (
             [50],
             6,
-            ["5 of 6 repetitions found: record 1 more; the second and third may have run together at 3.3 s"],
+            ["5 of 6 repetitions found: record 1 more; the second and third repetition may be joined at 3.3 s"],
         ),
-        ([50], None, ["the second and third may have run together at 3.3 s"]),
+        ([50], None, ["the second and third repetition may be joined at 3.3 s"]),
         ([], 6, ["5 of 6 repetitions found: record 1 more"]),
         (
             [50, 100],
             6,
-            ["5 of 6 repetitions found: record 1 more; the second and third may have run together at 3.3 s"],
+            ["5 of 6 repetitions found: record 1 more; the second and third repetition may be joined at 3.3 s"],
         ),
         (
             [50, 100],
             None,
             [
-                "the second and third may have run together at 3.3 s",
-                "the fourth and fifth may have run together at 6.7 s",
+                "the second and third repetition may be joined at 3.3 s",
+                "the fourth and fifth repetition may be joined at 6.7 s",
             ],
         ),
         ([10], 5, []),
@@ -187,7 +187,7 @@ def test_times_in_doubts_count_from_the_given_stamp() -> None:
     skeletons = stream.skeletons(first_ns=10**18)
     cuts = cut(seen(skeletons), 4, 10**18)
     assert cuts is not None
-    assert any("the fourth (" in doubt and "unlike" in doubt for doubt in cuts.doubts)
+    assert any("the fourth repetition (" in doubt and "unlike" in doubt for doubt in cuts.doubts)
     assert all(float(word) < 60 for doubt in cuts.doubts for word in doubt.replace("(", "").split() if "." in word)
 
 

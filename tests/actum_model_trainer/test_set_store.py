@@ -68,6 +68,6 @@ def test_a_take_with_more_examples_than_can_be_changed_at_once_is_told(
         for number in (1, 2):
             for each in segment_marks(2 * number, 2 * number + 1, "kinect0", f"wave-{number}", "wave"):
                 recorder.write(each)
-    with pytest.raises(RecordingError, match="2 marked actions, at most 1 are taken; split it"):
+    with pytest.raises(RecordingError, match="it has 2 marked actions, more than 1; split it"):
         store.add("waves", recorder.path)
     assert "2 marked actions" in store.get("waves").unreadable[0]

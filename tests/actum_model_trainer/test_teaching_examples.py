@@ -139,9 +139,9 @@ def test_a_name_that_is_refused_is_refused_in_a_sentence_without_the_command_or_
     for name in ("../x", "a/b", "<b>", ".hidden", "end "):
         with pytest.raises(Refusal, match=f"^{re.escape(repr(name))} cannot be a name: {rule}"):
             teacher.ask("create_set", set=name)
-    with pytest.raises(Refusal, match="^the name is empty: type one$"):
+    with pytest.raises(Refusal, match="^the name is empty: enter one$"):
         teacher.ask("create_set", set="")
-    with pytest.raises(Refusal, match="^a name has at most 64 characters, and this one has 65: shorten it$"):
+    with pytest.raises(Refusal, match="^the name has 65 characters: use at most 64$"):
         teacher.ask("create_set", set="x" * 65)
 
 
@@ -162,7 +162,7 @@ def test_a_set_is_a_folder_that_can_be_copied_renamed_and_deleted(teacher: Teach
 def test_a_damaged_file_in_a_set_is_named_and_the_others_are_there(teacher: Teacher) -> None:
     (teacher.folder / "sets/kitchen/take-0001.mcap").write_bytes(b"no recording")
     (kitchen,) = teacher.ask("list")["sets"]
-    assert "take-0001.mcap: not an MCAP file" in kitchen["unreadable"][0]
+    assert "take-0001.mcap: it is not an MCAP file" in kitchen["unreadable"][0]
     assert kitchen["actions"] == {"goggles": 5}
 
 

@@ -127,10 +127,7 @@ def test_a_set_of_one_person_is_tested_by_examples(
     assert any("All examples are of anna: record 5 of each action by a second person." in it for it in result["advice"])
 
 
-ONE_ACTION = (
-    "a model needs examples of at least two actions, to tell them apart, and there is only 'goggles': "
-    "record another action"
-)
+ONE_ACTION = "a model needs examples of at least two actions, and there is only 'goggles': record another action"
 
 
 def test_what_cannot_be_trained_fails_with_the_reason(
@@ -170,7 +167,10 @@ def test_a_job_that_the_service_did_not_outlive_counts_as_cancelled(teacher: Tea
     begun = teacher.ask("train", set="kitchen")
     teacher.begin()
     found = teacher.ask("job", job=begun["id"])
-    assert (found["state"], found["message"]) == ("cancelled", "the service ended while it ran: start it again")
+    assert (found["state"], found["message"]) == (
+        "cancelled",
+        "the service ended while this job ran: start the job again",
+    )
     assert teacher.tick().job.state == "cancelled"
 
 

@@ -97,4 +97,6 @@ def test_a_damaged_file_is_counted_once_and_the_model_before_stays(teacher: Teac
     teacher.original.write_text("damaged")
     assert teacher.tick(5 * LOOKS).model == own
     assert teacher.trainer.counters.rejects == {"bad_model": 1}
-    assert teacher.trainer.counters.state.startswith(f"model not renewed: {teacher.original}: not a model of actum")
+    assert teacher.trainer.counters.state.startswith(
+        f"model not renewed: {teacher.original}: it is not a model of actum"
+    )

@@ -69,9 +69,9 @@ def test_a_discarded_take_leaves_nothing(teacher: Teacher) -> None:
 @pytest.mark.parametrize(
     ("stream", "why"),
     [
-        (Stream(), "nobody was seen: stand where"),
-        (Stream().then(rest(30)), "nobody moved by more than standing still explains: do the action with larger"),
-        (Stream().then(rest(4)).repeat(WAVES[:1]), "no two movements were alike, and 5 repetitions were asked for"),
+        (Stream(), "nobody was in view: stand where"),
+        (Stream().then(rest(30)), "the movement was no larger than the noise of standing still: move further"),
+        (Stream().then(rest(4)).repeat(WAVES[:1]), "no two movements were alike, so the 5 repetitions were not found"),
     ],
     ids=["nobody", "still", "one movement"],
 )
@@ -176,7 +176,7 @@ def test_one_thing_is_recorded_at_a_time(teacher: Teacher) -> None:
         teacher.ask("delete_set", set="kitchen")
     teacher.ask("discard")
     for command in ("stop", "discard"):
-        with pytest.raises(Refusal, match="nothing is being recorded: begin with 'record'"):
+        with pytest.raises(Refusal, match="no take is being recorded: start one first"):
             teacher.ask(command)
     teacher.ask("delete_set", set="kitchen")
 
@@ -210,7 +210,7 @@ def test_a_take_is_lost_where_the_sensor_begins_anew_and_says_so(teacher: Teache
     teacher.see([frames[0].model_copy(update={"session_id": "another", "stamp_ns": 5})])
     told = teacher.tick()
     assert told.recording is not None and told.recording.phase == "done"
-    assert "begun anew" in told.recording.doubts[0]
+    assert "restarted during the take" in told.recording.doubts[0]
     assert teacher.trainer.counters.rejects["lost_take"] == 1
     assert teacher.examples() == [] and not list(teacher.folder.rglob("*.mcap*"))
 

@@ -47,7 +47,10 @@ def test_a_mark_outside_of_the_take_is_refused_and_the_teacher_learns_why(
     told = teacher.ask("stop")
     counters = teacher.trainer.counters
     assert counters.rejects["refused_mark"] == 2
-    assert "marks refused: 2; of the last" in told["doubts"][0] and told["doubts"] == teacher.tick().recording.doubts
+    assert (
+        "marks that were refused: 2. The last one" in told["doubts"][0]
+        and told["doubts"] == teacher.tick().recording.doubts
+    )
     (example,) = teacher.examples()
     assert (example["start_ns"], example["end_ns"]) == (frames[59].stamp_ns, frames[89].stamp_ns)
     assert teacher.ask("film", set="kitchen", example=example["id"])["stamps_ns"]
@@ -62,7 +65,7 @@ def test_a_mark_before_any_frame_and_an_end_that_bounds_nothing_are_refused(
     assert "before any frame" not in (teacher.trainer.counters.last_error or "")
     teacher.see([*frames[30:60], mark("end", "one"), mark("start", "open"), *frames[60:70]])
     doubts = teacher.ask("stop")["doubts"]
-    assert any("without an end in the take, left out: 1" in doubt for doubt in doubts)
+    assert any("the take has no end mark for them: 1" in doubt for doubt in doubts)
     assert [each["id"] for each in teacher.examples()] == ["take-0001/one"]
 
 
@@ -97,7 +100,7 @@ def test_a_clock_that_runs_backwards_for_long_loses_the_take(teacher: Teacher, f
     teacher.ask("record", set="kitchen", label="wave")
     back = [each.model_copy(update={"stamp_ns": each.stamp_ns - 3600 * SECOND_NS}) for each in frames[60:70]]
     teacher.see([*frames[:60], *back])
-    assert "begun anew" in teacher.tick().recording.doubts[0]
+    assert "restarted during the take" in teacher.tick().recording.doubts[0]
 
 
 @pytest.mark.parametrize("stamp_ns", WRONG)

@@ -180,7 +180,7 @@ def test_a_sensor_that_pauses_during_a_take_is_said_to_pause(room: Lesson, teach
     frames = Stream().then(rest(1)).repeat(WAVES[:1]).skeletons(first_ns=10**12)
     room.see(frames[: len(frames) - 45])  # it pauses in the middle of a movement
     phase = teach.locator("#record .phase")
-    phase.get_by_text("The sensor sends no frames: the take waits for it").wait_for(timeout=10_000)
+    phase.get_by_text("The sensor publishes nothing: the take waits for it").wait_for(timeout=10_000)
 
 
 def test_what_was_said_of_a_set_is_gone_once_another_is_shown(room: Lesson, teach: Any) -> None:

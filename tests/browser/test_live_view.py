@@ -157,7 +157,7 @@ def test_a_mark_that_is_refused_is_told(scene: Scene, open_page: Open) -> None:
     page = open_page(scene.page.address)
     wait_for_state(page, "live")
     page.keyboard.press(" ")
-    page.locator("#switch .caption", has_text="Not marked: nobody listens for marks").wait_for()
+    page.locator("#switch .caption", has_text="Not marked: no service receives marks").wait_for()
 
 
 def test_a_page_that_is_loaded_anew_shows_the_answers_before(scene: Scene, open_page: Open) -> None:

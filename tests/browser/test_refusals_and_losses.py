@@ -302,9 +302,11 @@ def test_what_has_gone_when_a_button_is_pressed_is_told_in_words(room: Lesson, o
     room.page.colleague.answer = asked
     page = live(open_page(f"{room.page.address}#models"))
     page.get_by_role("button", name="Compare model 01234567").click()
-    page.locator("#model-list").get_by_text("No model is in use, so there is none to compare it with.").wait_for()
+    page.locator("#model-list").get_by_text(
+        "No model is in use, so there is nothing to compare this one with."
+    ).wait_for()
     page.get_by_text("Have the simulated person do it").evaluate("it => it.click()")
-    page.locator("#record").get_by_text("no take is being recorded: press Record first").wait_for(state="attached")
+    page.locator("#record").get_by_text("No take is being recorded: press Record first").wait_for(state="attached")
     page.evaluate(
         """async () => {
           const { trainer } = await import('/page/trainer.js');

@@ -213,7 +213,7 @@ def test_a_take_in_which_nobody_moves_says_that_it_does_not_count_and_is_not_gre
     said = teach.get_by_text("this take of swing does not count")
     said.wait_for()
     assert "refused" in said.get_attribute("class")
-    says(teach, "record", "nobody moved by more than standing still explains: do the action with larger movements")
+    says(teach, "record", "the movement was no larger than the noise of standing still: move further")
     examples_of(teach, "swing", 0)
 
 

@@ -99,7 +99,7 @@ def test_a_thousand_small_bombs_in_one_file_are_refused(tmp_path: Path) -> None:
             writer.add_message(channel, i, payload, i)
         writer.finish()
     assert path.stat().st_size < 100_000
-    assert "it claims far more messages than its size allows" in refused(path)
+    assert "it has far more messages than a file of its size can hold" in refused(path)
 
 
 def test_a_lens_that_is_covered_makes_no_bomb(tmp_path: Path) -> None:
@@ -154,7 +154,7 @@ def test_messages_of_a_later_version_are_named(tmp_path: Path) -> None:
 def test_an_mcap_of_a_later_version_is_refused(recording: Path, tmp_path: Path) -> None:
     later = tmp_path / "later.mcap"
     later.write_bytes(recording.read_bytes().replace(b"MCAP0", b"MCAP1", 1))
-    assert refused(later).endswith("name a recording made by `actum record` or `actum import`")
+    assert refused(later).endswith("give a recording made by `actum record` or `actum import`")
 
 
 def no_model(path: Path) -> str:

@@ -98,7 +98,7 @@ def test_a_calibration_of_another_aspect_is_counted() -> None:
     tracker = MarkerTracker(Settings(calibrated_size_px=(64, 64)))
     (answer,) = tracker.handle(small())
     assert tracker.counters.rejects == {"calibration_size_mismatch": 1}
-    assert "an image of 64x48, but calibrated at 64x64" in answer.reason
+    assert "the image is 64x48, but the camera was calibrated at 64x64" in answer.reason
 
 
 @pytest.mark.parametrize("scale", [0.5, 2.0])

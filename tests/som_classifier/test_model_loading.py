@@ -96,7 +96,7 @@ def test_a_save_that_fails_leaves_the_old_file(tmp_path: Path, kind: str, monkey
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
-    assert "no such file" in refused(tmp_path / "nothing.npz")
+    assert "does not exist" in refused(tmp_path / "nothing.npz")
 
 
 def test_a_folder_is_no_model(tmp_path: Path) -> None:

@@ -72,7 +72,7 @@ def test_after_a_restart_a_segment_without_any_frame_says_so_once_none_may_come(
 
 def test_just_after_a_restart_a_mark_without_a_stamp_cannot_be_placed() -> None:
     run = Run().remember().feed(*postures(10), mark("start"), mark("end"))
-    assert run.reasons == ["the classifier had only just started: it cannot tell when a mark without a stamp was put"]
+    assert run.reasons == ["the classifier had only just started, so it could not date a mark without a stamp"]
     run.wait(1.2).feed(mark("start", None, "later"), *postures(15)[10:], mark("end", None, "later"))
     assert len(run.reasons) == 2 and run.reasons[1] is None
 

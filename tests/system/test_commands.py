@@ -145,7 +145,7 @@ def test_up_refuses_an_endpoint_that_a_router_has(running: System) -> None:
     with running.client():
         refused = running.actum("up")
     assert refused.returncode == 1
-    assert "cannot be listened on" in refused.stderr
+    assert "the router cannot listen at" in refused.stderr
 
 
 def test_up_refuses_a_zenoh_configuration_that_cannot_be_used(running: System, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -70,7 +70,7 @@ def test_a_recording_that_is_played_too_slowly(running: System, tmp_path: Path) 
         running.start("actum_command", "play", str(tmp_path / "reaches.mcap"), "--speed", "0.1")
         wait_until(lambda: skeletons.take() is not None, "it is played")
         found = said(running)
-        assert "3 skeletons arrive per second, but by their stamps there are 30" in found, found
+        assert "3 skeletons arrive per second, but their stamps are those of 30" in found, found
 
 
 def test_a_service_of_another_version(running: System) -> None:
@@ -154,7 +154,10 @@ def test_a_role_that_is_told_in_part(running: System, tmp_path: Path) -> None:
     with running.client() as client:
         collect(client.listen(keys.pattern(keys.STATUS, client.sensor)), object, bool)  # type: ignore[arg-type]
     assert preprocessor.process.poll() is None
-    assert "services run, but none of them shows its token: the router's access control denies it" in said(running)
+    assert (
+        "services run, but the router's access control denies this program permission to read their liveliness tokens"
+        in said(running)
+    )
 
 
 def test_two_of_one_name_behind_two_routers(running: System, tmp_path: Path) -> None:

@@ -241,7 +241,7 @@ def test_a_mark_without_a_stamp_from_before_its_start_is_rejected(
             client.put(Segment(sensor="kinect0", kind="start", segment_id="now"))
             running.start("som_classifier", *classifier_flags)
         (rejected,) = [each for each in collect(actions, Action, _answered("now")) if each.final]
-    assert rejected.reason == "the classifier had only just started: it cannot tell when a mark without a stamp was put"
+    assert rejected.reason == "the classifier had only just started, so it could not date a mark without a stamp"
 
 
 def test_a_fusion_that_is_stopped_for_seconds_goes_on_as_if_nothing_had_been(running: System) -> None:

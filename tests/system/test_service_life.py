@@ -165,7 +165,7 @@ def test_a_configuration_file_that_is_not_there_is_no_defaults(
     monkeypatch.setenv("ACTUM_CONFIG", "/nowhere.toml")
     service = running.start("pose_preprocessor")
     assert service.process.wait(timeout=30) == 2
-    named = "ACTUM_CONFIG names /nowhere.toml, which is not a file: correct or unset ACTUM_CONFIG"
+    named = "ACTUM_CONFIG names /nowhere.toml, which does not exist or is not a file: correct or unset ACTUM_CONFIG"
     assert service.said() == f"pose_preprocessor: {named}\n"
 
 

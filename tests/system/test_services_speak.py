@@ -53,12 +53,12 @@ def test_a_model_that_is_not_there_is_named(running: System, scene_model: Path, 
         running.wait_for_services(client, "som_classifier")
         assert f"som_classifier: no model: there is no {model} yet, so every action is rejected" in diagnosed(running)
         model.write_bytes(b"not yet whole")
-        wait_for_line(classifier, f"no model: {model}: not a model of actum")
+        wait_for_line(classifier, f"no model: {model}: it is not a model of actum")
         (tmp_path / "whole.npz").write_bytes(scene_model.read_bytes())
         (tmp_path / "whole.npz").rename(model)
         wait_for_line(classifier, "running again")
         model.write_bytes(b"damaged")
-        wait_for_line(classifier, f"model not renewed: {model}: not a model of actum")
+        wait_for_line(classifier, f"model not renewed: {model}: it is not a model of actum")
     wait_for_line(classifier, f"no model: there is no {model} yet")
 
 
@@ -72,7 +72,7 @@ def test_a_camera_file_that_is_not_there_is_named_and_that_it_came(running: Syst
     gateway = running.start("sensor_gateway", *marker_camera(tmp_path, missing))
     lost = f"camera lost: it cannot be opened (file {missing} (marker camera))"
     wait_for_line(gateway, lost)
-    assert f"marker_camera: {lost}; the service retries by itself" in diagnosed(running)
+    assert f"marker_camera: {lost}; it retries by itself" in diagnosed(running)
     write_video(tmp_path / "arriving.avi").rename(missing)
     wait_for_line(gateway, "running again")
     wait_for_line(gateway, lost)

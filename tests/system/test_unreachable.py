@@ -179,4 +179,6 @@ def test_one_speaks_tls_and_the_other_does_not(running: System, authority: Autho
     with System(running.folder, ServiceSettings(connect=plain)).client():
         pass
     named = plain.replace("tcp/127.0.0.1", "tls/localhost")
-    assert said(running, named, authority.role("viewer")).startswith("the port does not answer in TLS: use tcp/")
+    assert said(running, named, authority.role("viewer")).startswith(
+        "the port does not use TLS: set ACTUM_CONNECT to tcp/"
+    )

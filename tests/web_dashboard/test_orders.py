@@ -47,7 +47,7 @@ def test_a_mark_that_nobody_listens_for_is_refused(page: Served) -> None:
     with page.browser() as browser:
         refused = answered(browser, {"id": 1, "mark": {"kind": "start", "segment_id": "a"}})
     page.colleague.listened = True
-    assert "is the classifier running?" in refused["error"]
+    assert "no service receives marks" in refused["error"]
 
 
 def test_a_browser_that_goes_ends_the_segments_that_it_has_left_open_and_no_others() -> None:
@@ -93,9 +93,12 @@ def test_a_command_is_answered_by_its_service(page: Served) -> None:
         ({"service": "som_classifier", "command": "**"}, "ask.command"),
         (
             {"service": "som_classifier", "command": "maps", "fields": {"timeout_s": 1e9}},
-            "no command has a field timeout_s",
+            "a command cannot have the field timeout_s",
         ),
-        ({"service": "som_classifier", "command": "maps", "fields": {"self": 1}}, "no command has a field self"),
+        (
+            {"service": "som_classifier", "command": "maps", "fields": {"self": 1}},
+            "a command cannot have the field self",
+        ),
         ({"service": "som_classifier"}, "ask.command is missing"),
     ],
 )
@@ -109,7 +112,10 @@ def test_a_command_that_is_wrong_is_refused_with_words(page: Served, ask: dict[s
 def test_without_a_router_it_says_so(page: Served) -> None:
     page.colleague.router = False
     with page.browser() as browser:
-        assert "no router" in answered(browser, {"id": 1, "ask": {"service": "a", "command": "b"}})["error"]
+        assert (
+            "not connected to a router"
+            in answered(browser, {"id": 1, "ask": {"service": "a", "command": "b"}})["error"]
+        )
     page.colleague.router = True
 
 

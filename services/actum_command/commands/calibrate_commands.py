@@ -56,7 +56,7 @@ def intrinsics(
     service reads (--calibration), and beside it a picture of where the board was seen.
     """
     if live == bool(images):
-        fail("name either pictures of the board, or --live")
+        fail("give either pictures of the board, or --live")
     files = _files(images or [])
     picture = _coverage_picture_of(output, files)
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
@@ -104,7 +104,7 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     calibration file for the camera that sees the markers.
     """
     if (live is not None) == bool(pairs):
-        fail("name either pairs of pictures, or --live MARKERS,PEOPLE")
+        fail("give either pairs of pictures, or --live with the two sensors, such as --live kinect0,kinect1")
     refuse_ending(output, ".yaml", ".yml")
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
     try:
@@ -134,7 +134,7 @@ def _extrinsics(
 def _board(squares: str, square_mm: float, marker_mm: float, family: str) -> Board:
     columns, _, rows = squares.partition("x")
     if not (columns.isdecimal() and rows.isdecimal()):
-        fail(f"--board {squares!r} is not a number of squares: give them across x down, such as 7x5")
+        fail(f"--board {squares!r} is not a number of squares: give columns x rows, such as 7x5")
     try:
         return Board(int(columns), int(rows), square_mm / 1000, marker_mm / 1000, family)
     except PatternError as error:
@@ -152,7 +152,7 @@ def _coverage_picture_of(output: Path, pictures: Sequence[Path]) -> Path:
     inputs = {file.resolve() for file in pictures}
     for written in (output, picture):
         if written.resolve() in inputs:
-            fail(f"{written} is one of the pictures and would be overwritten: name another output with -o")
+            fail(f"{written} is one of the pictures and would be overwritten: give another output file with -o")
     return picture
 
 

@@ -86,7 +86,9 @@ def _marked(here: ServiceSettings, people: int, repetitions: int) -> str | None:
         score = run_marked(_live(here), here, model, actors, repetitions)
     console.print(table(score))
     console.print(summary(score, learned, baseline, people), soft_wrap=True)
-    return f"only {len(score.events)} of {score.expected} events came" if len(score.events) < score.expected else None
+    return (
+        f"only {len(score.events)} of {score.expected} events arrived" if len(score.events) < score.expected else None
+    )
 
 
 def _unmarked(here: ServiceSettings, people: int, repetitions: int) -> str | None:
@@ -99,8 +101,8 @@ def _unmarked(here: ServiceSettings, people: int, repetitions: int) -> str | Non
     console.print(unmarked_summary(performances, learned, people), soft_wrap=True)
     unfinished = [performance.person for performance in performances if not performance.over]
     if unfinished:
-        return f"not everything of {', '.join(unfinished)} came"
-    return None if any(performance.events for performance in performances) else "no event came"
+        return f"the scene of {', '.join(unfinished)} did not end in time"
+    return None if any(performance.events for performance in performances) else "no event arrived"
 
 
 def _live(here: ServiceSettings) -> LiveTest:

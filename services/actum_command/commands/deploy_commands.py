@@ -84,7 +84,7 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
     Copy each folder to its host. Run the command again to change the deployment.
     """
     if not_secured and passwords:
-        fail("--open disables passwords: leave out --open or --passwords")
+        fail("--open and --passwords exclude each other: leave out one of them")
     try:
         placed = hosts_of(hosts, sensors)
     except (SettingsError, InvalidKeyError) as error:

@@ -114,7 +114,7 @@ def export(
 ) -> None:
     """Convert a recording to a file that Foxglove opens, such as actum export --foxglove REC OUT."""
     if not for_foxglove:
-        fail("no format is chosen: add --foxglove")
+        fail("no output format is given: add --foxglove")
     refuse_without("foxglove", "foxglove-sdk", "foxglove")
     refuse_output(output)
     from actum_command.viewers.foxglove_sinks import written

@@ -54,9 +54,9 @@ def inspect(
     if picture_format not in FORMATS:
         fail(f"--format {picture_format!r} is not known: use one of {', '.join(FORMATS)}")
     if output.suffix.lower() in FILES:
-        fail(f"{output} has the name of a file: name a folder for the pictures and index.html")
+        fail(f"{output} looks like a file: give a folder for the pictures and index.html")
     if output.exists() and not output.is_dir():
-        fail(f"{output} is not a folder: name a folder for the pictures")
+        fail(f"{output} is not a folder: give a folder for the pictures")
     if find_spec("matplotlib") is None:
         fail(f"matplotlib, which draws the pictures, is not installed: {adding('model-inspector')}")
     try:

@@ -109,7 +109,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         return
     refuse_output(output)
     if times is not None and label is None:
-        fail("--times needs --label: what is done so many times?")
+        fail("--times needs the name of the repeated action: add --label")
     stop = stop_on_signals()
     deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
     topics = STREAMS | IMAGES if images else STREAMS
@@ -131,7 +131,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
 
 def _fail_unfinished(output: Path, error: OSError) -> NoReturn:
     """Fail, naming what was stored before the error and what to do with it."""
-    left = f"; what was stored lies in {unfinished(output)}: make a recording of it by actum record {output} --finish"
+    left = f"; {unfinished(output)} holds what was stored: finish it with 'actum record {output} --finish'"
     fail(f"{output} cannot be written ({error.strerror})" + (left if unfinished(output).exists() else ""))
 
 
@@ -141,13 +141,13 @@ def _finish(output: Path) -> None:
     try:
         count = finished(output)
     except FileNotFoundError:
-        fail(f"nothing to finish: there is no {unfinished(output)}")
+        fail(f"there is no unfinished recording {unfinished(output)}")
     except RecordingError as error:
-        fail(f"{error.path} cannot be finished ({error.problem}): it is as it was; move it away or remove it")
+        fail(f"{error.path} cannot be turned into a recording ({error.problem}); it was not changed: move or delete it")
     except TakenError as error:
         fail(str(error))
     except OSError as error:
-        fail(f"{output} cannot be written ({error.strerror}); {unfinished(output)} is as it was")
+        fail(f"{output} cannot be written ({error.strerror}); {unfinished(output)} was not changed")
     say(f"{count} messages, up to where it breaks off, written to {output}")
 
 
@@ -223,7 +223,7 @@ def play(
     stop = stop_on_signals()
     with connect() as client:
         if not client.wait_for_subscriber(keys.SKELETON, WAIT_S):
-            fail(f"nobody listens on {keys.key(keys.SKELETON, client.sensor)}: is the preprocessor running?")
+            fail(f"no service reads {keys.key(keys.SKELETON, client.sensor)}: start pose_preprocessor")
         try:
             count = put_all(client, recordings, speed, stop)
         except RecordingError as error:

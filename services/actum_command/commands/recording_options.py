@@ -76,7 +76,7 @@ def unread(recordings: Iterable[Recording]) -> Iterator[str]:
 def refuse_length(label: str) -> None:
     """Fail where a label is empty, or too long for a mark."""
     if not 0 < len(label) <= LONGEST_LABEL:
-        fail(f"the label has to have 1 to {LONGEST_LABEL} characters")
+        fail(f"the label must have 1 to {LONGEST_LABEL} characters")
 
 
 def in_ns(seconds: float) -> int:
@@ -96,4 +96,4 @@ def change_recording(
     except RecordingError as error:
         fail(str(error))
     except OSError as error:
-        fail(f"{file} cannot be changed ({error.strerror}): the recording is as it was")
+        fail(f"{file} cannot be written ({error.strerror}): the recording was not changed")

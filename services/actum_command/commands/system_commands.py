@@ -112,7 +112,7 @@ def up(
     """
     here = settings()
     if here.credentials is not None:
-        fail("everything of 'actum up' runs on this machine and shows no credentials: leave ACTUM_CREDENTIALS unset")
+        fail("'actum up' runs everything on this machine, without credentials: unset ACTUM_CREDENTIALS")
     try:
         source = chosen_source(source, given, path)
         segments = segments_of(given)

@@ -80,10 +80,7 @@ def relabel(
     refuse_length(label)
     segment = _marked(file, segment_id, sensor).segment
     if segment.start_ns is None:
-        fail(
-            f"{segment_id} has no start mark in {file}, which holds the label: delete the action with 'actum takes "
-            "drop'"
-        )
+        fail(f"{segment_id} has no start mark in {file} to hold the label: delete the action with 'actum takes drop'")
     change_recording(file, relabelled(segment, label))
     say(f"{segment_id} is labelled {label!r} in {file}")
 
@@ -120,7 +117,7 @@ def trim(
         )
     if start_ns + start * SECOND_NS < 0:
         fail(
-            f"{segment_id} would start before the sensor's clock does: move the start at most "
+            f"{segment_id} would start before time 0 of the sensor's clock: move the start by at most "
             f"{start_ns / SECOND_NS:g} s earlier"
         )
     _shift(file, marked, in_ns(start), in_ns(until_s - duration_s))

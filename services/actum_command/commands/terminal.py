@@ -99,8 +99,8 @@ def refuse_unwritable(file: Path) -> None:
     """Fail before long work where a file could not be written after it; missing folders will be made."""
     try:
         if file.is_dir():
-            fail(f"{file} is a folder: name the file to write")
+            fail(f"{file} is a folder: give the name of a file")
         with TemporaryFile(dir=next(folder for folder in file.absolute().parents if folder.exists())):
             pass
     except OSError as error:
-        fail(f"{file} cannot be written ({error.strerror}): name another place")
+        fail(f"{file} cannot be written ({error.strerror}): give another file")

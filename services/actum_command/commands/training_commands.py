@@ -131,7 +131,7 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         refuse_ending(json_file, ".json")
     if not by_person and len(files) == 1:
         fail(
-            f"a model and at least one recording are needed, but only {files[0]} was named: name both, or use "
+            f"a model and at least one recording are needed, but only {files[0]} was given: give both, or use "
             "--leave-one-person-out with recordings alone"
         )
     try:
@@ -139,7 +139,7 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     except ModelError as error:
         fail(str(error))
     if given and not continuous:
-        fail(f"{flag_of(next(iter(given)))} applies to actions found without marks: add --continuous")
+        fail(f"{flag_of(next(iter(given)))} works only together with --continuous: add --continuous")
     recordings = chosen(files if by_person else files[1:], person, with_excluded)
     what = model, recordings, _preset(preset, settings), seed, json_file
     if continuous:
@@ -184,7 +184,7 @@ def _preset(name: str, settings: list[str] | None) -> Preset:
 def _show(result: Evaluation, seconds: float) -> None:
     if result.n == 0:
         fail(
-            "these recordings hold no labelled segment: record with 'actum record --label', or label them with "
+            "these recordings contain no labelled segment: record with 'actum record --label', or label them with "
             "'actum label'"
         )
     console.print(report(result, seconds))

@@ -37,7 +37,7 @@ def streams_of(file: Path | None, pace: Pace | None = None) -> Iterator[Streams]
         recording = Recording(file)
         streams = RecordedStreams(recording, pace)
         if not streams.sensors:
-            fail(f"{file} holds no message of actum: name a recording made by `actum record` or `actum import`")
+            fail(f"{file} contains no message of actum: give a recording made by `actum record` or `actum import`")
         yield streams
     except RecordingError as error:
         fail(str(error))

@@ -70,7 +70,7 @@ class Client:
             wanted = {_number(each["id"]): _number(each["channelId"]) for each in request["subscriptions"]}
             with self._lock:
                 if len({*self._channels, *wanted}) > MOST_SUBSCRIPTIONS:
-                    raise ValueError("too many subscriptions")
+                    raise ValueError("the client has too many subscriptions")
                 self._channels.update(wanted)
             return True
         if request["op"] == "unsubscribe":

@@ -25,11 +25,11 @@ NOW_S = 0.3
 """Time over which it is told whether a person moves now."""
 MOVING = 0.6
 """Activity above which a person moves: it is about 1 in the midst of a movement, and 0.4 in a noisy sensor's rest."""
-NOBODY = "nobody was seen: stand where the camera sees all of you"
-STILL = "nobody moved by more than standing still explains: do the action with larger movements, or nearer the camera"
+NOBODY = "nobody was in view: stand where the camera sees your whole body"
+STILL = "the movement was no larger than the noise of standing still: move further, or stand nearer to the camera"
 UNLIKE = (
-    "no two movements were alike, and {} repetitions were asked for: do the same movement each time, and stand still "
-    "for a second or two before and after"
+    "no two movements were alike, so the {} repetitions were not found: do the same movement each time, and stand "
+    "still for a second or two before and after"
 )
 MUCH_LESS_ALIKE = 0.5
 """Ratio of the least likenesses below which the missing repetitions have only been parted from others."""

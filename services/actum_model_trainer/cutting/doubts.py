@@ -41,7 +41,7 @@ def doubts_of(course: Course, activity: Array, chain: Chain, asked: int | None, 
     offset_s, found = (course.start_ns - first_ns) / SECOND_NS, len(chain.bursts)
     seams = [
         Doubt(
-            f"the {_ordinal(number)} and {_ordinal(number + 1)} may have run together "
+            f"the {_ordinal(number)} and {_ordinal(number + 1)} repetition may be joined "
             f"at {offset_s + at / RATE_HZ:.1f} s",
             burst,
         )
@@ -56,7 +56,8 @@ def doubts_of(course: Course, activity: Array, chain: Chain, asked: int | None, 
         if found > 1 and likeness < UNLIKE:
             span = f"{offset_s + start / RATE_HZ:.1f} to {offset_s + end / RATE_HZ:.1f} s"
             yield Doubt(
-                f"the {_ordinal(number)} ({span}) is unlike the others: look at it, and trim or delete it", number
+                f"the {_ordinal(number)} repetition ({span}) is unlike the others: play it, and trim or delete it",
+                number,
             )
 
 

@@ -62,13 +62,13 @@ def _too_few_actions(contents: SetContents) -> Iterator[str]:
     if len(contents.examples) < 2:
         known = next(iter(contents.examples), None)
         beside = f"{known} is the only action" if known else "There is no action yet"
-        yield f"{beside}: record at least two, so that they can be told apart."
+        yield f"{beside}: record at least two actions."
 
 
 def _doubted(contents: SetContents) -> Iterator[str]:
     if contents.doubted:
         named = listed(f"{n} of {label}" for label, n in sorted(contents.doubted.items()))
-        yield f"Some examples may be cut wrongly: check {named}, and trim, delete or redo them."
+        yield f"Some examples may have a wrong start or end: check {named}, and trim, delete or redo them."
 
 
 def _confused(contents: SetContents, answers: Sequence[tuple[str, str]]) -> Iterator[str]:

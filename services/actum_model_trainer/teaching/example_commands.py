@@ -65,7 +65,7 @@ class ExampleCommands:
         take, example = self._found(request)
         film = self._films_of(take).get(example.segment_id)
         if film is None:
-            raise Refusal(f"no frame of {example.id} can be used: delete the example")
+            raise Refusal(f"the example {example.id} has no usable frame: delete it")
         trace = None if film.trace is None else np.round(film.trace, 2).tolist()
         return FilmReply(stamps_ns=list(film.stamps_ns), joints=[_listed(body) for body in film.joints], trace=trace)
 
@@ -81,7 +81,7 @@ class ExampleCommands:
         take, example = self._found(request)
         start_ns, end_ns = request.start_ns, request.end_ns
         if end_ns - start_ns < SHORTEST_NS:
-            raise Refusal(f"the example would last {(end_ns - start_ns) / 1e9:.2f} s: at least 0.1 s are needed")
+            raise Refusal(f"the example would last {(end_ns - start_ns) / 1e9:.2f} s: make it at least 0.1 s long")
         if start_ns < take.first_ns or end_ns > take.last_ns:
             within = [(ns - take.first_ns) / 1e9 for ns in (start_ns, end_ns, take.last_ns)]
             raise Refusal(
@@ -90,7 +90,7 @@ class ExampleCommands:
             )
         for other in take.examples:
             if other.segment_id != example.segment_id and other.overlaps(start_ns, end_ns):
-                raise Refusal(f"the example would overlap {other.id}, which is of {other.label}: trim that one first")
+                raise Refusal(f"the example would overlap {other.id}, an example of {other.label}: trim that one first")
         try:
             with self._changes.change():
                 take_mending.trim(take, example, start_ns, end_ns)
@@ -117,7 +117,7 @@ class ExampleCommands:
         stored = self._sets.get(request.set)
         chosen = {take.id: [each for each in take.examples if each.label == request.label] for take in stored.takes}
         if not any(chosen.values()):
-            raise Refusal(f"{request.set} has no example of {request.label!r}")
+            raise Refusal(f"the set {request.set} has no example of {request.label!r}: choose another action")
         with self._changes.change():
             for take in stored.takes:
                 if chosen[take.id]:
@@ -129,7 +129,7 @@ class ExampleCommands:
             for example in take.examples:
                 if example.id == request.example:
                     return take, example
-        raise Refusal(f"{request.set} has no example {request.example!r}: 'examples' lists those there are")
+        raise Refusal(f"the set {request.set} has no example {request.example!r}: the command 'examples' lists them")
 
     def _films_of(self, take: Take) -> dict[str, Film]:
         """Return the films of a take, of the file as it is now and by the model in use."""

@@ -22,7 +22,7 @@ from som_classifier.presets import DEFAULT, PRESETS
 
 Start = Callable[[JobRequest], RunningJob]
 """Starts a job."""
-KINDS = {"train": "a training", "evaluate": "a test", "import": "the import of a video"}
+KINDS = {"train": "a training", "evaluate": "a test", "import": "a video import"}
 """What a job is called, by its kind."""
 UPLOAD = "upload"
 """The folder, within a job's, of the video that it imports."""
@@ -123,7 +123,7 @@ class JobCommands:
         """End a running job; it leaves nothing."""
         job = self._jobs.get(request.job)
         if self._running is None or self._job is None or self._job.id != job.id:
-            raise Refusal(f"{job.id} is not running: it is {job.state}")
+            raise Refusal(f"the job {job.id} is not running, so it cannot be cancelled: its state is {job.state}")
         self._running.end()
         self._running = None
         return self._end(self._job.model_copy(update={"state": "cancelled", "message": "cancelled"}))
@@ -135,7 +135,9 @@ class JobCommands:
     def _start(self, kind: str, set_name: str, fields: dict[str, Any], upload: str | None = None) -> Job:
         """Start a job; an upload goes into its folder, where nobody can replace it, and is deleted with that."""
         if self._running is not None and self._job is not None:
-            raise Refusal(f"{KINDS[self._job.kind]} is running ({self._job.id}): wait until it ends, or cancel it")
+            raise Refusal(
+                f"{KINDS[self._job.kind]} is already running ({self._job.id}): wait until it ends, or cancel it"
+            )
         takes = str(self._sets.folder(set_name))
         with on_disk():
             job = Job.model_validate(

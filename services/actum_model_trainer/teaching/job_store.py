@@ -20,7 +20,7 @@ WORK = ".work"
 """Ending of the folder in which a job writes."""
 JOB_ID = re.compile(r"job-[0-9]{1,9}")
 """What a job's id, and with it its file, is called."""
-INTERRUPTED = "the service ended while it ran: start it again"
+INTERRUPTED = "the service ended while this job ran: start the job again"
 
 
 def _finite(value: Any) -> Any:

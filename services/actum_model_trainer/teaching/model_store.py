@@ -91,7 +91,7 @@ class ModelStore:
         for each in self.all():
             if each.id == model_id:
                 return each
-        raise Refusal(f"there is no model {model_id!r}: ask for the list of models")
+        raise Refusal(f"there is no model {model_id!r}: the command 'list' names them")
 
     def add(self, file: Path, set_name: str, scores: dict[str, float]) -> StoredModel:
         """Keep a copy of a model file.
@@ -123,7 +123,7 @@ class ModelStore:
         """
         before = self.before
         if not before:
-            raise Refusal("there is no model to return to: none was in use before this one")
+            raise Refusal("there is no previous model to return to")
         self._put(self._usable(before[-1]))
         self._remember(before[:-1])
         return before[-1]
@@ -145,7 +145,7 @@ class ModelStore:
         """
         path = self.get(model_id).path
         if model_id == self._active:
-            raise Refusal(f"model {model_id} is in use: activate another one before you delete it")
+            raise Refusal(f"model {model_id} is in use: use another model first, then delete this one")
         path.unlink()
         path.with_suffix(".json").unlink(missing_ok=True)
 

@@ -27,13 +27,13 @@ def checked_name(name: str) -> str:
     """
     composed = unicodedata.normalize("NFC", name)
     if len(composed) > LONGEST or len(composed.encode(errors="replace")) > LONGEST_BYTES:
-        raise ValueError(f"a name has at most {LONGEST} characters, and this one has {len(composed)}: shorten it")
+        raise ValueError(f"the name has {len(composed)} characters: use at most {LONGEST}")
     if not composed:
-        raise ValueError("the name is empty: type one")
+        raise ValueError("the name is empty: enter one")
     if not NAME.fullmatch(composed) or composed[-1] in " .":
         raise ValueError(
             f"{composed!r} cannot be a name: use letters, digits, spaces, '_', '-' and '.', begin with a letter or "
-            "digit, and end with neither a space nor a point"
+            "digit, and end with neither a space nor a full stop"
         )
     return composed
 
@@ -46,9 +46,7 @@ def checked_label(name: str) -> str:
     """
     label = checked_name(name)
     if consequence := NO_ACTIONS.get(label.casefold()):
-        raise ValueError(
-            f"{label!r} {consequence}: name the action differently, or record what is none of the actions as background"
-        )
+        raise ValueError(f"{label!r} {consequence}: use another name, or record it as background")
     return label
 
 

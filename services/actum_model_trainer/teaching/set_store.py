@@ -122,7 +122,7 @@ class SetStore:
         """
         if name not in self.names():
             there = ", ".join(self.names()) or "none yet"
-            raise Refusal(f"there is no set {name!r}: use one of those there are ({there}), or create it")
+            raise Refusal(f"there is no set {name!r}: use an existing one ({there}), or create it")
         return self._folder / name
 
     def create(self, name: str) -> None:
@@ -189,15 +189,15 @@ class SetStore:
 
     def _refuse_unusable(self, name: str, renamed: str | None = None) -> None:
         if name.partition(".")[0].rstrip().casefold() in DEVICES:
-            raise Refusal(f"{name!r} is the name of a device on Windows, which has no such folder: choose another name")
+            raise Refusal(f"{name!r} is reserved for a device on Windows: choose another name")
         for there in self.names():
             if there.casefold() == name.casefold() and there != renamed:
-                raise Refusal(f"there is already a set {there!r}: choose another name, or delete or rename that set")
+                raise Refusal(f"there is already a set {there!r}: choose another name")
 
     def _take(self, path: Path) -> Take:
         """Read a take, or return what was read of it before where the file is still the same."""
         if path.exists() and not path.is_file():
-            raise RecordingError(path, "no file", "move it away")
+            raise RecordingError(path, "it is not a file", "move it away")
         stat = path.stat()
         version = stat.st_mtime_ns, stat.st_size
         known = self._read.get(path)

@@ -17,11 +17,11 @@ def small_file(path: Path) -> bytes:
         ValueError: it is too large to be one of ours.
     """
     if path.exists() and not path.is_file():
-        raise OSError(f"{path} is no file")
+        raise OSError(f"{path} is not a regular file: move it away")
     with path.open("rb") as file:
         content = file.read(LARGEST_BYTES + 1)
     if len(content) > LARGEST_BYTES:
-        raise ValueError(f"{path} has more than {LARGEST_BYTES} bytes")
+        raise ValueError(f"{path} is larger than {LARGEST_BYTES} bytes: move it away")
     return content
 
 

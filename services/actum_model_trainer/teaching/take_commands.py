@@ -79,7 +79,7 @@ class TakeCommands:
     def _record(self, request: Record) -> TakeReply:
         """Begin a take: it counts along, ends by itself after the last repetition, and cuts the examples out."""
         if request.kind == "action" and not request.label:
-            raise Refusal("what is done? Give a label, or record background")
+            raise Refusal("the take has no label: enter the name of the action, or record background")
         self._begin(request)
         return TakeReply(take=None, examples=0, doubts=[])
 
@@ -90,7 +90,7 @@ class TakeCommands:
             return self._finish()
         except LOSING as error:
             self._give_up()
-            raise Refusal(f"the take is lost: {error}") from None
+            raise Refusal(f"the take could not be stored and is lost: {error}") from None
 
     def _discard(self, _: NoFields) -> Done:
         """Drop the take that is being recorded."""
@@ -103,15 +103,15 @@ class TakeCommands:
         self._refuse_recording()
         takes = [take for take in self._sets.get(request.set).takes if take.examples]
         if not takes:
-            raise Refusal(f"{request.set} has no example yet: record some")
+            raise Refusal(f"the set {request.set} has no take to redo: record one first")
         newest = max(takes, key=lambda take: (take_number(take.id), take.created, take.id))
         example, count = newest.examples[-1], min(len(newest.examples), MOST_REPETITIONS)
         try:
             anew = Record(set=request.set, label=example.label, person=newest.person, count=count)
         except ValidationError:
             raise Refusal(
-                f"{example.label!r} or {newest.person!r} cannot be the name of an action or a person in a new take: "
-                "relabel the example, or delete it"
+                f"{example.label!r} or {newest.person!r} is not a valid name for a new take: relabel or delete the "
+                "example, or record the take again by hand"
             ) from None
         self._begin(anew)
         self._replaced = newest.id
@@ -167,7 +167,7 @@ class TakeCommands:
                 if take.id == self._replaced:
                     self._remove(take, list(take.examples))
         except LOSING as error:
-            return [f"{self._replaced}, which it replaces, could not be deleted: {encodable(str(error))}"]
+            return [f"the old take {self._replaced} could not be deleted: {encodable(str(error))}"]
         return []
 
     def _give_up(self) -> None:
@@ -179,8 +179,8 @@ class TakeCommands:
 
     def _refuse_idle(self) -> None:
         if self._take is None:
-            raise Refusal("nothing is being recorded: begin with 'record'")
+            raise Refusal("no take is being recorded: start one first")
 
     def _refuse_recording(self) -> None:
         if self._take is not None:
-            raise Refusal(f"a take of {self._take.state.set} is being recorded: 'stop' or 'discard' it first")
+            raise Refusal(f"a take is being recorded into the set {self._take.state.set}: stop or discard it first")

@@ -111,7 +111,7 @@ def read_take(path: Path) -> Take:
         if {"start", "end"} <= pair.keys() and pair["start"].label is not None
     ]
     if len(examples) > MOST_EXAMPLES:
-        raise RecordingError(path, f"{len(examples)} marked actions, at most {MOST_EXAMPLES} are taken", "split it")
+        raise RecordingError(path, f"it has {len(examples)} marked actions, more than {MOST_EXAMPLES}", "split it")
     return Take(
         encodable(path.stem),
         path,

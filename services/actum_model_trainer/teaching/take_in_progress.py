@@ -22,8 +22,8 @@ MOST_MARKED = 500
 LONGEST_NAME = 50
 """Characters of a segment's name that a refusal quotes."""
 NOT_KEPT = "nothing was kept: {}, and record it again"
-BEGUN_ANEW = "the sensor has begun anew meanwhile, so nothing was kept: record it again"
-JUMPED = "the sensor's stamps leap by {:.0f} s, so nothing was kept: see to its clock, and record it again"
+BEGUN_ANEW = "the sensor restarted during the take, so nothing was kept: record it again"
+JUMPED = "the sensor's stamps jumped by {:.0f} s, so nothing was kept: check its clock, and record it again"
 
 
 @dataclass(frozen=True)
@@ -119,11 +119,11 @@ class TakeInProgress:
         """Return why a mark is refused: none of its frames can be in the take, or it bounds no example."""
         name = f"the {mark.kind} mark of {mark.segment_id[:LONGEST_NAME]!r}"
         if self._first_ns is None:
-            return f"{name} came before any frame: wait until somebody is seen"
+            return f"{name} came before the first frame: wait until a person is in view"
         stamp_ns = self._newest_ns if mark.stamp_ns is None else mark.stamp_ns
         if not self._first_ns <= stamp_ns <= self._newest_ns + MAX_SKEW_NS:
             there = f"whose frames last from {self._first_ns} to {self._newest_ns} ns"
-            return f"{name} at {stamp_ns} ns lies outside of the take, {there}: mark with the stamps of the frames"
+            return f"{name} at {stamp_ns} ns lies outside the take, {there}: use the stamps of its frames"
         begun = self._marked.get(mark.segment_id)
         if mark.kind == "start" or (begun is not None and begun.end_ns is not None):
             return None
@@ -131,7 +131,7 @@ class TakeInProgress:
             return f"{name} has no start mark before it: mark the start first"
         if not begun.start_ns < stamp_ns <= begun.start_ns + MAX_SEGMENT_NS:
             lasts_s, most_s = (stamp_ns - begun.start_ns) / SECOND_NS, MAX_SEGMENT_NS / SECOND_NS
-            return f"{name} lies {lasts_s:.1f} s after its start: an example lasts up to {most_s:.0f} s"
+            return f"{name} lies {lasts_s:.1f} s after its start: end it after at most {most_s:.0f} s"
         return None
 
     @property
@@ -166,10 +166,10 @@ class TakeInProgress:
         """Return what became of the marks that make no example, in sentences."""
         doubts = []
         if self._refused:
-            doubts.append(f"marks refused: {self._refused}; of the last, {self._refusal}")
+            doubts.append(f"marks that were refused: {self._refused}. The last one: {self._refusal}")
         unended = len(self._marked) - len(self._ended())
         if unended:
-            doubts.append(f"marked segments without an end in the take, left out: {unended}")
+            doubts.append(f"marked segments that were left out, because the take has no end mark for them: {unended}")
         return doubts
 
     def _counted(self) -> int:

@@ -86,7 +86,7 @@ class ModelTrainer:
             original = OriginalModel(settings.original_model, model) if settings.original_model else None
             return cls(folder, model, settings.sensor, JobProcess, time.time_ns, original)
         except OSError as error:
-            raise ValueError(f"{folder} cannot be used ({error}): name another in ACTUM_TRAINER_DATA") from None
+            raise ValueError(f"{folder} cannot be used ({error}): set ACTUM_TRAINER_DATA to another folder") from None
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:

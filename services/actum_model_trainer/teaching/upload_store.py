@@ -36,15 +36,15 @@ class UploadStore:
         sizes = {file.name: file.stat().st_size for file in self._folder.iterdir()}
         there = sizes.pop(unfinished.name, 0)
         if offset not in (0, there):
-            raise Refusal(f"{name} has {there} bytes so far: continue at that offset, or start again with offset 0")
+            raise Refusal(f"{name} has {there} bytes so far, not {offset}: continue there, or start again at offset 0")
         size = offset + len(data)
         if size > MOST_BYTES:
-            raise Refusal(f"{name} is larger than {MOST_BYTES} bytes, the most that is taken: send a shorter video")
+            raise Refusal(f"{name} is larger than {MOST_BYTES} bytes: send a shorter video")
         total, files = sum(sizes.values()) + size, len(sizes.keys() | {name})
         if total > MOST_TOTAL_BYTES or files > MOST_FILES:
             raise Refusal(
-                f"with {name}, {total} bytes in {files} files would wait to be imported, and at most "
-                f"{MOST_TOTAL_BYTES} bytes in {MOST_FILES} files may: import some of them, or restart the service"
+                f"{name} does not fit: with it, {total} bytes in {files} files would wait for their import, more than "
+                f"{MOST_TOTAL_BYTES} bytes in {MOST_FILES} files: import some of them, or restart the service"
             )
         with unfinished.open("ab" if offset else "wb") as file:
             file.write(data)
@@ -61,7 +61,7 @@ class UploadStore:
         """
         if not (self._folder / name).is_file():
             raise Refusal(
-                f"there is no finished upload {name!r}: send it with 'upload', its last piece with last: true"
+                f"there is no finished upload {name!r}: send it with 'upload', the last piece with last: true"
             )
 
     def move(self, name: str, folder: Path) -> Path:

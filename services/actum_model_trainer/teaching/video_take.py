@@ -19,7 +19,7 @@ from sensor_gateway.settings import Settings
 
 FEWEST_FRAMES = 5
 """Frames with a person that a clip needs: with fewer a model would answer nothing."""
-WHOLE = "the clip was too short to cut, so all of it is the example"
+WHOLE = "the video was too short to find repetitions in, so all of it is one example"
 
 
 def take_of_video(
@@ -54,7 +54,7 @@ def _recorded(
     if cuts is not None:
         return *cut_marks(cuts, label, seen[0].sensor), uncut_parts(cuts, count, seen[0].sensor)
     if len(seen) < FEWEST_FRAMES or count not in (None, 1):
-        raise Refusal("nobody is seen moving in the video: film the whole person, from the front, in good light")
+        raise Refusal("the video shows no person who moves: film the whole person, from the front, in good light")
     whole = seen[0].stamp_ns, seen[-1].stamp_ns, seen[0].sensor
     return segment_marks(*whole, f"{CUT}-1", label, origin=CUT), {f"{CUT}-1": [WHOLE]}, []
 

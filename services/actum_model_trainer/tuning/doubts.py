@@ -32,27 +32,27 @@ def doubts(
     persons = {each.trial.person for each in weighed}
     if seen := sorted(persons & set(model.metadata.persons) - {""}):
         yield (
-            f"the model was trained on person {', '.join(seen)}, on whom it does better than on others: tune on "
-            "somebody else"
+            f"the model was trained on person {', '.join(seen)}, whom it recognises better than others: "
+            "tune on recordings of somebody else"
         )
     if "" in persons:
-        yield "a recording names no person: if the model was trained on it, the result is better than elsewhere"
+        yield "a recording names no person: if the model was trained on that person, the result is too good"
     yield from _too_little(scores, FALSE_ALARMS_PER_MIN if most_per_min is None else most_per_min)
     if model.background_s == 0:
         yield (
-            "the model's training data holds no background, so it has only one sensitivity, and its rejection of "
-            "background is a guess"
+            "the model was trained without background, so it has only one sensitivity and has to guess what is "
+            "background: record background and train again"
         )
     known = set(model.labels)
     if unknown := sorted({label for label, own in scores.per_action.items() if own.truths} - known):
-        yield f"the model does not know {', '.join(unknown)}, which the recordings hold: each one counts as missed"
+        yield f"the model does not know {', '.join(unknown)}, which the recordings contain: each one counts as missed"
 
 
 def _too_little(scores: ContinuousScores, wanted_per_min: float) -> Iterator[str]:
     if scores.event.truths < FEWEST_ACTIONS:
-        yield f"the recordings hold only {scores.event.truths} actions, too few to compare settings: record more"
+        yield f"the recordings contain only {scores.event.truths} actions, too few to compare settings: record more"
     if not scores.background_min:
-        yield "the recordings hold no background, so false alarms cannot be counted: record background activity"
+        yield "the recordings contain no background, so false alarms cannot be counted: record background activity"
         return
     least, most = rate_bounds(scores.false_detections, scores.background_min)
     if least <= wanted_per_min < most:

@@ -18,7 +18,7 @@ from som_classifier.model import Model
 from som_classifier.segmentation import Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
 
-OTHERWISE = "the classifier found other segments than the trials did: this is a defect, please report it"
+OTHERWISE = "the final run found other segments than the search did: this is a bug, please report it"
 """What is said where both do not agree; the scores are the classifier's."""
 
 

@@ -34,7 +34,9 @@ def gray(image: Image) -> Pixels:
         UnusableImageError: of kind `image_too_large`, `image_size_mismatch` or `undecodable_image`.
     """
     if image.width * image.height > LARGEST_PIXELS:
-        raise UnusableImageError("image_too_large", f"{image.width}x{image.height}, at most {LARGEST_PIXELS} pixels")
+        raise UnusableImageError(
+            "image_too_large", f"the image is {image.width}x{image.height}; at most {LARGEST_PIXELS} pixels are allowed"
+        )
     return _from_jpeg(image) if image.format == "jpeg" else _from_bgr(image)
 
 
@@ -45,37 +47,39 @@ def refuse_black(pixels: Pixels) -> None:
         UnusableImageError: of kind `black_image`.
     """
     if is_black(pixels):
-        raise UnusableImageError("black_image", "nothing can be seen: is the lens covered, is it dark?")
+        raise UnusableImageError("black_image", "the image is black: uncover the lens, or switch on the light")
 
 
 def _from_jpeg(image: Image) -> Pixels:
     """Decode a JPEG after its header has been checked: decoding allocates as much as the header claims."""
     size = _jpeg_size(image.data)
     if size[0] * size[1] > LARGEST_PIXELS:
-        raise UnusableImageError("image_too_large", f"a JPEG of {size[0]}x{size[1]}, at most {LARGEST_PIXELS} pixels")
+        raise UnusableImageError(
+            "image_too_large", f"the JPEG is {size[0]}x{size[1]}; at most {LARGEST_PIXELS} pixels are allowed"
+        )
     if size != (image.width, image.height):
         raise UnusableImageError(
-            "image_size_mismatch", f"a JPEG of {size[0]}x{size[1]} in a message of {image.width}x{image.height}"
+            "image_size_mismatch", f"the JPEG is {size[0]}x{size[1]}, but its message says {image.width}x{image.height}"
         )
     if has_too_many_scans(image.data):
-        raise UnusableImageError("image_too_large", f"a JPEG of more than {MOST_SCANS} scans")
+        raise UnusableImageError("image_too_large", f"the JPEG has more than {MOST_SCANS} scans")
     flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION
     pixels = cv2.imdecode(np.frombuffer(image.data, dtype=np.uint8), flags)
     if pixels is None or pixels.shape != (image.height, image.width):
-        raise UnusableImageError("undecodable_image", f"a damaged JPEG of {len(image.data)} bytes")
+        raise UnusableImageError("undecodable_image", f"the JPEG of {len(image.data)} bytes is damaged")
     return pixels.astype(np.uint8, copy=False)
 
 
 def _jpeg_size(data: bytes) -> tuple[int, int]:
     """Read (width, height) from a JPEG's header."""
     if not data.startswith(JPEG_START):
-        raise UnusableImageError("undecodable_image", f"{len(data)} bytes that do not start as a JPEG")
+        raise UnusableImageError("undecodable_image", f"the {len(data)} bytes do not start like a JPEG")
     try:
         width, height = imagesize.get(io.BytesIO(data), exif_rotation=False)
     except (ValueError, struct.error) as error:
-        raise UnusableImageError("undecodable_image", f"a JPEG with a damaged header: {error}") from None
+        raise UnusableImageError("undecodable_image", f"the header of the JPEG is damaged: {error}") from None
     if width <= 0 or height <= 0:
-        raise UnusableImageError("undecodable_image", f"a JPEG of {len(data)} bytes without a size")
+        raise UnusableImageError("undecodable_image", f"the JPEG of {len(data)} bytes states no size")
     return width, height
 
 
@@ -84,7 +88,7 @@ def _from_bgr(image: Image) -> Pixels:
     if len(image.data) != expected:
         raise UnusableImageError(
             "image_size_mismatch",
-            f"{len(image.data)} bytes for {image.width}x{image.height} bgr8, expected {expected}",
+            f"the image has {len(image.data)} bytes; {image.width}x{image.height} pixels of bgr8 need {expected}",
         )
     pixels = np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
     return cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)

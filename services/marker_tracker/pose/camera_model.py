@@ -46,12 +46,15 @@ def camera_model(image: Image, calibrated_size_px: tuple[int, int] | None = None
     matrix = np.array(image.K, dtype=np.float64).reshape(3, 3)
     focal = (matrix[0, 0], matrix[1, 1])
     if not all(0 < f < LARGEST_FOCAL_PX for f in focal) or np.abs(matrix).max() > LARGEST_FOCAL_PX:
-        raise UnusableImageError("bad_calibration", f"K has focal lengths {focal[0]:g} and {focal[1]:g} px")
+        raise UnusableImageError(
+            "bad_calibration",
+            f"the focal lengths in K are {focal[0]:g} and {focal[1]:g} px: calibrate the camera again",
+        )
     if not np.array_equal(matrix[2], (0, 0, 1)):
         raise UnusableImageError("bad_calibration", f"the last row of K is {matrix[2].tolist()}, not [0, 0, 1]")
     skeleton_from_image = geometry.from_flat(image.skeleton_from_image)
     if not geometry.is_rigid(skeleton_from_image, MAX_COORDINATE_M):
-        raise UnusableImageError("bad_calibration", "skeleton_from_image is no rigid transform")
+        raise UnusableImageError("bad_calibration", "skeleton_from_image is not a rigid transform")
     matrix = _matrix_for_size(matrix, (image.width, image.height), calibrated_size_px)
     return CameraModel(matrix, _distortion(image.distortion), skeleton_from_image)
 
@@ -67,15 +70,15 @@ def _matrix_for_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tup
         if (off_px > 1 + LARGEST_OFFSET * np.array(size_px)).any():
             raise UnusableImageError(
                 "calibration_size_mismatch",
-                f"K has its centre at ({matrix[0, 2]:g}, {matrix[1, 2]:g}) in an image of {width}x{height}: "
-                "calibrate at this size, or give calibrated-size-px",
+                f"the principal point ({matrix[0, 2]:g}, {matrix[1, 2]:g}) of K does not fit {width}x{height} pixels: "
+                "calibrate at this size, or set --calibrated-size-px",
             )
         return matrix
     across, down = width / calibrated_px[0], height / calibrated_px[1]
     if abs(across / down - 1) > ASPECT_TOLERANCE:
         raise UnusableImageError(
             "calibration_size_mismatch",
-            f"an image of {width}x{height}, but calibrated at {calibrated_px[0]}x{calibrated_px[1]}",
+            f"the image is {width}x{height}, but the camera was calibrated at {calibrated_px[0]}x{calibrated_px[1]}",
         )
     half = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1]])
     scaled: Array = np.linalg.inv(half) @ np.diag([across, down, 1.0]) @ half @ matrix
@@ -85,9 +88,9 @@ def _matrix_for_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tup
 def _distortion(coefficients: list[float]) -> Array:
     if len(coefficients) not in DISTORTION_LENGTHS:
         raise UnusableImageError(
-            "bad_calibration", f"{len(coefficients)} distortion coefficients, not one of {DISTORTION_LENGTHS}"
+            "bad_calibration", f"there are {len(coefficients)} distortion coefficients, not one of {DISTORTION_LENGTHS}"
         )
     distortion = np.array(coefficients, dtype=np.float64)
     if np.abs(distortion).max(initial=0) > LARGEST_COEFFICIENT:
-        raise UnusableImageError("bad_calibration", f"a distortion coefficient beyond {LARGEST_COEFFICIENT:g}")
+        raise UnusableImageError("bad_calibration", f"a distortion coefficient is larger than {LARGEST_COEFFICIENT:g}")
     return distortion

@@ -67,7 +67,7 @@ class OpenNi2Capture:
 
     def _opened(self) -> Streams:
         if not self._openni2.Device.enumerate_uris():
-            raise CameraLostError("no camera is connected that OpenNI 2 has a driver for")
+            raise CameraLostError("no camera that OpenNI 2 supports is connected")
         device = self._openni2.Device(None)
         return Streams(self._openni2, device, self._size, self._field_of_view_deg)
 
@@ -88,7 +88,7 @@ def recorded_pictures(path: Path, start_ns: int, field_of_view_deg: float = 60.0
         streams = Streams(openni2, _opened_file(openni2, path), SIZE, field_of_view_deg)
     except FILE_ERRORS as error:
         raise VideoError(
-            f"{path} is not a recording of colour and depth that OpenNI can play ({error_text(error)}): name "
+            f"{path} is not a recording of colour and depth that OpenNI can play ({error_text(error)}): give "
             "another --path"
         ) from None
     try:
@@ -99,7 +99,7 @@ def recorded_pictures(path: Path, start_ns: int, field_of_view_deg: float = 60.0
                 has_picture = True
                 yield picture
         if not has_picture:
-            raise VideoError(f"{path} holds no colour and depth of the same time: record both streams")
+            raise VideoError(f"{path} contains no colour and depth images of the same time: record both streams")
     finally:
         streams.close()
 
@@ -109,7 +109,7 @@ def _opened_file(openni2: Any, path: Path) -> Any:
     device = openni2.Device(os.fsencode(path.absolute()))
     if device.playback is None:
         device.close()
-        raise CameraLostError("another driver took it")
+        raise CameraLostError("OpenNI opened it as a camera, not as a file")
     device.playback.set_repeat_enabled(False)
     device.playback.set_speed(MANUAL)
     return device

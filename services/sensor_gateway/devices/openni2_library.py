@@ -30,7 +30,7 @@ def library() -> Any:
     except ImportError as error:
         raise OpenNiError(str(error)) from None
     except TypeError:  # the bindings' enumerations are abstract classes to ctypes since Python 3.13
-        raise OpenNiError("its Python bindings fail on this Python, use 3.12 or older") from None
+        raise OpenNiError("its Python bindings do not work on Python 3.13 or newer") from None
     if not openni2.is_initialized():
         _start(openni2)
     return openni2

@@ -153,7 +153,7 @@ def recorded_pictures(path: Path, start_ns: int) -> Generator[Picture, None, Non
         pipeline.start(config)
     except RuntimeError as error:
         raise VideoError(
-            f"{path} is not a recording that librealsense can play ({error}): name another --path"
+            f"{path} is not a recording that librealsense can play ({error}): give another --path"
         ) from None
     try:
         yield from _played(
@@ -162,7 +162,7 @@ def recorded_pictures(path: Path, start_ns: int) -> Generator[Picture, None, Non
     finally:
         pipeline.stop()
     if not aligner.made:
-        raise VideoError(f"{path} holds no colour and depth of the same time: record both streams")
+        raise VideoError(f"{path} contains no colour and depth images of the same time: record both streams")
 
 
 def _played(
@@ -238,7 +238,7 @@ def _bgr(color: Any) -> NDArray[np.uint8]:
     if name == "bgr8":
         return image
     if name not in TO_BGR:
-        raise CameraLostError(f"colour comes as {name}, not as one of bgr8, {', '.join(TO_BGR)}")
+        raise CameraLostError(f"the camera sends colour as {name}, not as bgr8, {', '.join(TO_BGR)}")
     packed = image.view(np.uint8).reshape(*image.shape[:2], -1)
     return np.asarray(cv2.cvtColor(packed, TO_BGR[name]), dtype=np.uint8)
 

@@ -52,11 +52,11 @@ class Link {
   }
 
   order(order) {
-    if (!this.state.connected) return Promise.reject(new Error("the page has lost its service: nothing was sent"));
+    if (!this.state.connected) return Promise.reject(new Error("the page has no connection to web_dashboard, so nothing was sent"));
     const id = ++this.number;
     const text = JSON.stringify({ id, ...order });
     const most = this.state.hello?.longest_order_bytes ?? Infinity;
-    if (new Blob([text]).size >= most) return Promise.reject(new Error(`too long: at most ${most} bytes can be sent`));
+    if (new Blob([text]).size >= most) return Promise.reject(new Error(`the message is too long: at most ${most} bytes can be sent`));
     return new Promise((resolve, reject) => {
       this.answers.set(id, { resolve, reject, sentAt: performance.now() });
       this.socket.send(text);
@@ -110,7 +110,7 @@ class Link {
     clearTimeout(this.retry);
     this.socket.onclose = null;
     this.socket.close();
-    this.rejectAll("the connection was lost before an answer came");
+    this.rejectAll("the connection was lost before the answer arrived");
     this.change({ connected: false, router: false });
   }
 

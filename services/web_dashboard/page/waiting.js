@@ -35,20 +35,20 @@ export function waitedFor() {
 
 function unreached() {
   const { connected, silent, refused, router, connect } = link.state;
-  if (refused === 401) return trouble("This page needs its token again: open it with ?token=…");
+  if (refused === 401) return trouble("The page needs its token: add ?token=… with ACTUM_PAGE_TOKEN to its address");
   if (!connected && performance.now() - began < 1000) return trouble("Connecting …");
-  if (!connected) return trouble("Waiting for the page's service: is it running? Trying again …");
-  if (silent) return trouble("Nothing has arrived for a while: waiting for the network …");
-  if (!router) return trouble(`Waiting for the router at ${connect}: 'actum up' starts one`);
+  if (!connected) return trouble("Waiting for web_dashboard, which serves this page: start it. Trying again …");
+  if (silent) return trouble("No data has arrived for a while. Check the network; the page goes on waiting …");
+  if (!router) return trouble(`Waiting for the router at ${connect}: start one with 'actum router' or 'actum up'`);
   return null;
 }
 
 function withoutSensor() {
   if (!isSensorStill()) return null;
   const { state } = (isThere("sensor_gateway") && statusOf("sensor_gateway")) || {};
-  if (!state) return trouble("Waiting for a sensor: neither a gateway nor a simulated scene is running", "sensorless");
+  if (!state) return trouble("Waiting for a sensor: start sensor_gateway or scene_simulator", "sensorless");
   if (state === "source ended") return trouble("The video or recording has ended. Teaching from videos and training still work", "sensorless");
-  if (state.startsWith("camera lost")) return trouble(`The sensor sends nothing: ${state}`, "sensorless");
+  if (state.startsWith("camera lost")) return trouble(`The sensor publishes nothing: ${state}`, "sensorless");
   return trouble("Waiting for a skeleton from the sensor …", "sensorless");
 }
 
@@ -56,7 +56,7 @@ function withoutService() {
   const missing = NEEDED.filter((service) => !isThere(service));
   if (missing.length) return { kind: "idle", text: `Waiting for ${missing.join(", ")}` };
   const { state } = statusOf("som_classifier") ?? {};
-  if (state?.startsWith("no model")) return { kind: "idle", text: "The classifier has no model yet, so nothing is recognised" };
+  if (state?.startsWith("no model")) return { kind: "idle", text: "The classifier has no model, so nothing is recognised: train one" };
   return null;
 }
 

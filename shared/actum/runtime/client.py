@@ -180,7 +180,9 @@ class Client:
                 if reply.err is not None and str(reply.err.encoding).startswith(MSGPACK):
                     raise Refusal(unpacked(reply.err.payload.to_bytes(), MSGPACK)["error"])
             if time.monotonic() > patient_until_s:
-                raise NotAnsweredError(f"{service} of sensor {self.sensor} does not answer: run 'actum doctor'")
+                raise NotAnsweredError(
+                    f"{service} of sensor {self.sensor} does not answer: run 'actum doctor' to see why"
+                )
             threading.Event().wait(POLL_S)
 
     def connected(self) -> bool:

@@ -59,7 +59,9 @@ class Commander:
                 query.reply_err(packed({"error": str(refusal)}, encoding), encoding=encoding)
             except Exception:
                 log.exception("a bug occurred while handling the command %s", query.key_expr)
-                query.reply_err(packed({"error": "the service failed: its log says why"}, encoding), encoding=encoding)
+                query.reply_err(
+                    packed({"error": "a bug occurred in the service: see its log"}, encoding), encoding=encoding
+                )
                 self._failed()
 
     def _asked(self, asked: zenoh.KeyExpr) -> list[str]:
@@ -72,7 +74,9 @@ class Commander:
         if asked.intersects(zenoh.KeyExpr(self._base)):
             meant.append([])
         if len(meant) != 1:
-            raise Refusal(f"{asked} matches {len(meant)} commands: ask for one of {', '.join(sorted(self._commands))}")
+            raise Refusal(
+                f"{asked} matches {len(meant)} commands instead of one: use one of {', '.join(sorted(self._commands))}"
+            )
         return meant[0]
 
     def _obey(self, name: list[str], fields: dict[str, Any]) -> dict[str, Any]:

@@ -37,13 +37,13 @@ def _on_the_way(error: OSError, host: str, port: int) -> str:
         return f"this machine cannot resolve the name {host} ({error.strerror}): correct it, or use the host's address"
     if isinstance(error, TimeoutError):
         return (
-            f"{host} does not answer: check that the host is on, the cable connected and port {port} open in firewalls"
+            f"{host} does not answer: check that it is switched on and connected, and that firewalls allow port {port}"
         )
     if isinstance(error, ConnectionRefusedError):
         return f"nothing listens on port {port} of {host}: start a router with 'actum router', or set ACTUM_CONNECT"
     if error.errno in NO_ROUTE:
         return f"there is no route to {host} ({error.strerror}): check this machine's network connection"
-    return f"{host} closes the connection ({error.strerror or error}): check that port {port} is a router's"
+    return f"{host} closes the connection ({error.strerror or error}): check that a router listens on port {port}"
 
 
 def _between_sessions(settings: ServiceSettings, host: str, port: int) -> str:
@@ -68,4 +68,4 @@ def _with_user(settings: ServiceSettings, user: str | None) -> str:
     login = login_values(settings.credentials) if settings.credentials else {}
     name = login.get(f"{LOGIN}/user", user)
     who = f"refuses user {name} or its password" if name else "requires a user name and a password"
-    return f"both certificates are valid, so the router {who}, or it is frozen"
+    return f"both certificates are valid, so either the router {who}, or it is frozen"

@@ -76,7 +76,7 @@ class Reporter:
     def _log_connection(self, now: bool) -> None:
         """Log once that the router is lost, and once that it is back."""
         if self._connected and not now:
-            log.warning("lost the router at %s: waiting for it", self._settings.connect)
+            log.warning("the connection to the router at %s is lost: waiting for the router", self._settings.connect)
         elif now and not self._connected:
             log.info("connected to %s again", self._settings.connect)
         self._connected = now

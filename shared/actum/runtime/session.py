@@ -136,7 +136,7 @@ def open_session(settings: ServiceSettings, stop: threading.Event) -> zenoh.Sess
             session = zenoh.open(config)
         except zenoh.ZError:
             if not waiting:
-                log.warning("no router at %s yet: waiting for it", settings.connect)
+                log.warning("there is no router at %s yet: waiting for one", settings.connect)
             waiting = True
             stop.wait(RETRY_S)
             continue

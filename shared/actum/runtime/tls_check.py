@@ -22,7 +22,7 @@ _STRANGER = (
     "the router trusts another authority than the one that signed {certificate}: use credentials of the router's "
     "deployment"
 )
-_NO_TLS = "the port does not answer in TLS: use tcp/ in ACTUM_CONNECT, or restart the router if it is frozen"
+_NO_TLS = "the port does not use TLS: set ACTUM_CONNECT to tcp/ instead of tls/, or restart the router if it is frozen"
 _REFUSED = {
     "CERTIFICATE_REQUIRED": "the router requires a certificate: set ACTUM_CREDENTIALS to the folder of a role",
     "UNKNOWN_CA": _STRANGER,
@@ -136,7 +136,7 @@ def _routers_fault(host: str, port: int, tls: Tls) -> str | None:
         if error.verify_code not in _DISTRUSTED:
             known = f"the authority in {tls.authority}" if tls.authority else ("an authority that this machine trusts")
             problem = f"the router's certificate is not signed by {known} ({error.verify_message})"
-            return f"{problem}: use credentials of the router's deployment"
+            return f"{problem}: use the credentials that were made together with the router's"
         return _DISTRUSTED[error.verify_code].format(host=host, **_routers_certificate(host, port, tls))
     except ssl.SSLError as error:
         return None if "ALERT" in (error.reason or "") else _NO_TLS
@@ -167,9 +167,8 @@ def _refused(host: str, port: int, tls: Tls) -> str | None:
         for end, meaning in _REFUSED.items():
             if alert.endswith(end):
                 return meaning.format(certificate=tls.certificate)
-        return (
-            f"the router refuses {tls.certificate or 'to be shown no certificate'} ({alert.lower().replace('_', ' ')})"
-        )
+        shown = tls.certificate or "clients without a certificate"
+        return f"the router refuses {shown} ({alert.lower().replace('_', ' ')})"
     return None
 
 

@@ -23,11 +23,13 @@ def linear_weights(vectors: NDArray[Any], grid: Grid) -> Doubles:
     values (NaN) are taken as the mean of the others.
 
     Raises:
-        ValueError: a component is missing in every vector.
+        ValueError: a component is missing in every vector: remove or fill it.
     """
     known = ~np.isnan(vectors)
     if not known.any(axis=0).all():
-        raise ValueError(f"component {np.flatnonzero(~known.any(axis=0))[0]} is missing in every vector")
+        raise ValueError(
+            f"component {np.flatnonzero(~known.any(axis=0))[0]} is missing in every vector: remove or fill it"
+        )
     mean = np.nanmean(vectors, axis=0, dtype=np.float64)
     axes = principal_axes(np.where(known, vectors - mean, 0.0))
     down, right = np.ptp(grid.positions, axis=0)

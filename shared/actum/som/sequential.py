@@ -156,20 +156,20 @@ class SequentialTraining(Generic[Map]):
         with storage.reading(Path(path), storage.TRAINING_FORMAT) as file:
             som, decay = stored_map(file, kind), Steps(file["alphas"], file["radii"])
             if str(file["vectors_digest"]) != _digest(np.array(vectors, som.dtype, order="C")):
-                raise SomError(Path(path), "the training began with other vectors: continue it with the same ones")
+                raise SomError(Path(path), "this training began with other vectors: continue it with those")
             training = cls(som, vectors, file["order"], decay, kernel)
             training.steps_done = int(file["steps_done"])
             if not 0 <= training.steps_done <= training.steps:
-                raise ValueError(f"{training.steps_done} of {training.steps} steps are done: finish the training first")
+                raise ValueError(f"the file counts {training.steps_done} of {training.steps} steps as done")
         return training
 
 
 def _checked_order(order: ArrayLike, rows: int) -> NDArray[np.intp]:
     indices = np.array(order)
     if indices.ndim != 1 or (indices.size and not np.issubdtype(indices.dtype, np.integer)):
-        raise ValueError(f"an order is an array of row numbers, not {indices.dtype} of shape {indices.shape}")
+        raise ValueError(f"the order has to be an array of row numbers, not {indices.dtype} of shape {indices.shape}")
     if indices.size and (indices.min() < 0 or indices.max() >= rows):
-        raise ValueError(f"the order names rows {indices.min()} to {indices.max()}, but there are only {rows} rows")
+        raise ValueError(f"the order contains rows {indices.min()} to {indices.max()}, but there are only {rows} rows")
     return indices.astype(np.intp)
 
 

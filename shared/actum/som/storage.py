@@ -41,7 +41,7 @@ class SomError(ValueError):
     ...     Som.load("nowhere.npz")
     ... except SomError as error:
     ...     print(error)
-    nowhere.npz: there is no such file
+    nowhere.npz: the file does not exist
     """
 
     def __init__(self, path: Path, problem: str) -> None:
@@ -73,7 +73,7 @@ def refuse_bomb(stored: IO[bytes]) -> None:
         size = sum(max(member.file_size, _array_bytes(archive, member)) for member in archive.infolist())
     most = LEAST_BYTES + MOST_INFLATION * stored.seek(0, os.SEEK_END)
     if size > most:
-        raise ValueError(f"its arrays would take {size} bytes, more than is allowed")
+        raise ValueError(f"its arrays would take {size} bytes of memory; at most {most} are allowed")
     stored.seek(0)
 
 
@@ -82,7 +82,7 @@ def _array_bytes(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> int:
     with archive.open(member) as array:
         read_header = HEADERS.get(NPY.read_magic(array))
         if read_header is None:
-            raise ValueError(f"{member.filename} was not written by NumPy in this format")
+            raise ValueError(f"{member.filename} is not an array that NumPy wrote")
         shape, _, dtype = read_header(array)
     return int(math.prod(shape) * dtype.itemsize)
 
@@ -108,6 +108,6 @@ def reading(path: Path, file_format: str) -> Iterator[Mapping[str, NDArray[Any]]
     except SomError:
         raise
     except FileNotFoundError:
-        raise SomError(path, "there is no such file") from None
+        raise SomError(path, "the file does not exist") from None
     except UNREADABLE as error:
         raise SomError(path, f"it is not of format {file_format!r}, or it is damaged ({error})") from None

@@ -32,7 +32,7 @@ class Together:
         if len({(som.grid.nodes, som.dtype) for som in maps}) != 1:
             raise ValueError(
                 f"maps of {[(som.grid.nodes, str(som.dtype)) for som in maps]} units differ in their grids or data "
-                "types: give maps of one kind"
+                "types: give maps of the same grid and data type"
             )
         self._shape = (-1, len(maps), maps[0].grid.nodes)
         self._dtype = maps[0].dtype

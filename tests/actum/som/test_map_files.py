@@ -27,7 +27,7 @@ def test_a_map_is_read_as_it_was_written(tmp_path: Path, dtype: type, topology: 
 
 
 def test_a_map_that_is_not_there_is_named(tmp_path: Path) -> None:
-    with pytest.raises(SomError, match="absent.npz: there is no such file"):
+    with pytest.raises(SomError, match="absent.npz: the file does not exist"):
         Som.load(tmp_path / "absent.npz")
 
 

@@ -52,7 +52,7 @@ class Row {
     const { host, source, model, version } = infos.get(this.name) ?? {};
     this.about.textContent = [source, model && `model ${model.slice(0, 8)}`, host, version && `actum ${version}`].filter(Boolean).join(" · ");
     this.dot.className = `dot ${!there ? "trouble" : status.state.startsWith("running") ? "well" : "idle"}`;
-    this.state.textContent = there ? status.state : "silent: not running";
+    this.state.textContent = there ? status.state : "not running";
     const { rates, drops, rejects, uptime_s: uptime } = status;
     const numbers = [there ? total(rates).toFixed(0) : "–", latency(status.latency_ms), total(drops), total(rejects), duration(uptime)];
     this.numbers.forEach((cell, i) => (cell.textContent = numbers[i]));

@@ -53,7 +53,7 @@ class Maps {
     this.asking = false;
     this.without = refused ? running : undefined;
     if (postures || refused) this.use(model, postures ?? null, actions ?? null);
-    if (!postures) this.captions.postures.textContent = this.captions.actions.textContent = refused ? message : `No maps: ${message}`;
+    if (!postures) this.captions.postures.textContent = this.captions.actions.textContent = refused ? message : `The maps cannot be shown: ${message}`;
   }
 
   async askForTraces() {
@@ -61,7 +61,7 @@ class Maps {
       await link.ask("som_classifier", "set_parameters", { values: { publish_maps: true } });
       this.traces.hidden = true;
     } catch (error) {
-      this.captions.postures.textContent = `No traces: ${error.message}`;
+      this.captions.postures.textContent = `The paths on the map cannot be shown: ${error.message}`;
     }
   }
 

@@ -38,7 +38,7 @@ export function scene() {
   try {
     new Stage(box, frames, counts);
   } catch (error) {
-    box.append(element("p", { class: "none" }, `This browser cannot draw 3-D (${error.message}). The picture shows the same people and objects.`));
+    box.append(element("p", { class: "none" }, `This browser cannot draw in 3-D (${error.message}). The card Picture shows the same people and objects.`));
   }
   offerPeople(who);
   return view;

@@ -101,7 +101,7 @@ class Switch {
   // The page's service ends the marks of a connection that ends.
   cut() {
     this.waiting = this.segment.segment_id;
-    this.told.textContent = "The connection was lost: the mark ends with it.";
+    this.told.textContent = "The connection was lost, so the mark has ended.";
     this.off();
   }
 

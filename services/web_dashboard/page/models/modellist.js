@@ -65,7 +65,7 @@ async function removed(id, name, line) {
 async function compare(id, line, compared) {
   const reply = await attempt(line, () => trainer.ask("compare", { model: id }));
   compared.hidden = !reply?.other;
-  if (reply && !reply.other) say(line, "No model is in use, so there is none to compare it with.", true);
+  if (reply && !reply.other) say(line, "No model is in use, so there is nothing to compare this one with.", true);
   if (compared.hidden) return;
   const { model, other, added, missing } = reply;
   const facts = [

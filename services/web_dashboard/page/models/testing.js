@@ -32,7 +32,7 @@ function show(results, sentences, result, set) {
   const { by, accuracy, n, labels, confusion, false_alarms_per_min: falseAlarms, found } = result;
   const facts = [
     [percent(accuracy), `of ${counted(n, "example")} recognised, each ${by === "people" ? "person" : "third"} left out of the training in turn`],
-    falseAlarms === null ? ["–", "false alarms a minute: without background they cannot be counted"] : [falseAlarms.toFixed(1), "false alarms a minute"],
+    falseAlarms === null ? ["–", "false alarms a minute (unknown: the set has no background)"] : [falseAlarms.toFixed(1), "false alarms a minute"],
     ...(found ? [[percent(found.recall), "of the actions found without marks"]] : []),
   ];
   const numbers = facts.map(([value, text]) => element("li", {}, element("strong", {}, value), element("span", {}, text)));

@@ -55,7 +55,7 @@ export class Parameter {
       say(this.line, "Set.");
     } catch (error) {
       const still = asText(this.told.value) || "unset";
-      this.refuse(error.refused ? `Refused: ${error.message}. The value is still ${still}.` : `Perhaps not set: ${error.message}. Press 'Read again' to see the value.`);
+      this.refuse(error.refused ? `Refused: ${error.message}. The value is still ${still}.` : `The value may not be set: ${error.message}. Press 'Read again' to see the value.`);
     }
   }
 

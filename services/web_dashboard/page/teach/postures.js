@@ -14,7 +14,7 @@ export async function postureMap(model) {
 async function fetched(model) {
   try {
     const { model: there, posture_map: map } = await link.ask("som_classifier", "maps");
-    if (there !== model) throw new Error("the classifier has another model");
+    if (there !== model) throw new Error("the classifier uses another model");
     return map;
   } catch (error) {
     if (!error.refused) asked.model = null;  // it may have it a moment later

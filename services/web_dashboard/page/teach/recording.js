@@ -107,7 +107,7 @@ class Recording {
   ended({ kind, label, asked, counted, doubts }, isFocused) {
     const isShort = kind === "action" && counted < asked;
     const what = kind === "background" ? "background recorded" : `${isShort ? `only ${counted} of ${asked}` : counted} of ${label} recorded`;
-    if (!this.line.classList.contains("refused")) say(this.line, isShort && !counted ? `this take of ${label} does not count` : what, isShort);
+    if (!this.line.classList.contains("refused")) say(this.line, isShort && !counted ? `This take of ${label} does not count.` : what, isShort);
     this.doubts.replaceChildren(...doubts.map((text) => element("li", { class: "doubt" }, text)));
     if (isFocused) this.form.label.input.select();
   }

@@ -18,7 +18,7 @@ export function simulatedPerson() {
 
 function wanted() {
   const take = trainer.now?.recording;
-  if (!take || take.phase === "done") throw new Error("no take is being recorded: press Record first");
+  if (!take || take.phase === "done") throw new Error("No take is being recorded: press Record first");
   const { kind, label, asked, counted } = take;
   if (kind === "background") return { everyday_s: 30 };
   return { actions: Array(Math.max(asked - counted, 1)).fill(label), object_id: 1 };

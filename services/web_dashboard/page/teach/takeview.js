@@ -49,7 +49,7 @@ export class TakeView {
 }
 
 function wording({ kind, phase, label, asked, counted, people: seen }) {
-  if (isSensorStill()) return "The sensor sends no frames: the take waits for it";
+  if (isSensorStill()) return "The sensor publishes nothing: the take waits for it";
   if (!seen && phase === "waiting") return "Nobody is in view: step in front of the camera";
   if (kind === "background") return "Do anything but the actions, then press Stop";
   if (phase === "waiting") return `Do it: ${label}, ${numbered(asked, "time")}`;
