@@ -159,11 +159,11 @@ def test_the_transform_is_16_numbers_or_a_file_of_them(
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
-        ("1 2 3", "is not 16 numbers"),
+        ("1 2 3", "is not a rigid transform: give the 16 numbers"),
         ("nowhere.txt", "'nowhere.txt' is not 16 numbers .* No such file"),
-        (SHIFTED.replace("1", "2"), "no rigid transform"),
-        (SHIFTED.replace("0.5", "nan"), "no rigid transform"),
-        (SHIFTED.replace("0.5", "1e300"), "no rigid transform"),
+        (SHIFTED.replace("1", "2"), "not a rigid transform"),
+        (SHIFTED.replace("0.5", "nan"), "not a rigid transform"),
+        (SHIFTED.replace("0.5", "1e300"), "not a rigid transform"),
     ],
 )
 def test_what_is_no_transform_is_refused_by_name(text: str, complaint: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -108,7 +108,7 @@ def test_a_file_that_would_be_named_as_another_kind_is_refused_with_the_right_na
 
 
 def test_a_folder_that_would_be_named_as_a_picture_is_refused(tmp_path: Path) -> None:
-    assert "name a folder" in refusal("inspect", "model.npz", "-o", str(tmp_path / "map.png"))
+    assert "give a folder" in refusal("inspect", "model.npz", "-o", str(tmp_path / "map.png"))
 
 
 def test_a_folder_without_recordings_is_refused(tmp_path: Path) -> None:

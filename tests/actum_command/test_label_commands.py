@@ -184,7 +184,7 @@ def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) 
         (("move", 0, "--start", "1"), "there is no segment 0"),
         (("move", 1, "--start", "2", "--end", "1.5"), "run from 2.00 s to 1.50 s: the end has to be later"),
         (("move", 1, "--end", "+3"), r"1.20 s to 5.57 s overlaps segment 2 \(3.80 to 5.17 s\)"),
-        (("move", 1, "--start", "-9"), "before the recording does"),
+        (("move", 1, "--start", "-9"), "before the recording"),
         (("move", 1, "--start", "soon"), "'soon' is not a time"),
         (("move", 1, "--start", "nan"), "'nan' is not a time"),
         (("add", 2.0, 3.0, "wave"), "overlaps segment 1"),

@@ -88,7 +88,7 @@ def test_streams_are_listed_by_person_and_name(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_the_set_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match=r"holds no p\*\.npz"):
+    with pytest.raises(DatasetError, match=r"contains no p\*\.npz"):
         stream_names(tmp_path)
 
 

@@ -105,7 +105,7 @@ def test_a_label_line_of_another_form_is_an_error(tmp_path: Path, text: str) -> 
 
 
 def test_a_recording_that_the_labels_do_not_name_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match="has no entry s01_e01"):
+    with pytest.raises(DatasetError, match="has no entry named s01_e01"):
         read_labelled(recording(tmp_path, [1]), "kinect0", read_labels(labels(tmp_path, "s02_e01\npush: 1 2\n")))
 
 

@@ -117,7 +117,7 @@ def test_a_joint_that_nobody_can_do_without_is_named() -> None:
     no_torso = np.where(np.arange(15)[:, None] == INDEX["torso"], np.nan, STANDING)
     frames = [skeleton(i * FRAME_NS, no_torso, seq=i) for i in range(20)]
     ((_, reason),) = reasons(told(mark("start", 3), mark("end", 12), skeletons=frames))
-    assert reason == "no person with a usable frame (missing_joint: no torso)"
+    assert reason == "no person with a usable frame (missing_joint: these joints are missing: torso)"
 
 
 @pytest.mark.parametrize(

@@ -114,7 +114,7 @@ def test_depth_and_colour_that_are_never_of_the_same_time_are_refused(tmp_path: 
 def test_a_recording_of_depth_alone_is_refused(tmp_path: Path) -> None:
     path = write_oni(tmp_path / "depth.oni", Track(DEPTH, [DEPTH_MM], [1000]))
 
-    with pytest.raises(VideoError, match=r"depth.oni (is not a recording|holds no colour)"):
+    with pytest.raises(VideoError, match=r"depth.oni (is not a recording|contains no colour)"):
         next(recorded_pictures(path, 0))
 
 
