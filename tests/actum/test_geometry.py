@@ -194,7 +194,7 @@ def test_joints_without_a_frame_are_refused() -> None:
     without_hips = lacking(np.zeros((15, 3)), "left_hip", "right_hip")
     with pytest.raises(geometry.DegenerateError, match="shoulders in place of missing hips"):
         geometry.ego_from_camera(without_hips)
-    with pytest.raises(geometry.DegenerateError, match="lie at one point"):
+    with pytest.raises(geometry.DegenerateError, match="are at the same position"):
         standard_body.scaled(np.ones((15, 3)))
 
 

@@ -80,7 +80,7 @@ def recorded(path: Path, *stamps_ns: int) -> None:
 def test_what_a_killed_process_left_is_not_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     left = killed(path)
-    with pytest.raises(FileExistsError, match=r"a\.mcap\.part is it is an unfinished recording \(0\.\d MB.*--finish"):
+    with pytest.raises(FileExistsError, match=r"a\.mcap\.part is an unfinished recording \(0\.\d MB.*--finish"):
         recorded(path, 1)
     assert part_of(path).read_bytes() == left
 

@@ -131,7 +131,7 @@ def test_a_foreign_calibration_is_refused(folder: Path, tmp_path: Path) -> None:
     bad = tmp_path / "c.yaml"
     bad.write_text("focal: 500")
     command = ["--markers-camera", bad, "--people-camera", bad, folder, "-o", tmp_path / "d.yaml"]
-    assert "c.yaml: not a calibration" in run("calibrate", "extrinsics", *command, code=1)
+    assert "c.yaml is not a calibration" in run("calibrate", "extrinsics", *command, code=1)
 
 
 def test_markers_are_printed_to_a_file(tmp_path: Path) -> None:

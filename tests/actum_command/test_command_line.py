@@ -156,9 +156,9 @@ def test_an_unknown_preset_is_refused_with_the_known_ones(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        (("paper", "attention=arms"), "has no setting attention=arms"),
-        (("paper", "beta=1"), "has no setting beta=1"),
-        (("paper", "axes"), "has no setting axes="),
+        (("paper", "attention=arms"), "attention=arms is not a setting"),
+        (("paper", "beta=1"), "beta=1 is not a setting"),
+        (("paper", "axes"), "axes= is not a setting"),
         (("pyramid", "attention=all"), "preset pyramid has no settings"),
     ],
 )

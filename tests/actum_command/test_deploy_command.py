@@ -90,7 +90,7 @@ def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
     [
         (("init", "--hosts", "camera=a"), "give at least one camera=ADDRESS and one compute=ADDRESS"),
         (("init", *HOSTS, "--open", "--passwords"), "--open and --passwords exclude each other"),
-        (("rotate",), "holds no deployment.json"),
+        (("rotate",), "contains no deployment.json"),
     ],
 )
 def test_what_cannot_be_done_is_refused(arguments: tuple[str, ...], said: str, tmp_path: Path) -> None:

@@ -88,7 +88,7 @@ def test_a_system_ends_with_the_line_of_the_program_that_cannot_be_used(
     told = capfd.readouterr()
     assert ended.value.exit_code == 1
     assert told.out == "mode: no such thing\n"
-    assert "worker cannot run with its settings" in told.err
+    assert "worker cannot start with its settings" in told.err
 
 
 SUPERVISING = """
@@ -122,7 +122,7 @@ def test_what_waits_for_a_router_ends_even_where_its_supervisor_is_killed(
         supervising = subprocess.Popen(
             [sys.executable, "-c", SUPERVISING, *program], stdout=output, stderr=subprocess.STDOUT
         )
-    wait_until(lambda: log.read_text().endswith("waiting for it\n"), "the child runs")
+    wait_until(lambda: log.read_text().endswith("waiting for one\n"), "the child runs")
     child = int(log.read_text().split()[0])
     assert runs(child)
     supervising.kill()

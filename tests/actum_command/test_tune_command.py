@@ -93,7 +93,9 @@ def test_what_cannot_be_tuned_is_refused_before_the_work(desk: Desk, tmp_path: P
     (tmp_path / "own.toml").write_text('model = "m.npz"\n')
     assert "also sets model" in refused("tune", desk.model, desk.third, "-o", tmp_path / "own.toml")
     assert "does not end in .toml" in refused("tune", desk.model, desk.third, "-o", tmp_path / "own.txt")
-    assert "more than 0 false alarms" in refused("tune", desk.model, desk.third, "--false-alarms-per-min", 0)
+    assert "--false-alarms-per-min 0 is not a usable rate" in refused(
+        "tune", desk.model, desk.third, "--false-alarms-per-min", 0
+    )
 
 
 def test_the_picture_of_a_recording_also_shows_what_a_model_finds(desk: Desk, tmp_path: Path) -> None:

@@ -297,5 +297,5 @@ def test_a_source_without_legs_teaches_what_it_sees(samples: list[SegmentSample]
 
 def test_samples_that_all_move_alike_are_refused(samples: list[SegmentSample]) -> None:
     alike = [replace(samples[0], label=label, person=person) for label in "ab" for person in "xy"]
-    with pytest.raises(TrainingError, match="cannot be told apart"):
+    with pytest.raises(TrainingError, match="cannot be distinguished"):
         trained(alike, PLAIN)

@@ -116,7 +116,7 @@ def test_a_set_is_not_called_as_a_device_of_windows_but_an_action_may_be(teacher
 @pytest.mark.parametrize(
     ("label", "why"),
     [
-        ("idle", "'idle' would be learned as an action, and reported whenever people do nothing in particular: name"),
+        ("idle", "'idle' would be learned as an action, and reported whenever people do nothing in particular"),
         ("Background", "'Background' would be learned as an action"),
         ("none", "'none' is what the system answers where it recognises no action"),
         ("unknown", "'unknown' is what the system answers"),
@@ -126,7 +126,7 @@ def test_no_action_is_called_as_what_is_none(teacher: Teacher, label: str, why: 
     example = teacher.examples()[0]["id"]
     with pytest.raises(Refusal, match=f"^{why}"):
         teacher.ask("record", set="kitchen", label=label)
-    with pytest.raises(Refusal, match="record what is none of the actions as background$"):
+    with pytest.raises(Refusal, match="use another name, or record it as background$"):
         teacher.ask("relabel", set="kitchen", example=example, label=label)
     with pytest.raises(Refusal, match=f"^{why}"):
         teacher.ask("import_video", set="kitchen", upload="clip", label=label)

@@ -148,7 +148,7 @@ def test_one_job_runs_at_a_time_and_tells_how_far_it_is(teacher: Teacher) -> Non
     teacher.jobs[-1].news = Progressing("training the maps", 0.25)
     state = teacher.tick(4).job
     assert state is not None and (state.stage, state.done, state.state) == ("training the maps", 0.25, "running")
-    with pytest.raises(Refusal, match=rf"a training is running \({begun['id']}\)"):
+    with pytest.raises(Refusal, match=rf"a training is already running \({begun['id']}\)"):
         teacher.ask("evaluate", set="kitchen")
     assert teacher.ask("cancel", job=begun["id"])["state"] == "cancelled"
     assert teacher.jobs[-1].ended

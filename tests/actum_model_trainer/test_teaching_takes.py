@@ -170,7 +170,7 @@ def test_an_example_that_is_not_recorded_anew_stays(teacher: Teacher, end: str) 
 def test_one_thing_is_recorded_at_a_time(teacher: Teacher) -> None:
     teacher.ask("record", set="kitchen", label="wave")
     for command in ("record", "redo_last"):
-        with pytest.raises(Refusal, match="is being recorded: 'stop' or 'discard' it"):
+        with pytest.raises(Refusal, match="is being recorded into the set kitchen: stop or discard it"):
             teacher.ask(command, set="kitchen", **({"label": "nod"} if command == "record" else {}))
     with pytest.raises(Refusal, match="being recorded"):
         teacher.ask("delete_set", set="kitchen")
@@ -184,7 +184,7 @@ def test_one_thing_is_recorded_at_a_time(teacher: Teacher) -> None:
 def test_what_is_recorded_needs_a_name_and_a_set(teacher: Teacher) -> None:
     with pytest.raises(Refusal, match="the take has no label"):
         teacher.ask("record", set="kitchen")
-    with pytest.raises(Refusal, match=r"no set 'garden': use one of those there are \(kitchen\)"):
+    with pytest.raises(Refusal, match=r"no set 'garden': use an existing one \(kitchen\)"):
         teacher.ask("record", set="garden", label="wave")
     with pytest.raises(Refusal, match="no take to redo"):
         teacher.ask("redo_last", set="kitchen")

@@ -259,5 +259,5 @@ def test_every_control_is_reached_by_the_tabulator_and_has_a_name(scene: Scene, 
 def test_without_3d_it_says_so_and_shows_the_rest(scene: Scene, open_page: Open) -> None:
     page = open_page(scene.page.address)
     wait_for_state(page, "live")
-    assert "cannot draw 3-D" in page.locator("#scene").text_content()
+    assert "cannot draw in 3-D" in page.locator("#scene").text_content()
     assert colours(page, "#picture canvas") > 2
