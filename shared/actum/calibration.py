@@ -157,7 +157,7 @@ def _content(path: Path) -> object:
     except OSError as error:
         raise CalibrationError(f"{path}: {error.strerror}; {REMEDY}") from None
     except YAML_ERRORS:
-        raise CalibrationError(f"{path}: not YAML; {REMEDY}") from None
+        raise CalibrationError(f"{path} is not a calibration (it is not YAML): {REMEDY}") from None
 
 
 class _Dumper(yaml.SafeDumper):

@@ -152,7 +152,7 @@ def test_one_job_runs_at_a_time_and_tells_how_far_it_is(teacher: Teacher) -> Non
         teacher.ask("evaluate", set="kitchen")
     assert teacher.ask("cancel", job=begun["id"])["state"] == "cancelled"
     assert teacher.jobs[-1].ended
-    with pytest.raises(Refusal, match="is not running: it is cancelled"):
+    with pytest.raises(Refusal, match="is not running, so it cannot be cancelled"):
         teacher.ask("cancel", job=begun["id"])
     assert not list((teacher.folder / "jobs").glob("*.work"))
 

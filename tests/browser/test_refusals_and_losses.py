@@ -202,7 +202,7 @@ def test_what_a_busy_service_did_not_answer_is_asked_for_again(room: Lesson, ope
     refuse_first(room.page.colleague, "set_parameters")
     reach.fill("7.5")
     reach.press("Enter")
-    page.get_by_text("Perhaps not set: pose_preprocessor does not answer").wait_for()
+    page.get_by_text("The value may not be set: pose_preprocessor").wait_for()
 
 
 def test_the_parameters_of_a_service_that_was_started_anew_are_read_anew(room: Lesson, open_page: Open) -> None:

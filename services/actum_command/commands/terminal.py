@@ -73,7 +73,7 @@ def connect_whenever() -> Client:
     try:
         return Client(here, wait_s=0)
     except RouterUnreachableError:
-        say(f"no router at {here.connect} yet: waiting for it")
+        say(f"there is no router at {here.connect} yet: waiting for one")
     except SettingsError as error:
         fail(str(error))
     return connect(wait_s=float("inf"))
