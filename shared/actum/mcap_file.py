@@ -107,9 +107,8 @@ class McapFile:
     def _opened(self) -> BinaryIO:
         try:
             if self.path.exists() and not (self.path.is_file() or self.path.is_dir()):
-                raise RecordingError(
-                    self.path, "it is not a regular file", REMEDY
-                )  # reading a named pipe would never end
+                # reading a named pipe would never end
+                raise RecordingError(self.path, "it is not a regular file", REMEDY)
             file = self.path.open("rb")
         except OSError as error:
             raise RecordingError(self.path, error.strerror or str(error), REMEDY) from None
