@@ -70,8 +70,11 @@ def sides(page: Any) -> list[str]:
 
 
 def boxes(page: Any, card: str) -> dict[str, dict[str, float]]:
-    """Return where each label of a card is, by its text."""
-    return {label.text_content(): label.bounding_box() for label in page.locator(f"#{card} .label").all()}
+    """Return where each label of a card is, by its text: of all at one instant, or one could move before the next."""
+    placed: dict[str, dict[str, float]] = page.locator(f"#{card} .label").evaluate_all(
+        "labels => Object.fromEntries(labels.map((it) => [it.textContent, it.getBoundingClientRect().toJSON()]))"
+    )
+    return placed
 
 
 def covering(page: Any, card: str) -> list[tuple[str, str]]:

@@ -1,7 +1,7 @@
 """What browsers mark and ask: it is passed on, or refused with words, whatever it is."""
 
 import json
-import random
+from threading import Event
 from typing import Any
 
 import pytest
@@ -13,7 +13,7 @@ from actum.commands import Refusal
 from actum.messages import Segment
 from actum.runtime.client import NotAnsweredError
 from dashboards import Colleague, Served, answered, heard, served
-from live import wait_until
+from live import PATIENCE_S, wait_until
 from web_dashboard.orders import LONGEST_ORDER_BYTES
 
 
@@ -132,13 +132,14 @@ def test_anything_else_is_answered_with_an_error_and_counted(page: Served, order
     assert page.rejects()["refused_browser"] == before + 1
 
 
-def test_more_orders_than_can_wait_end_the_connection(page: Served) -> None:
-    with page.browser() as browser, pytest.raises(ConnectionClosed):
-        for _ in range(10_000):
-            browser.send(
-                '{"id": 1, "ask": {"service": "som_classifier", "command": "maps"}}' + " " * random.randint(0, 9)
-            )
-    assert page.node.working
+def test_more_orders_than_can_wait_end_the_connection() -> None:
+    answered = Event()
+    with served(Colleague(lambda *_, **__: {"came": answered.wait(PATIENCE_S)})) as page:
+        with page.browser() as browser, pytest.raises(ConnectionClosed):
+            for number in range(10_000):
+                browser.send(json.dumps({"id": number, "ask": {"service": "som_classifier", "command": "maps"}}))
+        answered.set()
+        assert page.node.working
 
 
 def test_a_name_of_ten_megabytes_ends_that_connection_and_no_other(page: Served) -> None:
