@@ -164,7 +164,9 @@ class PosePreprocessor:
         unknown = [index for index in missing if np.isnan(bridged[index, 0])]
         check_frame(bridged, unknown, self._settings.reach_limit_m, self._settings.bone_limit_m)
         if agent.joints == person.joints:
-            raise BadFrameError("repeated_joints", "the joints are the same as in the frame before")
+            raise BadFrameError(
+                "repeated_joints", "all joints are exactly as in the frame before, so the sensor seems to stand still"
+            )
         return bridged
 
     def _invalid(self, frame: Skeleton, agent: int, reason: str, missed: int, present: list[int]) -> Posture:

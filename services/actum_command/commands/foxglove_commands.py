@@ -112,7 +112,7 @@ def export(
         typer.Option("--foxglove", help="write Foxglove's message types; required, as there is no other format yet"),
     ] = False,
 ) -> None:
-    """Convert a recording to a file that Foxglove opens, such as actum export --foxglove REC OUT."""
+    """Convert a recording to a file that Foxglove opens: actum export --foxglove REC OUT."""
     if not for_foxglove:
         fail("no output format is given: add --foxglove")
     refuse_without("foxglove", "foxglove-sdk", "foxglove")

@@ -66,8 +66,8 @@ def msrc12(
         typer.Option(
             "--composed",
             help=(
-                "join the gestures of each person to two recordings of mixed gestures, with segments as with "
-                "--trimmed; default: one recording per original file"
+                "combine the gestures of each person into two new recordings; segments are trimmed as by --trimmed. "
+                "Default: one recording per original file"
             ),
         ),
     ] = False,
