@@ -20,8 +20,8 @@ from actum.node import SECOND_NS
 from actum.skeletons import INDEX, JOINTS
 from actum_dataset_importer import msr_action3d, msrc12, utkinect
 from actum_dataset_importer.takes import Take
-from actum_model_trainer.cutting.courses import PersonTracks
-from actum_model_trainer.cutting.repetitions import OTHER_NUMBER, Cuts, cut
+from actum_examples.cutting.courses import PersonTracks
+from actum_examples.cutting.repetitions import OTHER_NUMBER, Cuts, cut
 from actum_model_trainer.evaluation import wilson_interval
 from scene_simulator.programme import ACTIONS, Task
 from scene_simulator.simulator import Simulator

@@ -12,7 +12,7 @@ from actum.node import SECOND_NS, Counters
 from actum.skeletons import INDEX, JOINTS
 from actum_dataset_importer import msrc12
 from actum_dataset_importer.takes import Take as Recorded
-from actum_model_trainer.cutting.counting import RepetitionCounter
+from actum_examples.cutting.counting import RepetitionCounter
 from scene_simulator.driven_simulator import DrivenSimulator
 from scene_simulator.programme import ACTIONS
 from scene_simulator.settings import Settings

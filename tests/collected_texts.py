@@ -18,7 +18,7 @@ PACKAGES = (
     "services/som_classifier",
     "services/marker_tracker",
     "services/action_fusion",
-    "services/actum_model_trainer/teaching",
+    "services/model_trainer",
     "services/web_dashboard",
     "services/ros2_bridge",
     "services/actum_command/history",

@@ -19,7 +19,7 @@ from live import PATIENCE_S, Running, free_endpoint, started, wait_until
 PEOPLE = {role.name for role in PEOPLES}
 BY_SERVICE = {service: role for role in ROLES for service in role.services}
 """The role of each service."""
-MODULES = {"scene_simulator": "sensor_gateway", "actum_model_trainer": "model_trainer"}
+MODULES = {"scene_simulator": "sensor_gateway"}
 """The service's name of each program that has another."""
 
 

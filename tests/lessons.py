@@ -9,8 +9,8 @@ from typing import Any
 from actum import __version__
 from actum.commands import Command, Refusal
 from actum.messages import Info, Message, Segment, Skeleton
-from actum_model_trainer.teaching.job_process import Ended
 from dashboards import Colleague, Served, served
+from model_trainer.job_process import Ended
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from recognisers import tiny_model

@@ -7,9 +7,9 @@ from typing import Any
 
 from actum.messages import Message, Segment, Skeleton, Training
 from actum.node import SECOND_NS, TICK_NS, Tick
-from actum_model_trainer.teaching.job_process import Ended, JobRequest, Progressing
-from actum_model_trainer.teaching.original_model import OriginalModel
-from actum_model_trainer.teaching.trainer import ModelTrainer
+from model_trainer.job_process import Ended, JobRequest, Progressing
+from model_trainer.original_model import OriginalModel
+from model_trainer.trainer import ModelTrainer
 from people import FRAME_NS
 from repeating import GOGGLES, WAVE, Stream, eased, held, moved, rest
 

@@ -24,7 +24,7 @@ Way = Literal["left there", "goes back by itself", "taken back by the hand"]
 in the simulated scene; the hand takes it back on the same way, and leaves it then."""
 WAYS: tuple[Way, ...] = get_args(Way)
 MARGIN_S = 0.2
-"""Rest that a cut has before and after the movement, as `actum_model_trainer.cutting` leaves."""
+"""Rest that a cut has before and after the movement, as `actum_examples.cutting` leaves."""
 REST_S = 0.5
 """How long everything rests between the way back and the arrangement of the objects for the next action."""
 ARRANGE_S = 1.0

@@ -6,8 +6,8 @@ import numpy as np
 
 from actum.arrays import Array
 from actum.node import SECOND_NS
-from actum_model_trainer.cutting.courses import RATE_HZ
-from actum_model_trainer.cutting.repetitions import OTHER_NUMBER, Cuts
+from actum_examples.cutting.courses import RATE_HZ
+from actum_examples.cutting.repetitions import OTHER_NUMBER, Cuts
 
 BARS = " ▁▂▃▄▅▆▇█"
 """Letters for an activity of 0 to `FULL`."""

@@ -12,9 +12,9 @@ from actum.settings import SettingsError
 from actum_command.service_settings import Given
 from actum_command.simulated_model import SIMULATED_MODEL
 from actum_command.spelling import nearest
-from actum_model_trainer.settings import MODEL
-from actum_model_trainer.settings import Settings as TrainerSettings
-from actum_model_trainer.teaching.original_model import OriginalModel
+from model_trainer.original_model import OriginalModel
+from model_trainer.settings import MODEL
+from model_trainer.settings import Settings as TrainerSettings
 from som_classifier.settings import Settings as ClassifierSettings
 
 NO_MODEL = (

@@ -87,7 +87,7 @@ def trainer(settings: ServiceSettings, model: ModelInUse, given: Given) -> Progr
     environment = {**common(settings), "ACTUM_MODEL": str(model.file)}
     if model.original is not None:
         environment["ACTUM_ORIGINAL_MODEL"] = str(model.original)
-    return Program(TRAINER, "actum_model_trainer", arguments_of(TRAINER, given), environment)
+    return Program(TRAINER, "model_trainer", arguments_of(TRAINER, given), environment)
 
 
 def gateway(settings: ServiceSettings, arguments: Sequence[str]) -> Program:

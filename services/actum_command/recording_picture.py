@@ -9,12 +9,12 @@ from actum import keys
 from actum.messages import Action
 from actum.node import SECOND_NS
 from actum.recording import Recording
-from actum_command.labelled_segments import LabelledSegment
+from actum_examples.cutting.courses import RATE_HZ, Course, recorded_courses
+from actum_examples.marked_segments import LabelledSegment
 from actum_model_inspector.answered import encoded
 from actum_model_inspector.stream_picture import Lane, Span, SpeedLine, stream_picture
 from actum_model_inspector.style import save
 from actum_model_trainer.continuous.watching import found_by
-from actum_model_trainer.cutting.courses import RATE_HZ, Course, recorded_courses
 from actum_model_trainer.recorded_segments import classifier_input, closed_segments, sensors
 from som_classifier.model import Model
 from som_classifier.spotting.spotted import SpottingOptions

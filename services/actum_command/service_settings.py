@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import action_fusion.settings
 import actum_command.history.settings
-import actum_model_trainer.settings
 import marker_tracker.settings
+import model_trainer.settings
 import pose_preprocessor.settings
 import ros2_bridge.settings
 import scene_simulator.settings
@@ -25,7 +25,7 @@ DECLARED: Mapping[str, type[ServiceSettings]] = {
             web_dashboard,
         )
     },
-    TRAINER: actum_model_trainer.settings.Settings,
+    TRAINER: model_trainer.settings.Settings,
 }  # fmt: skip
 """The settings of each service that `actum up` starts, by the service's name."""
 

@@ -19,7 +19,7 @@ ON_ITS_WAY_S = 0.3  # longest delay of a message that was put before the recordi
 
 
 class Storing(Protocol):
-    """What stores messages: `actum_command.stream_recorder`, or what stands before it."""
+    """What stores messages: `actum_examples.stream_recorder`, or what stands before it."""
 
     def take(self, message: Message, received_ns: int) -> None:
         """Take one message and the time it was received at (ns)."""

@@ -121,7 +121,7 @@ def _program(deployment: Deployment, host: Host, role: Role, sensor: str) -> Pro
     if role is GATEWAY:
         image, module = (f"actum/{SIMULATOR}", SIMULATOR) if deployment.simulated else (f"{image}_camera", service)
     elif role is TRAINER:
-        image, module = COMMAND_IMAGE, "actum_model_trainer"
+        image, module = COMMAND_IMAGE, "model_trainer"
     return Program(
         name=service + suffix(host, sensor),
         about=role.about,

@@ -11,8 +11,8 @@ from actum.messages import Agent, Skeleton, segment_marks
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum_command.__main__ import app
+from actum_examples.edits import MIRRORED, mirror_image
 from actum_model_trainer.samples import samples_from
-from actum_model_trainer.segment_edits import MIRRORED, mirror_image
 from people import FRAME_NS, reaching, skeleton
 from teaching import Teacher
 

@@ -10,7 +10,7 @@ from actum.messages import AUTO, MANUAL, Action, Message, Segment, Skeleton
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum_command.__main__ import app
-from actum_command.labelled_segments import labelled_segments
+from actum_examples.marked_segments import labelled_segments
 from empty_messages import action
 from people import FRAME_NS
 from performers import mark

@@ -9,8 +9,8 @@ from actum.runtime.resuming import check_state_folder
 from actum.settings import ServiceSettings
 from actum_command.history.event_files import EventFiles
 from actum_command.history.settings import Settings as HistorySettings
-from actum_model_trainer.settings import Settings as TrainerSettings
-from actum_model_trainer.teaching.trainer import ModelTrainer
+from model_trainer.settings import Settings as TrainerSettings
+from model_trainer.trainer import ModelTrainer
 
 
 def test_what_is_taught_remembered_or_kept_is_its_owners(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

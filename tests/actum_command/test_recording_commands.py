@@ -20,7 +20,7 @@ from actum.runtime import Received
 from actum_command import streaming
 from actum_command.__main__ import app
 from actum_command.commands import recording_commands
-from actum_model_trainer.cutting import counting
+from actum_examples.cutting import counting
 from actum_model_trainer.samples import select
 from empty_messages import image, mark, skeleton, status
 from people import FRAME_NS

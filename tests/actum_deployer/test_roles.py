@@ -11,9 +11,9 @@ from actum.keys import Topic
 from actum.node import replay
 from actum_deployer.access_control import TOLD, access_control, link_rules, rules
 from actum_deployer.roles import BRIDGE, GATEWAY, IMAGES, PAGE, PEOPLES, ROBOT, ROLES, SWITCH, VIEWER, Role, identity
-from actum_model_trainer.teaching.trainer import ModelTrainer
 from conftest import NEEDS_ROS2_EXTRA
 from marker_tracker.node import MarkerTracker
+from model_trainer.trainer import ModelTrainer
 from node_cases import CASES, Case
 from pose_preprocessor.node import PosePreprocessor
 from som_classifier.node import SomClassifier

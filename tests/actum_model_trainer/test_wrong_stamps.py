@@ -9,13 +9,13 @@ import pytest
 from actum.messages import Segment, Skeleton
 from actum.node import SECOND_NS
 from actum.recording import Recording
-from actum_model_trainer.cutting.courses import recorded_courses
+from actum_examples.cutting.courses import recorded_courses
+from actum_examples.take import read_take
 from actum_model_trainer.evaluation import segment_labels
 from actum_model_trainer.recorded_segments import classifier_input, closed_segments
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.spotting.training_windows import training_windows
-from actum_model_trainer.teaching.film import films_of
-from actum_model_trainer.teaching.take_files import read_take
+from model_trainer.film import films_of
 from performers import mark as labelled
 from performers import performance
 from repeating import Stream, rest

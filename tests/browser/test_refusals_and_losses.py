@@ -11,10 +11,10 @@ import pytest
 from actum.commands import Refusal
 from actum.messages import Info, Segment
 from actum.runtime.client import NotAnsweredError
-from actum_model_trainer.teaching.job_process import Ended
 from dashboards import Colleague, served
 from lessons import SET, Lesson, lesson
 from live import wait_until
+from model_trainer.job_process import Ended
 from node_cases import photograph
 from page_scenes import Scene, maps
 from teaching import WAVES, Teacher

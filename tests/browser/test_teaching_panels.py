@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from actum_model_trainer.teaching.job_process import Progressing
 from lessons import SET, Lesson, lesson
 from live import wait_until
+from model_trainer.job_process import Progressing
 from recognisers import tiny_model
 from repeating import Stream, rest
 from teaching import GOGGLINGS, WAVES, Teacher

@@ -39,7 +39,7 @@ def start(running: System, open_page: Open, *sensor: str) -> Any:
     for name in ("pose_preprocessor", "action_fusion", "marker_tracker"):
         running.start(name)
     running.start("som_classifier", "--model", model)
-    running.start("actum_model_trainer", "--model", model)
+    running.start("model_trainer", "--model", model)
     if sensor:
         running.start(*sensor)
     running.start("web_dashboard", "--page-port", port)

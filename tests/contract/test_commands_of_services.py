@@ -30,7 +30,7 @@ from actum.node import TICK_NS, Counters, Tick
 from actum.runtime.commanding import Commander
 from actum.runtime.meter import Meter
 from actum.settings import ServiceSettings
-from actum_model_trainer.teaching.trainer import ModelTrainer
+from model_trainer.trainer import ModelTrainer
 from node_cases import CASES
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings

@@ -14,9 +14,9 @@ from actum.bridge import Foreign
 from actum.commands import JSON, MSGPACK, Command, Refusal, packed, unpacked
 from actum.messages import Event, Message, Status, Training
 from actum.node import Counters, Numbering, Tick
-from actum_model_trainer.teaching.trainer import ModelTrainer
 from dashboards import Colleague
 from fuzzing.mutations import of_bytes, request
+from model_trainer.trainer import ModelTrainer
 from node_cases import CASES, FINDING, NOON_NS, Case
 from people import reaches
 from ros2_bridge.bridge import Ros2Bridge

@@ -127,7 +127,7 @@ def test_what_is_taught_is_put_where_the_classifier_reads_it_and_stays(services)
     assert trainer["environment"]["ACTUM_MODEL"] != trainer["environment"]["ACTUM_ORIGINAL_MODEL"], "it is only read"
     assert trainer["environment"]["ACTUM_TRAINER_DATA"].startswith("/models/")
     assert trainer["volumes"] == ["models:/models"]
-    assert trainer["entrypoint"] == ["python", "-m", "actum_model_trainer"]
+    assert trainer["entrypoint"] == ["python", "-m", "model_trainer"]
     assert services["trainer"]["command"][0].startswith("test -e /models/model.npz && exit;")
 
 

@@ -21,7 +21,7 @@ SERVICES = (
     ("som_classifier", "som_classifier"),
     ("marker_tracker", "marker_tracker"),
     ("action_fusion", "action_fusion"),
-    ("model_trainer", "actum_model_trainer"),
+    ("model_trainer", "model_trainer"),
     ("web_dashboard", "web_dashboard"),
 )
 """Each service and what is run for it: the simulated scene stands in the gateway's place."""

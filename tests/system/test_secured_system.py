@@ -17,7 +17,7 @@ ACTIONS = 5
 """Of one repetition of the simulated scene."""
 SCENE_S = 60.0
 """The scene lasts twenty seconds, where nothing else keeps the machine busy."""
-BEHIND = ("pose_preprocessor", "action_fusion", "actum_model_trainer", "web_dashboard")
+BEHIND = ("pose_preprocessor", "action_fusion", "model_trainer", "web_dashboard")
 
 
 def start_all(running: Deployed, model: Path) -> None:

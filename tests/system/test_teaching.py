@@ -11,9 +11,9 @@ import pytest
 from actum.commands import Refusal
 from actum.messages import Message
 from actum.runtime import NotAnsweredError
-from actum_model_trainer.teaching.set_store import MAKING
-from actum_model_trainer.teaching.take_files import read_take
+from actum_examples.take import read_take
 from live import System
+from model_trainer.set_store import MAKING
 from people import reaches
 from teaching import mark
 
@@ -30,7 +30,7 @@ def test_three_actions_are_taught_and_recognised_by_queries_alone(running: Syste
     for name in ("pose_preprocessor", "action_fusion"):
         running.start(name)
     running.start("som_classifier", "--model", str(model))
-    running.start("actum_model_trainer", "--model", str(model))
+    running.start("model_trainer", "--model", str(model))
     running.start("scene_simulator", "--driven", "--image-hz", "0")
     with running.client() as client:
         running.wait_for_services(client, "pose_preprocessor", "action_fusion", "som_classifier", "model_trainer")
@@ -59,7 +59,7 @@ def test_a_trainer_that_is_killed_at_any_moment_leaves_whole_files(running: Syst
     folder = running.folder / "teaching"
     with running.client() as client:
         for attempt in range(KILLS):
-            trainer = running.start("actum_model_trainer", "--take-over")
+            trainer = running.start("model_trainer", "--take-over")
             running.wait_for_services(client, "model_trainer")
             asking = threading.Thread(target=busy, args=(running, attempt), daemon=True)
             asking.start()
@@ -69,7 +69,7 @@ def test_a_trainer_that_is_killed_at_any_moment_leaves_whole_files(running: Syst
             asking.join(timeout=20)
             taken = [take for take in (folder / "sets").glob("*/*.mcap") if take.parent.name != MAKING]
             assert all(read_take(take).examples for take in taken)
-        running.start("actum_model_trainer", "--take-over")
+        running.start("model_trainer", "--take-over")
         running.wait_for_services(client, "model_trainer")
         listed = client.ask("model_trainer", "list")
         assert listed["sets"] and not [each for each in listed["sets"] if each["unreadable"]]

@@ -16,7 +16,9 @@ from actum_command.commands.plain_help import LISTS, ListingGroup, PlainTyper
 from actum_command.commands.recording_options import RecordingFile, change_recording, in_ns, refuse_length, tell_unread
 from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
 from actum_command.cut_lines import cut_lines
-from actum_command.labelled_segments import (
+from actum_examples.cutting.marks import free_names, marks_of
+from actum_examples.edits import deleted, fields_after, following, in_turn, without_messages
+from actum_examples.marked_segments import (
     LabelledSegment,
     LabellingError,
     check_span,
@@ -28,9 +30,7 @@ from actum_command.labelled_segments import (
     refuse_outside,
     segment_of,
 )
-from actum_command.segment_changes import moved, relabelled
-from actum_model_trainer.cutting.marks import free_names, marks_of
-from actum_model_trainer.segment_edits import deleted, fields_after, following, in_turn, without_messages
+from actum_examples.segment_changes import moved, relabelled
 from som_classifier.model_loading import ModelError, load_model
 
 RIGHT_ALIGNED = (True, True, True, True, False, False, False, False, False)

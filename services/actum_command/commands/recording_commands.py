@@ -21,10 +21,10 @@ from actum_command.commands.service_flags import with_history_flags
 from actum_command.commands.terminal import connect, fail, say
 from actum_command.cut_lines import cut_lines
 from actum_command.event_keeping import keep_events
-from actum_command.repetition_recorder import RepetitionRecorder
 from actum_command.service_settings import Given
-from actum_command.stream_recorder import IMAGES, STREAMS, StreamRecorder
 from actum_command.streaming import put_all, store_all
+from actum_examples.repetition_recorder import RepetitionRecorder
+from actum_examples.stream_recorder import IMAGES, STREAMS, StreamRecorder
 
 WAIT_S = 5.0  # how long to wait for a preprocessor that is starting to subscribe
 ALL = "all"

@@ -22,7 +22,9 @@ from actum_command.commands.recording_options import (
     tell_unread,
 )
 from actum_command.commands.terminal import fail, say
-from actum_command.labelled_segments import (
+from actum_command.marked_actions import MarkedAction, marked_actions
+from actum_examples.edits import deleted, fields_after, in_turn
+from actum_examples.marked_segments import (
     LabelledSegment,
     LabellingError,
     first_stamp_ns,
@@ -30,9 +32,7 @@ from actum_command.labelled_segments import (
     labelled_segments,
     refuse_outside,
 )
-from actum_command.marked_actions import MarkedAction, marked_actions
-from actum_command.segment_changes import moved, relabelled
-from actum_model_trainer.segment_edits import deleted, fields_after, in_turn
+from actum_examples.segment_changes import moved, relabelled
 
 app = PlainTyper(
     cls=ListingGroup,

@@ -7,7 +7,7 @@ from actum import keys
 from actum.messages import Action, Event, Message, Segment
 from actum.node import Counters, Tick
 from actum_command.history.event_files import EventFiles
-from actum_command.unstamped_marks import Placed, UnstampedMarks
+from actum_examples.unstamped_marks import Placed, UnstampedMarks
 
 
 class EventRecorder:

@@ -4,7 +4,7 @@ import { element } from "./elements.js";
 import { trainer } from "./trainer.js";
 
 const LOOK_MS = 500;
-const TEXT = "The service model_trainer does not answer. Start it with 'python -m actum_model_trainer', or all services with 'actum up'.";
+const TEXT = "The service model_trainer does not answer. Start it with 'python -m model_trainer', or all services with 'actum up'.";
 
 export function trainerMissing() {
   const line = element("p", { class: "missing wide", role: "status" });

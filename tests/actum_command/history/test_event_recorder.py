@@ -14,7 +14,7 @@ from actum.recording import Recording
 from actum_command.history.event_files import HOUR_NS, EventFiles
 from actum_command.history.event_recorder import EventRecorder
 from actum_command.history.settings import Settings
-from actum_command.unstamped_marks import MOST_ANSWERED, MOST_MARKS
+from actum_examples.unstamped_marks import MOST_ANSWERED, MOST_MARKS
 from empty_messages import action, mark, skeleton
 
 START_NS = 1_795_417_800 * SECOND_NS

@@ -1,0 +1,148 @@
+"""The commands that show and mend examples."""
+
+from typing import Any
+
+import numpy as np
+
+from actum.arrays import Array
+from actum.commands import Command, Refusal
+from actum.recording import Recording
+from actum_examples.edits import MixedMirroringError
+from actum_examples.take import Example, Take
+from actum_examples import take_mending
+from model_trainer.changes import Changes, on_disk
+from model_trainer.film import Film, films_of
+from model_trainer.model_store import ModelStore
+from model_trainer.replies import Done, ExampleListed, Examples, FilmReply
+from model_trainer.requests import DeleteAction, OfExample, OfSet, Relabel, Trim
+from model_trainer.set_store import SetStore
+
+MOST_FILMED = 16
+"""Takes whose films are kept in memory: a page asks for those of a take one after the other."""
+SHORTEST_NS = 100_000_000
+"""Shortest example (ns): three frames at 30 Hz, the fewest that a model answers."""
+
+
+class ExampleCommands:
+    """Shows the examples of sets, and mends them."""
+
+    def __init__(self, sets: SetStore, models: ModelStore, changes: Changes) -> None:
+        self._sets = sets
+        self._models = models
+        self._changes = changes
+        self._films: dict[tuple[str, int, str | None], dict[str, Film]] = {}
+
+    @property
+    def commands(self) -> tuple[Command[Any, Any], ...]:
+        """What can be asked."""
+        return (
+            Command("examples", OfSet, Examples, self._examples),
+            Command("film", OfExample, FilmReply, self._film),
+            Command("relabel", Relabel, Done, self._relabel),
+            Command("trim", Trim, Done, self._trim),
+            Command("mirror", OfExample, Done, self._mirror),
+            Command("delete", OfExample, Done, self._delete),
+            Command("delete_action", DeleteAction, Done, self._delete_action),
+        )
+
+    def remove(self, take: Take, examples: list[Example]) -> None:
+        """Delete examples of a take; one that was made here goes as a whole where it was of these alone.
+
+        Raises:
+            OSError: it cannot be written; it is as it was.
+        """
+        if take.kind == "action" and take.created and len(examples) == len(take.examples):
+            take.path.unlink()
+        else:
+            take_mending.without(take, examples)
+
+    def _examples(self, request: OfSet) -> Examples:
+        """List the examples of a set."""
+        return Examples(examples=[ExampleListed.of(each) for each in self._sets.get(request.set).examples])
+
+    def _film(self, request: OfExample) -> FilmReply:
+        """Show an example: the bodies, and the way over the posture map of the model in use."""
+        take, example = self._found(request)
+        film = self._films_of(take).get(example.segment_id)
+        if film is None:
+            raise Refusal(f"the example {example.id} has no usable frame: delete it")
+        trace = None if film.trace is None else np.round(film.trace, 2).tolist()
+        return FilmReply(stamps_ns=list(film.stamps_ns), joints=[_listed(body) for body in film.joints], trace=trace)
+
+    def _relabel(self, request: Relabel) -> Done:
+        """Give an example another label."""
+        take, example = self._found(request)
+        with self._changes.change():
+            take_mending.relabel(take, example, request.label)
+        return Done(revision=self._changes.revision)
+
+    def _trim(self, request: Trim) -> Done:
+        """Give an example another start and end."""
+        take, example = self._found(request)
+        start_ns, end_ns = request.start_ns, request.end_ns
+        if end_ns - start_ns < SHORTEST_NS:
+            raise Refusal(f"the example would last {(end_ns - start_ns) / 1e9:.2f} s: make it at least 0.1 s long")
+        if start_ns < take.first_ns or end_ns > take.last_ns:
+            within = [(ns - take.first_ns) / 1e9 for ns in (start_ns, end_ns, take.last_ns)]
+            raise Refusal(
+                "the example would reach from {:.2f} s to {:.2f} s of a take that lasts {:.2f} s: "
+                "stay within the take".format(*within)
+            )
+        for other in take.examples:
+            if other.segment_id != example.segment_id and other.overlaps(start_ns, end_ns):
+                raise Refusal(f"the example would overlap {other.id}, an example of {other.label}: trim that one first")
+        try:
+            with self._changes.change():
+                take_mending.trim(take, example, start_ns, end_ns)
+        except MixedMirroringError as error:
+            raise Refusal(str(error)) from None
+        return Done(revision=self._changes.revision)
+
+    def _mirror(self, request: OfExample) -> Done:
+        """Exchange left and right in an example and those that share frames with it; twice is as before."""
+        take, example = self._found(request)
+        with self._changes.change():
+            take_mending.mirror(take, example)
+        return Done(revision=self._changes.revision)
+
+    def _delete(self, request: OfExample) -> Done:
+        """Delete an example with the frames of whoever acts in it, unless another example needs them."""
+        take, example = self._found(request)
+        with self._changes.change():
+            self.remove(take, [example])
+        return Done(revision=self._changes.revision)
+
+    def _delete_action(self, request: DeleteAction) -> Done:
+        """Delete all examples of an action."""
+        stored = self._sets.get(request.set)
+        chosen = {take.id: [each for each in take.examples if each.label == request.label] for take in stored.takes}
+        if not any(chosen.values()):
+            raise Refusal(f"the set {request.set} has no example of {request.label!r}: choose another action")
+        with self._changes.change():
+            for take in stored.takes:
+                if chosen[take.id]:
+                    self.remove(take, chosen[take.id])
+        return Done(revision=self._changes.revision)
+
+    def _found(self, request: OfExample) -> tuple[Take, Example]:
+        for take in self._sets.get(request.set).takes:
+            for example in take.examples:
+                if example.id == request.example:
+                    return take, example
+        raise Refusal(f"the set {request.set} has no example {request.example!r}: the command 'examples' lists them")
+
+    def _films_of(self, take: Take) -> dict[str, Film]:
+        """Return the films of a take, of the file as it is now and by the model in use."""
+        model = self._models.loaded
+        with on_disk():
+            key = str(take.path), take.path.stat().st_mtime_ns, None if model is None else model.id
+            if key not in self._films:
+                self._films[key] = films_of(Recording(take.path), model)
+        for oldest in list(self._films)[:-MOST_FILMED]:
+            del self._films[oldest]
+        return self._films[key]
+
+
+def _listed(body: Array) -> list[list[float] | None]:
+    """List the joints (15, 3) of a body to the millimetre; null where one is missing."""
+    return [None if np.isnan(joint).any() else np.round(joint, 3).tolist() for joint in body]

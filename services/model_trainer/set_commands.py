@@ -1,0 +1,113 @@
+"""The commands on whole sets."""
+
+from collections import Counter
+from typing import Any
+
+from actum.codec import encodable
+from actum.commands import Command, NoFields, Refusal
+from actum.node import Counters
+from model_trainer.changes import Changes
+from model_trainer.job_commands import JobCommands
+from model_trainer.model_store import ModelStore
+from model_trainer.replies import Done, Everything, ModelListed, SetListed, TakeListed
+from model_trainer.requests import OfSet, RenameSet
+from model_trainer.set_store import SetStore, StoredSet
+from model_trainer.take_commands import TakeCommands
+from som_classifier.presets import DEFAULT, PRESETS
+
+
+class SetCommands:
+    """Lists, creates, renames and deletes sets."""
+
+    def __init__(
+        self,
+        sets: SetStore,
+        models: ModelStore,
+        changes: Changes,
+        takes: TakeCommands,
+        jobs: JobCommands,
+        counters: Counters,
+    ) -> None:
+        self._sets = sets
+        self._models = models
+        self._changes = changes
+        self._takes = takes
+        self._jobs = jobs
+        self._counters = counters
+        self._counted: frozenset[str] = frozenset()
+
+    @property
+    def commands(self) -> tuple[Command[Any, Any], ...]:
+        """What can be asked."""
+        return (
+            Command("list", NoFields, Everything, self._list),
+            Command("create_set", OfSet, Done, self._create),
+            Command("rename_set", RenameSet, Done, self._rename),
+            Command("delete_set", OfSet, Done, self._delete),
+        )
+
+    def _list(self, _: NoFields) -> Everything:
+        """List all sets and models."""
+        active, sets = self._models.active, list[SetListed]()
+        models, unreadable = self._models.listed()
+        for name in self._sets.names():
+            try:
+                sets.append(_listed(self._sets.get(name)))
+            except (OSError, Refusal) as error:  # its folder has vanished meanwhile, or cannot be read
+                unreadable.append(encodable(str(error)))
+        self._count([*unreadable, *(problem for each in sets for problem in each.unreadable)])
+        return Everything(
+            sets=sets,
+            models=[ModelListed.of(each, active) for each in models],
+            active=active,
+            presets=[DEFAULT.name, *(name for name in PRESETS if name != DEFAULT.name)],
+            revision=self._changes.revision,
+            unreadable=unreadable,
+        )
+
+    def _count(self, problems: list[str]) -> None:
+        """Count the files that cannot be read, each once for as long as it cannot."""
+        for problem in problems:
+            if problem not in self._counted:
+                self._counters.reject("unreadable_file", problem)
+        self._counted = frozenset(problems)
+
+    def _create(self, request: OfSet) -> Done:
+        """Make an empty set of examples."""
+        with self._changes.change():
+            self._sets.create(request.set)
+        return Done(revision=self._changes.revision)
+
+    def _rename(self, request: RenameSet) -> Done:
+        """Give a set another name."""
+        self._refuse_busy(request.set)
+        with self._changes.change():
+            self._sets.rename(request.set, request.name)
+        return Done(revision=self._changes.revision)
+
+    def _delete(self, request: OfSet) -> Done:
+        """Delete a set with all its examples; models that were trained on it stay."""
+        self._refuse_busy(request.set)
+        with self._changes.change():
+            self._sets.delete(request.set)
+        return Done(revision=self._changes.revision)
+
+    def _refuse_busy(self, name: str) -> None:
+        """Refuse what would take a set away from what writes to it."""
+        if self._takes.recording_to(name):
+            raise Refusal(f"a take is being recorded into the set {name}: stop or discard it first")
+        if self._jobs.importing_to(name):
+            raise Refusal(f"a video is being imported into the set {name}: wait until the import ends, or cancel it")
+
+
+def _listed(stored: StoredSet) -> SetListed:
+    examples = stored.examples
+    return SetListed(
+        name=stored.name,
+        created=stored.created,
+        actions=dict(sorted(Counter(example.label for example in examples).items())),
+        people=sorted({take.person for take in stored.takes if take.person}),
+        background_s=sum(take.background_s for take in stored.takes),
+        takes=[TakeListed.of(take) for take in stored.takes],
+        unreadable=list(stored.unreadable),
+    )

@@ -1,0 +1,91 @@
+"""How well a set teaches: each part of it is answered by a model that was trained on the rest."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from actum.recording import Recording
+from actum_model_trainer.answering import answer, encoded
+from actum_model_trainer.continuous.detections import Found
+from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
+from actum_model_trainer.continuous.watching import found_by
+from actum_model_trainer.evaluation import Evaluation, Prediction
+from actum_model_trainer.progress import Progress, silent
+from actum_model_trainer.provenance import actions_of
+from actum_model_trainer.samples import SegmentSample, samples_from
+from actum_model_trainer.training import train_to_spot
+from model_trainer.folds import Fold, folds_of
+from som_classifier.model import Model
+from som_classifier.presets import Preset
+from som_classifier.spotting.spotted import SpottingOptions
+
+
+@dataclass(frozen=True)
+class SetEvaluation:
+    """The results of a cross-validation.
+
+    Attributes:
+        by: what was left out in turn, `people` or `examples`.
+        marked: the answers to the examples, each cut out as it was marked.
+        found: the scores of what was found in whole takes without their marks; None where the preset's models find
+            nothing.
+    """
+
+    by: str
+    marked: Evaluation
+    found: ContinuousScores | None
+
+    def as_json(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        found = None if self.found is None else self.found.as_json()
+        return {
+            "by": self.by,
+            "accuracy": self.marked.accuracy,
+            "n": self.marked.n,
+            "labels": self.marked.labels,
+            "confusion": self.marked.confusion,
+            "false_alarms_per_min": None if self.found is None else self.found.false_per_min,
+            "found": found,
+        }
+
+
+def evaluate_set(
+    recordings: Sequence[Recording], preset: Preset, seed: int = 0, progress: Progress = silent
+) -> SetEvaluation:
+    """Leave each person out in turn, or else shares of the examples, and pool the answers.
+
+    Raises:
+        TrainingError: fewer than two actions, or what is left makes no model.
+        RecordingError: a file is damaged.
+    """
+    samples = samples_from(recordings, progress)
+    actions_of(samples.usable)
+    by, folds = folds_of(samples)
+    predictions: list[Prediction] = []
+    found, finds = Found(), True
+    for fold in folds:
+        within = _prefixed(f"{fold.name}: ", progress)
+        rest = [sample for sample in samples.usable if not fold.holds_sample(sample)]
+        streams = [stream for stream in map(fold.without, samples.streams) if len(stream.stamps_ns)]
+        model = train_to_spot(rest, streams, preset, seed, within)
+        predictions += [_prediction(model, sample) for sample in samples.usable if fold.holds_sample(sample)]
+        finds = finds and model.spotter(SpottingOptions()) is not None
+        if finds:
+            found += _found(model, recordings, fold, within)
+    return SetEvaluation(by, Evaluation(tuple(predictions)), scores_of(found) if finds else None)
+
+
+def _found(model: Model, recordings: Sequence[Recording], fold: Fold, progress: Progress) -> Found:
+    """Return what a model finds in the part that its training left out."""
+    held = [recording for recording in recordings if str(recording.path) in fold.spans]
+    return fold.within(found_by(model, held, progress))
+
+
+def _prediction(model: Model, sample: SegmentSample) -> Prediction:
+    answered = answer(model, encoded(model, sample))
+    unknown = None if answered.familiarity is None else answered.unknown
+    return Prediction(sample.file, sample.segment_id, sample.label, answered.label, answered.confidence, unknown)
+
+
+def _prefixed(prefix: str, progress: Progress) -> Progress:
+    return lambda stage, done, total: progress(prefix + stage, done, total)

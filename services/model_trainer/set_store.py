@@ -1,0 +1,248 @@
+"""Sets on the disk: a folder each, with a recording for each take; whatever is changed is changed at once or not."""
+
+import json
+import os
+import re
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from itertools import count
+from pathlib import Path
+
+from pydantic import BaseModel
+
+from actum.atomic_file import clear_unfinished, give_name, store_names, write_whole
+from actum.codec import encodable
+from actum.commands import Refusal
+from actum.recorder import Recorder, is_being_written
+from actum.recording import RecordingError
+from actum_examples.take import CREATED, KIND, Example, Take, read_take
+from model_trainer.small_files import small_file
+
+Clock = Callable[[], int]
+"""Returns the time of the machine's clock, ns since 1970."""
+DESCRIPTION = "set.json"
+"""The file that makes a folder a set."""
+MAKING = ".making"
+"""The folder of takes that are being recorded."""
+LEAVING = ".leaving-"
+"""Beginning of the name of a folder that is being deleted."""
+SUFFIX = ".mcap"
+"""Ending of takes."""
+TAKE = re.compile(r"take-([0-9]{4,9})")
+"""The names of takes that are made here."""
+DEVICES = frozenset({"con", "prn", "aux", "nul", *(f"{kind}{n}" for kind in ("com", "lpt") for n in range(1, 10))})
+"""Names that Windows keeps for devices, with any ending: a set of that name could not be copied there."""
+LEFT = re.compile(rf"{re.escape(LEAVING)}[0-9]+")
+"""The names of such folders."""
+
+
+class Description(BaseModel):
+    """What stands in a set's file."""
+
+    created: str
+
+
+@dataclass(frozen=True)
+class StoredSet:
+    """A set: its name, when it was made (ISO 8601; empty where that cannot be read), its takes, and of each file that
+    cannot be read why."""
+
+    name: str
+    created: str
+    takes: tuple[Take, ...]
+    unreadable: tuple[str, ...]
+
+    @property
+    def examples(self) -> list[Example]:
+        """All examples, take by take in order of time."""
+        return [example for take in self.takes for example in take.examples]
+
+
+class SetStore:
+    """The sets in a folder; what a killed process has left unfinished there is removed first."""
+
+    def __init__(self, folder: Path, now_ns: Clock) -> None:
+        self._folder = folder
+        self._now_ns = now_ns
+        self._read: dict[Path, tuple[tuple[int, int], Take]] = {}
+        folder.mkdir(parents=True, exist_ok=True)
+        for take in (folder / MAKING).glob("*"):
+            with suppress(OSError):  # none of ours
+                if not is_being_written(take):  # by another trainer, of another sensor, in the same folder
+                    take.unlink()
+        with suppress(OSError):  # it is not there, or not empty
+            (folder / MAKING).rmdir()
+        for path in sorted(folder.iterdir()):
+            with suppress(OSError):  # somebody else's folder, or one that cannot be read
+                if LEFT.fullmatch(path.name):
+                    _clear(path)
+                elif path.is_dir():
+                    clear_unfinished(path)
+
+    def names(self) -> list[str]:
+        """List the sets by name.
+
+        Raises:
+            OSError: the folder cannot be read.
+        """
+        folders = (path for path in self._folder.iterdir() if not path.name.startswith("."))
+        return sorted(path.name for path in folders if os.path.lexists(path / DESCRIPTION))
+
+    def get(self, name: str) -> StoredSet:
+        """Read a set.
+
+        Raises:
+            Refusal: there is none of that name.
+            OSError: its folder cannot be read.
+        """
+        folder = self.folder(name)
+        takes, unreadable = [], []
+        try:
+            created = _created(folder / DESCRIPTION)
+        except (OSError, ValueError) as error:
+            created = ""
+            problem = (
+                error.strerror or str(error) if isinstance(error, OSError) else "no JSON object with a date `created`"
+            )
+            unreadable.append(f"{folder / DESCRIPTION}: {problem}; move it away, and create the set again")
+        for path in sorted(each for each in folder.iterdir() if each.name.endswith(SUFFIX)):
+            try:
+                takes.append(self._take(path))
+            except (OSError, RecordingError) as error:
+                unreadable.append(str(error))
+        return StoredSet(encodable(name), created, tuple(takes), tuple(map(encodable, unreadable)))
+
+    def folder(self, name: str) -> Path:
+        """Return a set's folder.
+
+        Raises:
+            Refusal: there is none of that name.
+        """
+        if name not in self.names():
+            there = ", ".join(self.names()) or "none yet"
+            raise Refusal(f"there is no set {name!r}: use an existing one ({there}), or create it")
+        return self._folder / name
+
+    def create(self, name: str) -> None:
+        """Make an empty set.
+
+        Raises:
+            Refusal: there is one of that name, or Windows has no folder of that name.
+        """
+        self._refuse_unusable(name)
+        folder = self._folder / name
+        folder.mkdir(exist_ok=True)
+        write_whole(folder / DESCRIPTION, json.dumps({"created": date_of(self._now_ns())}).encode())
+        store_names(self._folder)
+
+    def rename(self, name: str, new_name: str) -> None:
+        """Give a set another name.
+
+        Raises:
+            Refusal: there is none of that name, one of the new name, or Windows has no folder of that name.
+        """
+        folder = self.folder(name)
+        self._refuse_unusable(new_name, renamed=name)
+        folder.rename(self._folder / new_name)
+        store_names(self._folder)
+
+    def delete(self, name: str) -> None:
+        """Delete a set with all its takes; files of other kinds in its folder stay there.
+
+        Raises:
+            Refusal: there is none of that name.
+        """
+        folder = self.folder(name)
+        leaving = self._folder / f"{LEAVING}{self._now_ns()}"
+        folder.rename(leaving)
+        store_names(self._folder)
+        with suppress(OSError):  # what stays of it goes with the next start
+            _clear(leaving)
+            if os.path.lexists(leaving) and not os.path.lexists(folder):
+                leaving.rename(folder)
+
+    def recorder(self, person: str, kind: str) -> Recorder:
+        """Return what writes a take that is in no set yet.
+
+        Raises:
+            OSError: it cannot be written.
+        """
+        fields = {KIND: kind, CREATED: date_of(self._now_ns())}
+        path = self._folder / MAKING / f"{self._now_ns()}{SUFFIX}"
+        return Recorder(path, person=person, source="model_trainer", **fields)
+
+    def add(self, name: str, path: Path) -> Take:
+        """Move a finished take into a set.
+
+        Raises:
+            Refusal: there is no set of that name.
+        """
+        folder = self.folder(name)
+        newest = max((take_number(path.stem) for path in folder.iterdir()), default=0)
+        for target in (folder / f"take-{number:04}{SUFFIX}" for number in count(newest + 1)):
+            with suppress(FileExistsError):
+                give_name(path, target)
+                break
+        return self._take(target)
+
+    def _refuse_unusable(self, name: str, renamed: str | None = None) -> None:
+        if name.partition(".")[0].rstrip().casefold() in DEVICES:
+            raise Refusal(f"{name!r} is reserved for a device on Windows: choose another name")
+        for there in self.names():
+            if there.casefold() == name.casefold() and there != renamed:
+                raise Refusal(f"there is already a set {there!r}: choose another name")
+
+    def _take(self, path: Path) -> Take:
+        """Read a take, or return what was read of it before where the file is still the same."""
+        if path.exists() and not path.is_file():
+            raise RecordingError(path, "it is not a file", "move it away")
+        stat = path.stat()
+        version = stat.st_mtime_ns, stat.st_size
+        known = self._read.get(path)
+        if known is None or known[0] != version:
+            known = self._read[path] = version, read_take(path)
+        return known[1]
+
+
+def take_number(stem: str) -> int:
+    """Return the number of a take that was made here, by which the newest is the highest; 0 for any other recording."""
+    made_here = TAKE.fullmatch(stem)
+    return int(made_here[1]) if made_here else 0
+
+
+def date_of(time_ns: int) -> str:
+    """Write a time (ns since 1970) as ISO 8601 in UTC, to the second."""
+    return datetime.fromtimestamp(time_ns // 1_000_000_000, UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def _created(path: Path) -> str:
+    """Return when a set was made.
+
+    Raises:
+        OSError, ValueError: its description cannot be read, or is of another form.
+    """
+    created = Description.model_validate_json(small_file(path)).created
+    datetime.fromisoformat(created)
+    return created
+
+
+def _clear(folder: Path) -> None:
+    """Delete what makes a folder a set, and the folder where nothing else is in it; of a link, only the link.
+
+    Raises:
+        OSError: something cannot be deleted.
+    """
+    if folder.is_symlink():
+        folder.unlink()
+        return
+    clear_unfinished(folder)
+    for path in (folder / DESCRIPTION, *(each for each in folder.iterdir() if each.name.endswith(SUFFIX))):
+        if path.is_dir() and not path.is_symlink():
+            with suppress(OSError):  # something is in it
+                path.rmdir()
+        else:
+            path.unlink(missing_ok=True)
+    if not any(folder.iterdir()):
+        folder.rmdir()

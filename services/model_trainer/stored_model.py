@@ -1,0 +1,68 @@
+"""What is listed of a model, and the file beside it that says so."""
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, FiniteFloat
+
+from model_trainer.small_files import small_file
+
+ID = re.compile("[0-9a-f]{12}")
+"""The form of a model's id, after which its file is named."""
+
+
+class About(BaseModel):
+    """What stands beside a model's file."""
+
+    model_config = ConfigDict(strict=True)
+
+    created: str
+    set: str
+    labels: list[str]
+    people: list[str]
+    samples: int
+    scores: dict[str, FiniteFloat]
+
+
+@dataclass(frozen=True)
+class StoredModel:
+    """A model: when it came (ISO 8601), of which set ("" where not known), what it tells apart, of whom it learnt.
+
+    Attributes:
+        samples: the number of examples.
+        scores: what is known of how well it does, by name, numbers.
+    """
+
+    id: str
+    path: Path
+    created: str
+    set: str
+    labels: tuple[str, ...]
+    people: tuple[str, ...]
+    samples: int
+    scores: dict[str, float] = field(default_factory=dict)
+
+
+def described(path: Path) -> StoredModel | None:
+    """Read what stands beside a model; None where nothing does that can be read."""
+    if ID.fullmatch(path.stem) is None:
+        return None
+    try:
+        return stored(path, About.model_validate_json(small_file(path.with_suffix(".json"))))
+    except (OSError, ValueError):
+        return None
+
+
+def stored(path: Path, about: About) -> StoredModel:
+    """Return what is listed of the model in a file."""
+    return StoredModel(
+        path.stem,
+        path,
+        about.created,
+        about.set,
+        tuple(about.labels),
+        tuple(about.people),
+        about.samples,
+        about.scores,
+    )
