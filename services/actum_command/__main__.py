@@ -21,7 +21,6 @@ with needs_extra("actum-command"):
         scene_commands,
         segment_commands,
         system_commands,
-        takes_commands,
         training_commands,
         tune_command,
         view_command,
@@ -62,7 +61,6 @@ app.command("router")(system_commands.router)
 app.add_typer(segment_commands.app, name="segment")
 app.command("record")(with_router_flags(recording_commands.record))
 app.command("play")(with_router_flags(recording_commands.play))
-app.add_typer(takes_commands.app, name="takes")
 app.add_typer(label_commands.app, name="label")
 add_picture_commands(app)
 app.add_typer(pose_model_commands.app, name="models")

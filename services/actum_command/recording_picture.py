@@ -10,7 +10,7 @@ from actum.messages import Action
 from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum_examples.cutting.courses import RATE_HZ, Course, recorded_courses
-from actum_examples.marked_segments import LabelledSegment
+from actum_examples.take import Take
 from actum_model_inspector.answered import encoded
 from actum_model_inspector.stream_picture import Lane, Span, SpeedLine, stream_picture
 from actum_model_inspector.style import save
@@ -23,9 +23,7 @@ REJECTED = "rejected"
 """What stands in place of an answer to a segment that was not recognised."""
 
 
-def write_picture(
-    recording: Recording, segments: Sequence[LabelledSegment], first_ns: int, model: Model | None, output: Path
-) -> None:
+def write_picture(take: Take, model: Model | None, output: Path) -> None:
     """Draw a recording with its segments, and a model's answers to them or the recorded ones.
 
     Of a model that can, what it finds without the marks is drawn, too.
@@ -34,11 +32,12 @@ def write_picture(
         RecordingError: the file is damaged.
         OSError: the picture cannot be written.
     """
+    recording, first_ns = take.recording, take.first_ns
     courses = [each for sensor in recording.sensors(keys.SKELETON) for each in recorded_courses(recording, sensor)]
     marked = [
-        Span((each.start_ns - first_ns) / SECOND_NS, (each.end_ns - first_ns) / SECOND_NS, each.label, str(each.number))
-        for each in segments
-        if each.start_ns is not None and each.end_ns is not None
+        _span(*each.bounds_ns, first_ns, each.label, str(number))
+        for number, each in enumerate(take.segments, start=1)
+        if each.bounds_ns is not None
     ]
     lanes = _recorded(recording, first_ns) if model is None else _of_model(recording, first_ns, model)
     whose = (
@@ -46,10 +45,10 @@ def write_picture(
         if model is None
         else f"what model {model.id} answers to the marks, and finds without them"
     )
-    acting = [segment.agent for segment in segments if segment.agent is not None]
+    acting = [segment.agent for segment in take.segments if segment.agent is not None]
     save(
         stream_picture(
-            f"{recording.path.name}: {len(segments)} segments",
+            f"{recording.path.name}: {len(take.segments)} segments",
             _speed_lines(courses, acting, first_ns),
             marked,
             lanes,

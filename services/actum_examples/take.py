@@ -1,223 +1,152 @@
-"""A take of a set: one recording with the marks of its examples; how it is finished, and what is read from it."""
+"""A take: one recording with its marked segments, and what its metadata say about them."""
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import islice
-from math import inf
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
 
 from actum import keys
 from actum.codec import encodable
-from actum.messages import CUT, MANUAL, Action, Event, Hand, Segment
+from actum.messages import Segment
 from actum.node import SECOND_NS
-from actum.recorder import Recorder
-from actum.recording import Recording, RecordingError
-from actum.rewriting import rewrite, unchanged
-from actum_examples.cutting.marks import free_names, marks_of
-from actum_examples.cutting.repetitions import OTHER_NUMBER, Cuts
-from actum_examples.edits import DOUBTS, OF_THE_TAKE, TEXTS, Naming, deleted, field_of, mirrored_ids
+from actum.recording import Recording
+from actum_examples.marked_segment import MarkedSegment, marked_segments
 
 KIND, CREATED = "kind", "created"
-"""Fields of a take's metadata, beside those that say something about its examples: kind and date."""
-AGAIN = "again"
-"""The start mark with which a segment's name is used again, among its marks by kind."""
-UNCUT = "uncut"
-"""What a part of a take is called that may hold an action which was not cut."""
-MOST_EXAMPLES = 2000
-"""Most examples of a take, some hours of actions: a change of one looks at all others, while the service waits."""
+"""Fields of a recording's metadata: whether it was made for an action or for background, and its date (ISO 8601)."""
+DOUBTS, MIRRORED = "doubts", "mirrored"
+"""Fields of a recording's metadata: doubts (texts by segment id) and mirrored segment ids, as JSON."""
+TEXTS, IDS = TypeAdapter(dict[str, list[str]]), TypeAdapter(list[str])
+"""The forms of these."""
+OF_THE_TAKE = ""
+"""The key among the doubts of those that are about the recording as a whole."""
 UNREAD = "skipped while it was read: "
 """How the doubt about what was skipped begins; it is found anew each time, and never stored."""
-
-
-@dataclass(frozen=True)
-class Example:
-    """One marked action of a take.
-
-    Attributes:
-        agent: who acts; None where the mark leaves that to the classifier.
-        origin: who marked it.
-        mirrored: whether left and right have been exchanged.
-        doubts: what may be wrong with it, in sentences.
-        hand: which hand acts; None where the mark does not say so.
-        until_ns: from when on its name is used again, for another segment, which is no example.
-    """
-
-    take: str
-    segment_id: str
-    sensor: str
-    label: str
-    person: str
-    start_ns: int
-    end_ns: int
-    agent: int | None
-    origin: str
-    mirrored: bool
-    doubts: tuple[str, ...]
-    hand: Hand | None = None
-    until_ns: float = inf
-
-    @property
-    def id(self) -> str:
-        """What commands call it."""
-        return f"{self.take}/{self.segment_id}"
-
-    def has(self, message: Naming) -> bool:
-        """Tell whether a message names it."""
-        if (message.sensor, message.segment_id) != (self.sensor, self.segment_id):
-            return False
-        at_ns = message.start_ns if isinstance(message, Action | Event) else message.stamp_ns
-        return at_ns is None or at_ns < self.until_ns
-
-    def overlaps(self, start_ns: int, end_ns: int) -> bool:
-        """Tell whether it shares time with a span."""
-        return self.start_ns < end_ns and start_ns < self.end_ns
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class Take:
-    """What a recording of a set holds; times are stamps of its frames."""
+    """A recording with its marked segments.
 
-    id: str
-    path: Path
-    kind: Literal["action", "background"]
-    person: str
-    created: str
+    Attributes:
+        recording: the file.
+        segments: in order of start.
+        first_ns: stamp of the first frame; without frames, of the first mark; 0 without either.
+        last_ns: stamp of the last one.
+        doubts: what may be wrong with the recording as a whole, in sentences.
+    """
+
+    recording: Recording
+    segments: tuple[MarkedSegment, ...]
     first_ns: int
     last_ns: int
-    examples: tuple[Example, ...]
     doubts: tuple[str, ...]
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return self.recording.path
+
+    @property
+    def id(self) -> str:
+        """The name of the file without its ending."""
+        return encodable(self.path.stem)
+
+    @property
+    def person(self) -> str:
+        """Who acts; empty where the file does not say."""
+        return self.recording.person
+
+    @property
+    def kind(self) -> Literal["action", "background"]:
+        """What it was recorded for."""
+        return "background" if self.recording.metadata.get(KIND) == "background" else "action"
+
+    @property
+    def created(self) -> str:
+        """When it was made (ISO 8601); empty where the file does not say."""
+        return self.recording.metadata.get(CREATED, "")
+
+    @property
+    def examples(self) -> list[MarkedSegment]:
+        """The segments that training can learn from. Of a name that is used again, the first use counts."""
+        by_name = {(each.sensor, each.segment_id): each for each in reversed(self.segments)}
+        return [each for each in self.segments if each.is_example and by_name[each.sensor, each.segment_id] is each]
+
+    @property
+    def labels(self) -> list[str]:
+        """The label of each example."""
+        return [each.label for each in self.examples if each.label is not None]
 
     @property
     def background_s(self) -> float:
         """For how long nobody did any of the actions (s)."""
-        marked_ns = sum(example.end_ns - example.start_ns for example in self.examples)
+        bounds_ns = [each.bounds_ns for each in self.examples]
+        marked_ns = sum(bounds[1] - bounds[0] for bounds in bounds_ns if bounds is not None)
         return max(0.0, (self.last_ns - self.first_ns - marked_ns) / SECOND_NS)
+
+    def name_of(self, segment: MarkedSegment) -> str:
+        """Return what commands call a segment of it."""
+        return f"{self.id}/{segment.segment_id}"
+
+    def fields_with(self, segments: Collection[MarkedSegment]) -> dict[str, str]:
+        """Return the metadata of the recording once it holds these segments."""
+        doubts = {OF_THE_TAKE: self.doubts} | {each.segment_id: each.doubts for each in segments}
+        mirrored = sorted({each.segment_id for each in segments if each.mirrored})
+        fields = {DOUBTS: doubts_field(doubts), MIRRORED: json.dumps(mirrored)}
+        known = self.recording.metadata
+        return {name: text for name, text in fields.items() if name in known or json.loads(text)}
 
 
 def read_take(path: Path) -> Take:
     """Read a take.
 
     Raises:
-        RecordingError: the file is no recording, damaged, or has too many examples.
+        RecordingError: the file is no recording, or damaged.
     """
     recording = Recording(path)
-    marks, stamps_ns = _marks_and_stamps(recording)
-    doubts, mirrored = field_of(recording, DOUBTS, TEXTS, {}), mirrored_ids(recording)
-    examples = [
-        _example(encodable(path.stem), recording.person, pair, doubts, mirrored)
-        for pair in marks.values()
-        if {"start", "end"} <= pair.keys() and pair["start"].label is not None
-    ]
-    if len(examples) > MOST_EXAMPLES:
-        raise RecordingError(path, f"it has {len(examples)} marked actions, more than {MOST_EXAMPLES}", "split it")
-    return Take(
-        encodable(path.stem),
-        path,
-        "background" if recording.metadata.get(KIND) == "background" else "action",
-        recording.person,
-        recording.metadata.get(CREATED, ""),
-        min(stamps_ns, default=0),
-        max(stamps_ns, default=0),
-        tuple(sorted(examples, key=lambda example: example.start_ns)),
-        (*doubts.get(OF_THE_TAKE, ()), *_unread(recording)),
+    marks: list[Segment] = []
+    stamps_ns: list[int] = []
+    for message in recording.messages((frames_topic(recording), keys.SEGMENT)):
+        if isinstance(message, Segment):
+            marks.append(message)
+        elif message.stamp_ns is not None:
+            stamps_ns.append(message.stamp_ns)
+    stamps_ns = stamps_ns or [mark.stamp_ns for mark in marks if mark.stamp_ns is not None]
+    doubts, mirrored = _field(recording, DOUBTS, TEXTS, {}), _field(recording, MIRRORED, IDS, [])
+    segments = tuple(
+        replace(each, mirrored=each.segment_id in mirrored, doubts=tuple(doubts.get(each.segment_id, ())))
+        for each in marked_segments(marks)
     )
+    of_take = (*doubts.get(OF_THE_TAKE, ()), *_unread(recording))
+    return Take(recording, segments, min(stamps_ns, default=0), max(stamps_ns, default=0), of_take)
 
 
-def finish_take(
-    recorder: Recorder, marks: Iterable[Segment], doubts: Mapping[str, Sequence[str]], uncut: Sequence[Example] = ()
-) -> Path:
-    """Close a take, and return its path.
-
-    Args:
-        recorder: of its frames.
-        marks: of its examples.
-        doubts: what may be wrong with them, texts by segment id.
-        uncut: the parts from which whoever acts is taken out, or they would be learnt as background.
-
-    Raises:
-        OSError: it cannot be written.
-    """
-    recorder.close()
-    rewrite(recorder.path, deleted(uncut, ()) if uncut else unchanged, marks, {DOUBTS: doubts_field(doubts)})
-    return recorder.path
-
-
-def uncut_parts(cuts: Cuts, asked: int | None, sensor: str) -> list[Example]:
-    """Return the parts of a take in which the person may have done the action though no example was cut of it.
-
-    There are none where the cuts are sure and as many as were asked for: then all other movement is background.
-    """
-    if cuts.sureness > OTHER_NUMBER and asked in (None, len(cuts.repetitions)):
-        return []
-    return [
-        Example("", UNCUT, sensor, UNCUT, "", start_ns, end_ns, cuts.course.agent, CUT, mirrored=False, doubts=())
-        for start_ns, end_ns in cuts.uncut_ns
-    ]
-
-
-def cut_marks(cuts: Cuts, label: str, sensor: str) -> tuple[list[Segment], dict[str, list[str]]]:
-    """Return the marks of what was cut, and what may be wrong with them by segment id."""
-    names = list(islice(free_names((), CUT), len(cuts.repetitions)))
-    doubts: dict[str, list[str]] = {}
-    for text, repetition in cuts.doubted:
-        doubts.setdefault(OF_THE_TAKE if repetition is None else names[repetition - 1], []).append(text)
-    return marks_of(cuts, iter(names), label, sensor), doubts
+def frames_topic(recording: Recording) -> keys.Topic:
+    """Return the topic that people are seen in: a recording of made-up postures has no skeletons."""
+    return keys.SKELETON if keys.SKELETON in recording.topics else keys.POSTURE
 
 
 def doubts_field(doubts: Mapping[str, Sequence[str]]) -> str:
     """Return the metadata field of doubts, from texts by segment id."""
-    return json.dumps(
-        {
-            segment_id: [text for text in texts if not text.startswith(UNREAD)]
-            for segment_id, texts in doubts.items()
-            if texts
-        }
-    )
-
-
-def _marks_and_stamps(recording: Recording) -> tuple[dict[tuple[str, str], dict[str, Segment]], list[int]]:
-    """Return the first marks of each segment by their kind, and the stamps of the frames (ns)."""
-    marks: dict[tuple[str, str], dict[str, Segment]] = {}
-    stamps_ns: list[int] = []
-    for message in recording.messages((keys.SKELETON, keys.SEGMENT)):
-        if isinstance(message, Segment):
-            pair = marks.setdefault((message.sensor, message.segment_id), {})
-            again = message.kind == "start" and "end" in pair
-            pair.setdefault(AGAIN if again else message.kind, message)
-        else:
-            stamps_ns.append(message.stamp_ns)
-    return marks, stamps_ns
+    stored = {name: [text for text in texts if not text.startswith(UNREAD)] for name, texts in doubts.items()}
+    return json.dumps({name: texts for name, texts in stored.items() if texts})
 
 
 def _unread(recording: Recording) -> list[str]:
-    """Return what was skipped of a take, as a doubt."""
+    """Return what was skipped of a recording, as a doubt."""
     kinds = ", ".join(f"{kind} {count}" for kind, count in sorted(recording.skipped.items()))
     return [f"{UNREAD}{kinds}"] if kinds else []
 
 
-def _example(
-    take: str,
-    person: str,
-    pair: Mapping[str, Segment],
-    doubts: Mapping[str, Sequence[str]],
-    mirrored: Iterable[str],
-) -> Example:
-    start, end, again = pair["start"], pair["end"], pair.get(AGAIN)
-    assert start.stamp_ns is not None and end.stamp_ns is not None
-    return Example(
-        take,
-        start.segment_id,
-        start.sensor,
-        start.label or "",
-        person,
-        start.stamp_ns,
-        end.stamp_ns,
-        start.agent,
-        start.origin or MANUAL,
-        start.segment_id in mirrored,
-        tuple(doubts.get(start.segment_id, ())),
-        start.hand,
-        inf if again is None or again.stamp_ns is None else again.stamp_ns,
-    )
+def _field(recording: Recording, name: str, form: TypeAdapter[T], default: T) -> T:
+    """Return a field of the metadata that is JSON; one of another form, which only a foreign program writes, counts as
+    none."""
+    try:
+        return form.validate_json(recording.metadata.get(name, ""))
+    except ValidationError:
+        return default

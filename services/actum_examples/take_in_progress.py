@@ -10,8 +10,9 @@ from actum.node import SECOND_NS
 from actum.recorder import Recorder
 from actum.stamps import Order, StampGuard
 from actum_examples.cutting.counting import LAST_REST_S, NOBODY, RepetitionCounter
-from actum_examples.edits import OF_THE_TAKE
-from actum_examples.take import Example, cut_marks, uncut_parts
+from actum_examples.finishing import cut_marks, uncut_parts
+from actum_examples.marked_segment import MarkedSegment
+from actum_examples.take import OF_THE_TAKE
 
 LONGEST_S = 600.0
 """Longest take (s): forty repetitions with pauses, and what a page can show."""
@@ -48,7 +49,7 @@ class Marking:
 
     marks: Sequence[Segment] | None
     doubts: dict[str, list[str]]
-    uncut: Sequence[Example] = ()
+    uncut: Sequence[MarkedSegment] = ()
 
 
 class TakeInProgress:

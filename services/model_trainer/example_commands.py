@@ -7,9 +7,9 @@ import numpy as np
 from actum.arrays import Array
 from actum.commands import Command, Refusal
 from actum.recording import Recording
-from actum_examples.edits import MixedMirroringError
-from actum_examples.take import Example, Take
-from actum_examples import take_mending
+from actum_examples import edits
+from actum_examples.marked_segment import MarkedSegment
+from actum_examples.take import Take
 from model_trainer.changes import Changes, on_disk
 from model_trainer.film import Film, films_of
 from model_trainer.model_store import ModelStore
@@ -19,8 +19,6 @@ from model_trainer.set_store import SetStore
 
 MOST_FILMED = 16
 """Takes whose films are kept in memory: a page asks for those of a take one after the other."""
-SHORTEST_NS = 100_000_000
-"""Shortest example (ns): three frames at 30 Hz, the fewest that a model answers."""
 
 
 class ExampleCommands:
@@ -45,7 +43,7 @@ class ExampleCommands:
             Command("delete_action", DeleteAction, Done, self._delete_action),
         )
 
-    def remove(self, take: Take, examples: list[Example]) -> None:
+    def remove(self, take: Take, examples: list[MarkedSegment]) -> None:
         """Delete examples of a take; one that was made here goes as a whole where it was of these alone.
 
         Raises:
@@ -54,18 +52,22 @@ class ExampleCommands:
         if take.kind == "action" and take.created and len(examples) == len(take.examples):
             take.path.unlink()
         else:
-            take_mending.without(take, examples)
+            edits.delete(take, examples)
 
     def _examples(self, request: OfSet) -> Examples:
         """List the examples of a set."""
-        return Examples(examples=[ExampleListed.of(each) for each in self._sets.get(request.set).examples])
+        return Examples(
+            examples=[
+                ExampleListed.of(take, each) for take in self._sets.get(request.set).takes for each in take.examples
+            ]
+        )
 
     def _film(self, request: OfExample) -> FilmReply:
         """Show an example: the bodies, and the way over the posture map of the model in use."""
         take, example = self._found(request)
         film = self._films_of(take).get(example.segment_id)
         if film is None:
-            raise Refusal(f"the example {example.id} has no usable frame: delete it")
+            raise Refusal(f"the example {request.example} has no usable frame: delete it")
         trace = None if film.trace is None else np.round(film.trace, 2).tolist()
         return FilmReply(stamps_ns=list(film.stamps_ns), joints=[_listed(body) for body in film.joints], trace=trace)
 
@@ -73,28 +75,16 @@ class ExampleCommands:
         """Give an example another label."""
         take, example = self._found(request)
         with self._changes.change():
-            take_mending.relabel(take, example, request.label)
+            edits.relabel(take, example, request.label)
         return Done(revision=self._changes.revision)
 
     def _trim(self, request: Trim) -> Done:
         """Give an example another start and end."""
         take, example = self._found(request)
-        start_ns, end_ns = request.start_ns, request.end_ns
-        if end_ns - start_ns < SHORTEST_NS:
-            raise Refusal(f"the example would last {(end_ns - start_ns) / 1e9:.2f} s: make it at least 0.1 s long")
-        if start_ns < take.first_ns or end_ns > take.last_ns:
-            within = [(ns - take.first_ns) / 1e9 for ns in (start_ns, end_ns, take.last_ns)]
-            raise Refusal(
-                "the example would reach from {:.2f} s to {:.2f} s of a take that lasts {:.2f} s: "
-                "stay within the take".format(*within)
-            )
-        for other in take.examples:
-            if other.segment_id != example.segment_id and other.overlaps(start_ns, end_ns):
-                raise Refusal(f"the example would overlap {other.id}, an example of {other.label}: trim that one first")
         try:
             with self._changes.change():
-                take_mending.trim(take, example, start_ns, end_ns)
-        except MixedMirroringError as error:
+                edits.move(take, example, request.start_ns, request.end_ns)
+        except edits.EditError as error:
             raise Refusal(str(error)) from None
         return Done(revision=self._changes.revision)
 
@@ -102,7 +92,7 @@ class ExampleCommands:
         """Exchange left and right in an example and those that share frames with it; twice is as before."""
         take, example = self._found(request)
         with self._changes.change():
-            take_mending.mirror(take, example)
+            edits.mirror(take, example)
         return Done(revision=self._changes.revision)
 
     def _delete(self, request: OfExample) -> Done:
@@ -124,10 +114,10 @@ class ExampleCommands:
                     self.remove(take, chosen[take.id])
         return Done(revision=self._changes.revision)
 
-    def _found(self, request: OfExample) -> tuple[Take, Example]:
+    def _found(self, request: OfExample) -> tuple[Take, MarkedSegment]:
         for take in self._sets.get(request.set).takes:
             for example in take.examples:
-                if example.id == request.example:
+                if take.name_of(example) == request.example:
                     return take, example
         raise Refusal(f"the set {request.set} has no example {request.example!r}: the command 'examples' lists them")
 

@@ -140,13 +140,12 @@ def _snapshot(told: Told) -> Path:
 def _contents(told: Told, model: Model | None) -> SetContents:
     """Return what the set holds, as it was when the job began."""
     takes = [read_take(path) for path in sorted((told.folder / "takes").glob("*.mcap"))]
-    examples = [example for take in takes for example in take.examples]
     background_s = sum(take.background_s for take in takes)
     return SetContents(
-        dict(sorted(Counter(example.label for example in examples).items())),
-        frozenset(example.person for example in examples),
+        dict(sorted(Counter(label for take in takes for label in take.labels).items())),
+        frozenset(take.person for take in takes if take.examples),
         background_s if model is None else model.background_s or 0.0,
-        Counter(example.label for example in examples if example.doubts),
+        Counter(each.label for take in takes for each in take.examples if each.doubts and each.label),
     )
 
 

@@ -4,8 +4,9 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
-from actum.messages import JobState, TakeState
-from actum_examples.take import Example, Take
+from actum.messages import MANUAL, JobState, TakeState
+from actum_examples.marked_segment import MarkedSegment
+from actum_examples.take import Take
 from model_trainer.stored_model import StoredModel
 
 Joint = list[float] | None
@@ -152,17 +153,19 @@ class ExampleListed(Reply):
     """What may be wrong with it."""
 
     @classmethod
-    def of(cls, example: Example) -> "ExampleListed":
-        """Describe an example."""
+    def of(cls, take: Take, example: MarkedSegment) -> "ExampleListed":
+        """Describe an example of a take."""
+        assert example.bounds_ns is not None
+        start_ns, end_ns = example.bounds_ns
         return cls(
-            id=example.id,
-            take=example.take,
-            label=example.label,
-            person=example.person,
+            id=take.name_of(example),
+            take=take.id,
+            label=example.label or "",
+            person=take.person,
             agent=example.agent,
-            start_ns=example.start_ns,
-            end_ns=example.end_ns,
-            origin=example.origin,
+            start_ns=start_ns,
+            end_ns=end_ns,
+            origin=example.origin or MANUAL,
             mirrored=example.mirrored,
             doubts=list(example.doubts),
         )

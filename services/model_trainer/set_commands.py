@@ -101,11 +101,10 @@ class SetCommands:
 
 
 def _listed(stored: StoredSet) -> SetListed:
-    examples = stored.examples
     return SetListed(
         name=stored.name,
         created=stored.created,
-        actions=dict(sorted(Counter(example.label for example in examples).items())),
+        actions=dict(sorted(Counter(label for take in stored.takes for label in take.labels).items())),
         people=sorted({take.person for take in stored.takes if take.person}),
         background_s=sum(take.background_s for take in stored.takes),
         takes=[TakeListed.of(take) for take in stored.takes],

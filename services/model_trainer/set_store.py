@@ -17,11 +17,13 @@ from actum.codec import encodable
 from actum.commands import Refusal
 from actum.recorder import Recorder, is_being_written
 from actum.recording import RecordingError
-from actum_examples.take import CREATED, KIND, Example, Take, read_take
+from actum_examples.take import CREATED, KIND, Take, read_take
 from model_trainer.small_files import small_file
 
 Clock = Callable[[], int]
 """Returns the time of the machine's clock, ns since 1970."""
+MOST_SEGMENTS = 2000
+"""Most segments of a take, some hours of actions: a change of one looks at all others, while the service waits."""
 DESCRIPTION = "set.json"
 """The file that makes a folder a set."""
 MAKING = ".making"
@@ -53,11 +55,6 @@ class StoredSet:
     created: str
     takes: tuple[Take, ...]
     unreadable: tuple[str, ...]
-
-    @property
-    def examples(self) -> list[Example]:
-        """All examples, take by take in order of time."""
-        return [example for take in self.takes for example in take.examples]
 
 
 class SetStore:
@@ -202,8 +199,15 @@ class SetStore:
         version = stat.st_mtime_ns, stat.st_size
         known = self._read.get(path)
         if known is None or known[0] != version:
-            known = self._read[path] = version, read_take(path)
+            known = self._read[path] = version, _read(path)
         return known[1]
+
+
+def _read(path: Path) -> Take:
+    take = read_take(path)
+    if (count := len(take.segments)) > MOST_SEGMENTS:
+        raise RecordingError(path, f"it has {count} marked segments, more than {MOST_SEGMENTS}", "split it")
+    return take
 
 
 def take_number(stem: str) -> int:

@@ -12,8 +12,9 @@ from actum.messages import Segment, Skeleton, TakeState
 from actum.node import Counters
 from actum.recording import RecordingError
 from actum_examples.cutting.choice import MOST_REPETITIONS
-from actum_examples.edits import OF_THE_TAKE
-from actum_examples.take import Example, Take, finish_take
+from actum_examples.finishing import finish_take
+from actum_examples.marked_segment import MarkedSegment
+from actum_examples.take import OF_THE_TAKE, Take
 from actum_examples.take_in_progress import TakeInProgress
 from model_trainer.changes import Changes
 from model_trainer.replies import Done, TakeReply
@@ -24,7 +25,7 @@ LOSING = (OSError, RecordingError, Refusal)
 """What is raised where a take is lost: it cannot be stored, its set is gone, or the sensor has begun anew."""
 LONGEST_DOUBT = 1000
 """Characters of a doubt that are published."""
-Remove = Callable[[Take, list[Example]], None]
+Remove = Callable[[Take, list[MarkedSegment]], None]
 """Takes examples out of a take, and deletes one that has none left."""
 
 
@@ -105,12 +106,12 @@ class TakeCommands:
         if not takes:
             raise Refusal(f"the set {request.set} has no take to redo: record one first")
         newest = max(takes, key=lambda take: (take_number(take.id), take.created, take.id))
-        example, count = newest.examples[-1], min(len(newest.examples), MOST_REPETITIONS)
+        label, count = newest.labels[-1], min(len(newest.examples), MOST_REPETITIONS)
         try:
-            anew = Record(set=request.set, label=example.label, person=newest.person, count=count)
+            anew = Record(set=request.set, label=label, person=newest.person, count=count)
         except ValidationError:
             raise Refusal(
-                f"{example.label!r} or {newest.person!r} is not a valid name for a new take: relabel or delete the "
+                f"{label!r} or {newest.person!r} is not a valid name for a new take: relabel or delete the "
                 "example, or record the take again by hand"
             ) from None
         self._begin(anew)
@@ -165,7 +166,7 @@ class TakeCommands:
         try:
             for take in self._sets.get(name).takes:
                 if take.id == self._replaced:
-                    self._remove(take, list(take.examples))
+                    self._remove(take, take.examples)
         except LOSING as error:
             return [f"the old take {self._replaced} could not be deleted: {encodable(str(error))}"]
         return []

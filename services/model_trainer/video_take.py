@@ -9,8 +9,9 @@ from actum.node import Counters
 from actum.recorder import Recorder
 from actum_examples.cutting.courses import PersonTracks
 from actum_examples.cutting.repetitions import cut
-from actum_examples.edits import OF_THE_TAKE
-from actum_examples.take import CREATED, Example, cut_marks, finish_take, uncut_parts
+from actum_examples.finishing import cut_marks, finish_take, uncut_parts
+from actum_examples.marked_segment import MarkedSegment
+from actum_examples.take import CREATED, OF_THE_TAKE
 from actum_model_trainer.progress import Progress
 from sensor_gateway.cameras import estimator_of, optics_of
 from sensor_gateway.devices.video import frame_count, pictures_of
@@ -43,7 +44,7 @@ def take_of_video(
 
 def _recorded(
     video: Path, recorder: Recorder, label: str, count: int | None, progress: Progress
-) -> tuple[list[Segment], dict[str, list[str]], list[Example]]:
+) -> tuple[list[Segment], dict[str, list[str]], list[MarkedSegment]]:
     """Store the skeletons of a video; return the marks of what is cut out, doubts by segment id, and uncut parts."""
     tracks, seen = PersonTracks(), list[Skeleton]()
     for skeleton in _skeletons(video, progress):

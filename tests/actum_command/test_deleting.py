@@ -11,7 +11,8 @@ from actum.messages import Agent, Skeleton, segment_marks
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum_command.__main__ import app
-from actum_examples.edits import MIRRORED, mirror_image
+from actum_examples.stored_changes import mirror_image
+from actum_examples.take import MIRRORED
 from actum_model_trainer.samples import samples_from
 from people import FRAME_NS, reaching, skeleton
 from teaching import Teacher
@@ -64,14 +65,12 @@ def people(path: Path) -> list[list[Agent]]:
     return [each.agents for each in Recording(path).messages((keys.SKELETON,)) if isinstance(each, Skeleton)]
 
 
-@pytest.mark.parametrize("how", ["trainer", "label", "takes"])
+@pytest.mark.parametrize("how", ["trainer", "label"])
 def test_a_deleted_example_takes_along_the_frames_that_no_other_needs(path: Path, how: str) -> None:
     if how == "trainer":
         by_trainer(path, "delete", "one")
-    elif how == "label":
-        run("label", "delete", path, 1)
     else:
-        run("takes", "drop", path, "one")
+        run("label", "delete", path, "one")
     seen = [[agent.agent for agent in agents] for agents in people(path)]
     assert seen == [[2] if 5 <= frame < 20 else [1, 2] for frame in range(FRAMES)]
     (stream,) = [each for each in samples_from([Recording(path)]).streams if each.agent == 1]
@@ -94,24 +93,20 @@ def mirrored_frames(path: Path) -> set[int]:
     }
 
 
-@pytest.mark.parametrize("how", ["label", "takes"])
-def test_the_frames_follow_a_mirrored_segment_that_is_moved(path: Path, how: str) -> None:
+def test_the_frames_follow_a_mirrored_segment_that_is_moved(path: Path) -> None:
     by_trainer(path, "mirror", "three")
     assert mirrored_frames(path) == set(range(60, 81))
     later_s = 5 * FRAME_NS / 1e9
-    if how == "label":
-        run("label", "move", path, 3, "--start", f"+{later_s}", "--end", f"+{later_s}")
-    else:
-        run("takes", "trim", path, "three", "--start", later_s, "--end", 25 * FRAME_NS / 1e9)
+    run("label", "move", path, 3, "--start", f"+{later_s}", "--end", f"+{later_s}")
     assert mirrored_frames(path) == set(range(65, 86))
 
 
 def test_a_mirrored_segment_does_not_reach_into_a_plain_one(path: Path) -> None:
     by_trainer(path, "mirror", "three")
-    assert "three is mirrored and two is not" in refused("takes", "trim", path, "three", "--start", -0.5)
+    assert "three is mirrored and two is not" in refused("label", "move", path, "three", "--start", f"-{10 * FRAME_NS / 1e9}")
 
 
 def test_nothing_is_mirrored_once_its_segment_is_deleted(path: Path) -> None:
     by_trainer(path, "mirror", "three")
-    run("takes", "drop", path, "three")
+    run("label", "delete", path, "three")
     assert Recording(path).metadata[MIRRORED] == "[]"

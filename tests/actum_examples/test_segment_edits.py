@@ -16,7 +16,7 @@ from actum.commands import Refusal
 from actum.messages import Segment, Skeleton, segment_marks
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum_examples.edits import mirror_image
+from actum_examples.stored_changes import mirror_image
 from people import FRAME_NS, STANDING, reaching, skeleton
 from teaching import Teacher
 

@@ -1,6 +1,8 @@
-"""`actum label`: lists the segments of a recording, draws and mends them."""
+"""`actum label`: lists the marked segments of recordings, adds and corrects them."""
 
-from dataclasses import replace
+from collections.abc import Iterator
+from contextlib import contextmanager
+from difflib import get_close_matches
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
@@ -8,45 +10,38 @@ from typing import Annotated
 import typer
 
 from actum.installing import adding
-from actum.messages import CUT, MANUAL, segment_marks
 from actum.node import SECOND_NS
-from actum.recording import Recording, RecordingError
-from actum.rewriting import unchanged
+from actum.recording import RecordingError
 from actum_command.commands.plain_help import LISTS, ListingGroup, PlainTyper
-from actum_command.commands.recording_options import RecordingFile, change_recording, in_ns, refuse_length, tell_unread
+from actum_command.commands.recording_options import (
+    AllOption,
+    PersonOption,
+    RecordingFile,
+    chosen,
+    in_ns,
+    refuse_length,
+    tell_unread,
+)
 from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
 from actum_command.cut_lines import cut_lines
-from actum_examples.cutting.marks import free_names, marks_of
-from actum_examples.edits import deleted, fields_after, following, in_turn, without_messages
-from actum_examples.marked_segments import (
-    LabelledSegment,
-    LabellingError,
-    check_span,
-    cut_anew,
-    first_stamp_ns,
-    followed,
-    labelled_segments,
-    only_sensor,
-    refuse_outside,
-    segment_of,
-)
-from actum_examples.segment_changes import moved, relabelled
+from actum_command.segment_lines import segment_lines
+from actum_examples import edits
+from actum_examples.marked_segment import MarkedSegment
+from actum_examples.take import Take, read_take
 from som_classifier.model_loading import ModelError, load_model
-
-RIGHT_ALIGNED = (True, True, True, True, False, False, False, False, False)
-"""Which columns of the list hold numbers."""
 
 app = PlainTyper(
     cls=ListingGroup,
     no_args_is_help=True,
     help=(
-        "List the labelled segments of a recording (actum label REC), draw and correct them by number. Times are "
-        "seconds from the start of the recording."
+        "List the marked segments of recordings (actum label REC…), add and correct them. Times are seconds from the "
+        "start of the recording."
     ),
 )
 
-Number = Annotated[
-    int, typer.Argument(metavar="N", help="number of the segment in the first column of 'actum label REC'")
+SegmentName = Annotated[
+    str,
+    typer.Argument(metavar="SEGMENT", help="number of the segment in the first column of 'actum label REC', or its id"),
 ]
 Label = Annotated[str, typer.Argument(metavar="LABEL", help="label of the action, such as wave")]
 Agent = Annotated[
@@ -59,30 +54,34 @@ Agent = Annotated[
 
 
 @app.command(LISTS)
-def list_command(file: RecordingFile) -> None:
-    """List the segments: number, start, end, duration, label, who marked it, who acts, the recorded answer.
+def list_command(
+    files: Annotated[list[Path], typer.Argument(metavar="REC...", help="recordings, or folders of them")],
+    person: PersonOption = None,
+    with_excluded: AllOption = False,
+) -> None:
+    """List the marked segments, and whether training can use them.
 
-    In a recording of several sensors each line ends in the sensor.
+    Columns: number, start, end, duration, label, who marked it, who acts, usable for training, the recorded answer; in
+    a recording of several sensors also the sensor.
     """
-    recording, segments, first_ns = _opened(file)
-    say(f"{file}, person {recording.person or '(unknown)'}")
-    several = len({segment.sensor for segment in segments}) > 1
-    rows = [(*_row(segment, first_ns), segment.sensor if several else "") for segment in segments]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row in rows:
-        cells = (
-            cell.rjust(width) if right else cell.ljust(width)
-            for cell, width, right in zip(row, widths, RIGHT_ALIGNED, strict=True)
-        )
-        say("  " + "  ".join(cells).rstrip())
-    tell_unread([recording])
-    say(f"{len(segments)} segments")
+    recordings, all_lines = chosen(files, person, with_excluded), []
+    try:
+        for recording in recordings:
+            say(f"{recording.path}, person {recording.person or '(unknown)'}")
+            lines = segment_lines(read_take(recording.path))
+            for line in lines:
+                say(line.text, style=None if line.usable else "yellow")
+            all_lines += lines
+    except RecordingError as error:
+        fail(str(error))
+    tell_unread(recordings)
+    say(f"{len(all_lines)} segments, {sum(line.usable for line in all_lines)} usable")
 
 
 @app.command("move")
 def move(
     file: RecordingFile,
-    number: Number,
+    name: SegmentName,
     start: Annotated[
         str | None,
         typer.Option(
@@ -97,52 +96,38 @@ def move(
     ] = None,
 ) -> None:
     """Move the start or the end of a segment; the answers in the recording stay as they are."""
-    recording, segments, first_ns = _opened(file)
-    segment = _of_number(segments, number)
-    if segment.start_ns is None or segment.end_ns is None:
-        fail(
-            f"segment {number} has no {('start' if segment.start_ns is None else 'end')} mark: delete the segment "
-            "and add it again"
-        )
-    start_ns, end_ns = _moved_to(start, segment.start_ns, first_ns), _moved_to(end, segment.end_ns, first_ns)
-    others = [other for other in segments if other.number != number]
-    _checked(others, start_ns, end_ns, segment.sensor, segment.agent, first_ns)
-    shifted = moved(segment, start_ns - segment.start_ns, end_ns - segment.end_ns)
-    try:
-        refuse_outside(recording, segment.sensor, start_ns, end_ns)
-        frames = followed(segments, replace(segment, start_ns=start_ns, end_ns=end_ns))
-    except (LabellingError, RecordingError) as error:
-        fail(str(error))
-    change_recording(file, in_turn(shifted, frames))
-    say(f"segment {number} lasts from {_seconds(start_ns, first_ns)} to {_seconds(end_ns, first_ns)} in {file}")
+    take, segment = _found(file, name)
+    start_ns = _moved_to(start, segment.start_ns, take.first_ns)
+    end_ns = _moved_to(end, segment.end_ns, take.first_ns)
+    with _editing(file):
+        edits.move(take, segment, start_ns, end_ns)
+    from_s, to_s = ((stamp_ns - take.first_ns) / SECOND_NS for stamp_ns in (start_ns, end_ns))
+    say(f"{segment.segment_id} lasts from {from_s:.2f} s to {to_s:.2f} s in {file}")
 
 
 @app.command("delete")
-def delete(file: RecordingFile, number: Number) -> None:
+def delete(file: RecordingFile, name: SegmentName) -> None:
     """Delete a segment: its marks, its answers and the frames of the person who acts in it.
 
     The frames stay if the segment has no label, or if another labelled segment of that person needs them.
     """
-    recording, segments, _ = _opened(file)
-    segment = _of_number(segments, number)
-    kept = [other for other in segments if other.number != number]
-    change_recording(file, deleted([segment], kept), metadata=fields_after(recording, kept))
+    take, segment = _found(file, name)
+    with _editing(file):
+        edits.delete(take, [segment])
     say(
-        f"segment {number} ({segment.label or 'no label'}) was deleted from {file}; the numbers of later segments "
+        f"{segment.segment_id} ({segment.label or 'no label'}) was deleted from {file}; the numbers of later segments "
         "decrease by one"
     )
 
 
-@app.command("rename")
-def rename(file: RecordingFile, number: Number, label: Label) -> None:
+@app.command("relabel")
+def relabel(file: RecordingFile, name: SegmentName, label: Label) -> None:
     """Give a segment another label."""
-    _, segments, _ = _opened(file)
-    segment = _of_number(segments, number)
+    take, segment = _found(file, name)
     refuse_length(label)
-    if segment.start_ns is None:
-        fail(f"segment {number} has no start mark to hold the label: delete the segment")
-    change_recording(file, relabelled(segment, label))
-    say(f"segment {number} is labelled {label!r} in {file}")
+    with _editing(file):
+        edits.relabel(take, segment, label)
+    say(f"{segment.segment_id} is labelled {label!r} in {file}")
 
 
 @app.command("add")
@@ -154,17 +139,10 @@ def add(
     agent: Agent = None,
 ) -> None:
     """Add a labelled segment, such as actum label add REC 12.3 14.1 wave."""
-    recording, segments, first_ns = _opened(file)
+    take = _opened(file)
     refuse_length(label)
-    start_ns, end_ns = (first_ns + in_ns(seconds) for seconds in (start, end))
-    try:
-        sensor = only_sensor(recording)
-        refuse_outside(recording, sensor, start_ns, end_ns)
-    except (LabellingError, RecordingError) as error:
-        fail(str(error))
-    _checked(segments, start_ns, end_ns, sensor, agent, first_ns)
-    name = next(free_names([segment.segment_id for segment in segments], "added"))
-    change_recording(file, unchanged, segment_marks(start_ns, end_ns, sensor, name, label, agent, origin=MANUAL))
+    with _editing(file):
+        edits.add(take, take.first_ns + in_ns(start), take.first_ns + in_ns(end), label, agent)
     say(f"{label!r} from {start:.2f} s to {end:.2f} s is in {file}")
 
 
@@ -178,20 +156,14 @@ def cut(
 ) -> None:
     """Find the repetitions of one action in the recording again, and label each.
 
-    Use it if 'actum record --times' miscounted. Repetitions that were found before are replaced; segments marked by
-    hand stay.
+    Use it if 'actum record --times' miscounted. Repetitions that were found before are replaced; segments marked or
+    moved by hand stay.
     """
-    recording, segments, first_ns = _opened(file)
+    take = _opened(file)
     refuse_length(label)
-    try:
-        cuts, sensor = cut_anew(recording, segments, times), only_sensor(recording)
-    except LabellingError as error:
-        fail(str(error))
-    kept = [segment for segment in segments if segment.origin != CUT]
-    marks = marks_of(cuts, free_names([each.segment_id for each in kept], CUT), label, sensor)
-    old = without_messages(each for each in segments if each.origin == CUT)
-    change_recording(file, in_turn(old, following(segments, kept)), marks, fields_after(recording, kept))
-    for line in cut_lines(cuts, first_ns):
+    with _editing(file):
+        cuts = edits.cut_again(take, times, label)
+    for line in cut_lines(cuts, take.first_ns):
         say(line)
     for doubt in cuts.doubts:
         say(doubt, style="yellow")
@@ -219,68 +191,57 @@ def picture(
 
     refuse_unwritable(output)
     refuse_ending(output, ".png", ".svg")
-    recording, segments, first_ns = _opened(file)
+    take = _opened(file)
     try:
-        write_picture(recording, segments, first_ns, load_model(model) if model is not None else None, output)
+        write_picture(take, load_model(model) if model is not None else None, output)
     except (RecordingError, ModelError, OSError) as error:
         fail(str(error))
-    say(f"{len(segments)} segments drawn: {output}")
+    say(f"{len(take.segments)} segments drawn: {output}")
 
 
-def _row(segment: LabelledSegment, first_ns: int) -> tuple[str, ...]:
-    """Return the cells of a segment's line: number, start, end, duration, label, origin, agent, answer."""
-    spans = (segment.start_ns, segment.end_ns)
-    start, end = ("-" if stamp_ns is None else _seconds(stamp_ns, first_ns) for stamp_ns in spans)
-    lasts = "-"
-    if segment.start_ns is not None and segment.end_ns is not None:
-        lasts = f"({(segment.end_ns - segment.start_ns) / SECOND_NS:.2f} s)"
-    return (
-        str(segment.number),
-        start,
-        end,
-        lasts,
-        segment.label or "(no label)",
-        segment.origin or "-",
-        "nearest" if segment.agent is None else f"agent {segment.agent}",
-        f"answered {segment.answer}" if segment.answer else "",
-    )
+def _opened(file: Path) -> Take:
+    """Read a recording that has frames or marks, or fail."""
+    try:
+        take = read_take(file)
+    except RecordingError as error:
+        fail(str(error))
+    if take.first_ns == take.last_ns and not take.segments:
+        fail(f"{file} contains neither skeletons nor marks: give a recording of a person")
+    return take
 
 
-def _seconds(stamp_ns: int, first_ns: int) -> str:
-    return f"{(stamp_ns - first_ns) / SECOND_NS:.2f} s"
+def _found(file: Path, name: str) -> tuple[Take, MarkedSegment]:
+    """Return a recording and its only segment of that number or id; else fail, naming those that there are."""
+    take = _opened(file)
+    numbers = {str(number): each for number, each in enumerate(take.segments, start=1)}
+    named = {number: each for number, each in numbers.items() if name in (number, each.segment_id)}
+    chosen_one = named.get(name) or next(iter(named.values()), None)
+    if chosen_one is None:
+        near = get_close_matches(name, [each.segment_id for each in take.segments], n=1)
+        there = f"is {near[0]} meant?" if near else f"it has segments 1 to {len(numbers)}" if numbers else "it has none"
+        fail(f"there is no segment {name!r} in {file}: {there}")
+    if name not in named and len(named) > 1:
+        fail(f"{len(named)} segments are named {name!r}: name one by its number, {' or '.join(named)}")
+    return take, chosen_one
 
 
-def _moved_to(text: str | None, now_ns: int, first_ns: int) -> int:
+@contextmanager
+def _editing(file: Path) -> Iterator[None]:
+    """Fail where an edit is refused or cannot be written; the recording is then as it was."""
+    try:
+        yield
+    except (edits.EditError, RecordingError) as error:
+        fail(str(error))
+    except OSError as error:
+        fail(f"{file} cannot be written ({error.strerror}): the recording was not changed")
+
+
+def _moved_to(text: str | None, now_ns: int | None, first_ns: int) -> int:
     """Return the stamp that a time means: absolute, or with a sign relative to where it is now."""
     if text is None:
-        return now_ns
+        return now_ns or 0
     try:
         offset_ns = round(float(text) * SECOND_NS)
     except (ValueError, OverflowError):
         fail(f"{text!r} is not a time: give seconds such as 12.3, or a shift such as +0.2 or -0.1")
-    return (now_ns if text[:1] in "+-" else first_ns) + offset_ns
-
-
-def _opened(file: Path) -> tuple[Recording, list[LabelledSegment], int]:
-    """Open a recording; return it, its segments and the stamp that times count from, or fail."""
-    try:
-        recording = Recording(file)
-        return recording, labelled_segments(recording), first_stamp_ns(recording)
-    except (RecordingError, LabellingError) as error:
-        fail(str(error))
-
-
-def _of_number(segments: list[LabelledSegment], number: int) -> LabelledSegment:
-    try:
-        return segment_of(segments, number)
-    except LabellingError as error:
-        fail(str(error))
-
-
-def _checked(
-    segments: list[LabelledSegment], start_ns: int, end_ns: int, sensor: str, agent: int | None, first_ns: int
-) -> None:
-    try:
-        check_span(segments, start_ns, end_ns, sensor, agent, first_ns)
-    except LabellingError as error:
-        fail(str(error))
+    return ((now_ns or 0) if text[:1] in "+-" else first_ns) + offset_ns

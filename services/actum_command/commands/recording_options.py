@@ -1,17 +1,15 @@
 """Options that choose recordings, warnings about those that were read, and how one is changed."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from actum.messages import Message
 from actum.node import SECOND_NS
 from actum.recorder import TakenError, refuse_taken
 from actum.recording import Recording, RecordingError
-from actum.rewriting import Change, rewrite
 from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
 from actum_model_trainer.samples import select
 
@@ -85,15 +83,3 @@ def in_ns(seconds: float) -> int:
         return round(seconds * SECOND_NS)
     except (ValueError, OverflowError):
         fail(f"{seconds:g} is not a time: give seconds such as 12.3")
-
-
-def change_recording(
-    file: Path, change: Change, added: Iterable[Message] = (), metadata: Mapping[str, str] | None = None
-) -> None:
-    """Rewrite a recording with a change, further messages and other metadata, or fail and leave it as it was."""
-    try:
-        rewrite(file, change, added, metadata)
-    except RecordingError as error:
-        fail(str(error))
-    except OSError as error:
-        fail(f"{file} cannot be written ({error.strerror}): the recording was not changed")

@@ -1,0 +1,113 @@
+"""The lines of `actum label REC`: each marked segment, its recorded answer, and whether training can use it."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from actum import keys
+from actum.messages import Action, Event
+from actum.node import SECOND_NS
+from actum_examples.marked_segment import MarkedSegment
+from actum_examples.take import Take
+from actum_model_trainer.recorded_segments import classifier_input, closed_segments, why_unusable
+from som_classifier.segments import ClosedSegment
+
+NUMBERS = 4
+"""The first columns hold numbers, which are aligned at their ends."""
+
+
+@dataclass(frozen=True)
+class SegmentLine:
+    """One line, and whether training can use the segment."""
+
+    text: str
+    usable: bool
+
+
+def segment_lines(take: Take) -> list[SegmentLine]:
+    """Return a line for each segment, in columns as wide as their longest cell.
+
+    Raises:
+        RecordingError: the file is damaged.
+    """
+    problems, answers = _problems(take), _answers(take)
+    several = len({each.sensor for each in take.segments}) > 1
+    rows = [
+        (
+            str(number),
+            *_times(each, take.first_ns),
+            each.label or "(no label)",
+            each.origin or "-",
+            "nearest" if each.agent is None else f"agent {each.agent}",
+            f"not usable: {problem}" if problem else "usable",
+            _answer_to(each, answers),
+            each.sensor if several else "",
+        )
+        for number, (each, problem) in enumerate(zip(take.segments, problems, strict=True), start=1)
+    ]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        SegmentLine("  " + "  ".join(_aligned(row, widths)).rstrip(), problem is None)
+        for row, problem in zip(rows, problems, strict=True)
+    ]
+
+
+def _aligned(row: Sequence[str], widths: Sequence[int]) -> list[str]:
+    return [
+        cell.rjust(width) if column < NUMBERS else cell.ljust(width)
+        for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+    ]
+
+
+def _times(segment: MarkedSegment, first_ns: int) -> tuple[str, str, str]:
+    start, end = (
+        "-" if stamp_ns is None else f"{(stamp_ns - first_ns) / SECOND_NS:.2f} s"
+        for stamp_ns in (segment.start_ns, segment.end_ns)
+    )
+    if segment.bounds_ns is None:
+        return start, end, "-"
+    return start, end, f"({(segment.bounds_ns[1] - segment.bounds_ns[0]) / SECOND_NS:.2f} s)"
+
+
+def _problems(take: Take) -> list[str | None]:
+    """Return for each segment why it cannot be trained on, None where it can."""
+    closed: defaultdict[tuple[str, str], list[ClosedSegment]] = defaultdict(list)
+    for sensor in {each.sensor for each in take.segments}:
+        for each in closed_segments(classifier_input(take.recording, sensor)):
+            closed[sensor, each.segment_id].append(each)
+    return [_problem(each, closed[each.sensor, each.segment_id]) for each in take.segments]
+
+
+def _problem(segment: MarkedSegment, closed: list[ClosedSegment]) -> str | None:
+    """Return why a segment cannot be trained on; takes the first of the closed ones of its name."""
+    if segment.start_ns is None:
+        return "end without start"
+    if not closed:
+        return "no frame in it"
+    return why_unusable(closed.pop(0)) or ("no label" if segment.label is None else None)
+
+
+def _answers(take: Take) -> list[Action | Event]:
+    messages = take.recording.messages((keys.ACTION, keys.EVENT))
+    return [each for each in messages if isinstance(each, Event) or (isinstance(each, Action) and each.final)]
+
+
+def _answer_to(segment: MarkedSegment, answers: Sequence[Action | Event]) -> str:
+    """Return the last answer to a segment, or, where none names it, the answer that shares most of its time."""
+    own = [answer for answer in answers if segment.has(answer)]
+    if own or segment.bounds_ns is None:
+        return _in_words(own[-1]) if own else ""
+    start_ns, end_ns = segment.bounds_ns
+    shared_ns = {
+        index: min(answer.end_ns or answer.start_ns, end_ns) - max(answer.start_ns, start_ns)
+        for index, answer in enumerate(answers)
+        if answer.sensor == segment.sensor
+    }
+    best = max(shared_ns, key=lambda index: shared_ns[index], default=None)
+    return _in_words(answers[best]) if best is not None and shared_ns[best] > 0 else ""
+
+
+def _in_words(answer: Action | Event) -> str:
+    if not answer.valid or answer.action is None:
+        return "answered rejected"
+    return f"answered {answer.action} {answer.confidence:.2f}" + (" (unknown)" if answer.unknown else "")
