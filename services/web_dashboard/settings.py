@@ -51,8 +51,8 @@ class Settings(ServiceSettings):
     page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(
         frozenset(),
         description=(
-            "further host names in the page's address, such as lab.example.org; requests for other names are "
-            "refused. Default: this machine's own name and addresses"
+            "further host names by which browsers may open the page, such as lab.example.org; requests for other "
+            "names are refused. Default: only this machine's own name and addresses"
         ),
     )
 
