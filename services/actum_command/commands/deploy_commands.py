@@ -81,7 +81,8 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
 ) -> None:
     """Write a folder of files for each host of a deployment, and folders of credentials for users' programs.
 
-    Copy each folder to its host. Run the command again to change the deployment.
+    Copy each host's folder to that host, and a folder of credentials to each user's machine. Run the command again to
+    change the deployment.
     """
     if not_secured and passwords:
         fail("--open and --passwords exclude each other: leave out one of them")
