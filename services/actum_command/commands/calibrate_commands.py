@@ -112,7 +112,7 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     calibration file for the camera that sees the markers.
     """
     if (live is not None) == bool(pairs):
-        fail("give either pairs of pictures, or --live with the two sensors, such as --live kinect0,kinect1")
+        fail("give either pairs of pictures, or --live with the two sensors, such as --live kinect1,kinect0")
     refuse_ending(output, ".yaml", ".yml")
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
     try:
@@ -169,7 +169,7 @@ def _sensors(text: str) -> tuple[str, str]:
     if not CHUNK.fullmatch(markers) or not CHUNK.fullmatch(people) or markers == people:
         fail(
             f"--live {text!r} does not name two sensors: put the one that sees the markers first, such as "
-            "kinect0,kinect1"
+            "kinect1,kinect0"
         )
     return markers, people
 
