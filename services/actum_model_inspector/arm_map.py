@@ -24,7 +24,7 @@ _ARMLESS[_LEGS + _ENDS] = np.nan
 """Joints of somebody who stands, without legs and right arm, (15, 3), metres from the middle of a unit's place."""
 
 
-@in_house_style
+@in_house_style()
 def arm_map(arms: Som, mirrors: bool) -> Figure:
     """Draw each unit's weights on the U-matrix: a right arm of somebody who stands, with arrows at its joints.
 

@@ -12,7 +12,7 @@ from som_classifier.kinematics import LAG_TIME_CONSTANT_S
 ARROW_IN = 0.016  # width of the arrows' shafts
 
 
-@in_house_style
+@in_house_style()
 def velocity_map(velocities: Som) -> Figure:
     """Draw each unit's weights as arrows at the joints of somebody who stands, on the U-matrix.
 

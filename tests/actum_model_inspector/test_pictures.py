@@ -145,6 +145,17 @@ def beyond_the_page(figure: Figure) -> list[str]:
     return [name for name, box in boxes if not (page.contains(*box.min) and page.contains(*box.max))]
 
 
+def test_the_names_of_mistakes_cover_no_other_name() -> None:
+    maps = many_actions([f"action {number}" for number in range(4)])
+    mistakes = [AnsweredSegment("file", "2", str(unit), "lift up", [], action_unit=unit) for unit in range(42)]
+    figure = action_map(maps, mistakes)
+    figure.draw_without_rendering()
+    boxes = {text: text.get_window_extent() for text in figure.axes[0].texts}
+    named = [text for text in boxes if text.get_text() == "lift up"]
+    assert named
+    assert all(not boxes[name].count_overlaps([boxes[other] for other in boxes if other is not name]) for name in named)
+
+
 def test_the_one_instant_of_the_shortest_segment_is_a_dot(maps: ModelMaps, record: Record) -> None:
     skeletons, _ = performance(["push"])
     recording = record(skeletons, still(maps.model.min_frames))
