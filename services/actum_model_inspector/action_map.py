@@ -52,7 +52,7 @@ BESIDE_UNIT: tuple[Place, ...] = (
 def action_map(maps: ModelMaps, segments: Sequence[AnsweredSegment] = ()) -> Figure:
     """Colour each unit by the action whose neuron is most active for it, and put a dot on each segment's winner."""
     som, labels = maps.actions, maps.model.labels
-    map_regions = regions(maps.unit_cosines(), som.grid)
+    map_regions = regions(maps.unit_cosines(), som.rows, som.cols)
     longest = max(som.rows, som.cols)
     size = max(SIDE_IN * som.cols / longest, 6.0), max(SIDE_IN * som.rows / longest, 3.0) + 0.85
     figure = figure_with_layout(*size, f"The map of actions: {som.rows} × {som.cols} units, {len(labels)} actions")
