@@ -27,12 +27,12 @@ UNREADABLE = (
 MOST_INFLATION = 20
 """How many times its size the arrays of a file may take: npz files of ours are not compressed, those of others a few
 times smaller. Files made to fill memory grow a thousand times."""
+LEAST_BYTES = 16_000_000
+"""What they may take (bytes) however small the file is."""
 NPY: Any = np.lib.format
 """NumPy's file format, which has types in some of its versions only."""
 HEADERS = {(1, 0): NPY.read_array_header_1_0, (2, 0): NPY.read_array_header_2_0}
 """NumPy's readers of an array's header, by the version of its format; later ones are for named columns."""
-LEAST_BYTES = 16_000_000
-"""What they may take (bytes) however small the file is."""
 
 
 class ModelError(ValueError):
