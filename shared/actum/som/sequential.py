@@ -156,11 +156,14 @@ class SequentialTraining(Generic[Map]):
         with storage.reading(Path(path), storage.TRAINING_FORMAT) as file:
             som, decay = stored_map(file, kind), Steps(file["alphas"], file["radii"])
             if str(file["vectors_digest"]) != _digest(np.array(vectors, som.dtype, order="C")):
-                raise SomError(Path(path), "this training began with other vectors: continue it with those")
+                raise SomError(
+                    Path(path),
+                    "the training in this file began with other vectors: pass the vectors that it began with",
+                )
             training = cls(som, vectors, file["order"], decay, kernel)
             training.steps_done = int(file["steps_done"])
             if not 0 <= training.steps_done <= training.steps:
-                raise ValueError(f"the file counts {training.steps_done} of {training.steps} steps as done")
+                raise ValueError(f"it says that {training.steps_done} of {training.steps} steps are done")
         return training
 
 
