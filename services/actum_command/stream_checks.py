@@ -98,11 +98,11 @@ def _readers(statuses: Statuses, put_hz: Mapping[Topic, float]) -> Iterator[str]
             got_hz, all_hz = handled_hz(statuses.get(service, ()), topic), put_hz[topic]
             if got_hz is None or all_hz < FEWEST_HZ:
                 continue
-            of_all = f"of the {all_hz:.0f} messages per second on {topic.leaf.removesuffix('/{}')}"
+            of_all = f"of the {all_hz:.0f} messages a second on {topic.leaf.removesuffix('/{}')}"
             if got_hz == 0:
                 yield (
-                    f"{service} receives none {of_all}: check that the role in its credentials may read this topic, "
-                    "and that all routers are connected to each other"
+                    f"{service} receives none {of_all}: check that the role of {service} may read this topic, and "
+                    "that all routers are connected to each other"
                 )
             elif got_hz < SLOW * all_hz and topic is not keys.COLOR:
                 few = f"{service} receives only {got_hz:.0f} {of_all}"

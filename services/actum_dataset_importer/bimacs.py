@@ -216,8 +216,7 @@ def _labels(folder: Path, person: str, take: str) -> list[Label]:
         return [label for hand in HANDS for label in _hand_labels(hand, content[f"{hand}_hand"])]
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise DatasetError(
-            f"{files[0]} is not, for each hand, a list of alternating frame numbers and labels ({error!r}): download "
-            "it again"
+            f"{files[0]} does not list frame numbers and labels in turn for each hand ({error!r}): download it again"
         ) from None
 
 

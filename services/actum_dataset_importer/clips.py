@@ -65,7 +65,7 @@ class Naming:
         if match is None or not action:
             raise DatasetError(
                 f"{path.name} is not imported, because --pattern {self.pattern.pattern!r} finds no action in its name: "
-                "rename the file, or give another --pattern with the group action, and person if names contain it"
+                "rename the file, or give a --pattern whose group `action` matches part of this name"
             )
         person = match["person"] if "person" in self.pattern.groupindex else ""
         return self.actions.get(action, action), (person or "").strip()

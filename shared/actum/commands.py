@@ -200,7 +200,7 @@ def _inner(value: Any) -> Iterator[Any]:
         case None | str() | float() | int() | bytes():
             return
         case _:
-            raise Refusal(f"the request contains a {type(value).__name__}: use only the types of JSON, and bytes")
+            raise Refusal(f"the request contains a {type(value).__name__}: use only JSON types and bytes")
 
 
 def problems(error: ValidationError) -> str:

@@ -200,7 +200,7 @@ def test_a_name_that_is_used_again_after_a_restart_is_several_segments(tmp_path:
             for message in (mark("start", at[0], "one", "push"), mark("end", at[1], "one"), action(*at, "one")):
                 recorder.write(message)
     assert "3 segments are named 'one'" in refused("drop", path, "one")
-    assert "change one by actum label" in refused("drop", path, "one")
+    assert "use 'actum label', which numbers" in refused("drop", path, "one")
     invoked = CliRunner().invoke(app, ["label", "delete", str(path), "2"])
     assert invoked.exit_code == 0, invoked.output
     assert marks_of(path, "one") == [("start", 0, "push"), ("end", 14, None), ("start", 40, "push"), ("end", 54, None)]
