@@ -113,7 +113,7 @@ def test_an_action_is_dropped_with_its_answers_and_the_person_in_its_frames(path
     [
         (("drop", "wole"), "no 'wole' in .*anna.mcap: is whole meant"),
         (("relabel", "whole", ""), "the label must have 1 to 200 characters"),
-        (("trim", "whole", "--start", "2"), "s and cannot run from 2 s to 0.96"),
+        (("trim", "whole", "--start", "2"), "would run from 2 s to 0.96"),
         (("trim", "whole", "--start", "-2"), "before time 0 of the sensor's clock"),
         (("trim", "whole", "--end", "3600"), "3600.00 s lies outside the recording's frames"),
         (("trim", "open", "--end", "2"), "open has no end mark"),
@@ -178,7 +178,7 @@ def test_actions_of_several_sensors_are_listed_with_their_sensor(two_sensors: Pa
 def test_an_action_that_several_sensors_name_alike_is_changed_at_one_of_them_alone(two_sensors: Path) -> None:
     told = refused("drop", two_sensors, "one")
     assert "2 segments are named 'one'" in told
-    assert "kinect0 from 0.00 to 0.63 s, kinect1 from 0.33 to 0.97 s: name one by --sensor" in told
+    assert "kinect0 from 0.00 to 0.63 s, kinect1 from 0.33 to 0.97 s): name one with --sensor" in told
     takes("relabel", two_sensors, "one", "pull", "--sensor", "kinect1")
     takes("trim", two_sensors, "one", "--end", "0.5", "--sensor", "kinect1")
     of_other = [m for m in of_segment(two_sensors, "one") if m.sensor == "kinect0"]
@@ -200,7 +200,7 @@ def test_a_name_that_is_used_again_after_a_restart_is_several_segments(tmp_path:
             for message in (mark("start", at[0], "one", "push"), mark("end", at[1], "one"), action(*at, "one")):
                 recorder.write(message)
     assert "3 segments are named 'one'" in refused("drop", path, "one")
-    assert "change one by actum label" in refused("drop", path, "one")
+    assert "use 'actum label', which numbers" in refused("drop", path, "one")
     invoked = CliRunner().invoke(app, ["label", "delete", str(path), "2"])
     assert invoked.exit_code == 0, invoked.output
     assert marks_of(path, "one") == [("start", 0, "push"), ("end", 14, None), ("start", 40, "push"), ("end", 54, None)]

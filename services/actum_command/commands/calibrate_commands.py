@@ -168,8 +168,8 @@ def _sensors(text: str) -> tuple[str, str]:
     markers, _, people = text.partition(",")
     if not CHUNK.fullmatch(markers) or not CHUNK.fullmatch(people) or markers == people:
         fail(
-            f"--live {text!r} does not name two sensors: put the one that sees the markers first, such as "
-            "kinect1,kinect0"
+            f"--live {text!r} does not name two sensors: give first the sensor that sees the markers, then the sensor "
+            "that sees the people, such as kinect1,kinect0"
         )
     return markers, people
 

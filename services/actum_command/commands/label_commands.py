@@ -140,7 +140,7 @@ def rename(file: RecordingFile, number: Number, label: Label) -> None:
     segment = _of_number(segments, number)
     refuse_length(label)
     if segment.start_ns is None:
-        fail(f"segment {number} has no start mark to hold the label: delete the segment")
+        fail(f"segment {number} cannot be labelled, because it has no start mark: delete the segment")
     change_recording(file, relabelled(segment, label))
     say(f"segment {number} is labelled {label!r} in {file}")
 

@@ -143,11 +143,17 @@ def _finish(output: Path) -> None:
     except FileNotFoundError:
         fail(f"there is no unfinished recording {unfinished(output)}")
     except RecordingError as error:
-        fail(f"{error.path} cannot be turned into a recording ({error.problem}); it was not changed: move or delete it")
+        fail(
+            f"{error.path} cannot be turned into a recording ({error.problem}) and was not changed: move or delete "
+            "this file"
+        )
     except TakenError as error:
         fail(str(error))
     except OSError as error:
-        fail(f"{output} cannot be written ({error.strerror}); {unfinished(output)} was not changed")
+        fail(
+            f"{output} cannot be written ({error.strerror}): solve this problem, then use --finish again; "
+            f"{unfinished(output)} was not changed"
+        )
     say(f"{count} messages, up to where it breaks off, written to {output}")
 
 

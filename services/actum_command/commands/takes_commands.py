@@ -80,7 +80,10 @@ def relabel(
     refuse_length(label)
     segment = _marked(file, segment_id, sensor).segment
     if segment.start_ns is None:
-        fail(f"{segment_id} has no start mark in {file} to hold the label: delete the action with 'actum takes drop'")
+        fail(
+            f"{segment_id} in {file} cannot be labelled, because it has no start mark: delete the action with "
+            "'actum takes drop'"
+        )
     change_recording(file, relabelled(segment, label))
     say(f"{segment_id} is labelled {label!r} in {file}")
 
@@ -112,7 +115,7 @@ def trim(
     until_s = duration_s if end is None else end
     if start >= until_s:
         fail(
-            f"{segment_id} lasts {duration_s:g} s and cannot run from {start:g} s to {until_s:g} s: the end has to "
+            f"{segment_id} would run from {start:g} s to {until_s:g} s, counted from its present start: the end has to "
             "be later than the start"
         )
     if start_ns + start * SECOND_NS < 0:
@@ -207,5 +210,5 @@ def _several(named: Sequence[LabelledSegment], first_ns: int) -> str:
     ]
     there = ", ".join(f"{each.sensor} from {' to '.join(span)} s" for each, span in zip(named, spans, strict=True))
     sensors = {each.sensor for each in named}
-    todo = "name one by --sensor" if len(sensors) == len(named) else "change one by actum label, which numbers them"
-    return f"{len(named)} segments are named {named[0].segment_id!r}: {there}: {todo}"
+    todo = "name one with --sensor" if len(sensors) == len(named) else "use 'actum label', which numbers the segments"
+    return f"{len(named)} segments are named {named[0].segment_id!r} ({there}): {todo}"
