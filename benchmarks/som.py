@@ -21,7 +21,7 @@ import numpy as np
 from minisom import MiniSom
 from numpy.typing import NDArray
 
-from actum.som import BatchTraining, SequentialTraining, Som, Steps, adapt_in_numpy
+from actum.som import BatchTraining, Schedule, SequentialTraining, Som, Steps, adapt_in_numpy
 from actum.som.kernel import Kernel
 from actum.som.sequential import fastest_kernel
 
@@ -193,7 +193,9 @@ def measured(dim: int) -> list[Row]:
 
 def warm_up(start: Array) -> None:
     for dtype in (np.float64, np.float32):
-        Som(SIDE, SIDE, start.astype(dtype)).partial_fit(start[:10], 0.1, 1.0)
+        Som(SIDE, SIDE, start.astype(dtype)).train(
+            start, 10, Schedule((0.1, 0.1), (1.0, 1.0)), np.random.default_rng(0)
+        )
 
 
 def table(dim: int, rows: list[Row]) -> Iterator[str]:

@@ -67,6 +67,7 @@ def _winner_kept(vectors: Floats) -> float:
     plan, rng = PAPER.layer1, np.random.default_rng(0)
     untrained = Som.random(plan.rows, plan.cols, vectors.shape[1], rng, dtype=np.float32)
     som = untrained.train(vectors, STEPS, plan.schedule, rng)
-    distances = np.sqrt(np.stack([som.distances2(x) for x in vectors[::20]])).astype(np.float32)
+    weights = som.weights.astype(np.float64)
+    distances = np.stack([np.linalg.norm(weights - x, axis=1) for x in vectors[::20]]).astype(np.float32)
     activities = np.exp(-distances / np.float32(PRINTED_SIGMA))
     return float((activities.argmax(axis=1) == distances.argmin(axis=1)).mean())

@@ -126,8 +126,8 @@ OF_FRAMES: Mapping[str, Problem] = {
     "no RealSense camera is connected": Problem("librealsense finds no camera.", "Check USB 3 cable and udev rules."),
     "the RealSense … was unplugged": Problem("The camera was unplugged.", "Plug it in."),
     "librealsense says: …": Problem("librealsense failed.", "See its message."),
-    "the camera sends colour as …, not as bgr8, …": Problem(
-        "The RealSense gives another format.", "Set it to one of these."
+    "the camera sends colour as …; supported: bgr8, …": Problem(
+        "The RealSense gives another format.", "Set a supported one."
     ),
     "no camera that OpenNI 2 supports is connected": Problem(
         "OpenNI 2 finds no camera.", "Install the camera's driver; see [cameras](cameras.md#depth-cameras)."

@@ -7,7 +7,7 @@ from typing import Any
 from docs.generate.markdown import code, table
 from pydantic.fields import FieldInfo
 
-from actum.command_line import placeholder
+from actum.command_line import LISTED, PAIRED, STRUCTURED, placeholder
 from actum.settings import ServiceSettings
 
 ROOT = Path(__file__).parents[2] / "services"
@@ -23,7 +23,9 @@ UNITS = {
     "_px": "px",
     "_hz": "Hz",
 }
-VALUES = {"INTEGER": "integer", "NUMBER": "number", "TEXT": "text", "PATH": "path"}
+VALUES = {"INTEGER": "integer", "NUMBER": "number", "TEXT": "text", "PATH": "path"} | dict.fromkeys(
+    (LISTED, PAIRED, STRUCTURED), "JSON"
+)
 OF_THIS_PROCESS = {
     "instance": "host, process id and four digits",
     "pose_model": "`~/.local/share/actum/` and its name",

@@ -15,16 +15,16 @@ class Settings(ServiceSettings):
     measure: Literal["joint", "proximity"] = Field(
         "joint",
         description=(
-            "how to decide which object an action was done to: joint weighs distance, reaching and moving together; "
-            "proximity takes the object nearest to a hand"
+            "how to choose the object of an action: joint uses how near each object is to the hands, whether a hand "
+            "reaches for it, and whether it moves with a hand; proximity chooses the object nearest to a hand"
         ),
     )
     reach_m: float = Field(
         0.25,
         gt=0,
         description=(
-            "maximum distance between a hand and the marker of an object that it can reach; a tool in the hand adds "
-            "--grasp-m (m)"
+            "maximum distance from a hand to the marker of an object that the hand can reach; if the hand may hold "
+            "a tool, --grasp-m is added (m)"
         ),
     )
     grasp_m: float = Field(
@@ -39,8 +39,7 @@ class Settings(ServiceSettings):
         gt=0,
         lt=180,
         description=(
-            "maximum angle between the pointing arm and the direction to an object; other objects are not pointed "
-            "at (deg)"
+            "maximum angle between the pointing arm and the direction to an object that counts as pointed at (deg)"
         ),
     )
     uncertainty_m: float = Field(
@@ -56,22 +55,23 @@ class Settings(ServiceSettings):
     expected_outcomes: dict[str, str] = Field(
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description=(
-            "what each action does to its object, such as lift=lifted,push=pushed; an object that is held during "
-            "these actions is their object, not a tool"
+            "the result expected of each action, such as lift=lifted,push=pushed; an object held during one of these "
+            "actions is the object of that action, not a tool"
         ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(as_text)] = Field(
         None,
         description=(
-            "transform from camera coordinates to those of a room or robot: a 4 x 4 matrix as 16 numbers, row by "
-            "row, or a file of them. Events then give object poses in both. Default: camera coordinates only"
+            "transform from camera coordinates to those of a room or robot: the 16 numbers of a 4 x 4 matrix, row by "
+            "row, lengths in metres, or a file with these numbers. Events then give object poses in both coordinate "
+            "systems. Default: camera coordinates only"
         ),
     )
     world_frame: str = Field(
         "world",
         min_length=1,
         max_length=200,
-        description="name in events of the frame that --world-from-camera transforms to",
+        description="name that events use for the frame to which --world-from-camera transforms",
     )
 
     @property

@@ -44,7 +44,9 @@ def pair_files(paths: Sequence[Path]) -> list[tuple[str, Path, Path]]:
             )
         sides = [_by_name([f for f in files if f.stem.endswith(end)], lambda f: f.stem[:-2]) for end in SUFFIXES]
     if alone := sorted(set(sides[0]) ^ set(sides[1])):
-        raise PairingError(f"{', '.join(alone)}: the other camera's picture is missing: add it, or remove this one")
+        raise PairingError(
+            f"one of two pictures is missing for {', '.join(alone)}: add it, or remove the picture of the other camera"
+        )
     return [(name, sides[0][name], sides[1][name]) for name in sorted(sides[0])]
 
 

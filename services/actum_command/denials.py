@@ -26,7 +26,10 @@ def everything_denied(heard: Heard, client: Asking, expected: Iterable[str]) -> 
     if heard.tokens or heard.answers or heard.statuses:
         return None
     if any(client.offers(service) for service in expected):
-        return f"services run, but the router's access control denies this program permission to read them: {ROLE}"
+        return (
+            "services run, but the router's access control denies this program permission to read their messages: "
+            f"{ROLE}"
+        )
     if client.router_tells():
         return None
     return (
@@ -44,6 +47,6 @@ def partly_denied(heard: Heard) -> Iterator[str]:
             yield f"services run, but the router's access control denies this program permission to read {what}: {ROLE}"
     if heard.tokens and not heard.statuses:
         yield (
-            "services run, but no status arrives: all services hang, or the router's access control denies this "
-            f"program their status. In that case, {ROLE}"
+            "services run, but no status arrives: either all services hang (restart them), or the router's access "
+            f"control denies this program permission to read their status ({ROLE})"
         )

@@ -139,8 +139,8 @@ def _problems(name: str, instances: list[str], infos: list[Info], status: Status
     if len(instances) > 1 or len(infos) > 1:
         who = _who(infos, instances)
         yield (
-            f"{name} runs more than once, so that every segment is answered more than once: stop all instances but "
-            f"one of {who}"
+            f"{name} runs more than once, so that every segment is answered more than once: stop all but one of these "
+            f"instances: {who}"
         )
     if status is None:
         yield f"{name} is alive but published no status in {STATUS_S:g} s: restart it if this persists"

@@ -87,6 +87,6 @@ def _check(published: Published, size: int, sha256: str) -> None:
         raise FetchError(f"{published.url}: the download stopped after {size} of {published.size} bytes; try again")
     if size > published.size or sha256 != published.sha256:
         raise FetchError(
-            f"{published.url} is not the published file (SHA-256 {sha256}, expected {published.sha256}): the "
-            "download was deleted"
+            f"{published.url} is not the published file (SHA-256 {sha256}, expected {published.sha256}), so the "
+            "download was deleted: check the proxy, and try again"
         )

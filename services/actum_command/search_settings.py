@@ -64,7 +64,8 @@ def refuse_other_settings(file: Path) -> None:
         raise OtherSettingsError(f"{file} already exists and is not TOML: name another file") from None
     if others := sorted(held.keys() - set(SEARCH_SETTINGS)):
         raise OtherSettingsError(
-            f"{file} also sets {', '.join(others)}: write to another file, then copy its lines into {file}"
+            f"{file} also sets {', '.join(others)}, which would be lost: write to another file, then copy the new "
+            f"lines into {file}"
         )
 
 

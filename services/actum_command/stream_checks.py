@@ -70,8 +70,8 @@ def _slow_source(infos: Sequence[Info], put_hz: float, skeletons: Watched) -> It
             )
     if 0 < skeletons.rate_hz < SLOW * skeletons.stamped_hz:
         yield (
-            f"{skeletons.rate_hz:.0f} skeletons arrive per second, but their stamps are those of "
-            f"{skeletons.stamped_hz:.0f} per second: the source or the network is too slow"
+            f"{skeletons.rate_hz:.0f} skeletons arrive per second, but their stamps show that "
+            f"{skeletons.stamped_hz:.0f} per second were captured: the source or the network is too slow"
         )
 
 
@@ -101,8 +101,9 @@ def _readers(statuses: Statuses, put_hz: Mapping[Topic, float]) -> Iterator[str]
             of_all = f"of the {all_hz:.0f} messages a second on {topic.leaf.removesuffix('/{}')}"
             if got_hz == 0:
                 yield (
-                    f"{service} receives none {of_all}: check the permissions of its role and the link between the "
-                    "routers"
+                    f"{service} receives none {of_all}: check that the role of {service} may read this topic, and "
+                    "that all routers are connected to each other"
                 )
             elif got_hz < SLOW * all_hz and topic is not keys.COLOR:
-                yield f"{service} receives only {got_hz:.0f} {of_all}: its machine or the network may be too slow"
+                few = f"{service} receives only {got_hz:.0f} {of_all}"
+                yield f"{few}: the machine that runs {service}, or the network, may be too slow"

@@ -120,7 +120,7 @@ def read_take(path: Path, sensor: str) -> HandsTake:
         truths = [t for i, label in enumerate(kept) for t in _truths(label, _id(path, label, i), stamps_ns, sensor)]
     except (KeyError, TypeError, ValueError, IndexError, InvalidOperation) as error:
         raise DatasetError(
-            f"{path} is not a table of stamps and poses as long as its labels ({error!r}): download it again"
+            f"{path} is not a table with a stamp and the poses for every labelled frame ({error!r}): download it again"
         ) from None
     skipped = [f"{path.stem} {label.hand} {label.action}" for label in labels if label.first >= label.last]
     return HandsTake(path.stem, match["person"], postures, objects, marks, truths, skipped)
@@ -216,7 +216,7 @@ def _labels(folder: Path, person: str, take: str) -> list[Label]:
         return [label for hand in HANDS for label in _hand_labels(hand, content[f"{hand}_hand"])]
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise DatasetError(
-            f"{files[0]} does not alternate frame numbers and labels for each hand ({error!r}): download it again"
+            f"{files[0]} does not list frame numbers and labels in turn for each hand ({error!r}): download it again"
         ) from None
 
 

@@ -64,8 +64,8 @@ class Naming:
         action = "" if match is None else (match["action"] or "").strip()
         if match is None or not action:
             raise DatasetError(
-                f"{path.name} is not imported, because its name does not give the action: it has to match "
-                f"{self.pattern.pattern!r}; rename it, or give another --pattern with the groups action and person"
+                f"{path.name} is not imported, because --pattern {self.pattern.pattern!r} finds no action in its name: "
+                "rename the file, or give a --pattern whose group `action` matches part of this name"
             )
         person = match["person"] if "person" in self.pattern.groupindex else ""
         return self.actions.get(action, action), (person or "").strip()

@@ -29,8 +29,8 @@ from actum_deployer.roles import (
 )
 
 ROUTERS_CANNOT = (
-    "a router's credentials cannot be revoked, because its stolen key could still deceive clients: delete "
-    "authority/, run 'actum deploy init' and copy all folders again"
+    "The credentials of a router cannot be revoked, because clients would still trust its stolen key. To replace "
+    "them, delete authority/, run 'actum deploy init' and copy all folders again"
 )
 """Why the credentials of a router cannot be revoked: clients know it by its address, not by its name."""
 FILE = "deployment.json"
@@ -152,7 +152,7 @@ class Deployment:
         known = {identity(role, sensor) for role, sensor in self.subjects}
         for each in identities:
             if each not in known:
-                raise SettingsError(f"revoke: {each!r} is not one of {', '.join(sorted(known))}; {ROUTERS_CANNOT}")
+                raise SettingsError(f"revoke: {each!r} is not one of {', '.join(sorted(known))}. {ROUTERS_CANNOT}")
         again = {each: self.revoked.get(each, 0) + 1 for each in identities}
         return replace(self, revoked={**self.revoked, **again})
 
@@ -177,8 +177,9 @@ class Deployment:
         except (OSError, ValidationError, SettingsError, InvalidKeyError) as error:
             told = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
             raise SettingsError(
-                f"{folder / FILE} cannot be used ({told}): correct it, because it lists the revoked credentials. "
-                "Or delete it and authority/, run 'actum deploy init' and copy all folders again"
+                f"{folder / FILE} cannot be used ({told}): correct this file, because it lists the revoked "
+                "credentials. If you cannot, delete this file and authority/, run 'actum deploy init' and copy all "
+                "folders again"
             ) from None
         return read
 

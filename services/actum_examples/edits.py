@@ -34,7 +34,7 @@ def relabel(take: Take, segment: MarkedSegment, label: str) -> None:
         EditError: it has no start mark to hold the label.
     """
     if segment.start_ns is None:
-        raise EditError(f"{segment.segment_id} has no start mark to hold the label: delete the segment")
+        raise EditError(f"{segment.segment_id} cannot be labelled, because it has no start mark: delete the segment")
     origin = MANUAL if segment.origin == AUTO else segment.origin
     _mend(take, [(segment, replace(segment, label=label, origin=origin))])
 

@@ -1,1 +1,1 @@
-"""Pictures that show what a trained model has learnt, and explain its answers."""
+"""Pictures that show what a trained model has learnt, and its answers."""

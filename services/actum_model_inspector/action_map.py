@@ -7,11 +7,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox, BboxBase
 
 from actum.arrays import Floats, Indices
 from actum.som import Som
 from actum_model_inspector.answered import AnsweredSegment
-from actum_model_inspector.label_placement import LabelSpace, text_size
 from actum_model_inspector.regions import Regions, innermost_unit, largest_component, regions
 from actum_model_inspector.style import (
     HALO,
@@ -31,27 +32,40 @@ SIDE_IN = 10.0  # inches of the map's longer side: names of 25 actions find room
 PALEST = 0.15  # share of a unit's colour, the rest white, where two actions answer alike: still a hint of colour
 NAME_PT = 10.0  # letters of an action's name: readable on a screen
 MISTAKE_PT = 6.5  # letters of the names at wrong answers: smaller, as there may be many
-BOLD = 1.15  # width of bold letters in units of plain ones
+
+Place = tuple[float, float, str, str]
+"""How far a name lies to the right of its unit and beneath it, units of the map, and how it is aligned there."""
+ON_UNIT: tuple[Place, ...] = (
+    (0.0, 0.0, "center", "center"),
+    (0.0, 0.0, "center", "bottom"),
+    (0.0, 0.0, "center", "top"),
+)
+"""Places for the name of a region on its innermost unit, the best first."""
+BESIDE_UNIT: tuple[Place, ...] = (
+    (0.45, -0.2, "left", "bottom"), (0.45, 0.2, "left", "top"), (-0.45, -0.2, "right", "bottom"),
+    (-0.45, 0.2, "right", "top"), (0.0, -0.45, "center", "bottom"), (0.0, 0.45, "center", "top"),
+)  # fmt: skip
+"""Places for a name beside its unit, the best first."""
 
 
-@in_house_style
+@in_house_style()
 def action_map(maps: ModelMaps, segments: Sequence[AnsweredSegment] = ()) -> Figure:
     """Colour each unit by the action whose neuron is most active for it, and put a dot on each segment's winner."""
     som, labels = maps.actions, maps.model.labels
-    map_regions = regions(maps.unit_cosines(), som.grid)
+    map_regions = regions(maps.unit_cosines(), som.rows, som.cols)
     longest = max(som.rows, som.cols)
     size = max(SIDE_IN * som.cols / longest, 6.0), max(SIDE_IN * som.rows / longest, 3.0) + 0.85
     figure = figure_with_layout(*size, f"The map of actions: {som.rows} × {som.cols} units, {len(labels)} actions")
     axes = figure.add_subplot()
     _draw_regions(axes, map_regions, len(labels))
     dots = [segment for segment in segments if segment.action_unit is not None]
-    space = LabelSpace((-0.5, -0.5, som.cols - 0.5, som.rows - 0.5))
-    _name_regions(axes, map_regions, labels, space)
-    _draw_dots(axes, som, dots, space)
+    names = _name_regions(axes, map_regions, labels)
+    _draw_dots(axes, som, dots)
     axes.set_title(_legend(dots))
     without_region = [label for index, label in enumerate(labels) if not (map_regions.actions == index).any()]
     if without_region:
         axes.set_xlabel(f"without a place of their own: {wrapped(', '.join(without_region), 110)}", loc="left")
+    _place_names(figure, names, _name_mistakes(axes, som, dots))
     return figure
 
 
@@ -89,60 +103,79 @@ def _draw_regions(axes: Axes, map_regions: Regions, actions: int) -> None:
     hide_axes(axes)
 
 
-def _name_regions(axes: Axes, map_regions: Regions, labels: Sequence[str], space: LabelSpace) -> None:
+def _name_regions(axes: Axes, map_regions: Regions, labels: Sequence[str]) -> list[Text]:
     """Write each action's name into the largest connected component of its region."""
-    for index, label in enumerate(labels):
-        component = largest_component(map_regions.actions == index)
-        if not len(component):
-            continue
-        row, col = innermost_unit(component)
-        name = wrapped(label, 14)
-        width, height = text_size(name, BOLD * _in_units(NAME_PT, map_regions.actions.shape))
-        x, y = space.moved_inside(col, row, width, height)
-        x, y = space.place(((x, y + shift * height) for shift in (0, -0.5, 0.5, -1, 1)), width, height) or (x, y)
+    components = (largest_component(map_regions.actions == index) for index in range(len(labels)))
+    middles = {label: innermost_unit(units) for label, units in zip(labels, components, strict=True) if len(units)}
+    return [
         axes.text(
-            x, y, name, ha="center", va="center", weight="bold", path_effects=HALO, fontsize=NAME_PT, linespacing=0.95,
-            zorder=5, in_layout=False,
-        )  # fmt: skip
+            col, row, wrapped(label, 14), ha="center", va="center", weight="bold", path_effects=HALO, fontsize=NAME_PT,
+            linespacing=0.95, zorder=5,
+        )
+        for label, (row, col) in middles.items()
+    ]  # fmt: skip
 
 
-def _draw_dots(axes: Axes, som: Som, dots: Sequence[AnsweredSegment], space: LabelSpace) -> None:
-    """Draw a dot per segment; one with a wrong answer gets a ring and the name of the action that was really done."""
+def _draw_dots(axes: Axes, som: Som, dots: Sequence[AnsweredSegment]) -> None:
+    """Draw a dot per segment, and a ring around one with a wrong answer."""
     units = np.array([dot.action_unit for dot in dots], dtype=np.intp)
-    places = som.coordinates[units][:, ::-1] + spread_on_unit(units)
-    wrong = np.array([dot.label is not None and not dot.correct for dot in dots], dtype=bool)
-    x, y = places.T
+    x, y = (som.coordinates[units][:, ::-1] + spread_on_unit(units)).T
+    wrong = np.array([_is_mistake(dot) for dot in dots], dtype=bool)
     axes.scatter(x, y, s=13, c=INK, edgecolors=PAPER, linewidths=0.6, zorder=3)
     axes.scatter(x[wrong], y[wrong], s=80, facecolors="none", edgecolors=INK, zorder=3)
-    for unit in np.unique(units[wrong]):
-        done = Counter(dot.label or "" for dot in dots if dot.action_unit == unit and dot.label and not dot.correct)
-        _name_mistakes(axes, som, int(unit), done, space)
 
 
-def _name_mistakes(axes: Axes, som: Som, unit: int, done: Counter[str], space: LabelSpace) -> None:
-    """Write beside a unit the actions really done in its wrongly answered segments, unless there is no room."""
-    text = "\n".join(wrapped(label, 18, 1) + (f" × {n}" if n > 1 else "") for label, n in done.most_common())
-    row, col = som.coordinates[unit]
-    width, height = text_size(text, _in_units(MISTAKE_PT, (som.rows, som.cols)))
-    middles = [
-        (col + right * (0.45 + width / 2), row + down * (0.2 + height / 2)) for right in (1, -1) for down in (-1, 1)
-    ]
-    place = space.place([*middles, (col, row - 0.45 - height / 2), (col, row + 0.45 + height / 2)], width, height)
-    if place is not None:
+def _name_mistakes(axes: Axes, som: Som, dots: Sequence[AnsweredSegment]) -> list[Text]:
+    """Write at each unit with wrong answers the actions really done there."""
+    done: dict[int, Counter[str]] = {}
+    for dot in filter(_is_mistake, dots):
+        done.setdefault(dot.action_unit or 0, Counter())[dot.label or ""] += 1
+    return [
         axes.text(
-            *place, text, fontsize=MISTAKE_PT, ha="center", va="center", path_effects=HALO, zorder=4, in_layout=False
-        )  # fmt: skip
+            unit % som.cols, unit // som.cols,
+            "\n".join(wrapped(label, 18, 1) + (f" × {n}" if n > 1 else "") for label, n in labels.most_common()),
+            fontsize=MISTAKE_PT, path_effects=HALO, zorder=4, in_layout=False,
+        )
+        for unit, labels in done.items()
+    ]  # fmt: skip
 
 
-def _in_units(points: float, shape: tuple[int, ...]) -> float:
-    """Convert a size in typographic points into units of a map (rows, cols)."""
-    return points * max(shape) / (72 * SIDE_IN)
+def _place_names(figure: Figure, regions: Sequence[Text], mistakes: Sequence[Text]) -> None:
+    """Move names to where they overlap no other; one of a mistake is left out where there is no room on the page."""
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    taken: list[Bbox] = []
+    for name in regions:
+        if not _placed(name, ON_UNIT, figure.bbox, taken):
+            name.set_verticalalignment("center")
+    for name in mistakes:
+        if not _placed(name, BESIDE_UNIT, figure.bbox, taken):
+            name.remove()
+
+
+def _placed(name: Text, places: Sequence[Place], page: BboxBase, taken: list[Bbox]) -> bool:
+    """Move a name by the first offset at which it is on the page and overlaps no box taken so far; tell whether one is.
+
+    Its box is taken then.
+    """
+    x, y = name.get_position()
+    for right, down, ha, va in places:
+        name.set(position=(x + right, y + down), ha=ha, va=va)
+        box = name.get_window_extent()
+        if not box.count_overlaps(taken) and page.contains(*box.min) and page.contains(*box.max):
+            taken.append(box)
+            return True
+    return False
+
+
+def _is_mistake(dot: AnsweredSegment) -> bool:
+    return dot.label is not None and not dot.correct
 
 
 def _legend(dots: Sequence[AnsweredSegment]) -> str:
     colours = "each unit in the colour of the action that answers most there; pale: hardly more than the next one"
     if not dots:
         return colours
-    wrong = sum(dot.label is not None and not dot.correct for dot in dots)
+    wrong = sum(map(_is_mistake, dots))
     ringed = f", {wrong} of them ringed: taken for another action than the one named beside them" if wrong else ""
     return f"{colours}\n{len(dots)} dots: the segments{ringed}"

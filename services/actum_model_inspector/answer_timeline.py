@@ -6,18 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from rich.cells import cell_len
 
 from actum.arrays import Floats, Indices
 from actum.node import SECOND_NS
 from actum_model_inspector.answered import AnsweredSegment, encoded, headline
-from actum_model_inspector.label_placement import spread_apart
 from actum_model_inspector.stick_figures import Pen, draw_figures
 from actum_model_inspector.style import HALO, action_colours, axes_at, figure_without_layout, hide_axes, in_house_style
-from actum_model_inspector.text_layout import columns, shortened, wrapped
+from actum_model_inspector.text_layout import shortened, wrapped
 from som_classifier.model import Model
 from som_classifier.recognition import Recognition
 
-NAMED = 5  # lines with colour and name; more names do not fit beside the axes
+NAMED = 5  # lines with colour and name: more are hard to tell apart
 FIGURES = 6  # of the actor: as many as stand side by side without touching
 MAX_INSTANTS = 200  # at which the model answers: more bars than that melt into one another
 SIZE_IN = 10.5, 7.0  # width and height of the picture
@@ -27,7 +27,6 @@ ACTOR_IN = 1.6  # height of the actor's figures
 NAME_COLUMNS = 28  # small letters for which there is room to the right of the axes
 DONE = " (done)"
 _LETTER_WIDTH = 0.011  # of a small letter, as a share of the axes' width
-_NAME_GAP = 0.07  # between two names, as a share of the axes' height
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +60,7 @@ def answer_timeline(model: Model, answered: AnsweredSegment) -> AnswerTimeline:
     )
 
 
-@in_house_style
+@in_house_style()
 def timeline_picture(model: Model, answered: AnsweredSegment) -> Figure:
     """Draw the neurons' activations over time, beneath them the decisions, and the actor at some instants."""
     timeline = answer_timeline(model, answered)
@@ -86,12 +85,9 @@ def _draw_lines(axes: Axes, timeline: AnswerTimeline, labels: Sequence[str], don
     for rank, index in enumerate(named):
         width = 2.8 if rank == 0 else 1.6
         axes.plot(times_s, activations[:, index], dot + "-", color=colours[index], linewidth=width, clip_on=False)
-    ends = [float(activations[-1, index]) for index in named]
-    height = float(np.ptp(activations)) or 1.0
-    for index, end, place in zip(named, ends, spread_apart(ends, _NAME_GAP * height), strict=True):
-        suffix = DONE if labels[index] == done else ""
-        name = shortened(labels[index], NAME_COLUMNS - len(suffix)) + suffix
-        _name_line(axes, name, (float(times_s[-1]), end), place, colours[index])
+    by_end = sorted(zip(named, axes.lines[-len(named) :], strict=True), key=lambda pair: -activations[-1, pair[0]])
+    names = [_shown(labels[index], done) for index, _ in by_end]
+    axes.legend([line for _, line in by_end], names, loc="upper left", bbox_to_anchor=(1.02, 1), frameon=False)
     axes.set_ylabel("activation (cosine)")
     axes.set_title("each line an action's neuron: how much the frames so far are like what it learnt; grey: the others")
 
@@ -109,12 +105,10 @@ def _named_actions(timeline: AnswerTimeline, labels: Sequence[str], done: str | 
     return np.array([timeline.winners[-1], *most[most != timeline.winners[-1]]])
 
 
-def _name_line(axes: Axes, name: str, end: tuple[float, float], place: float, colour: Floats) -> None:
-    """Write a name to the right of the axes at height `place`, joined to the end of its line."""
-    axes.annotate(
-        name, end, (1.04, place), textcoords=axes.get_yaxis_transform(), va="center", annotation_clip=False,
-        arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 1.2, "shrinkB": 0, "relpos": (0, 0.5)},
-    )  # fmt: skip
+def _shown(label: str, done: str | None) -> str:
+    """Return an action's name for the legend, marked where it is the action done."""
+    suffix = DONE if label == done else ""
+    return shortened(label, NAME_COLUMNS - len(suffix)) + suffix
 
 
 def _draw_decision(axes: Axes, timeline: AnswerTimeline, labels: Sequence[str]) -> None:
@@ -131,7 +125,7 @@ def _draw_decision(axes: Axes, timeline: AnswerTimeline, labels: Sequence[str]) 
     begins = np.flatnonzero(np.concatenate([[True], winners[1:] != winners[:-1]]))
     for first, last in zip(begins, [*begins[1:], len(winners)], strict=True):
         name = shortened(labels[winners[first]], NAME_COLUMNS)
-        if (borders_s[last] - borders_s[first]) / max(borders_s[-1], 1e-9) > _LETTER_WIDTH * columns(name):
+        if (borders_s[last] - borders_s[first]) / max(borders_s[-1], 1e-9) > _LETTER_WIDTH * cell_len(name):
             middle = (borders_s[first] + borders_s[last]) / 2
             axes.text(middle, 0.45, name, ha="center", va="center", path_effects=HALO, fontsize=8)
     axes.set_ylim(0, 1)

@@ -1,7 +1,5 @@
 """The picture of the confusion matrix."""
 
-from collections.abc import Sequence
-
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,20 +14,18 @@ from actum_model_inspector.style import (
     figure_with_layout,
     hide_axes,
     in_house_style,
-    set_caption,
 )
-from actum_model_inspector.text_layout import columns, wrapped
+from actum_model_inspector.text_layout import wrapped
 from actum_model_trainer.evaluation import Evaluation, wilson_interval
 
 CELL_IN = 0.42  # side of a cell: room for three digits
 NAME_COLUMNS = 24  # width of a line of an action's name, in small letters
 SHADES = mpl.colormaps["Blues"]
-_COLUMN_IN = 0.08  # width of a small letter
 _DARKEST = 0.85  # of the colour map: beyond, black ink could not be told from the ground
 _WHITE_INK_FROM = 0.55  # share of the row from which on a count is written in white
 
 
-@in_house_style
+@in_house_style()
 def confusion_picture(evaluation: Evaluation) -> Figure:
     """Draw counts by action done (rows) and answered (columns), shaded by their share of the row."""
     counts, names = _counts(evaluation)
@@ -37,17 +33,14 @@ def confusion_picture(evaluation: Evaluation) -> Figure:
     low, high = wilson_interval(evaluation.correct, evaluation.n)
     interval = f"95 % interval {low:.0%}–{high:.0%}"
     title = f"{evaluation.accuracy:.1%} recognised: {evaluation.correct} of {evaluation.n} ({interval})"
-    width_in = max(CELL_IN * cols + 3.2, 7.0)
-    figure = figure_with_layout(width_in, CELL_IN * rows + 2.6, title)
+    figure = figure_with_layout(max(CELL_IN * cols + 3.2, 7.0), CELL_IN * rows + 2.6, title)
     axes = figure.add_subplot()
     shares = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
     draw_squares(axes, SHADES(_DARKEST * shares)[..., :3])
     _write_counts(axes, counts, shares)
     _name_rows_and_columns(axes, evaluation, names)
-    set_caption(
-        axes,
-        "row: what was done; column: what it was taken for; diagonal: right; shade: share of the row",
-        width_in - _widest_in(evaluation.labels) - 0.5,
+    axes.set_title(
+        "row: what was done; column: what it was taken for; diagonal: right; shade: share of the row", wrap=True
     )
     return figure
 
@@ -59,11 +52,6 @@ def _counts(evaluation: Evaluation) -> tuple[Indices, list[str]]:
     if not any(rejected):
         return counts, evaluation.labels
     return np.column_stack([counts, rejected]), [*evaluation.labels, "(rejected)"]
-
-
-def _widest_in(labels: Sequence[str]) -> float:
-    """Return the width of the widest line of the actions' names, inches."""
-    return _COLUMN_IN * max(columns(line) for label in labels for line in wrapped(label, NAME_COLUMNS).split("\n"))
 
 
 def _write_counts(axes: Axes, counts: Indices, shares: Array) -> None:

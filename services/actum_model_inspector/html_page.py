@@ -22,7 +22,6 @@ nav a { margin-right: 1rem; display: inline-block; }
 .pictures { display: grid; gap: 1.5rem; align-items: start; }
 .pictures { grid-template-columns: repeat(auto-fill, minmax(min(34rem, 100%), 1fr)); }
 figure { margin: 0; }
-figure[id^="why-"] { grid-column: 1 / -1; }
 img { width: 100%; height: auto; border: 1px solid #ddd; border-radius: 4px; }
 """
 

@@ -12,7 +12,6 @@ from actum_model_inspector.answer_timeline import timeline_picture
 from actum_model_inspector.answered import AnsweredSegment, headline
 from actum_model_inspector.arm_map import arm_map
 from actum_model_inspector.confusion import confusion_picture
-from actum_model_inspector.explanation import explanation_picture
 from actum_model_inspector.folder import PAGE, clear, note
 from actum_model_inspector.posture_map import posture_map
 from actum_model_inspector.reliability_diagram import labelled_answers, reliability_picture
@@ -137,11 +136,3 @@ def _of_segment(maps: ModelMaps, section: str, name: str, answered: AnsweredSegm
         "come; the last bar and the last points are the answer to the complete action, and may jump.",
         partial(timeline_picture, maps.model, answered),
     )  # fmt: skip
-    if isinstance(maps, PyramidMaps):
-        yield Picture(
-            section, f"why-{name}",
-            "What decided: each box is a part of the action, from the whole at the top to its shortest parts beneath; "
-            "the stronger its colour, the more it tipped the balance. The bars above add the boxes up and take off "
-            "what they come to in an average segment of the training.",
-            partial(explanation_picture, maps.model, answered),
-        )  # fmt: skip

@@ -16,7 +16,7 @@ FILLED = 0.96  # height of a figure in units of its place: neighbours do not tou
 _DARKEST = 0.35  # grey level taken off white at the largest distance: figures stay visible on it
 
 
-@in_house_style
+@in_house_style()
 def posture_map(maps: ModelMaps) -> Figure:
     """Draw each unit's weights as a figure, on the U-matrix."""
     som = maps.postures

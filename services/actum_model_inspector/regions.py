@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from actum.arrays import Floats, Indices, Mask
-from actum.som.grid import Grid
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,12 +20,12 @@ class Regions:
     margins: Floats
 
 
-def regions(cosines: Floats, grid: Grid) -> Regions:
-    """Divide the map by the neurons' cosines for each unit, (units, actions), two actions at least."""
+def regions(cosines: Floats, rows: int, cols: int) -> Regions:
+    """Divide a map by the neurons' cosines for each unit, (rows * cols, actions), two actions at least."""
     ordered = np.sort(cosines, axis=1)
     margins = ordered[:, -1] - ordered[:, -2]
-    shape = grid.rows, grid.cols
-    return Regions(cosines.argmax(axis=1).reshape(shape), (margins / max(margins.max(), 1e-12)).reshape(shape))
+    relative = margins / max(margins.max(), 1e-12)
+    return Regions(cosines.argmax(axis=1).reshape(rows, cols), relative.reshape(rows, cols))
 
 
 def largest_component(mask: Mask) -> Indices:

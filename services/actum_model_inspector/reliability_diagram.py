@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from actum_model_inspector.answered import AnsweredSegment
-from actum_model_inspector.style import ACCENT, FAINT, INK, figure_with_layout, in_house_style, set_caption
+from actum_model_inspector.style import ACCENT, FAINT, INK, figure_with_layout, in_house_style
 from actum_model_trainer.calibration_error import MIN_ANSWERS, ConfidenceBin, calibration_error, confidence_bins
 from actum_model_trainer.evaluation import wilson_interval
 
@@ -24,7 +24,7 @@ def bins(segments: Sequence[AnsweredSegment]) -> list[ConfidenceBin]:
     return confidence_bins([confidence for confidence, _ in answers], [correct for _, correct in answers])
 
 
-@in_house_style
+@in_house_style()
 def reliability_picture(segments: Sequence[AnsweredSegment]) -> Figure:
     """Draw accuracy over confidence, and beneath it the number of answers of each point.
 
@@ -60,7 +60,7 @@ def _draw_accuracy(axes: Axes, filled_bins: Sequence[ConfidenceBin]) -> None:
     )
     axes.set(ylabel="share of right answers", xlim=(0, 1), ylim=(0, 1.02))
     reading = "on the dashed line, eight in ten of the answers given with 0.8 are right; bars: 95 % interval"
-    set_caption(axes, reading, WIDTH_IN - 1)
+    axes.set_title(reading, wrap=True)
 
 
 def _draw_counts(axes: Axes, filled_bins: Sequence[ConfidenceBin]) -> None:

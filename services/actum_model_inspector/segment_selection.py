@@ -6,7 +6,7 @@ from itertools import count
 
 from actum_model_inspector.answered import AnsweredSegment
 
-MAX_MISTAKES = 5  # with three pictures each: more nobody looks at
+MAX_MISTAKES = 5  # with two pictures each: more nobody looks at
 _MAX_NAME_LENGTH = 50  # letters: file systems allow 255 bytes, of up to four a letter, for the whole name
 
 

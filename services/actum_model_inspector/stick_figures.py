@@ -122,9 +122,7 @@ def draw_figures(
         _draw_heads(axes, laid[:, figure.head], 2 * HEAD_M * size / HEIGHT_M, pen)
 
 
-def draw_arrows(
-    axes: Axes, points: Floats, steps_m: Floats, places: Floats, size: float, width_in: float = 0.03
-) -> None:
+def draw_arrows(axes: Axes, points: Floats, steps_m: Floats, places: Floats, size: float, width_in: float) -> None:
     """Draw arrows from joints.
 
     Args:

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from rich.cells import cell_len
 
 from actum.arrays import Array
 from actum_model_inspector.style import (
@@ -21,7 +22,7 @@ from actum_model_inspector.style import (
     figure_without_layout,
     in_house_style,
 )
-from actum_model_inspector.text_layout import columns, shortened
+from actum_model_inspector.text_layout import shortened
 
 WIDTH_IN = 10.5  # of the picture, as of the others
 LEFT_IN, RIGHT_IN = 0.75, 0.2  # beside the axes: room for the numbers and for the last time
@@ -33,7 +34,7 @@ LANE_IN = 0.28  # height of a row's answers, beneath
 ROW_S = 40.0  # seconds in a row: a segment of a second has room for a short name
 MOST_ROWS = 15  # of a longer stream, the rows hold more
 LETTER_IN = 0.058  # width of a small letter of a name
-LEAST_ROOM = 3.0  # letters of a name: fewer say nothing
+LEAST_ROOM = 3  # letters of a name: fewer say nothing
 HEADROOM = 1.45  # height of the axes of speeds over the largest: room for the names
 
 
@@ -65,7 +66,7 @@ class SpeedLine:
     speeds_mps: Array
 
 
-@in_house_style
+@in_house_style()
 def stream_picture(
     title: str, speeds: Sequence[SpeedLine], marked: Sequence[Span], lanes: Sequence[Lane], answers_of: str
 ) -> Figure:
@@ -132,7 +133,7 @@ def _draw_answers(axes: Axes, lane: Lane, colours: dict[str, Array]) -> None:
         name = f"{span.label} {span.note}".strip() if span.label else span.note
         room = _room(axes, span)
         if room >= LEAST_ROOM:
-            _write(axes, span, 0.5, name if columns(name) <= room else shortened(span.label or name, room), "center")
+            _write(axes, span, 0.5, name if cell_len(name) <= room else shortened(span.label or name, room), "center")
     axes.set_ylim(0, 1)
     axes.set_yticks([0.5], [lane.name])
     axes.tick_params(axis="y", length=0)
@@ -146,11 +147,11 @@ def _write(axes: Axes, span: Span, height: float, text: str, align: str) -> None
         axes.text(middle_s, height, text, ha="center", va=align, fontsize=7, path_effects=HALO, clip_on=True)
 
 
-def _room(axes: Axes, span: Span) -> float:
+def _room(axes: Axes, span: Span) -> int:
     """Return how many small letters fit beside one another into the part of a span that the axes show."""
     low, high = axes.get_xlim()
     shown_s = float(np.diff(np.clip([span.start_s, span.end_s], low, high))[0])
-    return shown_s / (high - low) * (WIDTH_IN - LEFT_IN - RIGHT_IN) / LETTER_IN
+    return int(shown_s / (high - low) * (WIDTH_IN - LEFT_IN - RIGHT_IN) / LETTER_IN)
 
 
 def _name_people(axes: Axes, speeds: Sequence[SpeedLine]) -> None:

@@ -1,11 +1,10 @@
 """The style of all pictures (fonts, colours for the colour-blind), parts that they share, and how they are saved."""
 
-import textwrap
 import warnings
-from collections.abc import Callable
-from functools import wraps
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, ParamSpec
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -32,7 +31,6 @@ _HUES = (
 )  # fmt: skip
 """Six of the Okabe-Ito palette, four of Tol's muted one, two more: the colour-blind tell most of them apart."""
 _LIGHTER = 0.45  # share of white in a colour that comes a second time
-_CHARACTERS_PER_IN = 14.0  # small letters of a caption, on the safe side
 _TITLE_CHARACTERS_PER_IN = 8.5  # letters of a title
 _WIDER_SCRIPTS = (
     "Noto Sans CJK JP", "Noto Sans CJK SC", "Noto Sans Arabic", "Noto Sans Devanagari", "Noto Sans Thai", "Noto Emoji",
@@ -63,18 +61,16 @@ STYLE: Any = {
 }
 """Matplotlib's parameters while a picture is made and while it is saved."""
 
-Arguments = ParamSpec("Arguments")
 
+@contextmanager
+def in_house_style() -> Iterator[None]:
+    """Return a context, or a decorator, in which pictures are made with `STYLE`, whatever parameters are in force.
 
-def in_house_style(make: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
-    """Decorate a function so that it makes its picture with `STYLE`, whatever parameters are in force."""
-
-    @wraps(make)
-    def made(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Figure:
-        with mpl.rc_context(STYLE):
-            return make(*args, **kwargs)
-
-    return made
+    Letters that no font has are drawn as boxes; `missing_glyphs` names them.
+    """
+    with mpl.rc_context(STYLE), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", r"Glyph .* missing from font")
+        yield
 
 
 HALO = [withStroke(linewidth=2.5, foreground=PAPER)]
@@ -93,7 +89,7 @@ def figure_without_layout(width_in: float, height_in: float, title: str) -> Figu
 
 
 def _titled(figure: Figure, title: str) -> Figure:
-    broken = wrapped(title, figure.get_figwidth() * _TITLE_CHARACTERS_PER_IN, lines=3)
+    broken = wrapped(title, int(figure.get_figwidth() * _TITLE_CHARACTERS_PER_IN), lines=3)
     figure.suptitle(broken, x=0.005, ha="left")
     return figure
 
@@ -107,14 +103,11 @@ def axes_at(figure: Figure, left_in: float, bottom_in: float, width_in: float, h
 def save(figure: Figure, path: Path) -> None:
     """Write a picture in the format that the file's ending names; the same picture makes the same file.
 
-    Letters that no font has are drawn as boxes; `missing_glyphs` names them.
-
     Raises:
         OSError: the file cannot be written.
     """
     metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-    with mpl.rc_context(STYLE), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", r"Glyph .* missing from font")
+    with in_house_style():
         figure.savefig(path, dpi=DOTS_PER_INCH, metadata=metadata)
 
 
@@ -123,11 +116,6 @@ def missing_glyphs(text: str) -> str:
     fonts = [get_font(findfont(family)) for family in STYLE["font.family"]]
     letters = sorted(set(on_one_line(text)))
     return "".join(letter for letter in letters if not any(font.get_char_index(ord(letter)) for font in fonts))
-
-
-def set_caption(axes: Axes, text: str, width_in: float) -> None:
-    """Write a caption above axes of this width, broken into lines."""
-    axes.set_title("\n".join(textwrap.wrap(text, int(width_in * _CHARACTERS_PER_IN))))
 
 
 def draw_squares(axes: Axes, colours: Floats) -> None:

@@ -26,7 +26,7 @@ TIME_COLOURS = mpl.colormaps["plasma"].resampled(256)
 _LATEST = 0.88  # of the colour scale, for the segment's end: its last part is too light for white paper
 
 
-@in_house_style
+@in_house_style()
 def trace_picture(maps: ModelMaps, answered: AnsweredSegment) -> Figure:
     """Draw the winners of a segment, joined in their order, over the pale posture map."""
     frames = encoded(maps.model, answered.frames)

@@ -47,7 +47,10 @@ def nearest_neighbour(training: Sequence[Recording], test: Sequence[Recording]) 
     """
     labelled_paths = [(path.label, path.points_m) for path in hand_paths(training) if path.points_m is not None]
     if not labelled_paths:
-        raise ValueError("the training recordings contain no labelled segment with a hand path")
+        raise ValueError(
+            "no labelled segment of the training recordings shows both hands and the torso in at least two frames: "
+            "give other recordings"
+        )
     labels = [label for label, _ in labelled_paths]
     points_m = np.stack([points for _, points in labelled_paths])
     return Evaluation(

@@ -49,7 +49,7 @@ def few(counts: Mapping[str, int]) -> Iterator[str]:
     """Warn of actions with few examples, from their number by action."""
     few = {label: n for label, n in sorted(counts.items()) if n < MIN_EXAMPLES}
     if few:
-        named = listed(f"{label} has {n} ({MIN_EXAMPLES - n} more)" for label, n in few.items())
+        named = listed(f"{label} has {n} ({MIN_EXAMPLES - n} more needed)" for label, n in few.items())
         yield f"Few examples: {named}. Record at least {MIN_EXAMPLES} of each action."
 
 
@@ -83,19 +83,18 @@ def _confused_pair(a: str, b: str, times: Mapping[tuple[str, str], int]) -> str:
     confusions = listed(
         f"{done} was taken for {other} in {times[done, other]} of {tested[done]}" for done, other in mistaken
     )
-    more = listed(done for done, _ in mistaken)
+    more = " and ".join(f"{MIN_EXAMPLES} more examples of {done}" for done, _ in mistaken)
     return (
-        f"{a} and {b} are confused: of examples left out, {confusions}. Record {MIN_EXAMPLES} more of {more}, also "
-        "by new people. If that does not help, perform the actions more differently, or give both the same "
-        "label."
+        f"{a} and {b} are confused: among examples left out of the training, {confusions}. Record {more}, also by new "
+        "people. If that does not help, perform the actions more differently, or give both the same label."
     )
 
 
 def _no_background(counts: Mapping[str, int]) -> Iterator[str]:
     if counts and not any(label in counts for label in BACKGROUND):
         yield (
-            "The recordings hold less than a minute of background, so the model has to guess what is none of the "
-            "actions. Record people who do none of the actions, without --label."
+            "The recordings hold less than a minute of background, so the model cannot reliably reject other "
+            "movements. Record people who do none of the actions, without --label."
         )
 
 

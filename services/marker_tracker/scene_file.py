@@ -113,7 +113,9 @@ def load(path: Path) -> Catalogue:
         _refuse_repeated_keys(path, root, set())
         scene = SceneFile.model_validate(content)
     except RecursionError:
-        raise SceneFileError(f"{path} refers to itself: replace each `*` by its content") from None
+        raise SceneFileError(
+            f"{path} refers to itself: replace each YAML alias (*name) by the content of its anchor (&name)"
+        ) from None
     except ValidationError as error:
         raise SceneFileError("; ".join(_problem(path, root, each) for each in error.errors())) from None
     return _from_scene(path, root, scene)
@@ -163,7 +165,7 @@ def _mounted_markers(path: Path, root: yaml.Node, scene: SceneFile) -> Iterator[
             if name is None or size_m is None:
                 lacking = "family" if name is None else "size_m"
                 raise _refusal(
-                    path, root, location, f"`{lacking}` is missing, both here and for the whole file: add it"
+                    path, root, location, f"`{lacking}` is missing: set it here or at the top level of the file"
                 )
             ids = len(family(name).codes)
             if marker.id >= ids:

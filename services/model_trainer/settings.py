@@ -27,7 +27,7 @@ class Settings(ServiceSettings):
     original_model: Path | None = Field(
         None,
         description=(
-            "a model file to start from: whenever it changes, it is copied over --model. The trainer never writes "
-            "to it. Default: none"
+            "a model file to start from. The trainer only reads it: whenever the file changes, the trainer copies it "
+            "to --model, in place of the model in use. Trained models stay in --trainer-data. Default: none"
         ),
     )

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from actum.codec import encodable
-from actum.commands import Command, NoFields, Refusal
+from actum.commands import Command, NoFields, Refusal, problems
 from actum.messages import Segment, Skeleton, TakeState
 from actum.node import Counters
 from actum.recording import RecordingError
@@ -109,10 +109,10 @@ class TakeCommands:
         label, count = newest.labels[-1], min(len(newest.examples), MOST_REPETITIONS)
         try:
             anew = Record(set=request.set, label=label, person=newest.person, count=count)
-        except ValidationError:
+        except ValidationError as error:
             raise Refusal(
-                f"{label!r} or {newest.person!r} is not a valid name for a new take: relabel or delete the "
-                "example, or record the take again by hand"
+                f"the take {newest.id} cannot be redone ({problems(error)}): relabel or delete its example, or start a "
+                "new take with 'record'"
             ) from None
         self._begin(anew)
         self._replaced = newest.id

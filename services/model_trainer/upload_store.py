@@ -36,15 +36,18 @@ class UploadStore:
         sizes = {file.name: file.stat().st_size for file in self._folder.iterdir()}
         there = sizes.pop(unfinished.name, 0)
         if offset not in (0, there):
-            raise Refusal(f"{name} has {there} bytes so far, not {offset}: continue there, or start again at offset 0")
+            raise Refusal(
+                f"{name} has {there} bytes so far, not {offset}: continue at offset {there}, or start again at offset 0"
+            )
         size = offset + len(data)
         if size > MOST_BYTES:
             raise Refusal(f"{name} is larger than {MOST_BYTES} bytes: send a shorter video")
         total, files = sum(sizes.values()) + size, len(sizes.keys() | {name})
         if total > MOST_TOTAL_BYTES or files > MOST_FILES:
             raise Refusal(
-                f"{name} does not fit: with it, {total} bytes in {files} files would wait for their import, more than "
-                f"{MOST_TOTAL_BYTES} bytes in {MOST_FILES} files: import some of them, or restart the service"
+                f"{name} cannot be stored: {files} files with {total} bytes would then wait to be imported, but at "
+                f"most {MOST_FILES} files with {MOST_TOTAL_BYTES} bytes may wait: import some files first, or restart "
+                "the service, which deletes the waiting files"
             )
         with unfinished.open("ab" if offset else "wb") as file:
             file.write(data)

@@ -165,7 +165,8 @@ class PosePreprocessor:
         check_frame(bridged, unknown, self._settings.reach_limit_m, self._settings.bone_limit_m)
         if agent.joints == person.joints:
             raise BadFrameError(
-                "repeated_joints", "all joints are exactly as in the frame before, so the sensor seems to stand still"
+                "repeated_joints",
+                "all joints equal those of the previous frame, so the sensor lost the person or is frozen",
             )
         return bridged
 

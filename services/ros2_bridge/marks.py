@@ -31,7 +31,9 @@ def segment_of(payload: bytes, sensor: str) -> Segment:
     except ValueError as error:
         raise BadMarkError(f"the mark is not JSON: {error}") from None
     if not isinstance(fields, dict):
-        raise BadMarkError(f"the mark is a {type(fields).__name__}, not an object with {', '.join(FIELDS)}")
+        raise BadMarkError(
+            f"the mark is a {type(fields).__name__}: send a JSON object; its possible fields are {', '.join(FIELDS)}"
+        )
     unknown = [name for name in fields if name not in FIELDS]
     if unknown:
         raise BadMarkError(f"{unknown[0]!r} is not a field of a mark: use {', '.join(FIELDS)}")

@@ -41,8 +41,8 @@ class Settings(ServiceSettings):
         None,
         min_length=1,
         description=(
-            "name of the camera's optical frame in your robot's tf tree, which the bridge then does not publish. "
-            "Default: the bridge publishes SENSOR_link and, below it, SENSOR_optical_frame on /tf_static"
+            "name of the camera's optical frame in your robot's tf tree; the bridge then publishes nothing on "
+            "/tf_static. Default: the bridge publishes SENSOR_link and, below it, SENSOR_optical_frame on /tf_static"
         ),
     )
 

@@ -28,7 +28,7 @@ class Task:
         if self.action not in ACTIONS:
             raise ValueError(f"{self.action!r} is not an action: use one of {', '.join(ACTIONS)}")
         if self.is_pantomime and self.action == "point":
-            raise ValueError("pointing touches no object anyway, so it has no pantomime: choose another action")
+            raise ValueError("'point' has no pantomime, because pointing touches no object: choose another action")
         if self.object_id not in (*object_ids(), NO_OBJECT):
             raise ValueError(f"{self.object_id} is not the id of an object: use one of {object_ids()}")
 

@@ -42,9 +42,8 @@ def optics_of(settings: Settings) -> Optics:
     calibration = None if path is None else Calibration.load(path)
     if calibration is not None and calibration.skeleton_from_image not in (None, SAME_CAMERA):
         raise CalibrationError(
-            f"{path} is the calibration of a second camera, because it contains skeleton_from_image: for a camera "
-            "that sees the people, use its own file of 'actum calibrate intrinsics', or start this one with "
-            "--source marker-camera"
+            f"{path} contains skeleton_from_image, so it is the calibration of a marker camera: start that camera with "
+            "--source marker-camera. A camera that sees the people needs a file of 'actum calibrate intrinsics'"
         )
     return Optics(settings.field_of_view_deg, calibration, settings.person_height_m, settings.mirrored)
 
@@ -94,8 +93,8 @@ def marker_camera_of(settings: Settings, start_ns: int) -> MarkerCamera:
     calibration = None if settings.calibration is None else Calibration.load(settings.calibration)
     if calibration is None or calibration.skeleton_from_image is None:
         raise CalibrationError(
-            "the source marker-camera needs --calibration (ACTUM_CALIBRATION), a file of 'actum calibrate "
-            "extrinsics', which holds the transform to the camera that sees the people"
+            "the source marker-camera needs the transform to the camera that sees the people: set --calibration "
+            "(ACTUM_CALIBRATION) to a file that 'actum calibrate extrinsics' wrote"
         )
     return MarkerCamera(
         lambda: nullcontext(Nobody()),

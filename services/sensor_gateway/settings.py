@@ -48,8 +48,8 @@ class Settings(ServiceSettings):
     up_in_camera: Direction | None = Field(
         None,
         description=(
-            "the upward direction in the coordinates of a tilted camera, as printed by `actum calibrate up`; "
-            "default: the camera is level"
+            "the upward direction as x,y,z in the coordinates of a tilted camera; `actum calibrate up` prints it. "
+            "Default: the camera is level"
         ),
     )
     camera: Annotated[str, BeforeValidator(_text)] = Field(

@@ -1,19 +1,38 @@
 """Loads a model file, whichever recogniser it holds, or says what is wrong with it."""
 
 import json
+import math
+import os
+import tokenize
 import zipfile
+import zlib
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import numpy as np
 from pydantic import ValidationError
 
-from actum.som.storage import UNREADABLE, refuse_bomb
 from som_classifier.model import Arrays, Model
 from som_classifier.paper_model import PaperModel
 from som_classifier.pyramid_model import PyramidModel
 
 KINDS: dict[str, type[Model]] = {"paper": PaperModel, "pyramid": PyramidModel}
+
+UNREADABLE = (
+    OSError, ValueError, TypeError, EOFError, KeyError, RuntimeError, MemoryError, OverflowError, SyntaxError,
+    tokenize.TokenError, zipfile.BadZipFile, zlib.error,
+)  # fmt: skip
+"""What NumPy and zipfile are known to raise on files of another kind, truncated or altered."""
+
+MOST_INFLATION = 20
+"""How many times its size the arrays of a file may take: npz files of ours are not compressed, those of others a few
+times smaller. Files made to fill memory grow a thousand times."""
+LEAST_BYTES = 16_000_000
+"""What they may take (bytes) however small the file is."""
+NPY: Any = np.lib.format
+"""NumPy's file format, which has types in some of its versions only."""
+HEADERS = {(1, 0): NPY.read_array_header_1_0, (2, 0): NPY.read_array_header_2_0}
+"""NumPy's readers of an array's header, by the version of its format; later ones are for named columns."""
 
 
 class ModelError(ValueError):
@@ -54,6 +73,30 @@ def _parts(path: Path, stored: IO[bytes]) -> tuple[str, Arrays]:
     """Return the metadata as JSON, and the arrays by name."""
     if not zipfile.is_zipfile(stored):  # NumPy's own error would advise to read it as a pickle
         raise ModelError(path, "it is not a model of actum, or it is damaged")
-    refuse_bomb(stored)
+    _refuse_bomb(stored)
     with np.load(stored, allow_pickle=False) as file:
         return str(file["metadata"]), {name: file[name] for name in file.files if name != "metadata"}
+
+
+def _refuse_bomb(stored: IO[bytes]) -> None:
+    """Refuse an npz file whose arrays take far more memory than the file, and rewind any other.
+
+    Raises:
+        ValueError, OSError, zipfile.BadZipFile: it is such a file, or is damaged.
+    """
+    with zipfile.ZipFile(stored) as archive:
+        size = sum(max(member.file_size, _array_bytes(archive, member)) for member in archive.infolist())
+    most = LEAST_BYTES + MOST_INFLATION * stored.seek(0, os.SEEK_END)
+    if size > most:
+        raise ValueError(f"its arrays would take {size} bytes of memory; at most {most} are allowed")
+    stored.seek(0)
+
+
+def _array_bytes(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> int:
+    """Return how many bytes NumPy would allocate for an array, as its header says."""
+    with archive.open(member) as array:
+        read_header = HEADERS.get(NPY.read_magic(array))
+        if read_header is None:
+            raise ValueError(f"{member.filename} is not an array that NumPy wrote")
+        shape, _, dtype = read_header(array)
+    return int(math.prod(shape) * dtype.itemsize)

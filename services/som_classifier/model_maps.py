@@ -82,7 +82,9 @@ class PyramidMaps(ModelMaps):
 
     def action_unit(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a complete segment of encoded frames."""
-        scores = self.model.scores([frame.activity for frame in frames], complete_weights(self.model, frames))
+        seconds = (frames[-1].stamp_ns - frames[0].stamp_ns) / SECOND_NS
+        weights = self.model.stages.weights(seconds, complete=True)
+        scores = self.model.scores([frame.activity for frame in frames], weights)
         return self.actions.bmu(scores)
 
     def unit_cosines(self) -> Floats:
@@ -134,8 +136,3 @@ def maps_of(model: Model) -> ModelMaps:
             return PaperMaps(model)
         case _:
             raise NoMapsError(f"the model has no maps: it is of kind {model.metadata.kind!r}")
-
-
-def complete_weights(model: PyramidModel, frames: Sequence[Frame]) -> Sequence[float]:
-    """Return the weights of the discriminant axes' stages at the end of a segment."""
-    return model.stages.weights((frames[-1].stamp_ns - frames[0].stamp_ns) / SECOND_NS, complete=True)

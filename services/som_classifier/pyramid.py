@@ -123,7 +123,7 @@ class Pyramid:
             ValueError: there is no frame.
         """
         if not len(segment):
-            raise ValueError("there is no frame to pool over")
+            raise ValueError("the segment contains no frame")
         at = segment.instants_of(self._borders)
         below = np.minimum(at.astype(np.intp), len(segment) - 1)
         sums, growth = _sums_at_and_after(segment, below.tolist())

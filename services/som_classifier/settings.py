@@ -43,7 +43,7 @@ class Settings(ServiceSettings):
     )
     publish_maps: bool = Field(
         False,
-        description="publish, with each final action, how the model's maps responded to it; the web page draws this",
+        description="publish, with each final action, the activity of the model's maps, which the web page draws",
     )
     segments: WantedSegments = Field(
         "both",
@@ -57,8 +57,8 @@ class Settings(ServiceSettings):
         gt=0,
         allow_inf_nan=False,
         description=(
-            "accepted false alarms per minute in which no action is done; a higher value misses fewer actions. "
-            "Default: the value in the model (1/min)"
+            "accepted rate of false alarms while no action is done; a higher rate misses fewer actions. "
+            "Default: the rate stored in the model (1/min)"
         ),
     )
     shortest_pause_s: Seconds = Field(

@@ -24,7 +24,9 @@ class SupervisedLayer:
     def __post_init__(self) -> None:
         weights = np.array(self.weights, order="C")
         if weights.ndim != 2 or not np.allclose(np.linalg.norm(weights, axis=1), 1.0):
-            raise ValueError(f"weights of shape {weights.shape} are not vectors of unit length, one per action")
+            raise ValueError(
+                f"weights of shape {weights.shape} are not a matrix with one row of unit length per action"
+            )
         weights.setflags(write=False)
         object.__setattr__(self, "weights", weights)
 

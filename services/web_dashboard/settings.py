@@ -51,8 +51,8 @@ class Settings(ServiceSettings):
     page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(
         frozenset(),
         description=(
-            "further host names in the page's address, such as lab.example.org; requests for other names are "
-            "refused. Default: this machine's own name and addresses"
+            "further host names by which browsers may open the page, such as lab.example.org; requests for other "
+            "names are refused. Default: only this machine's own name and addresses"
         ),
     )
 
@@ -61,6 +61,6 @@ class Settings(ServiceSettings):
         if not (is_local(self.page_host) or self.page_guarded or self.page_token):
             raise ValueError(
                 f"page-host {self.page_host} admits other machines: set page-token (ACTUM_PAGE_TOKEN) to "
-                f"{SHORTEST_TOKEN} characters or more, such as 'openssl rand -hex 16' prints"
+                f"{SHORTEST_TOKEN} characters or more; 'openssl rand -hex 16' prints a suitable token"
             )
         return self

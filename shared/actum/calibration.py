@@ -94,9 +94,8 @@ class Calibration(_Part):
     @classmethod
     def _complete(cls, coefficients: list[float]) -> list[float]:
         if len(coefficients) not in DISTORTION_LENGTHS:
-            raise ValueError(
-                f"there are {len(coefficients)} coefficients: give one of these numbers of them: {DISTORTION_LENGTHS}"
-            )
+            allowed = ", ".join(map(str, DISTORTION_LENGTHS))
+            raise ValueError(f"it has {len(coefficients)} coefficients; the number has to be one of {allowed}")
         return coefficients
 
     @field_validator("skeleton_from_image")

@@ -134,7 +134,7 @@ def with_different_names(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
     """
     made = dict(pairs)
     if len(made) < len(pairs):
-        raise ValueError("a map contains the same name twice")
+        raise ValueError("a field name occurs twice in the same object")
     return made
 
 

@@ -3,7 +3,7 @@
 import types
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Literal, TypeVar, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 from pydantic_settings import CliSettingsSource, NoDecode
@@ -14,8 +14,8 @@ S = TypeVar("S", bound=ServiceSettings)
 
 PLACEHOLDERS: dict[Any, str] = {bool: "", int: "INTEGER", float: "NUMBER", str: "TEXT", Path: "PATH"}
 """The placeholder after a flag in the help, by the type of its value."""
-STRUCTURED = "JSON"
-"""The placeholder of lists and maps."""
+LISTED, PAIRED, STRUCTURED = "VALUE,…", "NAME=VALUE,…", "JSON"
+"""The placeholders of lists, of maps from text to text, and of other maps. Flags accept JSON for all three."""
 
 
 def from_command_line(settings_type: type[S], program: str, arguments: Sequence[str] | None = None) -> S:
@@ -48,7 +48,15 @@ def placeholder(field: FieldInfo) -> str:
     annotation = _without_none(field.annotation)
     if get_origin(annotation) is Literal:
         return f"{{{','.join(map(str, get_args(annotation)))}}}"
-    return PLACEHOLDERS.get(annotation, STRUCTURED)
+    return PLACEHOLDERS[annotation] if annotation in PLACEHOLDERS else _of_several(annotation)
+
+
+def _of_several(annotation: Any) -> str:
+    """Return the placeholder of a list or map."""
+    plain = get_args(annotation)[0] if get_origin(annotation) is Annotated else annotation
+    if get_origin(plain) is not dict:
+        return LISTED
+    return PAIRED if plain == dict[str, str] else STRUCTURED
 
 
 def _without_none(annotation: Any) -> Any:

@@ -141,7 +141,10 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
     try:
         fields = Unpacking().unpack(payload) if encoding.startswith(MSGPACK) else _from_json(payload)
     except UNPACK_ERRORS as error:
-        raise Refusal(f"the request cannot be decoded ({error}): send a JSON object, or {MSGPACK}") from None
+        raise Refusal(
+            f"the request cannot be decoded ({error}): send a JSON object, or a MessagePack map with the encoding "
+            f"{MSGPACK}"
+        ) from None
     if not isinstance(fields, dict) or not all(isinstance(name, str) for name in fields):
         raise Refusal(f"the request is a {type(fields).__name__}: send a JSON object or a MessagePack map")
     return fields
@@ -184,7 +187,7 @@ def _inner(value: Any) -> Iterator[Any]:
         case dict():
             for name, inner in value.items():
                 if not isinstance(name, str):
-                    raise Refusal(f"the request has the field name {name!r}: use text for names")
+                    raise Refusal(f"the request has a field named {name!r}: field names have to be text")
                 yield from (name, inner)
         case list():
             yield from value
@@ -197,7 +200,7 @@ def _inner(value: Any) -> Iterator[Any]:
         case None | str() | float() | int() | bytes():
             return
         case _:
-            raise Refusal(f"the request contains a {type(value).__name__}: use the types of JSON, or bytes")
+            raise Refusal(f"the request contains a {type(value).__name__}: use only JSON types and bytes")
 
 
 def problems(error: ValidationError) -> str:

@@ -120,7 +120,8 @@ def key(topic: Topic, sensor: str, name: str | int | None = None) -> str:
         InvalidKeyError: the topic needs a name and none is given, or has none and one is given, or a chunk is invalid.
     """
     if ("{}" in topic.leaf) != (name is not None):
-        raise InvalidKeyError(f"the topic {topic.leaf!r} does not fit the name {name!r}")
+        problem = "needs a name" if name is None else f"takes no name: leave out {name!r}"
+        raise InvalidKeyError(f"the topic {topic.leaf!r} {problem}")
     leaf = topic.leaf if name is None else topic.leaf.format(chunk(str(name)))
     return f"{BASE}/{chunk(sensor)}/{leaf}"
 
@@ -197,7 +198,7 @@ def parse(text: str) -> Address:
         topic = _BY_PREFIX.get(prefix)
         if topic is not None and "{}" in topic.leaf and CHUNK.fullmatch(name):
             return Address(topic, sensor, name)
-    raise InvalidKeyError(f"{text!r} is not a key of actum")
+    raise InvalidKeyError(f"{text!r} is not a key of actum: docs/messages.md lists the keys")
 
 
 def address_of(message: m.Message) -> Address:

@@ -131,7 +131,7 @@ class _Exact:
 
     def read(self, length: int) -> bytes:
         if length < 0:
-            raise ValueError(f"a record has the length {length}")
+            raise ValueError(f"a record has the negative length {length}")
         if length > self._remaining:
             raise EndOfFile
         self._remaining -= length

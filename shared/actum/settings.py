@@ -116,8 +116,8 @@ class ServiceSettings(BaseSettings):
         default_factory=default_instance,
         pattern=f"^{CHUNK.pattern}$",
         description=(
-            "name that tells this process from others of the same service; made from host name and process id where "
-            "none is given"
+            "name of this process, unique among processes of the same service; made from host name and process id "
+            "unless given"
         ),
     )
     take_over: bool = Field(
@@ -126,8 +126,8 @@ class ServiceSettings(BaseSettings):
     zenoh_config: Path | None = Field(
         None,
         description=(
-            "a Zenoh configuration file (JSON5), such as for TLS and user names; the other settings here take "
-            "precedence"
+            "a Zenoh configuration file (JSON5), such as for TLS and user names; the program's own settings take "
+            "precedence over this file"
         ),
     )
     credentials: Path | None = Field(
@@ -147,8 +147,8 @@ class ServiceSettings(BaseSettings):
     health_file: Path | None = Field(
         None,
         description=(
-            "a file whose time is renewed every second while the service works, for a container's health check; "
-            "default: none"
+            "a file whose modification time is renewed every second while the service works, for a container's "
+            "health check; default: none"
         ),
     )
 

@@ -189,7 +189,7 @@ def test_two_of_one_identity_are_a_problem_that_names_both(monkeypatch: pytest.M
     code, output = diagnosed(monkeypatch, system)
     assert code == 1
     assert "pose_preprocessor runs more than once, so that every segment is answered more than once" in output
-    assert f"stop all instances but one of a on lab, {second} on lab" in output
+    assert f"stop all but one of these instances: a on lab, {second} on lab" in output
 
 
 def test_where_there_is_no_room_for_a_table_there_are_lines_of_whole_words() -> None:

@@ -59,13 +59,13 @@ def test_a_model_alone_is_shown_by_its_maps(model: Path, tmp_path: Path) -> None
     assert all(imread(file).size for file in files)
 
 
-def test_a_recording_shows_how_and_why_it_is_recognised(tmp_path: Path) -> None:
+def test_a_recording_shows_how_it_is_recognised(tmp_path: Path) -> None:
     model = tmp_path / "model.npz"
     tiny_model().save(model)
     recording = recorded(tmp_path / "a.mcap", ["push"])
     assert inspect(model, recording, "-o", tmp_path / "out").exit_code == 0
     names = {file.stem for file in linked(tmp_path / "out") if file.is_file()}
-    assert {"confusion", "trace-push", "time-push", "why-push"} <= names
+    assert {"confusion", "trace-push", "time-push"} <= names
 
 
 def files_of(folder: Path) -> set[Path]:
@@ -79,7 +79,7 @@ def test_pictures_of_an_earlier_run_leave_the_folder(tmp_path: Path, ending: str
     tiny_model().save(pyramid)
     tiny_model(TINY_PAPER).save(paper)
     assert inspect(pyramid, recorded(tmp_path / "a.mcap", ["push"]), "-o", out).exit_code == 0
-    assert (out / "why-push.png").exists()
+    assert (out / "movement-map.png").exists()
     done = inspect(paper, recorded(tmp_path / "b.mcap", ["lift"]), "-o", out, "--format", ending)
     assert done.exit_code == 0
     assert files_of(out) == {*linked(out), out / "index.html"}

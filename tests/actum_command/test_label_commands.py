@@ -180,7 +180,10 @@ def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) 
     [
         (("delete", 3), "there is no segment '3' in .*anna.mcap: it has segments 1 to 2"),
         (("move", 0, "--start", "1"), "there is no segment '0'"),
-        (("move", 1, "--start", "2", "--end", "1.5"), "run from 2.00 to 1.50 s: the end has to be at least 0.1 s later"),
+        (
+            ("move", 1, "--start", "2", "--end", "1.5"),
+            "run from 2.00 to 1.50 s: the end has to be at least",
+        ),
         (("move", 1, "--end", "+3"), r"1.20 to 5.57 s overlaps second \(3.80 to 5.17 s\)"),
         (("move", 1, "--start", "-9"), "outside the recording's frames"),
         (("move", 1, "--end", "3600"), "outside the recording's frames"),

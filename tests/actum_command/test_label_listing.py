@@ -1,12 +1,11 @@
 """Segments are listed as training would get them, and named by number or id."""
 
-import re
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
-from actum.messages import AUTO, MANUAL, Message, Segment, Skeleton
+from actum.messages import AUTO, MANUAL, Message, Segment
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum_command.__main__ import app

@@ -196,7 +196,7 @@ def test_what_cannot_be_finished_is_told_and_left(tmp_path: Path) -> None:
     (tmp_path / "a.mcap.part").write_bytes(b"torn")
     told = refused("record", tmp_path / "a.mcap", "--finish")
     assert (
-        "a.mcap.part cannot be turned into a recording (it is not an MCAP file); it was not changed: move or delete it"
+        "a.mcap.part cannot be turned into a recording (it is not an MCAP file) and was not changed: move or delete"
         in told
     )
     assert (tmp_path / "a.mcap.part").read_bytes() == b"torn"

@@ -42,7 +42,9 @@ def test_a_file_that_holds_other_settings_is_left_alone(tmp_path: Path) -> None:
     file = tmp_path / "actum.toml"
     refuse_other_settings(file)
     file.write_text('model = "m.npz"\nsensor = "left"\nshortest_pause_s = 1.0\n')
-    with pytest.raises(OtherSettingsError, match=r"also sets model, sensor: write to another file"):
+    with pytest.raises(
+        OtherSettingsError, match=r"also sets model, sensor, which would be lost: write to another file"
+    ):
         refuse_other_settings(file)
     file.write_text("no toml")
     with pytest.raises(OtherSettingsError, match="is not TOML"):

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from actum.command_line import from_command_line
+from actum.command_line import from_command_line, placeholder
 from actum.settings import ServiceSettings
 from actum_command import processes
 from actum_command.__main__ import app
@@ -68,6 +68,21 @@ def test_a_service_understands_what_it_is_told(started: BY_NAME, monkeypatch: py
     told = from_command_line(DECLARED["action_fusion"], "action_fusion").model_dump()
     assert told["pointing_labels"] == {"point", "show"}
     assert told["expected_outcomes"] == {"toss": "lifted"}
+
+
+@pytest.mark.parametrize(
+    ("service", "setting", "shown"),
+    [
+        ("action_fusion", "pointing_labels", "VALUE,…"),
+        ("sensor_gateway", "up_in_camera", "VALUE,…"),
+        ("marker_tracker", "calibrated_size_px", "VALUE,…"),
+        ("action_fusion", "expected_outcomes", "NAME=VALUE,…"),
+        ("marker_tracker", "objects", "JSON"),
+        ("sensor_gateway", "mirrored", ""),
+    ],
+)
+def test_a_flags_placeholder_shows_the_form_of_its_value(service: str, setting: str, shown: str) -> None:
+    assert placeholder(DECLARED[service].model_fields[setting]) == shown
 
 
 @pytest.mark.parametrize(

@@ -78,7 +78,7 @@ def test_a_source_that_gives_fewer_frames_than_it_is_set_to(put_hz: float, told:
 
 def test_skeletons_that_come_slower_than_they_are_stamped() -> None:
     [line] = said(streams={keys.SKELETON: watched(people(30), apart_s=1 / 12)})
-    assert line.startswith("12 skeletons arrive per second, but their stamps are those of 30")
+    assert line.startswith("12 skeletons arrive per second, but their stamps show that 30")
 
 
 def test_images_that_have_stopped() -> None:

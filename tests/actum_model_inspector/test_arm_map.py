@@ -5,11 +5,9 @@ import pytest
 
 from actum.skeletons import INDEX
 from actum.som import Som
-from actum_model_inspector.arm_map import ArmsOnBodies, arm_map, fastest_m
-from actum_model_inspector.stick_figures import STANDING
+from actum_model_inspector.arm_map import arm_joints, arm_map, arm_steps_m
 from recognisers import tiny_samples
 from som_classifier.first_layer import VELOCITY_WEIGHT, arm_inputs, frame_inputs
-from som_classifier.handedness import mirrored
 from som_classifier.kinematics import LAG_TIME_CONSTANT_S
 
 SHOULDER, ELBOW, HAND = (INDEX[f"right_{name}"] for name in ("shoulder", "elbow", "hand"))
@@ -17,38 +15,25 @@ POSTURES, VELOCITIES = tiny_samples()[0].postures, tiny_samples()[0].velocities
 UNITS = arm_inputs(frame_inputs(POSTURES, VELOCITIES))
 
 
-def test_a_body_s_own_arm_stays_where_it_is() -> None:
-    drawn = ArmsOnBodies.of(UNITS, POSTURES)
-    arm = [SHOULDER, ELBOW, HAND]
-    np.testing.assert_allclose(drawn.arms[:, arm], POSTURES[:, arm])
-    np.testing.assert_allclose(drawn.steps_m[:, arm], VELOCITIES[:, arm] - VELOCITIES[:, [SHOULDER]])
-    assert not np.delete(drawn.steps_m, arm, axis=1).any()
+def test_an_arm_hangs_from_the_shoulder_as_it_did() -> None:
+    joints, steps_m = arm_joints(UNITS), arm_steps_m(UNITS)
+    ends = [ELBOW, HAND]
+    np.testing.assert_allclose(
+        joints[:, ends] - joints[:, [SHOULDER]], POSTURES[:, ends] - POSTURES[:, [SHOULDER]], atol=1e-6
+    )
+    np.testing.assert_allclose(steps_m[:, ends], VELOCITIES[:, ends] - VELOCITIES[:, [SHOULDER]], atol=1e-6)
 
 
-def test_every_joint_is_drawn_once_and_the_shoulder_with_both() -> None:
-    drawn = ArmsOnBodies.of(UNITS, POSTURES)
-    of_body, of_arm = (~np.isnan(joints).any(axis=(0, 2)) for joints in (drawn.bodies, drawn.arms))
-    assert np.flatnonzero(of_body & of_arm).tolist() == [SHOULDER]
-    assert (of_body | of_arm).all()
-
-
-def test_an_arm_hangs_from_the_shoulder_of_whatever_body_it_is_put_on() -> None:
-    drawn = ArmsOnBodies.of(UNITS, np.broadcast_to(STANDING, POSTURES.shape))
-    np.testing.assert_allclose(drawn.arms[:, HAND] - STANDING[SHOULDER], POSTURES[:, HAND] - POSTURES[:, SHOULDER])
-
-
-def test_in_a_mirror_it_is_the_left_arm() -> None:
-    drawn = ArmsOnBodies.of(UNITS, POSTURES).mirrored()
-    left = [INDEX[f"left_{name}"] for name in ("shoulder", "elbow", "hand")]
-    np.testing.assert_allclose(drawn.arms[:, left], mirrored(POSTURES)[:, left])
-    assert np.isnan(drawn.bodies[:, left[1:]]).all()
+def test_nothing_but_the_arm_is_drawn_and_moves() -> None:
+    others = np.delete(np.arange(15), [SHOULDER, ELBOW, HAND])
+    assert np.isnan(arm_joints(UNITS)[:, others]).all()
+    assert not arm_steps_m(UNITS)[:, others].any()
 
 
 def test_the_fastest_unit_is_named_by_its_speed() -> None:
     units = np.zeros((6, 12))
     units[4, 9] = VELOCITY_WEIGHT * LAG_TIME_CONSTANT_S * 2.0
     arms = Som(2, 3, units)
-    assert fastest_m(arms) == pytest.approx(LAG_TIME_CONSTANT_S * 2.0)
     assert "the longest at 2.0 m/s" in arm_map(arms, mirrors=True).axes[0].get_title(loc="left")
 
 

@@ -59,10 +59,10 @@ def test_it_warns_where_the_same_person_trained_the_model(
 
 
 def test_names_are_text_and_never_markup(maps: ModelMaps) -> None:
-    picture = Picture("<script>", "why-a b&c", "a < b", lambda: pytest.fail("nothing is drawn"))
-    written = page(maps.model, [], None, [picture], {picture.name: str(Path("why-a b&c.png"))})
+    picture = Picture("<script>", "time-a b&c", "a < b", lambda: pytest.fail("nothing is drawn"))
+    written = page(maps.model, [], None, [picture], {picture.name: str(Path("time-a b&c.png"))})
     assert "<script>" not in written
-    assert 'src="why-a%20b%26c.png"' in written
+    assert 'src="time-a%20b%26c.png"' in written
 
 
 def test_letters_that_the_pictures_cannot_show_are_named(segments: list[AnsweredSegment], maps: ModelMaps) -> None:

@@ -4,7 +4,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from actum.som.grid import Grid
 from actum_model_inspector.action_map import borders, spread_on_unit
 from actum_model_inspector.regions import innermost_unit, largest_component, regions
 
@@ -13,13 +12,13 @@ masks = arrays(bool, st.tuples(st.integers(1, 7), st.integers(1, 7)))
 
 def test_each_unit_belongs_to_the_action_that_answers_most_there() -> None:
     answers = np.array([[0.9, 0.1], [0.6, 0.4], [0.5, 0.5], [0.0, 0.4]])
-    found = regions(answers, Grid(2, 2))
+    found = regions(answers, 2, 2)
     assert found.actions.tolist() == [[0, 0], [0, 1]]
     assert found.margins == pytest.approx(np.array([[1.0, 0.25], [0.0, 0.5]]))
 
 
 def test_where_all_answer_alike_there_is_no_margin() -> None:
-    assert regions(np.zeros((4, 3)), Grid(2, 2)).margins.tolist() == [[0, 0], [0, 0]]
+    assert regions(np.zeros((4, 3)), 2, 2).margins.tolist() == [[0, 0], [0, 0]]
 
 
 def test_the_largest_of_several_components_is_found() -> None:

@@ -168,7 +168,7 @@ def test_contrasts_are_relative_to_the_distances_on_the_maps(samples: list[Segme
     postures = np.concatenate([sample.postures for sample in samples]).reshape(-1, 45)
     plain = trained(mixed, PLAIN)
     acting = np.concatenate([sample.postures for sample in right_handed(samples)])
-    distances2 = [plain.first.postures.distances2(x.ravel()).min() for x in acting]
+    distances2 = [np.square(plain.first.postures.weights - x.ravel()).sum(axis=1).min() for x in acting]
     assert len(distances2) == len(postures)
     assert plain.metadata.posture_contrast == pytest.approx(0.5 * np.median(distances2), rel=1e-3)
 
@@ -181,7 +181,7 @@ def test_the_map_of_arms_learns_the_arm_that_acts(samples: list[SegmentSample]) 
         np.concatenate([getattr(sample, name) for sample in acting]) for name in ("postures", "velocities")
     )
     arms = arm_inputs(frame_inputs(postures, velocities))
-    distances2 = [model.first.arms.distances2(row).min() for row in arms]
+    distances2 = [np.square(model.first.arms.weights - row).sum(axis=1).min() for row in arms]
     assert model.metadata.arm_contrast == pytest.approx(0.5 * np.median(distances2), rel=1e-3)
     assert tuple(model.metadata.arm_shares) == model.first.arm_shares == PLAIN.arm_shares
     assert model.first.arms.weights.mean(axis=0) == pytest.approx(arms.mean(axis=0), abs=0.1)

@@ -42,7 +42,7 @@ def test_people_that_are_not_named_may_be_one() -> None:
 
 def test_few_examples_are_named_with_how_many_more() -> None:
     assert warnings_of(examples({"push": 2, "lift": 4, "pull": 5, "idle": 5}), []) == [
-        "Few examples: lift has 4 (1 more) and push has 2 (3 more). Record at least 5 of each action."
+        "Few examples: lift has 4 (1 more needed) and push has 2 (3 more needed). Record at least 5 of each action."
     ]
 
 
@@ -64,7 +64,7 @@ def test_background_may_be_as_much_as_there_is() -> None:
 def test_without_background_what_is_none_of_the_actions_is_a_guess() -> None:
     (said,) = warnings_of(examples({"push": 6, "pull": 6}), [])
     assert said.startswith(
-        "The recordings hold less than a minute of background, so the model has to guess what is none of the actions."
+        "The recordings hold less than a minute of background, so the model cannot reliably reject other movements."
     )
     assert warnings_of(examples({"push": 6, "pull": 6, "background": 6}), []) == []
 
@@ -74,13 +74,13 @@ def test_without_background_what_is_none_of_the_actions_is_a_guess() -> None:
     [
         (
             [("push", "push")] * 4 + [("push", "pull")] * 2 + [("pull", "pull")] * 2,
-            "pull and push are confused: of examples left out, push was taken for pull in 2 of 6. "
-            "Record 5 more of push, also by new people. ",
+            "pull and push are confused: among examples left out of the training, push was taken for pull in 2 of 6. "
+            "Record 5 more examples of push, also by new people. ",
         ),
         (
             [("push", "push")] * 3 + [("push", "pull")] + [("pull", "pull")] * 3 + [("pull", "push")],
-            "pull and push are confused: of examples left out, pull was taken for push in 1 of 4 "
-            "and push was taken for pull in 1 of 4. Record 5 more of pull and push, ",
+            "pull and push are confused: among examples left out of the training, pull was taken for push in 1 of 4 "
+            "and push was taken for pull in 1 of 4. Record 5 more examples of pull and 5 more examples of push, ",
         ),
     ],
 )

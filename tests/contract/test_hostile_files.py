@@ -1,6 +1,5 @@
 """Files made to harm or broken by accident: an error names the file and what to do, in little memory and time."""
 
-import io
 import json
 import time
 import tracemalloc
@@ -19,8 +18,6 @@ from mcap.writer import MCAP0_MAGIC, Writer
 from actum import keys
 from actum.recorder import Recorder
 from actum.recording import Recording, RecordingError
-from actum.som import Som
-from actum.som.storage import SomError
 from node_cases import CASES, NOON_NS, photograph
 from recognisers import tiny_model
 from som_classifier.model_loading import ModelError, load_model
@@ -242,11 +239,3 @@ def test_a_model_with_any_bit_flipped_is_refused_or_the_same(model: Path, tmp_pa
             assert load_model(flipped).id == same
         except ModelError as error:
             assert str(error).startswith(f"{flipped}: ")
-
-
-def test_a_map_that_grows_beyond_measure_is_refused(tmp_path: Path) -> None:
-    path, content = tmp_path / "map.npz", io.BytesIO()
-    np.savez_compressed(content, format=np.array("actum.som/1"), weights=np.zeros((100, 100, 1000)))
-    path.write_bytes(content.getvalue())
-    with pytest.raises(SomError, match=f"^{path}: .*its arrays would take"):
-        Som.load(path)

@@ -41,8 +41,8 @@ def test_a_placement_turns_about_x_then_y_then_z(tmp_path) -> None:
 
 GOOD = "family: 4X4_50\nsize_m: 0.08\nobjects:\n  1: {name: cup}\n"
 BAD = {
-    "objects:\n  1: {name: cup, size_m: 0.1}\n": "line 2: objects.1: `family` is missing, both here",
-    "family: 4X4_50\nobjects:\n  1: {name: cup}\n": "line 3: objects.1: `size_m` is missing, both here",
+    "objects:\n  1: {name: cup, size_m: 0.1}\n": "line 2: objects.1: `family` is missing: set it here",
+    "family: 4X4_50\nobjects:\n  1: {name: cup}\n": "line 3: objects.1: `size_m` is missing: set it here",
     "family: 9X9\nsize_m: 0.1\nobjects:\n  1: {name: cup}\n": "line 1: family: '9X9' is not a marker dictionary: use",
     "family: 4X4_50\nsize_m: -1\nobjects:\n  1: {name: cup}\n": "line 2: size_m: Input should be greater than 0",
     GOOD + "  2: {nmae: box}\n": "line 5: objects.2.nmae: there is no such field: remove it or correct its spelling",

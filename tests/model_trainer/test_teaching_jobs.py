@@ -238,7 +238,7 @@ def test_a_file_comes_in_pieces_that_follow_one_another(teacher: Teacher) -> Non
         return teacher.ask("upload", name="clip.mp4", offset=offset, data=text, last=last)
 
     assert send(0, b"abc")["size"] == 3
-    with pytest.raises(Refusal, match="has 3 bytes so far, not 5: continue there"):
+    with pytest.raises(Refusal, match="has 3 bytes so far, not 5: continue at offset 3"):
         send(5, b"x")
     with pytest.raises(Refusal, match="no finished upload 'clip.mp4'"):
         teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="wave")

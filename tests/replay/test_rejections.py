@@ -104,7 +104,7 @@ def test_a_segment_is_recognised_where_there_are_three_frames() -> None:
 
 def test_a_person_whose_joints_are_never_usable() -> None:
     frozen = [skeleton(i * FRAME_NS, STANDING, seq=i) for i in range(20)]
-    why = "(repeated_joints: all joints are exactly as in the frame before, so the sensor seems to stand still)"
+    why = "(repeated_joints: all joints equal those of the previous frame, so the sensor lost the person or is frozen)"
     marks = mark("start", 3), mark("end", 12)
     assert reasons(told(*marks, skeletons=frozen)) == [("s", f"no person with a usable frame {why}")]
     of_agent = mark("start", 3, agent=1), mark("end", 12)

@@ -56,7 +56,7 @@ def test_a_mark_may_say_when_who_with_which_hand_and_what() -> None:
         (text("start"), "not JSON"),
         (text('{"kind": "start"'), "not JSON"),
         (text("[" * 5000), "not JSON"),
-        (text("[]"), "a list, not an object with kind, segment_id, stamp_ns"),
+        (text("[]"), "a list: send a JSON object; its possible fields are kind, segment_id, stamp_ns"),
         (text('{"kind": "start", "segment": "a"}'), "'segment' is not a field of a mark: use kind, segment_id"),
         (text('{"kind": "start", "segment_id": "a", "origin": "auto"}'), "'origin' is not a field"),
         (text('{"kind": "stop", "segment_id": "a"}'), "kind: "),

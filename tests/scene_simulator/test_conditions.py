@@ -189,7 +189,7 @@ def test_the_truth_of_a_pantomime_names_no_object() -> None:
 
 
 def test_pointing_has_no_pantomime() -> None:
-    with pytest.raises(ValueError, match="it has no pantomime"):
+    with pytest.raises(ValueError, match="has no pantomime"):
         Task("point", NO_OBJECT)
 
 

@@ -154,7 +154,7 @@ def test_a_calibration_of_a_camera_beside_this_one_is_refused(tmp_path: Path) ->
         Calibration.model_validate({**known, "skeleton_from_image": listed}).save(tmp_path / name)
         settings = Settings(source="camera", calibration=tmp_path / name)
         if name == "beside":
-            with pytest.raises(CalibrationError, match="for a camera that sees the people, use its own file"):
+            with pytest.raises(CalibrationError, match="so it is the calibration of a marker camera: start that"):
                 optics_of(settings)
         else:
             assert optics_of(settings).calibration == Calibration.load(tmp_path / name)

@@ -82,7 +82,7 @@ def test_activity_by_hand() -> None:
         (maps.arms, right, 1.0, SHARES[0]),
         (maps.arms, left, 1.0, SHARES[1]),
     ):
-        y = np.exp(-som.distances2(x.reshape(-1)) / contrast)
+        y = np.exp(-np.square(som.weights - x.reshape(-1)).sum(axis=1) / contrast)
         expected.append(share * y / y.sum())
     as_seen, _ = maps.frame_activities(postures[0], velocities[0])
     np.testing.assert_allclose(as_seen, np.concatenate(expected), rtol=1e-4)

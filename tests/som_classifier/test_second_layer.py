@@ -14,7 +14,7 @@ def action_map(mean: np.ndarray | None = None) -> ActionMap:
 
 def test_the_activity_is_of_unit_length_before_the_mean_is_subtracted() -> None:
     scores = np.random.default_rng(0).random(5).astype(np.float32)
-    y = np.exp(-SOM.distances2(scores) / 2.0)
+    y = np.exp(-np.square(SOM.weights - scores).sum(axis=1) / 2.0)
     unit = y / np.linalg.norm(y)
     np.testing.assert_allclose(action_map().activity(scores), unit, rtol=1e-4)
     mean = np.linspace(0, 1, 12).astype(np.float32)

@@ -70,7 +70,7 @@ def test_a_recording_that_is_played_too_slowly(running: System, tmp_path: Path) 
         running.start("actum_command", "play", str(tmp_path / "reaches.mcap"), "--speed", "0.1")
         wait_until(lambda: skeletons.take() is not None, "it is played")
         found = said(running)
-        assert "3 skeletons arrive per second, but their stamps are those of 30" in found, found
+        assert "3 skeletons arrive per second, but their stamps show that 30" in found, found
 
 
 def test_a_service_of_another_version(running: System) -> None:

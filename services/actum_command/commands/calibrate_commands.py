@@ -31,7 +31,9 @@ app = PlainTyper(
 app.command("up")(up)
 
 Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration file to write (YAML)")]
-Squares = Annotated[str, typer.Option("--board", help="columns x rows of squares on the board")]
+Squares = Annotated[
+    str, typer.Option("--board", help="number of columns and rows of squares on the board, such as 7x5")
+]
 SquareMm = Annotated[float, typer.Option(help="side of one square on the board, as measured (mm)")]
 MarkerMm = Annotated[float, typer.Option(help="side of one marker on the board, as measured (mm)")]
 Family = Annotated[str, typer.Option(help="OpenCV's name of the marker family printed on the board")]
@@ -85,26 +87,32 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Argument(
             help=(
                 "pairs of pictures taken at the same time: NAME_a.png from the camera that sees the markers, "
-                "NAME_b.png from the one that sees the people. Two folders of them do as well"
+                "NAME_b.png from the camera that sees the people; or a folder for each camera, in this order, with "
+                "the same name for both pictures of a pair"
             )
         ),
     ] = None,
     live: Annotated[
         str | None,
-        typer.Option(help="take pictures live from two sensors, the markers' first, such as kinect1,kinect0"),
+        typer.Option(
+            help=(
+                "take the pictures live from two sensors: first the one that sees the markers, then the one that sees "
+                "the people, such as kinect1,kinect0"
+            )
+        ),
     ] = None,
     board: Squares = "7x5",
     square_mm: SquareMm = 35.0,
     marker_mm: MarkerMm = 26.0,
     family: Family = "DICT_5X5_100",
 ) -> None:
-    """Find where a camera that sees the markers is, relative to the camera that sees the people.
+    """Find where the camera that sees the markers is, relative to the camera that sees the people.
 
-    This is needed only if these are two cameras. It takes 6 to 10 pairs of pictures of the board and writes a
+    Do this only if you use two such cameras. The command needs 6 to 10 pairs of pictures of the board. It writes a
     calibration file for the camera that sees the markers.
     """
     if (live is not None) == bool(pairs):
-        fail("give either pairs of pictures, or --live with the two sensors, such as --live kinect0,kinect1")
+        fail("give either pairs of pictures, or --live with the two sensors, such as --live kinect1,kinect0")
     refuse_ending(output, ".yaml", ".yml")
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
     try:
@@ -160,8 +168,8 @@ def _sensors(text: str) -> tuple[str, str]:
     markers, _, people = text.partition(",")
     if not CHUNK.fullmatch(markers) or not CHUNK.fullmatch(people) or markers == people:
         fail(
-            f"--live {text!r} does not name two sensors: put the one that sees the markers first, such as "
-            "kinect0,kinect1"
+            f"--live {text!r} does not name two sensors: give first the sensor that sees the markers, then the sensor "
+            "that sees the people, such as kinect1,kinect0"
         )
     return markers, people
 

@@ -26,9 +26,9 @@ def up(
         ),
     ] = None,
 ) -> None:
-    """Find how a camera is tilted, from one person who stands upright and still before it, arms down, for two seconds.
+    """Find how a camera is tilted, from one person who stands upright and still in view for two seconds, arms down.
 
-    Prints the value to set as ACTUM_UP_IN_CAMERA.
+    It prints the value to set as ACTUM_UP_IN_CAMERA.
     """
     frames = _live() if recording is None else _recorded(recording)
     estimator, instruction, instructed_ns = UpDirectionEstimator(), "", -PAUSE_NS

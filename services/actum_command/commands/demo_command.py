@@ -43,7 +43,7 @@ def demo(
             min=0,
             help=(
                 "number of simulated people to test on, none of whom the model was trained on; 0 tests on one "
-                "person of the training"
+                "person whom the model was trained on"
             ),
         ),
     ] = SHOWN,
@@ -56,10 +56,10 @@ def demo(
         ),
     ] = False,
 ) -> None:
-    """Test recognition on simulated people whom the model has never seen, and print the results beside the paper's.
+    """Test recognition on simulated people whom the model has never seen, and compare with published results.
 
-    It needs no camera and no other running program. The people also do other things, and nobody marks where an action
-    starts or ends. Each person takes 45 s; --people 9 is the whole experiment.
+    The test needs no camera and no other running program. Between the actions the people do other things, and nobody
+    marks where an action starts or ends. The test takes 45 s per person; --people 9 repeats the whole experiment.
     """
     here = settings()
     try:

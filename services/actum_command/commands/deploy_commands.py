@@ -40,8 +40,8 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             metavar="NAME=ADDRESS,…",
             help=(
-                "the hosts and their addresses, such as camera=192.168.1.5,compute=192.168.1.6. Name further ones "
-                "camera2, compute2; append :PORT if a router needs another port"
+                "the hosts and their addresses, such as camera=192.168.1.5,compute=192.168.1.6. Name further hosts "
+                "camera2, compute2; append :PORT to an address if its router uses another port than 7447"
             ),
         ),
     ],
@@ -79,9 +79,10 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         bool, typer.Option("--open", help="disable TLS, passwords and access control; use it only on a trusted network")
     ] = False,
 ) -> None:
-    """Write one folder of files for each host of a deployment, and one of credentials for the programs of users.
+    """Write a folder of files for each host of a deployment, and folders of credentials for users' programs.
 
-    Copy each folder to its host. Run the command again to change the deployment.
+    Copy each host's folder to that host, and a folder of credentials to each user's machine. Run the command again to
+    change the deployment.
     """
     if not_secured and passwords:
         fail("--open and --passwords exclude each other: leave out one of them")
@@ -127,7 +128,8 @@ def rotate(
     """Renew all certificates and keys, before they expire or after some were lost.
 
     Copy the folders to the hosts afterwards; services read the new certificates without a restart. If credentials were
-    lost or stolen, name their folder with --revoke. Routers refuse them once the new router.json5 has been copied.
+    lost or stolen, also name their folder with --revoke. A router refuses the old credentials once its new router.json5
+    has been copied.
     """
     with _refusing(), needs_extra("deploy"):
         from actum_deployer.writing import alone, write_deployment

@@ -23,9 +23,9 @@ def draw(
     ] = 6,
     people: Annotated[int, typer.Option(min=1, max=4, help="maximum number of people to find in a picture")] = 2,
 ) -> None:
-    """Draw the joints that are found in people of a video, to check the camera before use.
+    """Draw the joints of the people found in a video, to check the camera before use.
 
-    It writes one image with several pictures of the video: look whether people are found, and left and right are
+    It writes one image with several pictures of the video. Check that people are found, and that left and right are
     correct. The camera's settings are read from the environment: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or
     ACTUM_CALIBRATION, ACTUM_MIRRORED.
     """

@@ -56,8 +56,8 @@ def msrc12(
         typer.Option(
             "--trimmed",
             help=(
-                "start and end each segment where the movement visibly starts and ends; default: a fixed time about "
-                "each action point"
+                "start and end each segment where the movement visibly starts and ends; default: up to 1.5 s before "
+                "and after the point in time of the gesture"
             ),
         ),
     ] = False,
@@ -74,7 +74,7 @@ def msrc12(
 ) -> None:
     """Import the data set MSRC-12: one recording per file, with labelled segments.
 
-    The data set gives one point in time per gesture; a segment covers up to 3 s about it.
+    The data set gives one point in time per gesture; a segment extends up to 1.5 s before and after it.
     """
     if trimmed and composed:
         fail("--composed and --trimmed exclude each other, because --composed trims by itself: leave out --trimmed")

@@ -1,4 +1,4 @@
-"""`actum inspect`: pictures of what a model has learnt and why it answers as it does."""
+"""`actum inspect`: pictures of what a model has learnt and of its answers to recordings."""
 
 import time
 from importlib.util import find_spec
@@ -35,7 +35,7 @@ def inspect(
         typer.Argument(
             metavar="[REC]...",
             help=(
-                "recordings, or folders of them, whose actions the model is to explain; default: only the model is "
+                "recordings, or folders of them, whose actions the model is to recognise; default: only the model is "
                 "drawn"
             ),
         ),
@@ -46,7 +46,7 @@ def inspect(
     ] = "png",
     with_excluded: AllOption = False,
 ) -> None:
-    """Draw what a model has learnt and, for given recordings, why it recognises each action as it does.
+    """Draw what a model has learnt and, for given recordings, how it recognises their actions.
 
     It writes pictures and a page, index.html, that shows them.
     """

@@ -178,8 +178,8 @@ def picture(
         Path | None,
         typer.Option(
             help=(
-                "a model file to run on the recording; its answers, to the marked segments and to those it finds "
-                "itself, are drawn in place of the recorded ones"
+                "a model file to run on the recording: draw this model's answers to the marked segments, and the "
+                "segments that this model finds, in place of the recorded answers"
             )
         ),
     ] = None,

@@ -48,7 +48,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     label: Annotated[
         str | None,
         typer.Option(
-            help="label of the actions that are marked during the recording, such as wave; default: as each mark says"
+            help="label of all actions marked during the recording, such as wave; default: the label in each mark"
         ),
     ] = None,
     times: Annotated[
@@ -85,7 +85,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         bool,
         typer.Option(
             "--events",
-            help="keep a history of events, final actions and all marks for months, as files in the folder OUTPUT",
+            help="run as a service that keeps a history: events, final actions and all marks, in files in OUTPUT",
         ),
     ] = False,
     *,
@@ -99,7 +99,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     No file is ever overwritten. If recording was interrupted, run the command with the same OUTPUT and --finish.
 
     With --events it runs as a service that stores only events, actions and marks in the folder OUTPUT; the --history
-    options apply to it alone.
+    options apply only with --events.
     """
     if events:
         keep_events(output, given)
@@ -143,11 +143,17 @@ def _finish(output: Path) -> None:
     except FileNotFoundError:
         fail(f"there is no unfinished recording {unfinished(output)}")
     except RecordingError as error:
-        fail(f"{error.path} cannot be turned into a recording ({error.problem}); it was not changed: move or delete it")
+        fail(
+            f"{error.path} cannot be turned into a recording ({error.problem}) and was not changed: move or delete "
+            "this file"
+        )
     except TakenError as error:
         fail(str(error))
     except OSError as error:
-        fail(f"{output} cannot be written ({error.strerror}); {unfinished(output)} was not changed")
+        fail(
+            f"{output} cannot be written ({error.strerror}): solve this problem, then use --finish again; "
+            f"{unfinished(output)} was not changed"
+        )
     say(f"{count} messages, up to where it breaks off, written to {output}")
 
 

@@ -61,9 +61,9 @@ def simulate(
 ) -> None:
     """Write a recording of simulated actions with their labels, without images, for training or testing.
 
-    With --everyday the person also does other things that are no action, such as scratching, phoning or walking away. A
-    model should not answer these. Train with --everyday familiar and test with --everyday all, which has further kinds
-    of them.
+    With --everyday the person also shows background activities, such as scratching, phoning or walking away, which a
+    model should not recognise as actions. Train with --everyday familiar and test with --everyday all, which includes
+    kinds of background activity that familiar omits.
     """
     refuse_output(output)
     try:

@@ -39,10 +39,10 @@ PresetOption = Annotated[
     ),
 ]
 SET_HELP = (
-    f"change a setting of --preset {PAPER.name}; may be repeated. axes: posture (axes of the body, computed "
-    "anew in each frame) or upright (vertical and smoothed over time; default). origin: torso (default) or hips; "
-    f"positions are relative to it. attention: the body part that is looked at, one of {', '.join(ATTENTIONS)}; moving "
-    "(default) is the part that moves most"
+    f"change a setting of --preset {PAPER.name}, such as origin=hips; may be repeated. axes: posture (axes of the "
+    "body, computed anew in each frame) or upright (vertical and smoothed over time; default). origin: the point that "
+    "positions are relative to, torso (default) or hips. attention: the body part whose joints are used, one of "
+    f"{', '.join(ATTENTIONS)}; moving (default) is the part that moves most"
 )
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP)]
 SeedOption = Annotated[

@@ -31,7 +31,7 @@ def tune(
         float | None,
         typer.Option(
             metavar="X",
-            help="maximum number of false alarms per minute in which no action is done; default: no limit (1/min)",
+            help="maximum rate of false alarms while no action is done; default: no limit (1/min)",
         ),
     ] = None,
     output: Annotated[

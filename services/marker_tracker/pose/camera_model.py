@@ -48,7 +48,8 @@ def camera_model(image: Image, calibrated_size_px: tuple[int, int] | None = None
     if not all(0 < f < LARGEST_FOCAL_PX for f in focal) or np.abs(matrix).max() > LARGEST_FOCAL_PX:
         raise UnusableImageError(
             "bad_calibration",
-            f"the focal lengths in K are {focal[0]:g} and {focal[1]:g} px: calibrate the camera again",
+            f"a focal length in K is not above 0 ({focal[0]:g}, {focal[1]:g} px), or an entry of K is above "
+            f"{LARGEST_FOCAL_PX:g}: calibrate the camera again",
         )
     if not np.array_equal(matrix[2], (0, 0, 1)):
         raise UnusableImageError("bad_calibration", f"the last row of K is {matrix[2].tolist()}, not [0, 0, 1]")
@@ -87,8 +88,9 @@ def _matrix_for_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tup
 
 def _distortion(coefficients: list[float]) -> Array:
     if len(coefficients) not in DISTORTION_LENGTHS:
+        allowed = ", ".join(map(str, DISTORTION_LENGTHS))
         raise UnusableImageError(
-            "bad_calibration", f"there are {len(coefficients)} distortion coefficients, not one of {DISTORTION_LENGTHS}"
+            "bad_calibration", f"distortion has {len(coefficients)} coefficients; the number has to be one of {allowed}"
         )
     distortion = np.array(coefficients, dtype=np.float64)
     if np.abs(distortion).max(initial=0) > LARGEST_COEFFICIENT:

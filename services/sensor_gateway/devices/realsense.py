@@ -238,7 +238,7 @@ def _bgr(color: Any) -> NDArray[np.uint8]:
     if name == "bgr8":
         return image
     if name not in TO_BGR:
-        raise CameraLostError(f"the camera sends colour as {name}, not as bgr8, {', '.join(TO_BGR)}")
+        raise CameraLostError(f"the camera sends colour as {name}; supported: bgr8, {', '.join(TO_BGR)}")
     packed = image.view(np.uint8).reshape(*image.shape[:2], -1)
     return np.asarray(cv2.cvtColor(packed, TO_BGR[name]), dtype=np.uint8)
 

@@ -34,7 +34,8 @@ def obstacle(settings: ServiceSettings) -> str:
 def _on_the_way(error: OSError, host: str, port: int) -> str:
     """Say what it means that a host cannot be connected to."""
     if isinstance(error, socket.gaierror):
-        return f"this machine cannot resolve the name {host} ({error.strerror}): correct it, or use the host's address"
+        unknown = f"this machine cannot resolve the name {host} ({error.strerror})"
+        return f"{unknown}: correct the name, or use the host's IP address"
     if isinstance(error, TimeoutError):
         return (
             f"{host} does not answer: check that it is switched on and connected, and that firewalls allow port {port}"
@@ -59,7 +60,8 @@ def _between_sessions(settings: ServiceSettings, host: str, port: int) -> str:
         )
     return (
         f"port {port} accepts connections but does not answer as a router: another program may listen there, the "
-        "router may be frozen, or it may require a user name and a password"
+        "router may be frozen (restart it), or the router may require a user name and a password (set both in "
+        "the file that ACTUM_ZENOH_CONFIG names)"
     )
 
 
@@ -68,4 +70,7 @@ def _with_user(settings: ServiceSettings, user: str | None) -> str:
     login = login_values(settings.credentials) if settings.credentials else {}
     name = login.get(f"{LOGIN}/user", user)
     who = f"refuses user {name} or its password" if name else "requires a user name and a password"
-    return f"both certificates are valid, so either the router {who}, or it is frozen"
+    return (
+        f"the TLS connection works, so either the router {who}, or the router is frozen: copy the credentials folder "
+        "of this program again, or restart the router"
+    )

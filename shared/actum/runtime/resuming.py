@@ -97,7 +97,10 @@ class Resumption:
         reason = f"{error.filename or 'the journal'}: {error.strerror}"
         self._counters.reject("unwritable_state", reason)
         if self._writes:
-            log.warning("answers cannot be written to the journal, so a restart may change them: %s", reason)
+            log.warning(
+                "answers cannot be written to the journal, so their segments may get other answers after a restart: %s",
+                reason,
+            )
         self._writes = False
 
     def _keep(self, frame: Frame) -> None:

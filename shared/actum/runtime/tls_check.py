@@ -136,7 +136,7 @@ def _routers_fault(host: str, port: int, tls: Tls) -> str | None:
         if error.verify_code not in _DISTRUSTED:
             known = f"the authority in {tls.authority}" if tls.authority else ("an authority that this machine trusts")
             problem = f"the router's certificate is not signed by {known} ({error.verify_message})"
-            return f"{problem}: use the credentials that were made together with the router's"
+            return f"{problem}: use credentials of the router's deployment"
         return _DISTRUSTED[error.verify_code].format(host=host, **_routers_certificate(host, port, tls))
     except ssl.SSLError as error:
         return None if "ALERT" in (error.reason or "") else _NO_TLS
@@ -168,7 +168,8 @@ def _refused(host: str, port: int, tls: Tls) -> str | None:
             if alert.endswith(end):
                 return meaning.format(certificate=tls.certificate)
         shown = tls.certificate or "clients without a certificate"
-        return f"the router refuses {shown} ({alert.lower().replace('_', ' ')})"
+        reason = alert.lower().replace("_", " ")
+        return f"the router refuses {shown} ({reason}): use credentials of the router's deployment"
     return None
 
 

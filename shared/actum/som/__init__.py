@@ -1,4 +1,4 @@
-"""Self-organising maps: train, look up, measure, store.
+"""Self-organising maps: train, look up, measure.
 
 >>> import numpy as np
 >>> colours = np.random.default_rng(0).random((1000, 3))
@@ -12,28 +12,13 @@ Learning returns a new map. Sequential training takes one input after the other,
 
 >>> schedule = Schedule(alpha=(0.5, 0.02), radius=(5.0, 0.7))
 >>> trained = som.train(colours, 5000, schedule, np.random.default_rng(1))
->>> later = trained.partial_fit(colours[:10], alpha=0.02, radius=0.7)
 
-It can be stopped after any step, saved, and resumed to the map that it would have made in one go, to the bit:
+A map says how well it fits its inputs and keeps their order, over 8 neighbours of a unit or over 4:
 
->>> training = SequentialTraining.drawn(som, colours, 5000, schedule, np.random.default_rng(1))
->>> training.run(2000)
->>> training.save("training.npz")
->>> resumed = Som.resume("training.npz", colours)
->>> resumed.run(3000)
->>> bool((resumed.som.weights == trained.weights).all())
-True
-
-A map says how well it fits its inputs and keeps their order, over 4 or 8 neighbours, 6 on a hexagonal grid:
-
->>> hexagonal = Som.linear(10, 12, colours, "hexagonal").train_batch(colours, epochs=20, radius=(5.0, 0.7))
->>> hexagonal.topographic_error(colours) < 0.1, som.topographic_error(colours, neighbours=4) < 0.5
+>>> som.topographic_error(colours) < 0.1, som.topographic_error(colours, neighbours=4) < 0.5
 (True, True)
->>> hexagonal.u_matrix().shape, hexagonal.hits(colours).sum().item()
-((10, 12), 1000)
->>> hexagonal.save("map.npz")
->>> Som.load("map.npz").topology
-'hexagonal'
+>>> som.u_matrix().shape
+(10, 12)
 
 Inputs are rows of numbers, an array or what NumPy makes one of; NaN is a missing value. Where Numba is installed
 sequential training is compiled; the maps are the same to the bit.
@@ -41,26 +26,21 @@ sequential training is compiled; the maps are the same to the bit.
 
 from actum.som.batch import BatchTraining
 from actum.som.codebook import Codebook
-from actum.som.grid import Grid, Topology
 from actum.som.kernel import adapt_in_numpy
 from actum.som.map import Som
 from actum.som.schedule import Decay, Report, Schedule, Steps
 from actum.som.sequential import SequentialTraining
-from actum.som.storage import SomError
 from actum.som.together import Together
 
 __all__ = [
     "BatchTraining",
     "Codebook",
     "Decay",
-    "Grid",
     "Report",
     "Schedule",
     "SequentialTraining",
     "Som",
-    "SomError",
     "Steps",
     "Together",
-    "Topology",
     "adapt_in_numpy",
 ]

@@ -1,7 +1,6 @@
 """Batch training: each unit moves to the mean of the inputs that its neighbourhood won (Kohonen, 2013)."""
 
 from dataclasses import replace
-from functools import reduce
 from typing import Any, Generic
 
 import numpy as np
@@ -9,7 +8,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from actum.som.blas import matmul
 from actum.som.codebook import Map
-from actum.som.grid import Grid
 from actum.som.inputs import training_vectors
 from actum.som.lookup import Lookup
 from actum.som.schedule import checked_radii
@@ -26,7 +24,7 @@ class BatchTraining(Generic[Map]):
     >>> from actum.som import Som
     >>> vectors = np.random.default_rng(0).random((100, 2))
     >>> training = BatchTraining(Som.linear(4, 4, vectors), vectors, radii=[2.0, 1.0, 0.5])
-    >>> while training.epochs_done < training.epochs:
+    >>> for _ in range(3):
     ...     training.run_epoch()
     >>> training.som.quantization_error(vectors) < 0.2
     True
@@ -43,17 +41,12 @@ class BatchTraining(Generic[Map]):
         Raises:
             ValueError: the vectors do not fit the map, or a radius is not above 0.
         """
-        self.epochs_done = 0
+        self._epochs_done = 0
         self._start = som
         self._weights = np.array(som.weights)
         self._radii = checked_radii(radii)
         self._vectors = training_vectors(vectors, som.dim, som.dtype)
         self._summed, self._counted = _columns(self._vectors)
-
-    @property
-    def epochs(self) -> int:
-        """How many epochs there are in all."""
-        return len(self._radii)
 
     @property
     def som(self) -> Map:
@@ -66,18 +59,18 @@ class BatchTraining(Generic[Map]):
         Raises:
             IndexError: all epochs are done.
         """
-        radius = self._radii[self.epochs_done]
+        radius = self._radii[self._epochs_done]
         winners = Lookup(self._weights).winners(self._vectors)
-        smoothed = _smoothed(self._sums(winners), self._start.grid, radius)
+        smoothed = _smoothed(self._sums(winners), self._start.rows, self._start.cols, radius)
         sums, counts = smoothed[:, : self._start.dim], smoothed[:, self._start.dim :]
         reached = np.broadcast_to(counts > np.finfo(np.float64).tiny, sums.shape)
         means = np.divide(sums, counts, out=self._weights.astype(np.float64), where=reached)
         self._weights = means.astype(self._start.dtype)
-        self.epochs_done += 1
+        self._epochs_done += 1
 
     def _sums(self, winners: NDArray[np.intp]) -> Doubles:
         """Return per unit the sums of the inputs that it won, then the counts, shape (nodes, dim + 1 or 2 dim)."""
-        nodes = self._start.grid.nodes
+        nodes = len(self._weights)
         sums = [np.bincount(winners, weights=column, minlength=nodes) for column in self._summed]
         counts = [np.bincount(winners, weights=column, minlength=nodes) for column in self._counted]
         return np.stack(sums + counts, axis=1)
@@ -96,46 +89,16 @@ def _columns(vectors: NDArray[Any]) -> tuple[Doubles, list[Doubles | None]]:
     return columns, list((~missing).astype(np.float64))
 
 
-def _smoothed(sums: Doubles, grid: Grid, radius: float) -> Doubles:
-    """Return Σₖ Gⱼₖ sumsₖ, in the shape of the sums, (nodes, width).
-
-    Between rows that are shifted alike G is separable, a Gaussian over rows times one over columns.
-    """
-    by_row = sums.reshape(grid.rows, grid.cols, -1)
-    smoothed = np.empty_like(by_row)
-    shifts = np.unique(grid.shifts)
-    for shift in shifts:
-        smoothed[grid.shifts == shift] = reduce(
-            np.add, (_spread(by_row, grid, radius, shift, start) for start in shifts)
-        )
-    return smoothed.reshape(sums.shape)
+def _smoothed(sums: Doubles, rows: int, cols: int, radius: float) -> Doubles:
+    """Return Σₖ Gⱼₖ sumsₖ, (nodes, width): G is a Gaussian over rows times one over columns."""
+    over_rows = matmul(_gaussians(rows, radius), sums.reshape(rows, -1))
+    by_cols = over_rows.reshape(rows, cols, -1).swapaxes(0, 1).reshape(cols, -1)
+    over_both = matmul(_gaussians(cols, radius), by_cols)
+    return over_both.reshape(cols, rows, -1).swapaxes(0, 1).reshape(sums.shape)
 
 
-def _spread(by_row: Doubles, grid: Grid, radius: float, shift: int, start: int) -> Doubles:
-    """Return the part of the smoothed rows of shift `shift` that comes from rows of shift `start`.
-
-    Args:
-        by_row: the sums, (rows, cols, width).
-        grid: of the map.
-        radius: of the neighbourhood, grid units.
-        shift: of the smoothed rows, in substeps.
-        start: of the rows whose sums are taken, in substeps.
-
-    Returns:
-        (rows of shift `shift`, cols, width).
-    """
-    to, origin = np.flatnonzero(grid.shifts == shift), np.flatnonzero(grid.shifts == start)
-    cols, width = np.arange(grid.cols), by_row.shape[2]
-    over_rows = matmul(
-        _gaussians(to * grid.row_spacing, origin * grid.row_spacing, radius), by_row[origin].reshape(len(origin), -1)
-    )
-    by_cols = over_rows.reshape(len(to), grid.cols, width).swapaxes(0, 1).reshape(grid.cols, -1)
-    over_both = matmul(_gaussians(cols + shift / grid.substeps, cols + start / grid.substeps, radius), by_cols)
-    spread: Doubles = over_both.reshape(grid.cols, len(to), width).swapaxes(0, 1)
-    return spread
-
-
-def _gaussians(positions: NDArray[Any], others: NDArray[Any], radius: float) -> Doubles:
-    """Return exp(−r² / 2 radius²), r the distance between positions on a line, (n,) and (m,); shape (n, m)."""
-    gaussians: Doubles = np.exp(-np.square(positions[:, None] - others) / (2 * radius**2))
+def _gaussians(count: int, radius: float) -> Doubles:
+    """Return exp(−r² / 2 radius²), r the distance between two of `count` units in a line; shape (count, count)."""
+    places = np.arange(count)
+    gaussians: Doubles = np.exp(-np.square(places[:, None] - places) / (2 * radius**2))
     return gaussians

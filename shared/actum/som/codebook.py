@@ -1,22 +1,22 @@
-"""The codebook of a map: weights on a grid, to be looked up, measured and stored, but not trained."""
+"""The codebook of a map: weights on a grid, to be looked up and measured, but not trained."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
-from pathlib import Path
-from typing import Any, Self, TypeVar, cast
+from itertools import product
+from typing import Any, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from actum.som import measures, storage
-from actum.som.grid import Grid, Topology
-from actum.som.inputs import check_rows, check_squarable, float_type, is_complete, numbers, some_rows
+from actum.som.inputs import check_squarable, float_type, numbers, some_rows
 from actum.som.lookup import Lookup
 
 Array = NDArray[Any]
 Indices = NDArray[np.intp]
 Map = TypeVar("Map", bound="Codebook")
+
+_FARTHEST2 = {8: 2, 4: 1}
+"""Squared distance on the grid to the farthest neighbour, by the number of neighbours."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,28 +30,26 @@ class Codebook:
     >>> codebook = Codebook(1, 3, [[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]])
     >>> codebook.bmu([0.9, 0.2]), codebook.bmus([[0.0, 1.9], [np.nan, 0.1]]).tolist()
     (1, [2, 0])
-    >>> codebook.distances2([0.0, 1.0]).tolist()
-    [1.0, 2.0, 1.0]
+    >>> codebook.excess2([0.0, 1.0]).tolist()
+    [0.0, 1.0, 0.0]
 
     Attributes:
         rows: of the grid, at least 1.
         cols: of the grid, at least 1.
         weights: (rows * cols, dim), read-only, float32 if given so, else float64.
-        topology: "rectangular" or "hexagonal".
 
     Raises:
-        ValueError: the weights have another shape, are not finite or too large to be squared, or there is no such grid.
+        ValueError: the weights have another shape, are not finite or too large to be squared, or there is no unit.
     """
 
     rows: int
     cols: int
     weights: Array
-    topology: Topology = "rectangular"
 
     def __post_init__(self) -> None:
         weights = np.array(self.weights, dtype=float_type(self.weights), order="C")
-        fits = weights.ndim == 2 and weights.shape[0] == self.grid.nodes and weights.shape[1] > 0
-        if not fits or not np.isfinite(weights).all():
+        fits = weights.ndim == 2 and weights.shape[0] == self.rows * self.cols and weights.shape[1] > 0
+        if not fits or min(self.rows, self.cols) < 1 or not np.isfinite(weights).all():
             raise ValueError(f"weights of shape {weights.shape} are not {self.rows}×{self.cols} finite vectors")
         check_squarable(weights)
         weights.setflags(write=False)
@@ -62,7 +60,7 @@ class Codebook:
         return type(self), tuple(getattr(self, field.name) for field in fields(self))
 
     @classmethod
-    def of_planes(cls, planes: ArrayLike, topology: Topology = "rectangular") -> Self:
+    def of_planes(cls, planes: ArrayLike) -> Self:
         """Make a map of its component planes (rows, cols, dim).
 
         Raises:
@@ -72,7 +70,7 @@ class Codebook:
         if stacked.ndim != 3:
             raise ValueError(f"component planes of shape {stacked.shape} are not rows × cols × dim")
         rows, cols, dim = stacked.shape
-        return cls(rows, cols, stacked.reshape(rows * cols, dim), topology)
+        return cls(rows, cols, stacked.reshape(rows * cols, dim))
 
     @property
     def dim(self) -> int:
@@ -85,14 +83,11 @@ class Codebook:
         return self.weights.dtype
 
     @cached_property
-    def grid(self) -> Grid:
-        """The grid that the units stand on."""
-        return Grid(self.rows, self.cols, self.topology)
-
-    @property
     def coordinates(self) -> NDArray[np.float64]:
-        """Row and column of each unit, shape (rows * cols, 2)."""
-        return self.grid.coordinates
+        """Row and column of each unit, read-only, shape (rows * cols, 2)."""
+        coordinates = unit_coordinates(self.rows, self.cols)
+        coordinates.setflags(write=False)
+        return coordinates
 
     @cached_property
     def planes(self) -> Array:
@@ -123,7 +118,7 @@ class Codebook:
         Raises:
             ValueError: the map has one unit only; or as `bmus`.
         """
-        if self.grid.nodes < 2:
+        if len(self.weights) < 2:
             raise ValueError("a map of one unit has no second-best unit")
         rows = numbers(vectors)
         best_units = np.empty((len(rows), 2), np.intp)
@@ -153,22 +148,11 @@ class Codebook:
             ValueError: the rows have another length, an infinite component or no known one.
         """
         rows = numbers(vectors)
-        excess2 = np.empty((len(rows), self.grid.nodes), self.dtype)
+        excess2 = np.empty((len(rows), len(self.weights)), self.dtype)
         for chunk, scores in self.lookup.scores(rows):
-            np.subtract(scores[:, : self.grid.nodes], scores.min(axis=1, keepdims=True), out=excess2[chunk])
+            np.subtract(scores[:, : len(self.weights)], scores.min(axis=1, keepdims=True), out=excess2[chunk])
         excess2 *= 2
         return excess2
-
-    def distances2(self, x: ArrayLike) -> NDArray[np.float64]:
-        """Return each unit's squared Euclidean distance to x (dim,), shape (rows * cols,).
-
-        Raises:
-            ValueError: x has another length, an infinite component or no known one.
-        """
-        row = numbers(x)[None]
-        check_rows(row, self.dim)
-        is_complete(row)
-        return measures.partial_distances2(row, self.weights)
 
     def quantization_error(self, vectors: ArrayLike) -> float:
         """Return the mean distance of the rows of (n, dim) to their winners.
@@ -177,56 +161,38 @@ class Codebook:
             ValueError: there is no row.
         """
         rows = some_rows(vectors)
-        return float(np.sqrt(measures.partial_distances2(rows, self.weights[self.bmus(rows)])).mean())
+        squares = np.square(np.subtract(rows, self.weights[self.bmus(rows)], dtype=np.float64))
+        known = self.dim - np.isnan(squares).sum(axis=1)
+        return float(np.sqrt(np.nansum(squares, axis=1) * (self.dim / known)).mean())
 
-    def topographic_error(self, vectors: ArrayLike, neighbours: int | None = None) -> float:
+    def topographic_error(self, vectors: ArrayLike, neighbours: int = 8) -> float:
         """Return the share of the rows of (n, dim) whose two best units are no neighbours on the grid.
 
         Args:
             vectors: the inputs.
-            neighbours: 8, the default, or 4; on a hexagonal grid 6.
+            neighbours: how many a unit has, 8 or 4.
 
         Raises:
             ValueError: there is no row, no second unit, or no such number of neighbours.
         """
-        return measures.topographic_error(self.best_two(some_rows(vectors)), self.grid, neighbours)
+        if neighbours not in _FARTHEST2:
+            raise ValueError(f"a unit has {' or '.join(map(str, _FARTHEST2))} neighbours, not {neighbours}")
+        first, second = self.coordinates[self.best_two(some_rows(vectors)).T]
+        return float((np.square(first - second).sum(axis=1) > _FARTHEST2[neighbours]).mean())
 
-    def u_matrix(self, neighbours: int | None = None) -> NDArray[np.float64]:
-        """Return each unit's mean distance to its grid neighbours' weights, shape (rows, cols).
+    def u_matrix(self) -> NDArray[np.float64]:
+        """Return each unit's mean distance to the weights of its up to eight neighbours, shape (rows, cols).
 
-        Args:
-            neighbours: 8, the default, or 4; on a hexagonal grid 6.
-
-        Raises:
-            ValueError: units have no such number of neighbours.
+        It is 0 for a unit without any.
         """
-        return measures.u_matrix(self.weights, self.grid, neighbours)
-
-    def hits(self, vectors: ArrayLike) -> Indices:
-        """Return how many rows of (n, dim) each unit wins, shape (rows, cols).
-
-        Raises:
-            ValueError: as `bmus`.
-        """
-        return measures.hits(self.bmus(vectors), self.grid)
-
-    def save(self, path: Path | str) -> None:
-        """Write the map as npz without pickle, in one step.
-
-        Raises:
-            OSError: the file cannot be written.
-        """
-        storage.write(Path(path), storage.MAP_FORMAT, map_arrays(self))
-
-    @classmethod
-    def load(cls, path: Path | str) -> Self:
-        """Read a map that `save` wrote.
-
-        Raises:
-            SomError: the file is missing, foreign or damaged.
-        """
-        with storage.reading(Path(path), storage.MAP_FORMAT) as file:
-            return stored_map(file, cls)
+        padded = np.pad(self.planes.astype(np.float64), ((1, 1), (1, 1), (0, 0)), constant_values=np.nan)
+        shifted = [
+            padded[down : down + self.rows, right : right + self.cols] for down, right in product(range(3), repeat=2)
+        ]
+        distances = np.linalg.norm(shifted - self.planes, axis=3)
+        counts = np.isfinite(distances).sum(axis=0) - 1  # at no shift it is the unit itself, at a distance of 0
+        means: NDArray[np.float64] = np.nansum(distances, axis=0) / np.maximum(counts, 1)
+        return means
 
     @cached_property
     def lookup(self) -> Lookup:
@@ -234,15 +200,6 @@ class Codebook:
         return Lookup(self.weights)
 
 
-def map_arrays(som: Codebook) -> dict[str, Array]:
-    """Return the arrays that a file stores of a map, by name."""
-    return {"weights": som.planes, "topology": np.array(som.topology)}
-
-
-def stored_map(file: Mapping[str, Array], kind: type[Map]) -> Map:
-    """Make a map of the arrays that `map_arrays` names.
-
-    Raises:
-        ValueError, KeyError: the file holds other arrays.
-    """
-    return kind.of_planes(file["weights"], cast(Topology, str(file["topology"])))
+def unit_coordinates(rows: int, cols: int) -> NDArray[np.float64]:
+    """Return row and column of each unit of a grid, shape (rows * cols, 2)."""
+    return np.stack(np.divmod(np.arange(rows * cols), cols), axis=1).astype(np.float64)

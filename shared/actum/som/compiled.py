@@ -12,11 +12,9 @@ from typing import TypeVar, cast
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from actum.som.kernel import Array, Kernel
 
-Indices = NDArray[np.intp]
 Function = TypeVar("Function", bound=Callable[..., object])
 
 LANES = 16
@@ -42,21 +40,21 @@ def _try_out(kernel: Kernel) -> None:
     """Compile the kernel for both precisions, so that an error of writing its cache is raised here."""
     for dtype in (np.float32, np.float64):
         one = np.ones((1, 1), dtype)
-        kernel(np.zeros((1, LANES), dtype), one, one, one, np.zeros(1, np.intp), 1)
+        kernel(np.zeros((1, LANES), dtype), one, one, one)
 
 
-def _adapt(weights: Array, inputs: Array, over_rows: Array, over_cols: Array, shifts: Indices, substeps: int) -> None:
+def _adapt(weights: Array, inputs: Array, over_rows: Array, over_cols: Array) -> None:
     """Take all steps; between two steps the weights are read once, to adapt them and to measure them."""
-    nodes = len(shifts) * (over_cols.shape[1] // substeps)
+    nodes = over_rows.shape[1] * over_cols.shape[1]
     distances2, neighbourhood, scratch = np.zeros_like(weights[0]), np.zeros_like(weights[0]), np.zeros_like(weights[0])
     _measure(weights, inputs[0], distances2)
     last = len(inputs) - 1
     for step in range(last):
         winner = _first_least(distances2, nodes, scratch)
-        _centre_on(winner, over_rows[step], over_cols[step], shifts, substeps, scratch, neighbourhood)
+        _centre_on(winner, over_rows[step], over_cols[step], scratch, neighbourhood)
         _pull_and_measure(weights, inputs[step], neighbourhood, inputs[step + 1], distances2)
     winner = _first_least(distances2, nodes, scratch)
-    _centre_on(winner, over_rows[last], over_cols[last], shifts, substeps, scratch, neighbourhood)
+    _centre_on(winner, over_rows[last], over_cols[last], scratch, neighbourhood)
     _pull(weights, inputs[last], neighbourhood)
 
 
@@ -79,16 +77,13 @@ def _first_least(values: Array, count: int, least: Array) -> int:
 
 
 @_compiled
-def _centre_on(
-    winner: int, row_gauss: Array, col_gauss: Array, shifts: Indices, substeps: int, along: Array, out: Array
-) -> None:
+def _centre_on(winner: int, row_gauss: Array, col_gauss: Array, along: Array, out: Array) -> None:
     """Set out (stride,) to α G of every unit: the product of a Gaussian over rows and one over columns."""
-    cols = len(col_gauss) // substeps
-    row, place = winner // cols, substeps * (winner % cols) + shifts[winner // cols]
-    for r in range(len(shifts)):
-        if r == 0 or shifts[r] != shifts[r - 1]:
-            for c in range(cols):
-                along[c] = col_gauss[abs(substeps * c + shifts[r] - place)]
+    cols = len(col_gauss)
+    row, col = divmod(winner, cols)
+    for c in range(cols):
+        along[c] = col_gauss[abs(c - col)]
+    for r in range(len(row_gauss)):
         across = row_gauss[abs(r - row)]
         for c in range(cols):
             out[r * cols + c] = across * along[c]

@@ -7,13 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
-Kernel = Callable[[Array, Array, Array, Array, NDArray[np.intp], int], None]
+Kernel = Callable[[Array, Array, Array, Array], None]
 """Takes sequential steps in place: what `adapt_in_numpy` does, with the same arguments."""
 
 
-def adapt_in_numpy(
-    weights: Array, inputs: Array, over_rows: Array, over_cols: Array, shifts: NDArray[np.intp], substeps: int
-) -> None:
+def adapt_in_numpy(weights: Array, inputs: Array, over_rows: Array, over_cols: Array) -> None:
     """Adapt the weights in place to one input after the other: w += α G (x − w), G centred on the winner of x.
 
     G of a unit is a Gaussian of its distance from the winner along rows, times one along columns. Missing components
@@ -31,11 +29,9 @@ def adapt_in_numpy(
         weights: (dim, stride), float32 or float64: unit k is column k, further columns are ignored.
         inputs: (steps, dim), in the weights' precision.
         over_rows: (steps, rows), α times the Gaussian for units 0, 1, … rows apart.
-        over_cols: (steps, substeps * cols), the Gaussian for units 0, 1, … substeps of a column apart.
-        shifts: (rows,), how far each row is shifted right, in substeps.
-        substeps: of a column: 2 on a hexagonal grid, else 1.
+        over_cols: (steps, cols), the Gaussian for units 0, 1, … columns apart.
     """
-    learner = _Learner(weights, shifts, substeps, over_cols.shape[1] // substeps)
+    learner = _Learner(weights, over_rows.shape[1], over_cols.shape[1])
     for x, row_gauss, col_gauss in zip(inputs, over_rows, over_cols, strict=True):
         learner.adapt(x, row_gauss, col_gauss)
 
@@ -43,17 +39,13 @@ def adapt_in_numpy(
 class _Learner:
     """Weights of shape (dim, stride) and the space that a step needs; every operation runs along memory."""
 
-    def __init__(self, weights: Array, shifts: NDArray[np.intp], substeps: int, cols: int) -> None:
+    def __init__(self, weights: Array, rows: int, cols: int) -> None:
         self._weights = weights
         self._difference = np.empty_like(weights)
         self._square = np.empty_like(weights)
         self._neighbourhood = np.zeros_like(weights[0])
-        self._nodes = len(shifts) * cols
-        self._rows = np.arange(len(shifts))
-        self._shifts = shifts
-        self._substeps = substeps
-        self._cols = cols
-        self._places = substeps * np.arange(cols) + (shifts[:, None] if shifts.any() else shifts[:1, None])
+        self._nodes = rows * cols
+        self._rows, self._cols = np.arange(rows), np.arange(cols)
 
     def adapt(self, x: Array, row_gauss: Array, col_gauss: Array) -> None:
         """Take one step: find the winner of x (dim,), and move the weights towards x."""
@@ -78,7 +70,7 @@ class _Learner:
 
     def _centre_on(self, winner: int, row_gauss: Array, col_gauss: Array) -> None:
         """Set α G of every unit: the product of a Gaussian over rows and one over columns."""
-        row, col = divmod(winner, self._cols)
+        row, col = divmod(winner, len(self._cols))
         across = row_gauss[np.abs(self._rows - row)]
-        along = col_gauss[np.abs(self._places - (self._substeps * col + self._shifts[row]))]
+        along = col_gauss[np.abs(self._cols - col)]
         np.multiply(across[:, None], along, out=self._neighbourhood[: self._nodes].reshape(len(across), -1))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.som.blas import matmul
-from actum.som.grid import Grid
+from actum.som.codebook import unit_coordinates
 
 Doubles = NDArray[np.float64]
 
@@ -16,15 +16,17 @@ _DIRECTIONS = 6
 """Directions that are iterated: with more than the two that are needed, these converge faster."""
 
 
-def linear_weights(vectors: NDArray[Any], grid: Grid) -> Doubles:
+def linear_weights(vectors: NDArray[Any], rows: int, cols: int) -> Doubles:
     """Return weights on the plane of the first two principal components of vectors (n, dim), shape (nodes, dim).
 
     The plane spans ± two standard deviations, with the first component along the longer side of the grid. Missing
     values (NaN) are taken as the mean of the others.
 
     Raises:
-        ValueError: a component is missing in every vector: remove or fill it.
+        ValueError: a component is missing in every vector: remove or fill it. Or there is no unit.
     """
+    if min(rows, cols) < 1:
+        raise ValueError(f"a grid of {rows}×{cols} has no units: use at least 1×1")
     known = ~np.isnan(vectors)
     if not known.any(axis=0).all():
         raise ValueError(
@@ -32,8 +34,7 @@ def linear_weights(vectors: NDArray[Any], grid: Grid) -> Doubles:
         )
     mean = np.nanmean(vectors, axis=0, dtype=np.float64)
     axes = principal_axes(np.where(known, vectors - mean, 0.0))
-    down, right = np.ptp(grid.positions, axis=0)
-    return mean + 2 * matmul(_scaled(grid.positions), axes if down >= right else axes[::-1])
+    return mean + 2 * matmul(_scaled(unit_coordinates(rows, cols)), axes if rows >= cols else axes[::-1])
 
 
 def principal_axes(centred: Doubles) -> Doubles:

@@ -1,7 +1,6 @@
 """The self-organising map (Kohonen, 1982): a grid of units that learns the order of its inputs."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Self
 
 import numpy as np
@@ -9,10 +8,9 @@ from numpy.typing import ArrayLike, DTypeLike
 
 from actum.som.batch import BatchTraining
 from actum.som.codebook import Codebook
-from actum.som.grid import Grid, Topology
 from actum.som.inputs import float_type, training_vectors
 from actum.som.linear import linear_weights
-from actum.som.schedule import Decay, Report, Steps, falling, silent
+from actum.som.schedule import Decay, Report, falling, silent
 from actum.som.sequential import SequentialTraining
 
 REPORT_STEPS = 1000
@@ -32,35 +30,27 @@ class Som(Codebook):
     """
 
     @classmethod
-    def random(
-        cls,
-        rows: int,
-        cols: int,
-        dim: int,
-        rng: np.random.Generator,
-        dtype: DTypeLike = np.float64,
-        topology: Topology = "rectangular",
-    ) -> Self:
+    def random(cls, rows: int, cols: int, dim: int, rng: np.random.Generator, dtype: DTypeLike = np.float64) -> Self:
         """Make an untrained map of inputs (dim,), all weights drawn from U(0, 1).
 
         Raises:
-            ValueError: there is no such grid, or no component.
+            ValueError: there is no unit, or no component.
         """
-        return cls(rows, cols, rng.random((rows * cols, dim)).astype(dtype), topology)
+        return cls(rows, cols, rng.random((rows * cols, dim)).astype(dtype))
 
     @classmethod
-    def linear(cls, rows: int, cols: int, vectors: ArrayLike, topology: Topology = "rectangular") -> Self:
+    def linear(cls, rows: int, cols: int, vectors: ArrayLike) -> Self:
         """Make an untrained map on the plane of the first two principal components of the rows of (n, dim).
 
         The same vectors make the same map, in their precision: float32 or float64.
 
         Raises:
-            ValueError: the vectors are no rows with known components.
+            ValueError: the vectors are no rows with known components, or there is no unit.
         """
         rows_given = np.asarray(vectors)
         dim = rows_given.shape[-1] if rows_given.ndim else 0
         inputs = training_vectors(rows_given, dim, float_type(rows_given))
-        return cls(rows, cols, linear_weights(inputs, Grid(rows, cols, topology)).astype(inputs.dtype), topology)
+        return cls(rows, cols, linear_weights(inputs, rows, cols).astype(inputs.dtype))
 
     def train(
         self, vectors: ArrayLike, steps: int, schedule: Decay, rng: np.random.Generator, report: Report = silent
@@ -80,7 +70,8 @@ class Som(Codebook):
         Raises:
             ValueError: the vectors do not fit the map, or α or a radius makes no sense.
         """
-        training = SequentialTraining.drawn(self, vectors, steps, schedule, rng)
+        inputs = training_vectors(vectors, self.dim, self.dtype)
+        training = SequentialTraining(self, inputs, rng.integers(len(inputs), size=steps), schedule)
         while training.steps_done < steps:
             report(training.steps_done, steps)
             training.run(REPORT_STEPS)
@@ -109,25 +100,4 @@ class Som(Codebook):
             report(epoch, epochs)
             training.run_epoch()
         report(epochs, epochs)
-        return training.som
-
-    @classmethod
-    def resume(cls, path: Path | str, vectors: ArrayLike) -> SequentialTraining[Self]:
-        """Resume a sequential training that `SequentialTraining.save` wrote, with the same vectors (n, dim).
-
-        Raises:
-            SomError: the file is missing, foreign or damaged, or was made with other vectors.
-        """
-        return SequentialTraining.load(path, vectors, cls)
-
-    def partial_fit(self, vectors: ArrayLike, alpha: float, radius: float) -> Self:
-        """Return the map after one adaptation to each row of (n, dim), in their order, at constant α and radius.
-
-        Raises:
-            ValueError: the vectors do not fit the map, α is not from 0 to 1, or the radius not above 0.
-        """
-        inputs = training_vectors(vectors, self.dim, self.dtype)
-        constant = Steps(np.full(len(inputs), alpha), np.full(len(inputs), radius))
-        training = SequentialTraining(self, inputs, np.arange(len(inputs)), constant)
-        training.run(training.steps)
         return training.som

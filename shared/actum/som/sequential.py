@@ -1,20 +1,17 @@
 """Sequential training: one input after the other moves its winner and the winner's neighbours (Kohonen, 1982)."""
 
-import hashlib
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import Any, Generic
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from actum.som import blas, storage
-from actum.som.codebook import Map, map_arrays, stored_map
+from actum.som import blas
+from actum.som.codebook import Map
 from actum.som.inputs import training_vectors
 from actum.som.kernel import Kernel, adapt_in_numpy
-from actum.som.schedule import Decay, Steps, checked_radii
-from actum.som.storage import SomError
+from actum.som.schedule import Decay, checked_radii
 
 Array = NDArray[Any]
 
@@ -37,15 +34,15 @@ class SequentialTraining(Generic[Map]):
     """A map while it learns from one input after the other: w += α G (x − w) (Kohonen, 1982).
 
     G = exp(−r² / 2 radius²), r the distance on the grid to the winner. Missing components (NaN) of an input adapt
-    nothing. The state can be saved after any step; a resumed training gives the same map to the bit.
+    nothing.
 
-    >>> from actum.som import Som
+    >>> from actum.som import Som, Steps
     >>> vectors = np.random.default_rng(0).random((100, 2))
     >>> order, decay = np.arange(300) % 100, Steps(np.full(300, 0.1), np.linspace(2.0, 0.5, 300))
     >>> training = SequentialTraining(Som.linear(4, 4, vectors), vectors, order, decay)
-    >>> training.run(200)
-    >>> training.steps_done, training.steps
-    (200, 300)
+    >>> training.run(300)
+    >>> training.steps_done
+    300
     >>> training.som.quantization_error(vectors) < 0.2
     True
     """
@@ -77,91 +74,34 @@ class SequentialTraining(Generic[Map]):
         alphas, radii = decay.values(len(self._order))
         self._radii = checked_radii(radii)
         self._alphas = _checked_alphas(alphas)
-        self._weights = np.zeros((som.dim, blas.stride(som.grid.nodes, som.dtype)), som.dtype)
-        self._weights[:, : som.grid.nodes] = som.weights.T
+        self._weights = np.zeros((som.dim, blas.stride(len(som.weights), som.dtype)), som.dtype)
+        self._weights[:, : len(som.weights)] = som.weights.T
         self._adapt = kernel or fastest_kernel()
-
-    @classmethod
-    def drawn(
-        cls, som: Map, vectors: ArrayLike, steps: int, decay: Decay, rng: np.random.Generator
-    ) -> "SequentialTraining[Map]":
-        """Prepare `steps` steps on rows of (n, dim) drawn at random, with replacement.
-
-        Raises:
-            ValueError: the vectors do not fit the map, or α or radius make no sense.
-        """
-        inputs = training_vectors(vectors, som.dim, som.dtype)
-        return cls(som, inputs, rng.integers(len(inputs), size=steps), decay)
-
-    @property
-    def steps(self) -> int:
-        """How many steps there are in all."""
-        return len(self._order)
 
     @property
     def som(self) -> Map:
         """The map as it is now."""
-        return replace(self._start, weights=self._weights[:, : self._start.grid.nodes].T)
+        return replace(self._start, weights=self._weights[:, : len(self._start.weights)].T)
 
     def run(self, steps: int) -> None:
         """Take the next steps, as many as are asked for and left."""
-        end = min(self.steps_done + steps, self.steps)
+        end = min(self.steps_done + steps, len(self._order))
         while self.steps_done < end:
             chunk = slice(self.steps_done, min(self.steps_done + CHUNK_STEPS, end))
             self._adapt(self._weights, self._vectors[self._order[chunk]], *self._tables(chunk))
             self.steps_done = chunk.stop
 
-    def _tables(self, chunk: slice) -> tuple[Array, Array, NDArray[np.intp], int]:
+    def _tables(self, chunk: slice) -> tuple[Array, Array]:
         """Tabulate what a kernel takes (see `adapt_in_numpy`): both kernels take exp from here, so they agree."""
-        grid, dtype = self._start.grid, self._start.dtype
+        dtype, radii = self._start.dtype, self._radii[chunk]
         alphas = self._alphas[chunk, None].astype(dtype)
-        over_rows = alphas * grid.row_gaussians(self._radii[chunk]).astype(dtype)
-        over_cols = grid.col_gaussians(self._radii[chunk]).astype(dtype)
-        return over_rows, over_cols, grid.shifts, grid.substeps
+        over_rows = alphas * _gaussians(self._start.rows, radii).astype(dtype)
+        return over_rows, _gaussians(self._start.cols, radii).astype(dtype)
 
-    def save(self, path: Path | str) -> None:
-        """Write the map, the steps done, and order, α and radius of every step; not the vectors, only their digest.
 
-        Raises:
-            OSError: the file cannot be written.
-        """
-        storage.write(
-            Path(path),
-            storage.TRAINING_FORMAT,
-            {
-                **map_arrays(self.som),
-                "vectors_digest": np.array(_digest(self._vectors)),
-                "steps_done": np.array(self.steps_done),
-                "order": self._order,
-                "alphas": self._alphas,
-                "radii": self._radii,
-            },
-        )
-
-    @classmethod
-    def load(
-        cls, path: Path | str, vectors: ArrayLike, kind: type[Map], kernel: Kernel | None = None
-    ) -> "SequentialTraining[Map]":
-        """Resume a training that `save` wrote.
-
-        Args:
-            path: the file.
-            vectors: the same inputs, (n, dim).
-            kind: the class of the map.
-            kernel: how steps are computed, as in the constructor.
-
-        Raises:
-            SomError: the file is missing, foreign or damaged, or was made with other vectors.
-        """
-        with storage.reading(Path(path), storage.TRAINING_FORMAT) as file:
-            som, decay = stored_map(file, kind), Steps(file["alphas"], file["radii"])
-            if str(file["vectors_digest"]) != _digest(np.array(vectors, som.dtype, order="C")):
-                raise SomError(Path(path), "this training began with other vectors: continue it with those")
-            training = cls(som, vectors, file["order"], decay, kernel)
-            training.steps_done = int(file["steps_done"])
-            if not 0 <= training.steps_done <= training.steps:
-                raise ValueError(f"the file counts {training.steps_done} of {training.steps} steps as done")
-        return training
+def _gaussians(count: int, radii: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return exp(−r² / 2 radius²) at distances r of 0, 1, … `count` − 1 units and for radii (n,), shape (n, count)."""
+    return np.exp(np.arange(count, dtype=np.float64) ** 2 * (-0.5 / radii[:, None] ** 2))
 
 
 def _checked_order(order: ArrayLike, rows: int) -> NDArray[np.intp]:
@@ -178,7 +118,3 @@ def _checked_alphas(alphas: ArrayLike) -> NDArray[np.float64]:
     if not ((values >= 0) & (values <= 1)).all():
         raise ValueError(f"adaptation strengths (alpha) must be from 0 to 1; got {values.min()} to {values.max()}")
     return values
-
-
-def _digest(vectors: Array) -> str:
-    return hashlib.sha256(f"{vectors.shape} {vectors.dtype.str}".encode() + vectors.tobytes()).hexdigest()

@@ -29,12 +29,12 @@ class Together:
         Raises:
             ValueError: the maps differ in their number of units or their precision.
         """
-        if len({(som.grid.nodes, som.dtype) for som in maps}) != 1:
+        if len({(len(som.weights), som.dtype) for som in maps}) != 1:
             raise ValueError(
-                f"maps of {[(som.grid.nodes, str(som.dtype)) for som in maps]} units differ in their grids or data "
+                f"maps of {[(len(som.weights), str(som.dtype)) for som in maps]} units differ in their grids or data "
                 "types: give maps of the same grid and data type"
             )
-        self._shape = (-1, len(maps), maps[0].grid.nodes)
+        self._shape = (-1, len(maps), len(maps[0].weights))
         self._dtype = maps[0].dtype
         lookups = [som.lookup for som in maps]
         self._centre = np.concatenate([lookup.centre for lookup in lookups])

@@ -23,7 +23,6 @@ def trained(som: Som, vectors: np.ndarray, kernel: Kernel) -> np.ndarray:
 
 
 @needs_numba
-@pytest.mark.parametrize("topology", ["rectangular", "hexagonal"])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @given(
     rows=st.integers(1, 9),
@@ -33,14 +32,14 @@ def trained(som: Som, vectors: np.ndarray, kernel: Kernel) -> np.ndarray:
     seed=st.integers(0, 99),
 )
 def test_both_kernels_give_the_same_map_to_the_bit(
-    rows: int, cols: int, dim: int, gaps: float, seed: int, dtype: type, topology: str
+    rows: int, cols: int, dim: int, gaps: float, seed: int, dtype: type
 ) -> None:
     from actum.som.compiled import compiled_kernel
 
     rng = np.random.default_rng(seed)
     vectors = rng.normal(size=(20, dim)).astype(dtype)
     vectors[:, 1:][rng.random((20, dim - 1)) < gaps] = np.nan
-    som = Som.random(rows, cols, dim, rng, dtype, topology)
+    som = Som.random(rows, cols, dim, rng, dtype)
     assert trained(som, vectors, compiled_kernel()).tobytes() == trained(som, vectors, adapt_in_numpy).tobytes()
 
 

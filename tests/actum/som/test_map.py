@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from actum.som import Som, Topology
+from actum.som import Som
 
 
 def rng(seed: int = 0) -> np.random.Generator:
@@ -63,9 +63,8 @@ def test_the_same_weights_are_drawn_in_either_precision() -> None:
     assert (double.weights.astype(np.float32) == single.weights).all()
 
 
-def test_distances_and_winner_by_hand() -> None:
+def test_excess_distances_and_winner_by_hand() -> None:
     som = line_map()
-    assert som.distances2(np.array([3.0])).tolist() == [9, 4, 49]
     assert som.excess2(np.array([3.0])).tolist() == [5, 0, 45]
     assert som.excess2s([[3.0], [11.0]]).tolist() == [[5, 0, 45], [120, 99, 0]]
     assert som.bmu(np.array([3.0])) == 1
@@ -85,7 +84,6 @@ def test_the_winner_is_the_nearest_neuron(vectors: np.ndarray) -> None:
     lookups = zip(vectors, som.bmus(vectors), som.best_two(vectors), som.excess2s(vectors), strict=True)
     for x, winner, best_two, excess2 in lookups:
         distances2 = ((som.weights - x) ** 2).sum(axis=1)
-        np.testing.assert_allclose(som.distances2(x), distances2)
         np.testing.assert_allclose(som.excess2(x), distances2 - distances2.min(), atol=1e-12)
         np.testing.assert_allclose(excess2, distances2 - distances2.min(), atol=1e-12)
         assert distances2[som.bmu(x)] == pytest.approx(distances2.min(), abs=1e-12)
@@ -106,7 +104,7 @@ def test_where_the_inputs_lie_does_not_matter_even_in_single_precision(offset: f
 def test_the_winner_is_found_where_the_activity_is_too_flat_to_tell() -> None:
     """With the paper's sigma of a million, neurons at 0.30 and 0.31 m are equally active in single precision."""
     som = Som(1, 2, np.array([[0.31], [0.30]]))
-    activity = np.exp(-np.sqrt(som.distances2(np.zeros(1))) / 1e6).astype(np.float32)
+    activity = np.exp(-som.weights[:, 0] / 1e6).astype(np.float32)
     assert activity[0] == activity[1]
     assert som.bmu(np.zeros(1)) == 1
 
@@ -148,7 +146,6 @@ def test_lists_and_values_that_are_no_floats_are_looked_up_like_arrays() -> None
     som = line_map()
     assert som.bmu([3]) == som.bmu(np.array([3])) == som.bmus([[3]])[0] == 1
     assert som.excess2([3]).tolist() == [5, 0, 45]
-    assert som.distances2([3]).tolist() == [9, 4, 49]
     assert (Som.of_planes([[[0.0], [1.0], [10.0]]]).weights == som.weights).all()
     pair = Som(1, 2, np.array([[0.0, 5.0], [5.0, 7.0]]))
     assert pair.bmus([[3.0, None]]).tolist() == pair.bmus([[3.0, np.nan]]).tolist() == [1]
@@ -156,20 +153,18 @@ def test_lists_and_values_that_are_no_floats_are_looked_up_like_arrays() -> None
 
 @pytest.mark.parametrize("copied", [copy, deepcopy, lambda som: pickle.loads(pickle.dumps(som))])
 def test_copies_are_the_same_map_and_cannot_be_written_either(copied: Callable[[Som], Som]) -> None:
-    som = Som.random(3, 4, 2, rng(), np.float32, "hexagonal")
+    som = Som.random(3, 4, 2, rng(), np.float32)
     som.bmus([[0.5, 0.5]])
     twin = copied(som)
-    assert (twin.rows, twin.cols, twin.topology, twin.dtype) == (3, 4, "hexagonal", np.float32)
+    assert (twin.rows, twin.cols, twin.dtype) == (3, 4, np.float32)
     assert (twin.weights == som.weights).all()
     assert not twin.weights.flags.writeable
 
 
-@pytest.mark.parametrize("topology", ["rectangular", "hexagonal"])
-def test_where_units_stand_cannot_be_written(topology: Topology) -> None:
-    som = Som.random(3, 4, 2, rng(), topology=topology)
-    for places in (som.coordinates, som.grid.positions):
-        with pytest.raises(ValueError, match="read-only"):
-            np.multiply(places, 30, out=places)
+def test_where_units_stand_cannot_be_written() -> None:
+    coordinates = Som.random(3, 4, 2, rng()).coordinates
+    with pytest.raises(ValueError, match="read-only"):
+        np.multiply(coordinates, 30, out=coordinates)
 
 
 @pytest.mark.parametrize(("dtype", "allowed", "too_large"), [(np.float32, 1e18, 1e20), (np.float64, 1e150, 1e155)])
@@ -187,7 +182,7 @@ def test_values_whose_squares_overflow_are_refused(dtype: type, allowed: float, 
 def test_infinite_components_are_refused() -> None:
     som = Som.random(2, 2, 2, rng())
     broken = np.array([np.inf, 0.5])
-    for lookup in (som.bmu, som.excess2, som.distances2):
+    for lookup in (som.bmu, som.excess2):
         with pytest.raises(ValueError, match="infinite"):
             lookup(broken)
     with pytest.raises(ValueError, match="row 1 has an infinite"):

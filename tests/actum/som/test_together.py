@@ -30,7 +30,10 @@ def test_of_any_size_by_distances(units: tuple[int, int]) -> None:
     """The larger exceeds what BLAS multiplies on one thread."""
     maps = maps_of(45, 12, units=units, dtype=np.float64)
     x = np.random.default_rng(2).normal(2, 1, (2, 57))
-    expected = [[som.distances2(own) for som, own in zip(maps, (row[:45], row[45:]), strict=True)] for row in x]
+    inputs = np.split(x, [45], axis=1)
+    expected = np.stack(
+        [np.square(own[:, None] - som.weights).sum(axis=2) for som, own in zip(maps, inputs, strict=True)], axis=1
+    )
     smallest = np.min(expected, axis=2, keepdims=True)
     np.testing.assert_allclose(Together(maps).excess2s(x), expected - smallest, atol=1e-9)
 
