@@ -30,12 +30,14 @@ def segment_lines(take: Take) -> list[SegmentLine]:
     Raises:
         RecordingError: the file is damaged.
     """
-    problems, answers = _problems(take), _answers(take)
+    answers = _answers(take)
+    problems = _problems(take)  # the last pass over the recording, which counts what is skipped of frames and marks
     several = len({each.sensor for each in take.segments}) > 1
     rows = [
         (
             str(number),
             *_times(each, take.first_ns),
+            each.segment_id,
             each.label or "(no label)",
             each.origin or "-",
             "nearest" if each.agent is None else f"agent {each.agent}",
@@ -88,7 +90,7 @@ def _problem(segment: MarkedSegment, closed: list[ClosedSegment]) -> str | None:
 
 
 def _answers(take: Take) -> list[Action | Event]:
-    messages = take.recording.messages((keys.ACTION, keys.EVENT))
+    messages = take.recording.messages((keys.SEGMENT, keys.ACTION, keys.EVENT))
     return [each for each in messages if isinstance(each, Event) or (isinstance(each, Action) and each.final)]
 
 

@@ -6,7 +6,6 @@ Each replaces the file as a whole, or raises an OSError and leaves it as it was.
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from actum.limits import MAX_SKEW_NS
 from actum.messages import AUTO, CUT, MANUAL, Hand, segment_marks
 from actum.node import SECOND_NS
 from actum.rewriting import rewrite, unchanged
@@ -121,7 +120,7 @@ def _refuse_bounds(take: Take, segment: MarkedSegment, others: Iterable[MarkedSe
     span = f"{_seconds(take, start_ns)} to {_seconds(take, end_ns)} s"
     if end_ns - start_ns < SHORTEST_NS:
         raise EditError(f"the segment would run from {span}: the end has to be at least 0.1 s later than the start")
-    if start_ns < take.first_ns - MAX_SKEW_NS or end_ns > take.last_ns + MAX_SKEW_NS:
+    if start_ns < take.first_ns or end_ns > take.last_ns:
         raise EditError(
             f"{span} lies outside the recording's frames, which last {_seconds(take, take.last_ns)} s: use times "
             "within them"

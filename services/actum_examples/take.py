@@ -102,13 +102,12 @@ class Take:
         return {name: text for name, text in fields.items() if name in known or json.loads(text)}
 
 
-def read_take(path: Path) -> Take:
-    """Read a take.
+def read_take(recording: Recording) -> Take:
+    """Read a recording as a take.
 
     Raises:
-        RecordingError: the file is no recording, or damaged.
+        RecordingError: the file is damaged.
     """
-    recording = Recording(path)
     marks: list[Segment] = []
     stamps_ns: list[int] = []
     for message in recording.messages((frames_topic(recording), keys.SEGMENT)):

@@ -17,7 +17,7 @@ from pydantic import BaseModel
 
 from actum.commands import Refusal
 from actum.installing import adding
-from actum.mcap_file import RecordingError
+from actum.recording import Recording, RecordingError
 from actum.runtime.parent import end_with_parent
 from actum_examples.take import read_take
 from actum_model_trainer.advice import SetContents, advice
@@ -139,7 +139,7 @@ def _snapshot(told: Told) -> Path:
 
 def _contents(told: Told, model: Model | None) -> SetContents:
     """Return what the set holds, as it was when the job began."""
-    takes = [read_take(path) for path in sorted((told.folder / "takes").glob("*.mcap"))]
+    takes = [read_take(Recording(path)) for path in sorted((told.folder / "takes").glob("*.mcap"))]
     background_s = sum(take.background_s for take in takes)
     return SetContents(
         dict(sorted(Counter(label for take in takes for label in take.labels).items())),

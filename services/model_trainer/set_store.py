@@ -16,7 +16,7 @@ from actum.atomic_file import clear_unfinished, give_name, store_names, write_wh
 from actum.codec import encodable
 from actum.commands import Refusal
 from actum.recorder import Recorder, is_being_written
-from actum.recording import RecordingError
+from actum.recording import Recording, RecordingError
 from actum_examples.take import CREATED, KIND, Take, read_take
 from model_trainer.small_files import small_file
 
@@ -204,7 +204,7 @@ class SetStore:
 
 
 def _read(path: Path) -> Take:
-    take = read_take(path)
+    take = read_take(Recording(path))
     if (count := len(take.segments)) > MOST_SEGMENTS:
         raise RecordingError(path, f"it has {count} marked segments, more than {MOST_SEGMENTS}", "split it")
     return take

@@ -54,7 +54,7 @@ COMMANDS = tuple(dict.fromkeys(commands_of(app)))
 
 
 def test_the_commands_are_found_in_all_groups() -> None:
-    assert {"", "demo", "segment toggle", "import msrc12", "calibrate up", "takes drop"} <= set(COMMANDS)
+    assert {"", "demo", "segment toggle", "import msrc12", "calibrate up", "label delete"} <= set(COMMANDS)
 
 
 @pytest.mark.parametrize("command", COMMANDS)

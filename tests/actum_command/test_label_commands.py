@@ -68,8 +68,8 @@ def marks_of(path: Path, segment_id: str) -> list[Segment]:
 def test_segments_are_numbered_in_order_of_time_with_their_answers(path: Path) -> None:
     assert label(path).startswith(f"{path}, person anna\n")
     assert rows(path) == [
-        "1 1.20 s 2.57 s (1.37 s) wave - nearest usable answered push 1.00",
-        "2 3.80 s 5.17 s (1.37 s) (no label) - nearest not usable: no label",
+        "1 1.20 s 2.57 s (1.37 s) first wave - nearest usable answered push 1.00",
+        "2 3.80 s 5.17 s (1.37 s) second (no label) - nearest not usable: no label",
     ]
     assert label("list", path) == label(path)
 
@@ -110,14 +110,14 @@ def test_a_segment_is_relabelled_and_deleted_with_its_answers(path: Path) -> Non
     label("relabel", path, 2, "drink")
     assert [each.label for each in marks_of(path, "second")] == ["drink", None]
     label("delete", path, 1)
-    assert rows(path)[0].startswith("1 3.80 s 5.17 s (1.37 s) drink")
+    assert rows(path)[0].startswith("1 3.80 s 5.17 s (1.37 s) second drink")
     assert all(getattr(message, "segment_id", None) != "first" for message in Recording(path).messages())
 
 
 def test_a_segment_is_added_and_deleted_with_its_frames(path: Path) -> None:
     marks = [m for m in Recording(path).messages() if isinstance(m, Segment)]
     label("add", path, 6.4, 7.8, "wave", "--agent", 1)
-    assert rows(path)[2] == "3 6.40 s 7.80 s (1.40 s) wave manual agent 1 usable"
+    assert rows(path)[2] == "3 6.40 s 7.80 s (1.40 s) added-1 wave manual agent 1 usable"
     label("delete", path, 3)
     assert [m for m in Recording(path).messages() if isinstance(m, Segment)] == marks
     empty = [(m.stamp_ns - FIRST_NS) / 1e9 for m in unmarked(path) if isinstance(m, Skeleton) and not m.agents]
@@ -172,7 +172,7 @@ def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) 
     assert "0 segments drawn" in label("picture", path, "-o", tmp_path / "bare.png")
     assert "shows no person who moves" in refused("cut", path, 5, "wave")
     label("add", path, 0.5, 1.5, "stand")
-    assert rows(path) == ["1 0.50 s 1.50 s (1.00 s) stand manual nearest usable"]
+    assert rows(path) == ["1 0.50 s 1.50 s (1.00 s) added-1 stand manual nearest usable"]
 
 
 @pytest.mark.parametrize(

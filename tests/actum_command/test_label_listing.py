@@ -67,10 +67,10 @@ def test_each_action_is_listed_with_whether_it_can_be_used(path: Path) -> None:
     assert listed.startswith(f"{path}, person anna\n")
     assert listed.endswith("4 segments, 1 usable\n")
     assert rows(path) == [
-        "1 0.00 s 0.97 s (0.97 s) push - nearest usable answered push 1.00",
-        "2 1.00 s 1.63 s (0.63 s) (no label) - nearest not usable: no label",
-        "3 1.67 s 1.70 s (0.03 s) push - nearest not usable: 2 usable frames, at least 3 are needed",
-        "4 1.73 s - - lift - nearest not usable: start without end: the frames ended 0.2 s after the start",
+        "1 0.00 s 0.97 s (0.97 s) whole push - nearest usable answered push 1.00",
+        "2 1.00 s 1.63 s (0.63 s) unnamed (no label) - nearest not usable: no label",
+        "3 1.67 s 1.70 s (0.03 s) short push - nearest not usable: 2 usable frames, at least 3 are needed",
+        "4 1.73 s - - open lift - nearest not usable: start without end: the frames ended 0.2 s after the start",
     ]
 
 
@@ -124,7 +124,7 @@ def two_sensors(tmp_path: Path) -> Path:
 
 def test_actions_of_several_sensors_are_listed_with_their_sensor(two_sensors: Path) -> None:
     assert rows(two_sensors) == [
-        f"{number} {span} s (0.63 s) push - nearest usable answered push 1.00 {sensor}"
+        f"{number} {span} s (0.63 s) one push - nearest usable answered push 1.00 {sensor}"
         for number, span, sensor in ((1, "0.00 s 0.63", "kinect0"), (2, "0.33 s 0.97", "kinect1"))
     ]
 

@@ -347,7 +347,7 @@ class TestUnfinishedInAFolder:
         assert f"{folder / 'a.mcap.part'} is not read, because the finished recording {folder / 'a.mcap'}" in text
 
     def test_commands_read_them_and_say_so(self, folder: Path) -> None:
-        listed = actum("takes", folder).stdout
+        listed = actum("label", folder).stdout
         assert "done" in listed and "newest" in listed and "hidden" not in listed
         self.told_of(listed, folder)
 

@@ -117,7 +117,7 @@ def test_a_recorded_mark_outside_of_the_frames_is_skipped_and_counted(
     assert [each.segment_id for each in closed if each.reason is None] == list(segment_labels(recording, "kinect0"))
     assert set(films_of(recording, None)) == {each.segment_id for each in marks}
     assert len(samples_from([recording]).usable) == 2 and samples_from([recording]).unusable == []
-    take = read_take(recording.path)
+    take = read_take(recording)
     assert "mark_outside_frames" in take.doubts[-1] and take.background_s < 600
     assert recorded_courses(recording, "kinect0")
 

@@ -59,7 +59,7 @@ def test_a_newer_take_has_a_higher_number_also_where_one_is_missing_or_the_clock
 def test_a_take_with_more_examples_than_can_be_changed_at_once_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("actum_examples.take.MOST_EXAMPLES", 1)
+    monkeypatch.setattr("model_trainer.set_store.MOST_SEGMENTS", 1)
     store = SetStore(tmp_path, lambda: 1)
     store.create("waves")
     with store.recorder("anna", "action") as recorder:
@@ -68,6 +68,6 @@ def test_a_take_with_more_examples_than_can_be_changed_at_once_is_told(
         for number in (1, 2):
             for each in segment_marks(2 * number, 2 * number + 1, "kinect0", f"wave-{number}", "wave"):
                 recorder.write(each)
-    with pytest.raises(RecordingError, match="it has 2 marked actions, more than 1; split it"):
+    with pytest.raises(RecordingError, match="it has 2 marked segments, more than 1; split it"):
         store.add("waves", recorder.path)
-    assert "2 marked actions" in store.get("waves").unreadable[0]
+    assert "2 marked segments" in store.get("waves").unreadable[0]

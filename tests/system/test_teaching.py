@@ -10,6 +10,7 @@ import pytest
 
 from actum.commands import Refusal
 from actum.messages import Message
+from actum.recording import Recording
 from actum.runtime import NotAnsweredError
 from actum_examples.take import read_take
 from live import System
@@ -68,7 +69,7 @@ def test_a_trainer_that_is_killed_at_any_moment_leaves_whole_files(running: Syst
             trainer.process.wait()
             asking.join(timeout=20)
             taken = [take for take in (folder / "sets").glob("*/*.mcap") if take.parent.name != MAKING]
-            assert all(read_take(take).examples for take in taken)
+            assert all(read_take(Recording(take)).examples for take in taken)
         running.start("model_trainer", "--take-over")
         running.wait_for_services(client, "model_trainer")
         listed = client.ask("model_trainer", "list")

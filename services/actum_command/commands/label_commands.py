@@ -11,7 +11,7 @@ import typer
 
 from actum.installing import adding
 from actum.node import SECOND_NS
-from actum.recording import RecordingError
+from actum.recording import Recording, RecordingError
 from actum_command.commands.plain_help import LISTS, ListingGroup, PlainTyper
 from actum_command.commands.recording_options import (
     AllOption,
@@ -61,14 +61,14 @@ def list_command(
 ) -> None:
     """List the marked segments, and whether training can use them.
 
-    Columns: number, start, end, duration, label, who marked it, who acts, usable for training, the recorded answer; in
-    a recording of several sensors also the sensor.
+    Columns: number, start, end, duration, segment id, label, who marked it, who acts, usable for training, the
+    recorded answer; in a recording of several sensors also the sensor.
     """
     recordings, all_lines = chosen(files, person, with_excluded), []
     try:
         for recording in recordings:
             say(f"{recording.path}, person {recording.person or '(unknown)'}")
-            lines = segment_lines(read_take(recording.path))
+            lines = segment_lines(read_take(recording))
             for line in lines:
                 say(line.text, style=None if line.usable else "yellow")
             all_lines += lines
@@ -202,7 +202,7 @@ def picture(
 def _opened(file: Path) -> Take:
     """Read a recording that has frames or marks, or fail."""
     try:
-        take = read_take(file)
+        take = read_take(Recording(file))
     except RecordingError as error:
         fail(str(error))
     if take.first_ns == take.last_ns and not take.segments:
