@@ -1,7 +1,9 @@
 """What all tests share: where the recordings are, and one line when they are not there."""
 
+import gc
 import os
 import sys
+from collections.abc import Iterator
 from ctypes.util import find_library
 from importlib.util import find_spec
 from itertools import accumulate, groupby
@@ -60,6 +62,16 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     """Compile the kernel of training before several workers and their processes would, each for itself."""
     if session.config.getoption("numprocesses", None):
         fastest_kernel()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """Keep the garbage collector away from the thousands of tests, none of which is ever garbage."""
+    gc.disable()
+    collected = yield
+    gc.freeze()
+    gc.enable()
+    return collected
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -1,7 +1,6 @@
 """A deployment of two hosts on this machine: each with its own secured router, in processes, linked over one port."""
 
 import os
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -80,7 +79,7 @@ class Deployed:
 
     def _start(self, name: str, environment: dict[str, str], *arguments: str) -> Running:
         log = self.root / f"{name}-{len(self.running)}.log"
-        running = started([sys.executable, *arguments], environment, log)
+        running = started(list(arguments), environment, log)
         self.running.append(running)
         return running
 

@@ -12,6 +12,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import zenoh
 
@@ -19,6 +20,7 @@ from actum.messages import Info, Message
 from actum.runtime import Client, Listening
 from actum.runtime.router import router_config
 from actum.settings import ServiceSettings
+from forked import Forked
 
 PATIENCE_S = 30.0
 POLL_S = 0.005
@@ -69,7 +71,7 @@ def described(client: Client) -> Info:
 class Running:
     """A process and what it prints."""
 
-    process: subprocess.Popen[bytes]
+    process: subprocess.Popen[bytes] | Forked
     log: Path
 
     def said(self) -> str:
@@ -83,11 +85,18 @@ class Running:
         return time.monotonic() - began_s
 
 
-def started(command: list[str], environment: dict[str, str], log: Path) -> Running:
-    """Start a process whose output goes to a file."""
-    with log.open("wb") as output:
+def started(arguments: list[str], environment: dict[str, str], log: Path) -> Running:
+    """Start a Python program whose output goes to a file."""
+    log.touch()
+    if "LD_PRELOAD" not in environment:
+        return Running(Forked(arguments, environment, log, log), log)
+    with log.open("wb") as output:  # what is preloaded takes effect only as a program is loaded
         process = subprocess.Popen(
-            command, env=environment, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT
+            [sys.executable, *arguments],
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
         )
     return Running(process, log)
 
@@ -132,21 +141,20 @@ class System:
 
     def _start(self, name: str, *arguments: str) -> Running:
         log = self.folder / f"{name}-{len(self.running)}.log"
-        running = started([sys.executable, *arguments], self.environment, log)
+        running = started(list(arguments), self.environment, log)
         self.running.append(running)
         return running
 
     def actum(self, *arguments: str, timeout_s: float = 60.0) -> subprocess.CompletedProcess[str]:
         """Run a command of ours to its end."""
-        return subprocess.run(
-            [sys.executable, "-m", "actum_command", *arguments],
-            env=self.environment,
-            capture_output=True,
-            text=True,
-            timeout=timeout_s,
-            stdin=subprocess.DEVNULL,
-            check=False,
-        )
+        with TemporaryDirectory() as folder:
+            output, errors = Path(folder) / "output", Path(folder) / "errors"
+            command = Forked(["-m", "actum_command", *arguments], self.environment, output, errors)
+            try:
+                code = command.wait(timeout_s)
+            finally:
+                command.kill()
+            return subprocess.CompletedProcess(arguments, code, output.read_text(), errors.read_text())
 
     def client(self, sensor: str | None = None) -> Client:
         settings = self.settings.model_copy(update={"sensor": sensor or self.settings.sensor})

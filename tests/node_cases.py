@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from itertools import chain
 from typing import Any
 
@@ -52,7 +52,11 @@ class Case:
         return self.name
 
     def messages(self, first_ns: int = NOON_NS, segment_id: str = "task") -> list[Message]:
-        return [*self.warm_up(first_ns, segment_id), *self.task(first_ns, segment_id)]
+        return list(self._messages(first_ns, segment_id))
+
+    @lru_cache(maxsize=8)  # noqa: B019  cases live as long as the tests
+    def _messages(self, first_ns: int, segment_id: str) -> tuple[Message, ...]:
+        return (*self.warm_up(first_ns, segment_id), *self.task(first_ns, segment_id))
 
     def one_of_each(self) -> list[Message]:
         """One message of each kind that it takes."""

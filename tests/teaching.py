@@ -1,7 +1,7 @@
 """A trainer to be asked, in a folder of its own, without processes: its jobs say what the test wants."""
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -84,9 +84,9 @@ class Teacher:
     def act(self, stream: Stream) -> None:
         self.see(stream.skeletons(first_ns=self._stamp_ns + SECOND_NS))
 
-    def teach(self, label: str, parts: Iterable[Any], person: str = "anna", name: str = "kitchen") -> None:
-        """Record one action after which the take ends by itself."""
-        self.ask("record", set=name, label=label, person=person, count=5)
+    def teach(self, label: str, parts: Sequence[Any], person: str = "anna", name: str = "kitchen") -> None:
+        """Record one action after whose last repetition the take ends by itself."""
+        self.ask("record", set=name, label=label, person=person, count=len(parts))
         self.act(Stream().repeat(parts).then(rest(4)))
 
 

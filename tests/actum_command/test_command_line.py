@@ -254,7 +254,7 @@ def broken_off(examples: Path) -> Path:
 
 def test_training_and_evaluating_name_the_recording_that_breaks_off(broken_off: Path, tmp_path: Path) -> None:
     model = str(tmp_path / "m.npz")
-    for command in (["train", str(broken_off), "-o", model], ["evaluate", model, str(broken_off)]):
+    for command in (["train", str(broken_off), "-o", model, "--preset", "paper"], ["evaluate", model, str(broken_off)]):
         done = CliRunner().invoke(app, command)
         assert done.exit_code == 0
         assert f"{broken_off} is truncated" in done.stdout

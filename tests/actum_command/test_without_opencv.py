@@ -1,5 +1,6 @@
 """The program where OpenCV is not installed, as in the image of router, trainer and watch."""
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +11,7 @@ from actum.installing import adding
 from actum_command.commands.picture_commands import NAMES
 
 WITHOUT = """
-import sys
+import json, sys
 from importlib.machinery import PathFinder
 
 class Without(PathFinder):
@@ -19,31 +20,47 @@ class Without(PathFinder):
         return None if name in {"cv2", "reportlab", "PIL"} else super().find_spec(name, path, target)
 
 sys.meta_path[:] = [Without if finder is PathFinder else finder for finder in sys.meta_path]
-from actum_command.__main__ import main
-main()
+from actum_command.__main__ import app
+from typer.testing import CliRunner
+
+for arguments in json.loads(sys.argv[1]):
+    ended = CliRunner().invoke(app, arguments)
+    print(json.dumps([ended.exit_code, ended.stdout, ended.stderr]))
 """
+"""Runs commands one after the other, and prints how each ended."""
+WORKING = ("router", "up", "doctor", "watch", "train", "record")
 
 
-def actum(*arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", WITHOUT, *arguments]
-    return subprocess.run(command, check=False, capture_output=True, text=True)
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("scene") / "scene.mcap"
+
+
+@pytest.fixture(scope="module")
+def ended(scene: Path) -> dict[str, tuple[int, str, str]]:
+    """Exit code, output and errors of each command, by its name."""
+    needing = [[name, "somewhere.yaml", "--board", "5x7"] for name in NAMES]
+    commands = [*needing, *([name, "--help"] for name in WORKING), ["simulate", str(scene), "--repetitions", "1"]]
+    program = [sys.executable, "-c", WITHOUT, json.dumps(commands)]
+    printed = subprocess.run(program, check=True, capture_output=True, text=True).stdout
+    return {command[0]: tuple(json.loads(line)) for command, line in zip(commands, printed.splitlines(), strict=True)}
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_what_needs_it_says_what_to_install(name: str) -> None:
-    refused = actum(name, "somewhere.yaml", "--board", "5x7")
-    assert refused.returncode == 1
-    assert adding("actum-command") in refused.stderr
+def test_what_needs_it_says_what_to_install(ended: dict[str, tuple[int, str, str]], name: str) -> None:
+    code, _, errors = ended[name]
+    assert code == 1
+    assert adding("actum-command") in errors
 
 
-@pytest.mark.parametrize("command", ["router", "up", "doctor", "watch", "train", "record"])
-def test_what_needs_none_works(command: str) -> None:
-    explained = actum(command, "--help")
-    assert explained.returncode == 0, explained.stderr
-    assert "Usage" in explained.stdout
+@pytest.mark.parametrize("command", WORKING)
+def test_what_needs_none_works(ended: dict[str, tuple[int, str, str]], command: str) -> None:
+    code, output, errors = ended[command]
+    assert code == 0, errors
+    assert "Usage" in output
 
 
-def test_a_scene_without_images_is_simulated(tmp_path: Path) -> None:
-    done = actum("simulate", str(tmp_path / "scene.mcap"), "--repetitions", "1")
-    assert done.returncode == 0, done.stderr
-    assert (tmp_path / "scene.mcap").stat().st_size > 0
+def test_a_scene_without_images_is_simulated(ended: dict[str, tuple[int, str, str]], scene: Path) -> None:
+    code, _, errors = ended["simulate"]
+    assert code == 0, errors
+    assert scene.stat().st_size > 0

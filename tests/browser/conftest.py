@@ -16,6 +16,10 @@ BUGS = ("Content Security", "a bug in the page")
 """What the console says where the page is wrong."""
 PATIENCE_MS = 60_000
 """Where a browser draws in software, beside other tests."""
+SMALL = {"viewport": {"width": 960, "height": 600}}
+"""Where 3-D is drawn in software, by the pixel."""
+STILL = {"reduced_motion": "reduce"}
+"""Films of examples play only where a test has them play: drawn in software, they take half a core."""
 
 
 @pytest.fixture(scope="session")
@@ -41,27 +45,41 @@ def chromium_3d(playwright: Any) -> Iterator[Any]:
     browser.close()
 
 
+@pytest.fixture(scope="session")
+def context(chromium: Any) -> Iterator[Any]:
+    """What pages share that need nothing of their own: a context that is new costs as much as a page to load."""
+    with chromium.new_context(**STILL) as made:
+        yield made
+
+
+@pytest.fixture(scope="session")
+def context_3d(chromium_3d: Any) -> Iterator[Any]:
+    with chromium_3d.new_context(**STILL, **SMALL) as made:
+        yield made
+
+
 @pytest.fixture
-def open_page(chromium: Any) -> Iterator[Open]:
-    """Open an address in a browser of its own; what goes wrong in the page fails the test."""
-    with opener(chromium) as opened:
+def open_page(context: Any) -> Iterator[Open]:
+    """Open an address, in a context of its own where it has options; what goes wrong in the page fails the test."""
+    with opener(context) as opened:
         yield opened
 
 
 @pytest.fixture
-def open_in_3d(chromium_3d: Any) -> Iterator[Open]:
-    """The same in one that draws 3-D."""
-    with opener(chromium_3d) as opened:
+def open_in_3d(context_3d: Any) -> Iterator[Open]:
+    """The same in a browser that draws 3-D."""
+    with opener(context_3d) as opened:
         yield opened
 
 
 @contextmanager
-def opener(browser: Any) -> Iterator[Open]:
-    contexts, errors = [], []
+def opener(shared: Any) -> Iterator[Open]:
+    own, errors = [], []
 
     def opened(address: str, **options: Any) -> Any:
-        contexts.append(browser.new_context(**options))
-        page = contexts[-1].new_page()
+        if options:
+            own.append(shared.browser.new_context(**STILL | options))
+        page = (own[-1] if options else shared).new_page()
         page.set_default_timeout(PATIENCE_MS)
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.on("console", lambda said: errors.append(said.text) if any(bug in said.text for bug in BUGS) else None)
@@ -69,8 +87,9 @@ def opener(browser: Any) -> Iterator[Open]:
         return page
 
     yield opened
-    for context in contexts:
-        context.close()
+    for opened_one in (*own, *shared.pages):
+        opened_one.close()
+    shared.set_offline(False)
     assert errors == []
 
 

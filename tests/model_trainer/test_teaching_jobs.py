@@ -18,7 +18,7 @@ from live import wait_until
 from model_trainer import job
 from model_trainer.job_process import CLAIM, Ended, JobProcess, JobRequest, Progressing
 from model_trainer.job_store import JobStore
-from models import QUICK
+from performers import TINY
 from recognisers import tiny_model
 from som_classifier.watched_model import WatchedModel
 from teaching import GOGGLINGS, WAVES, Teacher
@@ -44,7 +44,7 @@ def done_here(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatc
     """Do a job in this process, with a small preset; return the lines that it prints."""
     told = json.dumps({"kind": request.kind, "folder": str(request.folder), **request.fields})
     monkeypatch.setattr(sys, "argv", ["job", told])
-    monkeypatch.setattr(job, "PRESETS", {"pyramid": QUICK})
+    monkeypatch.setattr(job, "PRESETS", {"pyramid": TINY})
     job.main()
     return [json.loads(line) for line in capsys.readouterr().out.splitlines()]
 

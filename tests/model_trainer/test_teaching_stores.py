@@ -34,7 +34,7 @@ from teaching import WAVES, Teacher
 def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
     teacher = Teacher(tmp_path_factory.mktemp("taught"))
     teacher.ask("create_set", set="kitchen")
-    teacher.teach("wave", WAVES)
+    teacher.teach("wave", WAVES[:2])
     tiny_model().save(teacher.model)
     teacher.begin()
     return teacher.folder
@@ -202,7 +202,7 @@ def test_a_set_whose_description_cannot_be_read_is_told_with_its_takes(teacher: 
     (teacher.folder / "sets/kitchen/set.json").unlink()
     PLACED[name](teacher.folder / "sets/kitchen/set.json")
     (listed,) = teacher.ask("list")["sets"]
-    assert listed["actions"] == {"wave": 5} and "set.json: " in listed["unreadable"][0]
+    assert listed["actions"] == {"wave": 2} and "set.json: " in listed["unreadable"][0]
     teacher.ask("list")
     assert teacher.trainer.counters.rejects["unreadable_file"] == 1, "once for as long as it cannot"
     go_on(teacher)
@@ -394,7 +394,7 @@ def test_a_set_that_vanishes_once_its_take_is_stored_ends_nothing(
     teacher: Teacher, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     teacher.ask("redo_last", set="kitchen")
-    teacher.see(Stream().repeat(WAVES).skeletons(first_ns=10**12))
+    teacher.see(Stream().repeat(WAVES[:2]).skeletons(first_ns=10**12))
     monkeypatch.setattr(SetStore, "get", lambda *_: (_ for _ in ()).throw(PermissionError(13, "Permission denied")))
     reply = teacher.ask("stop")
     assert reply["take"] == "take-0002" and "the old take take-0001 could not be deleted" in reply["doubts"][-1]

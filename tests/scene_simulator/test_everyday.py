@@ -22,7 +22,7 @@ FASTEST_TRUNK_M_S = 2.0
 
 @pytest.fixture(scope="module", params=range(3))
 def idle(request: pytest.FixtureRequest) -> Scene:
-    return Scene([], request.param, request.param + 50, everyday=Everyday(least_s=900))
+    return Scene([], request.param, request.param + 50, everyday=Everyday(least_s=300))
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +69,7 @@ def test_actions_are_the_same_with_and_without_doings_between_them() -> None:
 
 
 def test_doings_have_no_truth_and_no_mark() -> None:
-    simulator = Simulator(balanced_programme(2, 1), 2, 5, image_hz=0, everyday=Everyday(least_s=300))
+    simulator = Simulator(balanced_programme(2, 1), 2, 5, image_hz=0, everyday=Everyday(least_s=200))
     doing_ns = {simulator.stamp_ns(state.frame) for state in simulator.scene.states() if state.doing is not None}
     messages = list(labelled_stream(simulator))
     marks = [message for message in messages if isinstance(message, Truth | Segment)]
@@ -130,7 +130,7 @@ def test_kinds_that_are_kept_aside_for_tests_do_not_occur_in_training() -> None:
 
 def test_some_kinds_of_doings_are_commoner_with_one_person_than_with_another() -> None:
     def share(actor: int, kind: str) -> float:
-        states = list(Scene([], actor, 0, everyday=Everyday(("gesture", kind), least_s=900)).states())
+        states = list(Scene([], actor, 0, everyday=Everyday(("gesture", kind), least_s=300)).states())
         return sum(state.doing == kind for state in states) / len(states)
 
     shares = [share(actor, "scratch_head") for actor in range(4)]

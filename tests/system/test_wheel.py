@@ -61,7 +61,7 @@ def run(folder: Path, *command: str | Path, **more: str) -> str:
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The wheel of the checkout, built from its source distribution."""
     folder = tmp_path_factory.mktemp("wheel")
-    run(folder, sys.executable, "-m", "build", "--outdir", folder, ROOT)
+    run(folder, sys.executable, "-m", "build", "--no-isolation", "--outdir", folder, ROOT)
     (built,) = folder.glob("*.whl")
     return built
 
