@@ -18,7 +18,7 @@ PersonOption = Annotated[
     typer.Option(
         help=(
             "use only recordings of these people, named as in 'actum record --person', such as 1,3,5; default: "
-            "everybody"
+            "recordings of everybody"
         )
     ),
 ]
