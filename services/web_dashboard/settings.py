@@ -45,7 +45,10 @@ class Settings(ServiceSettings):
         None,
         min_length=SHORTEST_TOKEN,
         pattern=r"^[A-Za-z0-9_.~-]+$",
-        description="secret that a browser needs to open the web page; required if --page-host admits other machines",
+        description=(
+            f"secret of at least {SHORTEST_TOKEN} characters that a browser needs to open the web page; required if "
+            "--page-host lets other machines open the page"
+        ),
     )
     page_guarded: bool = Field(
         False,

@@ -132,7 +132,8 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
 def rotate(
     folder: DirArgument,
     days: Annotated[
-        float, typer.Option(min=LEAST_DAYS, max=MOST_DAYS, help="validity of the new certificates (days)")
+        float,
+        typer.Option(min=LEAST_DAYS, max=MOST_DAYS, help="number of days for which the new certificates are valid"),
     ] = YEAR,
     revoke: Annotated[
         list[str] | None,

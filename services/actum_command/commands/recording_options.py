@@ -22,7 +22,9 @@ PersonOption = Annotated[
         )
     ),
 ]
-RecordingFile = Annotated[Path, typer.Argument(metavar="REC", help="the recording file", exists=True, dir_okay=False)]
+RecordingFile = Annotated[
+    Path, typer.Argument(metavar="REC", help="the recording (.mcap)", exists=True, dir_okay=False)
+]
 AllOption = Annotated[
     bool,
     typer.Option(

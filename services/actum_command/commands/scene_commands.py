@@ -40,8 +40,8 @@ def simulate(
         Choice,
         typer.Option(
             help=(
-                "background activity between the actions, such as scratching: none; familiar (some kinds, for "
-                "training); all (every kind, for tests); only (every kind, but no actions)"
+                "background activities between the actions, such as scratching: none; familiar (only some kinds, to "
+                "train a model with); all (all kinds, to test a model with); only (all kinds, and no actions)"
             )
         ),
     ] = "none",
