@@ -32,7 +32,8 @@ def segment_of(payload: bytes, sensor: str) -> Segment:
         raise BadMarkError(f"the mark is not JSON: {error}") from None
     if not isinstance(fields, dict):
         raise BadMarkError(
-            f"the mark is a {type(fields).__name__}: send a JSON object; its possible fields are {', '.join(FIELDS)}"
+            f"the mark is a JSON {type(fields).__name__}: send a JSON object with some of the fields "
+            f"{', '.join(FIELDS)}"
         )
     unknown = [name for name in fields if name not in FIELDS]
     if unknown:

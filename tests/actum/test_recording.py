@@ -245,7 +245,7 @@ def test_damage_is_told_or_harmless(intact: Path, data: st.DataObject) -> None:
 @pytest.mark.parametrize("content", [b"", b"\x89MCAP", b"PK\x03\x04 something else altogether"])
 def test_a_file_that_is_no_mcap_is_an_error(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "a.mcap").write_bytes(content)
-    with pytest.raises(RecordingError, match=r"a\.mcap: it is not an MCAP file; give a recording"):
+    with pytest.raises(RecordingError, match=r"a\.mcap: the file is not an MCAP file; give a recording"):
         Recording(tmp_path / "a.mcap")
 
 
