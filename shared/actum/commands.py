@@ -170,7 +170,7 @@ def packed(fields: Mapping[str, Any], encoding: str) -> bytes:
             return bytes(msgpack.packb(fields, use_bin_type=True))
         return json.dumps(fields, ensure_ascii=False, allow_nan=False).encode()
     except (ValueError, TypeError, OverflowError, RecursionError) as error:
-        raise Refusal(f"a value of the fields cannot be encoded as {encoding}: {error}") from None
+        raise Refusal(f"a field's value cannot be encoded as {encoding}: {error}") from None
 
 
 def _check_encodable(fields: dict[str, Any]) -> None:

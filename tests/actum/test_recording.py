@@ -267,5 +267,5 @@ def test_action_points_are_read_from_the_metadata(tmp_path: Path) -> None:
 def test_action_points_of_another_form_are_an_error_that_names_the_file(tmp_path: Path, points: str) -> None:
     with Recorder(tmp_path / "a.mcap", person="1", source="test", action_points_ns=points):
         pass
-    with pytest.raises(RecordingError, match=r"a\.mcap: action_points_ns in its metadata is not a JSON object"):
+    with pytest.raises(RecordingError, match=r"a\.mcap: the metadata field action_points_ns is not a JSON object"):
         _ = Recording(tmp_path / "a.mcap").action_points_ns

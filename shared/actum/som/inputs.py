@@ -75,8 +75,8 @@ def is_complete(vectors: Array) -> bool:
         return True
     if np.isinf(vectors).any():
         raise ValueError(
-            f"row {np.flatnonzero(np.isinf(vectors).any(axis=1))[0]} of the vectors contains infinity: remove the "
-            "row, or replace the value"
+            f"row {np.flatnonzero(np.isinf(vectors).any(axis=1))[0]} of the vectors contains an infinite value: "
+            "remove the row, or replace the value"
         )
     empty = np.isnan(vectors).all(axis=1)
     if empty.any():

@@ -90,7 +90,7 @@ class Steps:
         if alphas.shape != (steps,) or radii.shape != (steps,):
             raise ValueError(
                 f"alphas have shape {alphas.shape} and radii {radii.shape}; expected ({steps},) for both, one value "
-                "for each step"
+                f"for each of the {steps} steps"
             )
         return alphas, radii
 
