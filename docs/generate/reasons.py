@@ -121,25 +121,27 @@ OF_FRAMES: Mapping[str, Problem] = {
     ),
     "it gives no more pictures": Problem("A device or stream has stopped.", "Check cable and network."),
     "it was closed": Problem("The gateway is stopping.", "Nothing."),
-    "no picture came for … s": Problem("The device opened, but is silent.", "Unplug it and plug it in again."),
+    "the camera sent no picture for … s": Problem(
+        "The device opened, but is silent.", "Unplug it and plug it in again."
+    ),
     "OpenCV says: …": Problem("OpenCV failed on the device or stream.", "See its message."),
     "no RealSense camera is connected": Problem("librealsense finds no camera.", "Check USB 3 cable and udev rules."),
-    "the RealSense … was unplugged": Problem("The camera was unplugged.", "Plug it in."),
+    "the RealSense camera with serial number … was unplugged": Problem("The camera was unplugged.", "Plug it in."),
     "librealsense says: …": Problem("librealsense failed.", "See its message."),
-    "the camera sends colour as …; supported: bgr8, …": Problem(
+    "the camera sends colour images in the format …; supported: bgr8, …": Problem(
         "The RealSense gives another format.", "Set a supported one."
     ),
     "no camera that OpenNI 2 supports is connected": Problem(
         "OpenNI 2 finds no camera.", "Install the camera's driver; see [cameras](cameras.md#depth-cameras)."
     ),
     "… was unplugged": Problem("The OpenNI device was unplugged.", "Plug it in."),
-    "OpenNI opened it as a camera, not as a file": Problem(
+    "OpenNI opened the file as a camera, not as a recording": Problem(
         "A driver that does not play files claims the recording.", "Remove that driver from OpenNI's folder."
     ),
-    "the camera does not have both colour and depth": Problem(
+    "the camera lacks colour or depth images: use a camera that has both": Problem(
         "One of the two streams is missing.", "Use another camera."
     ),
-    "the camera sends colour as …, not as RGB888": Problem(
+    "the camera sends colour images in the format …; only RGB888 is supported": Problem(
         "The OpenNI driver gives another format.", "Use another driver."
     ),
     "OpenNI says: …": Problem("OpenNI failed.", "See its message."),

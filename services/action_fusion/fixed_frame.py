@@ -8,7 +8,9 @@ import numpy as np
 from actum import geometry
 from actum.arrays import Array
 
-FORM = "a rigid transform: give the 16 numbers of a 4x4 matrix, row by row, in metres, or a file that holds only them"
+REMEDY = (
+    "give the 16 numbers of a 4x4 matrix, row by row, in metres, or the name of a file that contains only these numbers"
+)
 MOST_CHARACTERS = 10_000
 """Characters read of a file: 16 numbers take 400 at most."""
 
@@ -32,10 +34,11 @@ def as_text(value: object) -> str | None:
     if numbers is None:
         numbers = _numbers(_content(text))
     if numbers is None or len(numbers) != 16:
-        raise ValueError(f"{text!r} is not {FORM}")
+        raise ValueError(f"{text!r} is not a rigid transform: {REMEDY}")
     if not geometry.is_rigid(np.array(numbers).reshape(4, 4), FURTHEST_M):
         raise ValueError(
-            f"{text!r} is not a rigid transform: give a rotation, a position in metres, and 0 0 0 1 as the last row"
+            f"{text!r} is not a rigid transform: the 4x4 matrix must consist of a rotation without scaling or "
+            "mirroring, a position in metres, and 0 0 0 1 as the last row"
         )
     return " ".join(map(repr, numbers))
 
@@ -58,4 +61,4 @@ def _content(name: str) -> str:
         with Path(name).open(encoding="utf-8") as file:
             return file.read(MOST_CHARACTERS)
     except (OSError, ValueError) as error:
-        raise ValueError(f"{name!r} is not {FORM} ({error})") from None
+        raise ValueError(f"{name!r} is neither a list of numbers nor a readable file ({error}): {REMEDY}") from None

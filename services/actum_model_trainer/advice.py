@@ -61,14 +61,17 @@ def advice(
 def _too_few_actions(contents: SetContents) -> Iterator[str]:
     if len(contents.examples) < 2:
         known = next(iter(contents.examples), None)
-        beside = f"{known} is the only action" if known else "There is no action yet"
-        yield f"{beside}: record at least two actions."
+        yield (
+            f"The set has examples of only one action, {known}: record at least one more action."
+            if known
+            else "The set has no examples yet: record at least two actions."
+        )
 
 
 def _doubted(contents: SetContents) -> Iterator[str]:
     if contents.doubted:
         named = listed(f"{n} of {label}" for label, n in sorted(contents.doubted.items()))
-        yield f"Some examples may have a wrong start or end: check {named}, and trim, delete or redo them."
+        yield f"Some examples may have a wrong start or end ({named}): check them, and trim or delete the wrong ones."
 
 
 def _confused(contents: SetContents, answers: Sequence[tuple[str, str]]) -> Iterator[str]:
@@ -83,23 +86,23 @@ def _confused(contents: SetContents, answers: Sequence[tuple[str, str]]) -> Iter
         tested = wrong + times[a, a] + times[b, b]
         if wrong >= CONFUSED_TIMES and wrong >= CONFUSED_SHARE * tested:
             yield (
-                f"{a} and {b} are confused ({wrong} of {tested}): record {MORE_EXAMPLES} more of each from {another}, "
-                "or make them more different."
+                f"The model confuses {a} and {b} (in {wrong} of {tested} test examples): record {MORE_EXAMPLES} more "
+                f"examples of each by {another}, or perform the two actions more differently."
             )
 
 
 def _one_person(contents: SetContents) -> Iterator[str]:
     if len(contents.people) == 1:
         who = next(iter(contents.people)) or "one person, without a name"
-        yield f"All examples are of {who}: record {MIN_EXAMPLES} of each action by a second person."
+        yield f"All examples are of {who}: record {MIN_EXAMPLES} examples of each action by a second person."
 
 
 def _background(contents: SetContents) -> Iterator[str]:
     lacking_s = ENOUGH_BACKGROUND_S - contents.background_s
     if lacking_s > 0:
         yield (
-            f"There are only {contents.background_s:.0f} s of background: record at least {lacking_s:.0f} s more, in "
-            "which nobody does any of the actions."
+            f"The set has only {contents.background_s:.0f} s of background, that is, of people who do none of the "
+            f"actions: record at least {lacking_s:.0f} s more."
         )
 
 
@@ -109,8 +112,8 @@ def _false_alarms(found: ContinuousScores) -> Iterator[str]:
     false = {label: score.detections - score.right for label, score in found.per_action.items()}
     worst = max(false, key=lambda label: false[label])
     yield (
-        f"{found.false_per_min:.1f} false alarms a minute, most often {worst}: record more background with movements "
-        f"that resemble {worst} but are something else."
+        f"The test gave {found.false_per_min:.1f} false alarms a minute, most often {worst}: record more background "
+        f"(people who do none of the actions) with movements that resemble {worst}."
     )
 
 
@@ -118,6 +121,6 @@ def _seldom_found(found: ContinuousScores) -> Iterator[str]:
     for label, score in found.per_action.items():
         if score.truths >= FEWEST_DONE and score.recall < LOW_RECALL:
             yield (
-                f"{label} was found in only {score.right} of {score.truths} cases: record more examples of it, with a "
-                "second of rest before and after each."
+                f"The test found only {score.right} of {score.truths} performances of {label}: record more examples "
+                f"of {label}, with a second of rest before and after each."
             )

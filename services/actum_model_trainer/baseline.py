@@ -49,7 +49,7 @@ def nearest_neighbour(training: Sequence[Recording], test: Sequence[Recording]) 
     if not labelled_paths:
         raise ValueError(
             "no labelled segment of the training recordings shows both hands and the torso in at least two frames: "
-            "give other recordings"
+            "give other training recordings"
         )
     labels = [label for label, _ in labelled_paths]
     points_m = np.stack([points for _, points in labelled_paths])

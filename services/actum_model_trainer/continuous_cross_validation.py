@@ -53,7 +53,9 @@ def found_without_each(
     people = sorted({recording.person for recording in recordings})
     if len(people) < 2:
         raise TrainingError(
-            f"recordings of at least two people are needed; these are of {', '.join(people) or 'nobody with a name'}"
+            "recordings of at least two people are needed, because each person is tested with a model trained on the "
+            f"others; the given recordings name {f'only {people[0]}' if any(people) else 'nobody'}: record another "
+            "person, with --person NAME"
         )
     found: dict[str, Found] = {}
     for person in people:

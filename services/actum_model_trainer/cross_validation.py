@@ -31,7 +31,9 @@ def leave_one_person_out(
     people = sorted({recording.person for recording in recordings})
     if len(people) < 2:
         raise TrainingError(
-            f"recordings of at least two people are needed; these are of {', '.join(people) or 'nobody with a name'}"
+            "recordings of at least two people are needed, because each person is tested with a model trained on the "
+            f"others; the given recordings name {f'only {people[0]}' if any(people) else 'nobody'}: record another "
+            "person, with --person NAME"
         )
     samples = samples_from(recordings, progress)
     segments: dict[tuple[str, str, str], SegmentSample | Unusable] = {}

@@ -61,7 +61,7 @@ def train_upper(
     inputs = action_map.centred(activities).astype(np.float64)
     if not inputs.any():
         raise TrainingError(
-            "all examples show the same movement, so the actions cannot be distinguished: record them again"
+            "all examples show the same movement, so the actions cannot be distinguished: record the examples again"
         )
     layer3 = SupervisedLayer.of_means(inputs, targets, actions).train(
         inputs, targets, preset.beta, preset.epochs, rng, partial(progress, "neurons")

@@ -34,14 +34,14 @@ def warnings_of(
 def _one_person(people: set[str]) -> Iterator[str]:
     if people == {""}:
         yield (
-            "No recording names a person, so the differences between people are unknown. Record at least two "
-            "people, each with --person and a name."
+            "No recording names a person, so the model cannot learn how people differ. Record at least two people, "
+            "each with --person and a name."
         )
     elif len(people) == 1:
         who = min(people)
         yield (
-            f"All examples are of one person, {who}, so the differences between people are unknown. Record a "
-            "second person."
+            f"All examples are of one person, {who}, so the model cannot learn how people differ. Record a second "
+            "person."
         )
 
 
@@ -50,7 +50,7 @@ def few(counts: Mapping[str, int]) -> Iterator[str]:
     few = {label: n for label, n in sorted(counts.items()) if n < MIN_EXAMPLES}
     if few:
         named = listed(f"{label} has {n} ({MIN_EXAMPLES - n} more needed)" for label, n in few.items())
-        yield f"Few examples: {named}. Record at least {MIN_EXAMPLES} of each action."
+        yield f"Few examples: {named}. Record at least {MIN_EXAMPLES} examples of each action."
 
 
 def unbalanced(actions: Mapping[str, int]) -> Iterator[str]:
@@ -62,7 +62,7 @@ def unbalanced(actions: Mapping[str, int]) -> Iterator[str]:
         needed = ceil(actions[largest] / MAX_RATIO)
         more = listed(f"{needed - n} more of {label}" for label, n in rare.items())
         yield (
-            f"Unbalanced examples: {largest} has {actions[largest]}, more than {MAX_RATIO} times as many as "
+            f"Unbalanced examples: {largest} has {actions[largest]} examples, more than {MAX_RATIO} times as many as "
             f"{named}. Record {more}."
         )
 
@@ -85,16 +85,17 @@ def _confused_pair(a: str, b: str, times: Mapping[tuple[str, str], int]) -> str:
     )
     more = " and ".join(f"{MIN_EXAMPLES} more examples of {done}" for done, _ in mistaken)
     return (
-        f"{a} and {b} are confused: among examples left out of the training, {confusions}. Record {more}, also by new "
-        "people. If that does not help, perform the actions more differently, or give both the same label."
+        f"The model confuses {a} and {b}: in a test on examples left out of the training, {confusions}. Record "
+        f"{more}, also by new people. If that does not help, perform the actions more differently, or give both the "
+        "same label."
     )
 
 
 def _no_background(counts: Mapping[str, int]) -> Iterator[str]:
     if counts and not any(label in counts for label in BACKGROUND):
         yield (
-            "The recordings hold less than a minute of background, so the model cannot reliably reject other "
-            "movements. Record people who do none of the actions, without --label."
+            "The recordings contain less than a minute of background (people who do none of the actions), so the "
+            "model cannot reliably reject other movements. Record background with 'actum record' without --label."
         )
 
 

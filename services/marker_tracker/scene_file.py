@@ -90,7 +90,9 @@ def catalogue(settings: Settings) -> Catalogue:
     if settings.scene is None:
         return _from_settings(settings)
     if settings.objects:
-        raise SceneFileError("scene and objects both define which object carries which marker: set only one of them")
+        raise SceneFileError(
+            "the settings scene and objects both define which object carries which marker: set only one of the two"
+        )
     return load(settings.scene)
 
 
@@ -108,13 +110,14 @@ def load(path: Path) -> Catalogue:
     except YAML_ERRORS as error:
         raise SceneFileError(f"{path} is not YAML: {' '.join(str(error).split())}") from None
     if root is None or not isinstance(content, dict):
-        raise SceneFileError(f"{path} is not a scene file: it needs `objects:` with an id and a name for each object")
+        raise SceneFileError(f"{path} is not a scene file: add `objects:` with an id and a name for each object")
     try:
         _refuse_repeated_keys(path, root, set())
         scene = SceneFile.model_validate(content)
     except RecursionError:
         raise SceneFileError(
-            f"{path} refers to itself: replace each YAML alias (*name) by the content of its anchor (&name)"
+            f"{path} has a YAML alias that refers to itself: replace each alias (*name) by the content of its anchor "
+            "(&name)"
         ) from None
     except ValidationError as error:
         raise SceneFileError("; ".join(_problem(path, root, each) for each in error.errors())) from None
@@ -129,7 +132,9 @@ def _from_settings(settings: Settings) -> Catalogue:
     ids = len(family(name).codes)
     for number in settings.objects:
         if not 0 <= number < ids:
-            raise UnknownMarkerError(f"objects: {name} has no marker {number}: use ids from 0 to {ids - 1}")
+            raise UnknownMarkerError(
+                f"objects: the dictionary {name} has no marker {number}: use ids from 0 to {ids - 1}"
+            )
     markers = {
         (name, number): MountedMarker(number, spec.size_m or settings.marker_size_m)
         for number, spec in settings.objects.items()
@@ -165,11 +170,19 @@ def _mounted_markers(path: Path, root: yaml.Node, scene: SceneFile) -> Iterator[
             if name is None or size_m is None:
                 lacking = "family" if name is None else "size_m"
                 raise _refusal(
-                    path, root, location, f"`{lacking}` is missing: set it here or at the top level of the file"
+                    path,
+                    root,
+                    location,
+                    f"`{lacking}` is missing: set it in this entry or at the top level of the file",
                 )
             ids = len(family(name).codes)
             if marker.id >= ids:
-                raise _refusal(path, root, location, f"{name} has no marker {marker.id}: use ids from 0 to {ids - 1}")
+                raise _refusal(
+                    path,
+                    root,
+                    location,
+                    f"the dictionary {name} has no marker {marker.id}: use ids from 0 to {ids - 1}",
+                )
             yield location, (name, marker.id), MountedMarker(number, size_m, marker.object_from_marker.transform())
 
 
@@ -177,7 +190,9 @@ def _refuse_shared_codes(path: Path, families: tuple[str, ...]) -> None:
     """Refuse dictionaries that hold the same markers, such as DICT_4X4_50 and DICT_4X4_100."""
     for one, other in combinations(families, 2):
         if family(one).cells == family(other).cells and family(one).codes[0, 0] == family(other).codes[0, 0]:
-            raise SceneFileError(f"{path}: {one} and {other} hold the same markers: use the larger dictionary for both")
+            raise SceneFileError(
+                f"{path}: the dictionaries {one} and {other} contain the same markers: use only the larger dictionary"
+            )
 
 
 def _refuse_repeated_keys(path: Path, node: yaml.Node, done: set[yaml.Node]) -> None:
@@ -189,7 +204,9 @@ def _refuse_repeated_keys(path: Path, node: yaml.Node, done: set[yaml.Node]) -> 
         for key, value in node.value:
             name = str(yaml.SafeLoader("").construct_object(key)) if key.tag == INTEGER else key.value
             if name in names:
-                raise SceneFileError(f"{path}, line {key.start_mark.line + 1}: {name} occurs twice: remove one")
+                raise SceneFileError(
+                    f"{path}, line {key.start_mark.line + 1}: the key {name} occurs twice: remove one of the two"
+                )
             names.add(name)
             _refuse_repeated_keys(path, value, done)
     elif isinstance(node, yaml.SequenceNode):

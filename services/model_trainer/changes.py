@@ -49,7 +49,7 @@ def refusing(command: Command[Any, Any]) -> Command[Any, Any]:
         try:
             return command.handler(request)
         except (OSError, RecordingError) as error:
-            raise Refusal(f"{plain(error)}: repair that file or folder, and try again") from None
+            raise Refusal(f"{plain(error)}: repair the file or folder, and try again") from None
 
     return replace(command, handler=handler)
 

@@ -67,7 +67,7 @@ class ExampleCommands:
         take, example = self._found(request)
         film = self._films_of(take).get(example.segment_id)
         if film is None:
-            raise Refusal(f"the example {request.example} has no usable frame: delete it")
+            raise Refusal(f"the example {request.example} has no usable frame to show: delete this example")
         trace = None if film.trace is None else np.round(film.trace, 2).tolist()
         return FilmReply(stamps_ns=list(film.stamps_ns), joints=[_listed(body) for body in film.joints], trace=trace)
 
@@ -119,7 +119,10 @@ class ExampleCommands:
             for example in take.examples:
                 if take.name_of(example) == request.example:
                     return take, example
-        raise Refusal(f"the set {request.set} has no example {request.example!r}: the command 'examples' lists them")
+        raise Refusal(
+            f"the set {request.set} has no example {request.example!r}: the command 'examples' lists the examples of "
+            "a set"
+        )
 
     def _films_of(self, take: Take) -> dict[str, Film]:
         """Return the films of a take, of the file as it is now and by the model in use."""

@@ -136,7 +136,7 @@ class JobCommands:
         """Start a job; an upload goes into its folder, where nobody can replace it, and is deleted with that."""
         if self._running is not None and self._job is not None:
             raise Refusal(
-                f"{KINDS[self._job.kind]} is already running ({self._job.id}): wait until it ends, or cancel it"
+                f"{KINDS[self._job.kind]} is already running ({self._job.id}): wait until this job ends, or cancel it"
             )
         takes = str(self._sets.folder(set_name))
         with on_disk():

@@ -89,7 +89,7 @@ class JobStore:
         for job in self.all():
             if job.id == job_id:
                 return job
-        raise Refusal(f"there is no job {job_id!r}: only the newest {MOST_JOBS} are kept")
+        raise Refusal(f"there is no job {job_id!r}: correct the id; only the newest {MOST_JOBS} jobs are kept")
 
     def new_id(self) -> str:
         """Return the id of the next job, which no file has, whatever is in it."""

@@ -91,7 +91,7 @@ class ModelStore:
         for each in self.all():
             if each.id == model_id:
                 return each
-        raise Refusal(f"there is no model {model_id!r}: the command 'list' names them")
+        raise Refusal(f"there is no model {model_id!r}: the command 'list' lists the models")
 
     def add(self, file: Path, set_name: str, scores: dict[str, float]) -> StoredModel:
         """Keep a copy of a model file.
@@ -221,7 +221,8 @@ class ModelStore:
             model_id = load_model(place).id
         except ModelError:
             raise Refusal(
-                f"{place} cannot be read as a model and would be overwritten: move it away, then try again"
+                f"{place} cannot be read as a model and would be overwritten: move this file to another folder, then "
+                "try again"
             ) from None
         self._keep_copy(place, model_id)
 

@@ -13,10 +13,10 @@ NAME = re.compile(r"[^\W_][\w .-]*")
 LONGEST_BYTES = 200
 """Bytes of a name as UTF-8: file systems allow 255 for a file name with its ending."""
 
-LEARNED = "would be learned as an action, and reported whenever people do nothing in particular"
-ANSWERED = "is what the system answers where it recognises no action"
+LEARNED = "the model would report it whenever people do nothing in particular"
+ANSWERED = "the system reports it when it recognises no action"
 NO_ACTIONS = {"background": LEARNED, "idle": LEARNED, "none": ANSWERED, "unknown": ANSWERED}
-"""Names that no action is given, and what would come of it."""
+"""Names that no action is given, and why."""
 
 
 def checked_name(name: str) -> str:
@@ -26,10 +26,14 @@ def checked_name(name: str) -> str:
         ValueError: it holds another character than letters, digits, space, `_`, `-` and `.`, or is too long.
     """
     composed = unicodedata.normalize("NFC", name)
-    if len(composed) > LONGEST or len(composed.encode(errors="replace")) > LONGEST_BYTES:
-        raise ValueError(f"the name has {len(composed)} characters: use at most {LONGEST}")
+    size = len(composed.encode(errors="replace"))
+    if len(composed) > LONGEST or size > LONGEST_BYTES:
+        raise ValueError(
+            f"the name has {len(composed)} characters ({size} bytes in UTF-8): use at most {LONGEST} characters and "
+            f"{LONGEST_BYTES} bytes"
+        )
     if not composed:
-        raise ValueError("the name is empty: enter one")
+        raise ValueError("the name is empty: enter a name")
     if not NAME.fullmatch(composed) or composed[-1] in " .":
         raise ValueError(
             f"{composed!r} cannot be a name: use letters, digits, spaces, '_', '-' and '.', begin with a letter or "
@@ -45,8 +49,11 @@ def checked_label(name: str) -> str:
         ValueError: it is no name, or one that means that no action is done.
     """
     label = checked_name(name)
-    if consequence := NO_ACTIONS.get(label.casefold()):
-        raise ValueError(f"{label!r} {consequence}: use another name, or record it as background")
+    if cause := NO_ACTIONS.get(label.casefold()):
+        raise ValueError(
+            f"{label!r} cannot be the name of an action, because {cause}: use another name, or record background "
+            "(people who do none of the actions)"
+        )
     return label
 
 

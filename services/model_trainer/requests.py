@@ -25,7 +25,9 @@ def _bytes(data: object) -> object:
     try:
         return base64.b64decode(data, validate=True) if isinstance(data, str) else data
     except binascii.Error:
-        raise ValueError("data is not valid base64: send base64 in JSON, or bytes in MessagePack") from None
+        raise ValueError(
+            "the field data is not valid base64: send base64 text in JSON, or bytes in MessagePack"
+        ) from None
 
 
 class Request(commands.Request):

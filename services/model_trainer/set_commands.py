@@ -95,9 +95,11 @@ class SetCommands:
     def _refuse_busy(self, name: str) -> None:
         """Refuse what would take a set away from what writes to it."""
         if self._takes.recording_to(name):
-            raise Refusal(f"a take is being recorded into the set {name}: stop or discard it first")
+            raise Refusal(f"a recording into the set {name} is running: stop or discard this recording first")
         if self._jobs.importing_to(name):
-            raise Refusal(f"a video is being imported into the set {name}: wait until the import ends, or cancel it")
+            raise Refusal(
+                f"a video is being imported into the set {name}: wait until the import ends, or cancel the import"
+            )
 
 
 def _listed(stored: StoredSet) -> SetListed:

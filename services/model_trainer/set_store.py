@@ -103,7 +103,9 @@ class SetStore:
             problem = (
                 error.strerror or str(error) if isinstance(error, OSError) else "no JSON object with a date `created`"
             )
-            unreadable.append(f"{folder / DESCRIPTION}: {problem}; move it away, and create the set again")
+            unreadable.append(
+                f"{folder / DESCRIPTION}: {problem}; move this file to another folder, and create the set again"
+            )
         for path in sorted(each for each in folder.iterdir() if each.name.endswith(SUFFIX)):
             try:
                 takes.append(self._take(path))
@@ -119,7 +121,7 @@ class SetStore:
         """
         if name not in self.names():
             there = ", ".join(self.names()) or "none yet"
-            raise Refusal(f"there is no set {name!r}: use an existing one ({there}), or create it")
+            raise Refusal(f"there is no set {name!r}: use an existing set ({there}), or create this set")
         return self._folder / name
 
     def create(self, name: str) -> None:
@@ -194,7 +196,9 @@ class SetStore:
     def _take(self, path: Path) -> Take:
         """Read a take, or return what was read of it before where the file is still the same."""
         if path.exists() and not path.is_file():
-            raise RecordingError(path, "it is not a file", "move it away")
+            raise RecordingError(
+                path, "the path names a folder or a device, not a recording file", "move it out of the set's folder"
+            )
         stat = path.stat()
         version = stat.st_mtime_ns, stat.st_size
         known = self._read.get(path)
@@ -206,7 +210,11 @@ class SetStore:
 def _read(path: Path) -> Take:
     take = read_take(Recording(path))
     if (count := len(take.segments)) > MOST_SEGMENTS:
-        raise RecordingError(path, f"it has {count} marked segments, more than {MOST_SEGMENTS}", "split it")
+        raise RecordingError(
+            path,
+            f"the recording has {count} actions with a start and an end; at most {MOST_SEGMENTS} are allowed",
+            "split the recording",
+        )
     return take
 
 

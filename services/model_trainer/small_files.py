@@ -17,11 +17,11 @@ def small_file(path: Path) -> bytes:
         ValueError: it is too large to be one of ours.
     """
     if path.exists() and not path.is_file():
-        raise OSError(f"{path} is not a regular file: move it away")
+        raise OSError(f"{path} is not a regular file: move it to another folder")
     with path.open("rb") as file:
         content = file.read(LARGEST_BYTES + 1)
     if len(content) > LARGEST_BYTES:
-        raise ValueError(f"{path} is larger than {LARGEST_BYTES} bytes: move it away")
+        raise ValueError(f"{path} is larger than {LARGEST_BYTES} bytes: move this file to another folder")
     return content
 
 

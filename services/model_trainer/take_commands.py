@@ -80,7 +80,10 @@ class TakeCommands:
     def _record(self, request: Record) -> TakeReply:
         """Begin a take: it counts along, ends by itself after the last repetition, and cuts the examples out."""
         if request.kind == "action" and not request.label:
-            raise Refusal("the take has no label: enter the name of the action, or record background")
+            raise Refusal(
+                "the action has no name: enter a name (label), or record background, that is, people who do none of "
+                "the actions"
+            )
         self._begin(request)
         return TakeReply(take=None, examples=0, doubts=[])
 
@@ -91,7 +94,7 @@ class TakeCommands:
             return self._finish()
         except LOSING as error:
             self._give_up()
-            raise Refusal(f"the take could not be stored and is lost: {error}") from None
+            raise Refusal(f"the recording could not be stored and is lost: {error}") from None
 
     def _discard(self, _: NoFields) -> Done:
         """Drop the take that is being recorded."""
@@ -104,15 +107,15 @@ class TakeCommands:
         self._refuse_recording()
         takes = [take for take in self._sets.get(request.set).takes if take.examples]
         if not takes:
-            raise Refusal(f"the set {request.set} has no take to redo: record one first")
+            raise Refusal(f"the set {request.set} has no recording of an action to repeat: record an action first")
         newest = max(takes, key=lambda take: (take_number(take.id), take.created, take.id))
         label, count = newest.labels[-1], min(len(newest.examples), MOST_REPETITIONS)
         try:
             anew = Record(set=request.set, label=label, person=newest.person, count=count)
         except ValidationError as error:
             raise Refusal(
-                f"the take {newest.id} cannot be redone ({problems(error)}): relabel or delete its example, or start a "
-                "new take with 'record'"
+                f"the recording {newest.id} cannot be repeated ({problems(error)}): relabel or delete its example, or "
+                "start a new recording with 'record'"
             ) from None
         self._begin(anew)
         self._replaced = newest.id
@@ -168,7 +171,7 @@ class TakeCommands:
                 if take.id == self._replaced:
                     self._remove(take, take.examples)
         except LOSING as error:
-            return [f"the old take {self._replaced} could not be deleted: {encodable(str(error))}"]
+            return [f"the old recording {self._replaced} could not be deleted: {encodable(str(error))}"]
         return []
 
     def _give_up(self) -> None:
@@ -180,8 +183,10 @@ class TakeCommands:
 
     def _refuse_idle(self) -> None:
         if self._take is None:
-            raise Refusal("no take is being recorded: start one first")
+            raise Refusal("no recording is running: start a recording first")
 
     def _refuse_recording(self) -> None:
         if self._take is not None:
-            raise Refusal(f"a take is being recorded into the set {self._take.state.set}: stop or discard it first")
+            raise Refusal(
+                f"a recording into the set {self._take.state.set} is running: stop or discard this recording first"
+            )

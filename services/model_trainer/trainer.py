@@ -86,7 +86,10 @@ class ModelTrainer:
             original = OriginalModel(settings.original_model, model) if settings.original_model else None
             return cls(folder, model, settings.sensor, JobProcess, time.time_ns, original)
         except OSError as error:
-            raise ValueError(f"{folder} cannot be used ({error}): set ACTUM_TRAINER_DATA to another folder") from None
+            raise ValueError(
+                f"the folder {folder} for sets and models cannot be used ({error}): set ACTUM_TRAINER_DATA to another "
+                "folder"
+            ) from None
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:

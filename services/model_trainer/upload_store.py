@@ -37,7 +37,8 @@ class UploadStore:
         there = sizes.pop(unfinished.name, 0)
         if offset not in (0, there):
             raise Refusal(
-                f"{name} has {there} bytes so far, not {offset}: continue at offset {there}, or start again at offset 0"
+                f"this piece of {name} has the offset {offset}, but {there} bytes of the file have arrived: continue "
+                f"at offset {there}, or start again at offset 0"
             )
         size = offset + len(data)
         if size > MOST_BYTES:
@@ -64,7 +65,8 @@ class UploadStore:
         """
         if not (self._folder / name).is_file():
             raise Refusal(
-                f"there is no finished upload {name!r}: send it with 'upload', the last piece with last: true"
+                f"no file {name!r} was uploaded completely: send it with the command 'upload', its last piece with "
+                "last: true"
             )
 
     def move(self, name: str, folder: Path) -> Path:

@@ -44,7 +44,9 @@ def check_frame(joints: Array, missing: Sequence[int], reach_limit_m: float, bon
     lengths2 = np.einsum("ij,ij->i", bones, bones)
     if np.fmax.reduce(lengths2) > bone_limit_m**2:
         child = JOINTS[int(_CHILDREN[int(np.nanargmax(lengths2))])]
-        raise BadFrameError("absurd_bone", f"the bone to {child} is longer than {bone_limit_m:g} m")
+        raise BadFrameError(
+            "absurd_bone", f"the bone that ends at {child} is longer than the setting bone_limit_m, {bone_limit_m:g} m"
+        )
 
 
 def _require_trunk(missing: Sequence[str]) -> None:
@@ -56,7 +58,10 @@ def _require_near(joints: Array, missing: Sequence[int], reach_limit_m: float) -
     known = [i for i in range(len(JOINTS)) if i not in missing]
     for i in known:
         if not np.isfinite(joints[i]).all():
-            raise BadFrameError("not_finite", f"the position of {JOINTS[i]} is not finite")
+            raise BadFrameError("not_finite", f"a coordinate of {JOINTS[i]} is NaN or infinite")
     for i in known:
         if np.abs(joints[i]).max() > reach_limit_m:
-            raise BadFrameError("absurd_joint", f"{JOINTS[i]} is more than {reach_limit_m:g} m away")
+            raise BadFrameError(
+                "absurd_joint",
+                f"{JOINTS[i]} is further from the camera than the setting reach_limit_m, {reach_limit_m:g} m",
+            )

@@ -23,20 +23,23 @@ def segment_of(payload: bytes, sensor: str) -> Segment:
         BadMarkError: they are no String, or that holds no mark.
     """
     if len(payload) > MOST_BYTES:
-        raise BadMarkError(f"the mark has {len(payload)} bytes; at most {MOST_BYTES} are allowed")
+        raise BadMarkError(
+            f"the message that marks an action has {len(payload)} bytes; at most {MOST_BYTES} are allowed"
+        )
     try:
         fields = pydantic_core.from_json(text_of(payload), allow_inf_nan=False)
     except NotThatTypeError as error:
-        raise BadMarkError(f"the mark is not a std_msgs/String: {error}") from None
+        raise BadMarkError(f"the message that marks an action is not a std_msgs/String: {error}") from None
     except ValueError as error:
-        raise BadMarkError(f"the mark is not JSON: {error}") from None
+        raise BadMarkError(f"the message that marks an action is not JSON: {error}") from None
     if not isinstance(fields, dict):
         raise BadMarkError(
-            f"the mark is a {type(fields).__name__}: send a JSON object; its possible fields are {', '.join(FIELDS)}"
+            f"the message that marks an action is a JSON {type(fields).__name__}: send a JSON object with some of the "
+            f"fields {', '.join(FIELDS)}"
         )
     unknown = [name for name in fields if name not in FIELDS]
     if unknown:
-        raise BadMarkError(f"{unknown[0]!r} is not a field of a mark: use {', '.join(FIELDS)}")
+        raise BadMarkError(f"{unknown[0]!r} is not a field of a message that marks an action: use {', '.join(FIELDS)}")
     try:
         return Segment.model_validate({**fields, "sensor": sensor})
     except ValidationError as error:

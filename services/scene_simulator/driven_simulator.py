@@ -151,9 +151,13 @@ class DrivenSimulator(Simulator):
     def _perform(self, request: Perform) -> Performances:
         """Have the simulated person do actions, or everyday things, as soon as the ones before are done."""
         if not request.actions and not request.everyday_s:
-            raise Refusal("there is nothing to do: give actions, or seconds of everyday activities")
+            raise Refusal(
+                "there is nothing to do: give actions, or a number of seconds of everyday activities (everyday_s)"
+            )
         if len(self._waiting) >= MOST_WAITING:
-            raise Refusal(f"{MOST_WAITING} performances are already waiting: try again when some are done")
+            raise Refusal(
+                f"{MOST_WAITING} performances, the most allowed, are already waiting: try again when some are done"
+            )
         try:
             programme_of(request)
         except ValueError as error:

@@ -45,7 +45,7 @@ class Group:
         image_hz: int = 0,
     ) -> None:
         if not 1 <= len(programmes) <= MOST_PEOPLE:
-            raise ValueError(f"{len(programmes)} people do not fit into the view: use 1 to {MOST_PEOPLE}")
+            raise ValueError(f"the simulated scene cannot show {len(programmes)} people: use 1 to {MOST_PEOPLE} people")
         self.counters = Counters()
         middle = (len(programmes) - 1) / 2
         self.simulators = [

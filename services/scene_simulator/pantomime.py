@@ -52,7 +52,9 @@ def _draw_empty_place(
         is_clear = region.clear_range_m[0] <= nearest_m <= region.clear_range_m[1]
         if is_clear and place[1] + displacement_m[1] <= lowest_y_m:
             return place
-    raise ValueError("there is no empty space for a pantomime: move the objects closer together")
+    raise ValueError(
+        "there is no empty space for a pantomime (an action without an object): move the objects closer together"
+    )
 
 
 def _nearest_m(place: Array, displacement_m: Array, positions_m: Array) -> float:

@@ -26,9 +26,11 @@ class Task:
 
     def __post_init__(self) -> None:
         if self.action not in ACTIONS:
-            raise ValueError(f"{self.action!r} is not an action: use one of {', '.join(ACTIONS)}")
+            raise ValueError(
+                f"{self.action!r} is not an action of the simulated person: use one of {', '.join(ACTIONS)}"
+            )
         if self.is_pantomime and self.action == "point":
-            raise ValueError("'point' has no pantomime, because pointing touches no object: choose another action")
+            raise ValueError("the action 'point' has no pantomime (a form without an object): choose another action")
         if self.object_id not in (*object_ids(), NO_OBJECT):
             raise ValueError(f"{self.object_id} is not the id of an object: use one of {object_ids()}")
 

@@ -61,7 +61,8 @@ class Simulator:
         self._rate_hz = self.scene.parameters.camera.frame_rate_hz
         if image_hz and (image_hz < 0 or self._rate_hz % image_hz):
             raise ValueError(
-                f"image_hz {image_hz} does not divide the frame rate {self._rate_hz}: use a divisor of the frame rate"
+                f"image_hz is {image_hz}, which does not divide the frame rate of {self._rate_hz} Hz: use a divisor "
+                "of the frame rate"
             )
         self._frames_per_image = self._rate_hz // image_hz if image_hz else 0
         self._open_share = min(conditions.exposure_s * self._rate_hz, 1.0)

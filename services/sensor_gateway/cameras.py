@@ -42,8 +42,9 @@ def optics_of(settings: Settings) -> Optics:
     calibration = None if path is None else Calibration.load(path)
     if calibration is not None and calibration.skeleton_from_image not in (None, SAME_CAMERA):
         raise CalibrationError(
-            f"{path} contains skeleton_from_image, so it is the calibration of a marker camera: start that camera with "
-            "--source marker-camera. A camera that sees the people needs a file of 'actum calibrate intrinsics'"
+            f"{path} contains skeleton_from_image, so it is the calibration of a marker camera: start that camera "
+            "with --source marker-camera. A camera that sees the people needs a file that 'actum calibrate "
+            "intrinsics' wrote"
         )
     return Optics(settings.field_of_view_deg, calibration, settings.person_height_m, settings.mirrored)
 
@@ -157,7 +158,7 @@ def _depth_source(settings: Settings, session_id: str, live: Callable[[], Captur
     optics = _depth_optics(settings)
     if path is not None and not path.is_file():
         raise DepthSourceError(
-            f"there is no recording {path}: correct --path (ACTUM_PATH), or leave it out to use a camera"
+            f"there is no recording {path}: correct --path (ACTUM_PATH), or omit --path to use a camera"
         )
     return CameraSource(
         lambda: estimator_of(settings),

@@ -33,7 +33,9 @@ class RecordingSource:
         self._sensor = sensor
         found = recording_files([path])
         if not found.paths:
-            raise RecordingError(path, "it contains no *.mcap file", "give such a file, or a folder of such files")
+            raise RecordingError(
+                path, "the folder contains no recording (*.mcap)", "give a recording, or a folder of recordings"
+            )
         for problem in found.left_out:
             self.counters.reject("damaged_recording", problem)
         self._recordings = [Recording(file) for file in found.paths]

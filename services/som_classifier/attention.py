@@ -53,7 +53,7 @@ class PostureInput:
         for name, choices in CHOICES.items():
             if getattr(self, name) not in choices:
                 raise ValueError(
-                    f"{name} {getattr(self, name)!r} is not a valid value: use one of {', '.join(choices)}"
+                    f"{getattr(self, name)!r} is not a valid value of {name}: use one of {', '.join(choices)}"
                 )
 
     @property

@@ -50,12 +50,12 @@ def load_model(path: Path) -> Model:
     """
     try:
         if path.exists() and not path.is_file():
-            raise ModelError(path, "it is not a file")
+            raise ModelError(path, "the path names a folder or a device, not a file")
         with path.open("rb") as stored:
             metadata, arrays = _parts(path, stored)
         kind = json.loads(metadata).get("kind")
         if kind not in KINDS:
-            raise ModelError(path, f"it is of kind {kind!r}, which this version of actum does not know")
+            raise ModelError(path, f"the model is of kind {kind!r}, which this version of actum does not know")
         return KINDS[kind].restored(metadata, arrays)
     except ModelError:
         raise
@@ -64,15 +64,15 @@ def load_model(path: Path) -> Model:
     except ValidationError as error:
         first = error.errors(include_input=False, include_url=False)[0]
         field = ".".join(str(part) for part in first["loc"])
-        raise ModelError(path, f"it is not a model of actum (metadata {field}: {first['msg']})") from None
+        raise ModelError(path, f"the file is not a model of actum (metadata {field}: {first['msg']})") from None
     except (*UNREADABLE, AttributeError) as error:
-        raise ModelError(path, f"it is not a model of actum, or it is damaged ({error})") from None
+        raise ModelError(path, f"the file is not a model of actum, or it is damaged ({error})") from None
 
 
 def _parts(path: Path, stored: IO[bytes]) -> tuple[str, Arrays]:
     """Return the metadata as JSON, and the arrays by name."""
     if not zipfile.is_zipfile(stored):  # NumPy's own error would advise to read it as a pickle
-        raise ModelError(path, "it is not a model of actum, or it is damaged")
+        raise ModelError(path, "the file is not a model of actum, or it is damaged")
     _refuse_bomb(stored)
     with np.load(stored, allow_pickle=False) as file:
         return str(file["metadata"]), {name: file[name] for name in file.files if name != "metadata"}
@@ -88,7 +88,7 @@ def _refuse_bomb(stored: IO[bytes]) -> None:
         size = sum(max(member.file_size, _array_bytes(archive, member)) for member in archive.infolist())
     most = LEAST_BYTES + MOST_INFLATION * stored.seek(0, os.SEEK_END)
     if size > most:
-        raise ValueError(f"its arrays would take {size} bytes of memory; at most {most} are allowed")
+        raise ValueError(f"the arrays in the file would take {size} bytes of memory; at most {most} bytes are allowed")
     stored.seek(0)
 
 
@@ -97,6 +97,6 @@ def _array_bytes(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> int:
     with archive.open(member) as array:
         read_header = HEADERS.get(NPY.read_magic(array))
         if read_header is None:
-            raise ValueError(f"{member.filename} is not an array that NumPy wrote")
+            raise ValueError(f"the entry {member.filename} in the file is not a NumPy array")
         shape, _, dtype = read_header(array)
     return int(math.prod(shape) * dtype.itemsize)

@@ -135,4 +135,4 @@ def maps_of(model: Model) -> ModelMaps:
         case PaperModel():
             return PaperMaps(model)
         case _:
-            raise NoMapsError(f"the model has no maps: it is of kind {model.metadata.kind!r}")
+            raise NoMapsError(f"the model has no maps: models of kind {model.metadata.kind!r} contain none")

@@ -40,7 +40,10 @@ def resampled(path: Array, points: int) -> Array:
         ValueError: the path has no point, or fewer than two are asked for.
     """
     if not len(path) or points < 2:
-        raise ValueError(f"{points} points cannot be placed along a path of {len(path)} points")
+        raise ValueError(
+            f"cannot place {points} points along a path of {len(path)} points: at least 2 points and a path of at "
+            "least 1 point are needed"
+        )
     lengths = np.hypot(*np.diff(path, axis=0).T)
     arc_lengths = np.concatenate(([0.0], np.cumsum(lengths)))
     targets = np.linspace(0.0, arc_lengths[-1], points)

@@ -98,7 +98,7 @@ class PaperModel(Model):
             ValueError: there is no frame.
         """
         if not frames:
-            raise ValueError("there is no frame to recognise an action from")
+            raise ValueError("the segment contains no frame, so no action can be recognised")
         part, attended = self.attended(frames)
         cosines = self.layer3.cosines(self._second_activity(trajectory(attended))).tolist()
         winner = int(np.argmax(cosines))

@@ -120,7 +120,7 @@ class PyramidModel(Model):
             ValueError: there is no frame.
         """
         if not frames:
-            raise ValueError("there is no frame to recognise an action from")
+            raise ValueError("the segment contains no frame, so no action can be recognised")
         activities: list[FrameActivity] = [frame.activity for frame in frames]
         stages = self.stages.weights((frames[-1].stamp_ns - frames[0].stamp_ns) / SECOND_NS, complete)
         scores = self.scores(activities, stages)

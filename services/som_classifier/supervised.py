@@ -25,7 +25,7 @@ class SupervisedLayer:
         weights = np.array(self.weights, order="C")
         if weights.ndim != 2 or not np.allclose(np.linalg.norm(weights, axis=1), 1.0):
             raise ValueError(
-                f"weights of shape {weights.shape} are not a matrix with one row of unit length per action"
+                f"the weights have shape {weights.shape}; expected a matrix (actions, inputs) whose rows have length 1"
             )
         weights.setflags(write=False)
         object.__setattr__(self, "weights", weights)

@@ -87,7 +87,7 @@ class Calibration(_Part):
     @classmethod
     def _pinhole(cls, numbers: list[float]) -> list[float]:
         if numbers[0] <= 0 or numbers[4] <= 0 or numbers[6:] != [0, 0, 1]:
-            raise ValueError("it must be [fx, 0, cx, 0, fy, cy, 0, 0, 1] with fx and fy above 0")
+            raise ValueError("the camera matrix must be [fx, 0, cx, 0, fy, cy, 0, 0, 1] with fx and fy above 0")
         return numbers
 
     @field_validator("distortion")
@@ -95,14 +95,19 @@ class Calibration(_Part):
     def _complete(cls, coefficients: list[float]) -> list[float]:
         if len(coefficients) not in DISTORTION_LENGTHS:
             allowed = ", ".join(map(str, DISTORTION_LENGTHS))
-            raise ValueError(f"it has {len(coefficients)} coefficients; the number has to be one of {allowed}")
+            raise ValueError(
+                f"there are {len(coefficients)} distortion coefficients; allowed numbers of coefficients are {allowed}"
+            )
         return coefficients
 
     @field_validator("skeleton_from_image")
     @classmethod
     def _rigid(cls, numbers: list[float] | None) -> list[float] | None:
         if numbers is not None and not geometry.is_rigid(geometry.from_flat(numbers), FURTHEST_M):
-            raise ValueError("it is not a rigid transform: give rotation and position as a 4x4 matrix, row by row")
+            raise ValueError(
+                "the matrix is not a rigid transform: give a rotation and a position in metres as a 4x4 matrix, row "
+                "by row"
+            )
         return numbers
 
     @property
@@ -129,8 +134,8 @@ class Calibration(_Part):
         if (width, height) != self.image_size:
             expected = "x".join(map(str, self.image_size))
             raise CalibrationError(
-                f"{name} is {width}x{height}, but the calibration is for {expected}: set the camera to that size, "
-                f"or calibrate the camera at {width}x{height}"
+                f"{name} is {width}x{height}, but the calibration is for {expected}: set the camera to {expected}, or "
+                f"calibrate the camera at {width}x{height}"
             )
 
     @classmethod
@@ -158,7 +163,7 @@ def _content(path: Path) -> object:
     except OSError as error:
         raise CalibrationError(f"{path}: {error.strerror}; {REMEDY}") from None
     except YAML_ERRORS:
-        raise CalibrationError(f"{path} is not a calibration (it is not YAML): {REMEDY}") from None
+        raise CalibrationError(f"{path} is not a calibration (the file is not YAML): {REMEDY}") from None
 
 
 class _Dumper(yaml.SafeDumper):

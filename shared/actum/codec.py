@@ -97,12 +97,14 @@ def _check_encoding(encoding: str, expected: type[Message]) -> None:
         return
     if match["schema"] != expected.SCHEMA:
         raise DecodeError(
-            "wrong_schema", f"the encoding names the schema {match['schema']}; the key is for {expected.SCHEMA}"
+            "wrong_schema",
+            f"the encoding of the message names the schema {match['schema']}; messages on this key have the schema "
+            f"{expected.SCHEMA}",
         )
     if int(match["version"]) > expected.VERSION:
         raise DecodeError(
             "higher_version",
-            f"the message has the newer version {encoding}; this program knows version {expected.VERSION}: "
+            f"the message ({encoding}) has a newer version than this program, which knows version {expected.VERSION}: "
             "update actum",
         )
 
@@ -113,7 +115,9 @@ def _unpack(key: str, payload: bytes) -> dict[str, Any]:
     except UNPACK_ERRORS as error:
         raise DecodeError("not_msgpack", f"{key}: {type(error).__name__} {error}") from None
     if not isinstance(fields, dict):
-        raise DecodeError("not_a_map", f"{key}: the payload is a {type(fields).__name__}, not a map with string keys")
+        raise DecodeError(
+            "not_a_map", f"{key}: the payload is a {type(fields).__name__}; expected a map of field names to values"
+        )
     return fields
 
 
@@ -178,7 +182,10 @@ def _validated(key: str, address: keys.Address, fields: dict[str, Any]) -> Messa
     except (ValidationError, keys.InvalidKeyError) as error:
         raise DecodeError("wrong_fields", f"{key}: {_first_line(error)}") from None
     if actual != key:
-        raise DecodeError("wrong_key", f"the fields belong to the key {actual}, but the message came on {key}")
+        raise DecodeError(
+            "wrong_key",
+            f"the message came on the key {key}, but its fields (sensor, agent, service) name the key {actual}",
+        )
     return message
 
 

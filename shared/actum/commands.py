@@ -146,14 +146,16 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
             f"{MSGPACK}"
         ) from None
     if not isinstance(fields, dict) or not all(isinstance(name, str) for name in fields):
-        raise Refusal(f"the request is a {type(fields).__name__}: send a JSON object or a MessagePack map")
+        raise Refusal(
+            f"the request is a {type(fields).__name__}: send a JSON object, or a MessagePack map whose keys are text"
+        )
     return fields
 
 
 def _from_json(payload: bytes) -> Any:
     """Parse JSON; one of many values is refused, for each takes many times its bytes once parsed."""
     if sum(map(payload.count, BEFORE_VALUES)) > MOST_VALUES:
-        raise ValueError(f"it has more than {MOST_VALUES} values")
+        raise ValueError(f"the request has more than {MOST_VALUES} values")
     return json.loads(payload, object_pairs_hook=with_different_names)
 
 
@@ -168,7 +170,7 @@ def packed(fields: Mapping[str, Any], encoding: str) -> bytes:
             return bytes(msgpack.packb(fields, use_bin_type=True))
         return json.dumps(fields, ensure_ascii=False, allow_nan=False).encode()
     except (ValueError, TypeError, OverflowError, RecursionError) as error:
-        raise Refusal(f"the fields cannot be encoded as {encoding}: {error}") from None
+        raise Refusal(f"a field's value cannot be encoded as {encoding}: {error}") from None
 
 
 def _check_encodable(fields: dict[str, Any]) -> None:

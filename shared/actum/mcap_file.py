@@ -108,18 +108,18 @@ class McapFile:
         try:
             if self.path.exists() and not (self.path.is_file() or self.path.is_dir()):
                 # reading a named pipe would never end
-                raise RecordingError(self.path, "it is not a regular file", REMEDY)
+                raise RecordingError(self.path, "the path names a device or a pipe, not a file", REMEDY)
             file = self.path.open("rb")
         except OSError as error:
             raise RecordingError(self.path, error.strerror or str(error), REMEDY) from None
         if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
             file.close()
-            raise RecordingError(self.path, "it is not an MCAP file", REMEDY)
+            raise RecordingError(self.path, "the file is not an MCAP file", REMEDY)
         file.seek(0)
         return file
 
     def _damaged(self, what: str) -> RecordingError:
-        return RecordingError(self.path, f"it is damaged ({what})", "record or import it again")
+        return RecordingError(self.path, f"the recording is damaged ({what})", "record or import the recording again")
 
 
 class _Exact:
@@ -153,10 +153,10 @@ class _Chunks:
         size = chunk.uncompressed_size
         self._left -= size
         if size > LARGEST_CHUNK or self._left < 0:
-            raise ValueError(f"a chunk of {len(chunk.data)} bytes would decompress to {size}, which is too large")
+            raise ValueError(f"a chunk of {len(chunk.data)} bytes would decompress to {size} bytes, more than allowed")
         data = _decompressed(chunk)
         if len(data) != size:
-            raise ValueError(f"a chunk does not have its stated size of {size} bytes after decompression")
+            raise ValueError(f"a chunk states {size} bytes as its decompressed size, but decompresses to another size")
         return breakup_chunk(replace(chunk, compression="", data=data), validate_crc=True)
 
 

@@ -90,8 +90,8 @@ class LiveParameters(Generic[S]):
         """
         if unknown := sorted(request.values.keys() - set(self._names)):
             raise Refusal(
-                f"{', '.join(unknown)} cannot be changed at run time: restart the service with the new value. The "
-                f"settings that can be changed are {', '.join(self._names)}"
+                f"{', '.join(unknown)} cannot be changed while the service runs: restart the service with the new "
+                f"value. The settings that can be changed are {', '.join(self._names)}"
             )
         settings = self._changed(request.values)
         self._apply(settings)

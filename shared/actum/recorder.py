@@ -56,7 +56,7 @@ def refuse_taken(path: Path) -> None:
     """
     part = unfinished(path)
     if os.path.lexists(path):
-        raise TakenError(path, f"{path} already exists: name another file, or remove this one")
+        raise TakenError(path, f"{path} already exists: name another file, or remove the existing file")
     if not os.path.lexists(part):
         return
     stat = part.lstat()
@@ -154,7 +154,7 @@ class Recorder:
             OSError: the disk takes no more; nothing can be written after that.
         """
         if message.stamp_ns is None:
-            raise ValueError(f"the message has no stamp, so it cannot be recorded: {message!r}")
+            raise ValueError(f"the message has no time stamp (stamp_ns), so it cannot be recorded: {message!r}")
         numbered = self._numbering.numbered(message)
         frame = codec.encode(numbered)
         assert numbered.seq is not None

@@ -70,8 +70,8 @@ class Recording:
             points: dict[str, int] = json.loads(self.metadata.get(ACTION_POINTS, "{}"))
             return {segment_id: int(stamp_ns) for segment_id, stamp_ns in points.items()}
         except (ValueError, TypeError, AttributeError):
-            problem = f"{ACTION_POINTS} in its metadata is not a JSON object that maps segment ids to stamps"
-            raise RecordingError(self.path, problem, "import it again") from None
+            problem = f"the metadata field {ACTION_POINTS} is not a JSON object that maps segment ids to time stamps"
+            raise RecordingError(self.path, problem, "import the recording again") from None
 
     @cached_property
     def topics(self) -> frozenset[keys.Topic]:
@@ -136,7 +136,7 @@ class Recording:
                     left -= MESSAGE_BYTES + len(stored.payload)
                     if left < 0:
                         raise RecordingError(
-                            self.path, "it has far more messages than a file of its size can hold", REMEDY
+                            self.path, "the recording has far more messages than a file of its size can contain", REMEDY
                         )
                     without_images.append(stored)
         within = [each for each in without_images if _may_be_read(addresses[each.key], each.publish_ns, spans)]

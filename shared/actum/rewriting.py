@@ -46,7 +46,7 @@ def rewrite(
     if target.suffix == UNFINISHED:
         finished = path.with_suffix("")
         raise RecordingError(
-            path, "it is an unfinished recording", f"finish it with 'actum record {finished} --finish'"
+            path, "the recording is unfinished", f"finish the recording with 'actum record {finished} --finish'"
         )
     with replaced(target) as file:
         _copy(McapFile(path), file, change, added, metadata or {})
@@ -65,9 +65,13 @@ def finish(path: Path) -> int:
     part = unfinished(path)
     with part.open("r+b") as claimed:  # to write, or a network file system gives no lock
         if not claim(claimed) or not os.path.samestat(os.fstat(claimed.fileno()), part.stat()):
-            raise TakenError(part, f"{part} is being written by another process: wait until it ends, or stop it")
+            raise TakenError(
+                part, f"{part} is being written by another process: wait until this process ends, or stop the process"
+            )
         if os.path.lexists(path):
-            raise TakenError(path, f"{path} already exists, so {part} cannot be renamed to it: rename one of them")
+            raise TakenError(
+                path, f"{path} already exists, so {part} cannot get this name: rename one of the two files"
+            )
         with created(path) as file:
             count = _copy(McapFile(part), file, unchanged, (), {})
             shutil.copymode(part, file.name)
@@ -86,7 +90,7 @@ def _copy(
             copying.take(record)
         except KeyError as error:
             raise RecordingError(
-                source.path, f"it is damaged (a message belongs to the unknown channel {error})", REMEDY
+                source.path, f"the recording is damaged (a message belongs to the unknown channel {error})", REMEDY
             ) from None
     if metadata and not copying.described:
         writer.add_metadata(METADATA, dict(metadata))

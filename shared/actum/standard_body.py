@@ -64,7 +64,7 @@ def scaled(joints: Array) -> Array:
     bones = joints[_CHILDREN] - joints[_PARENTS]
     lengths = np.sqrt(np.einsum("ij,ij->i", bones, bones))
     if np.fmin.reduce(lengths) < SMALLEST_M:
-        raise DegenerateError("two adjacent joints are at the same position")
+        raise DegenerateError("two joints that a bone connects are at the same position")
     standard = bones * (_LENGTHS_M / lengths)[:, None]
     from_torso = _positions_where_known(standard) if math.isnan(lengths.sum()) else _PATHS @ standard
     result: Array = joints[INDEX["torso"]] + from_torso

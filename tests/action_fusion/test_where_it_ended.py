@@ -160,7 +160,10 @@ def test_the_transform_is_16_numbers_or_a_file_of_them(
     ("text", "complaint"),
     [
         ("1 2 3", "is not a rigid transform: give the 16 numbers"),
-        ("nowhere.txt", "'nowhere.txt' is not a rigid transform: give the 16 numbers .* No such file"),
+        (
+            "nowhere.txt",
+            "'nowhere.txt' is neither a list of numbers nor a readable file .* No such file .*: give the 16 numbers",
+        ),
         (SHIFTED.replace("1", "2"), "not a rigid transform"),
         (SHIFTED.replace("0.5", "nan"), "not a rigid transform"),
         (SHIFTED.replace("0.5", "1e300"), "not a rigid transform"),

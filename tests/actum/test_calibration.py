@@ -96,7 +96,7 @@ FOREIGN = {
     "K column-major": (LEAST.replace("0, 320, 0, 500, 240, 0, 0, 1", "0, 0, 0, 500, 0, 320, 240, 1"), "K: .*fx, 0, cx"),
     "focal length zero": (LEAST.replace("[500", "[0"), "K: .*above 0"),
     "not a number": (LEAST.replace("[500", "[.nan"), "K.0: .*finite"),
-    "three coefficients": (LEAST.replace("[]", "[0.1, 0.1, 0.1]"), "distortion: .*3 coefficients"),
+    "three coefficients": (LEAST.replace("[]", "[0.1, 0.1, 0.1]"), "distortion: .*3 distortion coefficients"),
     "no rigid transform": (LEAST + f"skeleton_from_image: {[2 * n for n in TURNED]}", "skeleton_from_image: .*rigid"),
     "a mistyped field": (LEAST + "skeletom_from_image: []", "skeletom_from_image: Extra"),
     "a later format": (LEAST + "format: actum.calibration/2", "format"),

@@ -102,7 +102,7 @@ def test_what_is_no_object_is_refused(payload: bytes, encoding: str) -> None:
 def test_fields_that_cannot_be_encoded_are_refused(value: Any, encoding: str) -> None:
     if encoding == JSON and isinstance(value, int):
         return  # JSON has numbers of any length
-    with pytest.raises(Refusal, match="the fields cannot be encoded as application/"):
+    with pytest.raises(Refusal, match="a field's value cannot be encoded as application/"):
         packed({"name": value}, encoding)
 
 

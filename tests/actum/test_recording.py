@@ -245,7 +245,7 @@ def test_damage_is_told_or_harmless(intact: Path, data: st.DataObject) -> None:
 @pytest.mark.parametrize("content", [b"", b"\x89MCAP", b"PK\x03\x04 something else altogether"])
 def test_a_file_that_is_no_mcap_is_an_error(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "a.mcap").write_bytes(content)
-    with pytest.raises(RecordingError, match=r"a\.mcap: it is not an MCAP file; give a recording"):
+    with pytest.raises(RecordingError, match=r"a\.mcap: the file is not an MCAP file; give a recording"):
         Recording(tmp_path / "a.mcap")
 
 
@@ -267,5 +267,5 @@ def test_action_points_are_read_from_the_metadata(tmp_path: Path) -> None:
 def test_action_points_of_another_form_are_an_error_that_names_the_file(tmp_path: Path, points: str) -> None:
     with Recorder(tmp_path / "a.mcap", person="1", source="test", action_points_ns=points):
         pass
-    with pytest.raises(RecordingError, match=r"a\.mcap: action_points_ns in its metadata is not a JSON object"):
+    with pytest.raises(RecordingError, match=r"a\.mcap: the metadata field action_points_ns is not a JSON object"):
         _ = Recording(tmp_path / "a.mcap").action_points_ns

@@ -178,4 +178,4 @@ def test_a_named_pipe_is_no_recording(tmp_path: Path) -> None:
     ended = subprocess.run(
         [sys.executable, "-c", program, tmp_path / "a.mcap"], capture_output=True, timeout=10, check=False
     )
-    assert b"RecordingError" in ended.stderr and b"it is not a regular file" in ended.stderr
+    assert b"RecordingError" in ended.stderr and b"the path names a device or a pipe, not a file" in ended.stderr

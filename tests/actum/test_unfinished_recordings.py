@@ -192,12 +192,12 @@ def test_what_cannot_be_finished_stays_as_it_is(tmp_path: Path) -> None:
     with full_disk(1000), pytest.raises(OSError):
         finish(path)
     path.write_bytes(b"mine")
-    with pytest.raises(FileExistsError, match=r"a\.mcap already exists, so .*a\.mcap\.part cannot be renamed to it"):
+    with pytest.raises(FileExistsError, match=r"a\.mcap already exists, so .*a\.mcap\.part cannot get this name"):
         finish(path)
     assert path.read_bytes() == b"mine"
     path.unlink()
     part_of(path).write_bytes(b"")
-    with pytest.raises(RecordingError, match="it is not an MCAP file"):
+    with pytest.raises(RecordingError, match="the file is not an MCAP file"):
         finish(path)
     part_of(path).write_bytes(left)
     finish(path)

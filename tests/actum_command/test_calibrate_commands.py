@@ -168,7 +168,7 @@ def test_how_a_camera_is_tilted_is_found_in_a_recording(tmp_path: Path) -> None:
     assert pitch_deg == pytest.approx(12.0, abs=3.0)
     assert up == pytest.approx([0.0, -np.cos(np.radians(pitch_deg)), np.sin(np.radians(pitch_deg))], abs=0.01)
     assert "nobody stood upright and still for long enough" in run("calibrate", "up", acting, code=1)
-    assert "it is not an MCAP file" in run("calibrate", "up", Path(__file__), code=1)
+    assert "the file is not an MCAP file" in run("calibrate", "up", Path(__file__), code=1)
 
 
 def test_who_flickers_in_and_out_of_view_is_told_what_to_do_no_more_than_twice_a_second(

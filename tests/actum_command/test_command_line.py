@@ -123,7 +123,7 @@ def test_a_foreign_model_is_refused_with_the_remedy(tmp_path: Path) -> None:
 def test_a_file_that_is_no_model_is_refused_without_advice_to_load_it_unsafely(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_text("a recording, named where the model is to stand")
     refused = refusal("evaluate", str(tmp_path / "a.mcap"), str(tmp_path))
-    assert "a.mcap: it is not a model of actum" in refused
+    assert "a.mcap: the file is not a model of actum" in refused
     assert "pickle" not in refused
 
 

@@ -206,7 +206,7 @@ def test_what_cannot_be_done_is_refused_and_changes_nothing(
 
 def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_text("nothing")
-    assert "it is not an MCAP file" in refused(tmp_path / "a.mcap")
+    assert "the file is not an MCAP file" in refused(tmp_path / "a.mcap")
 
 
 def test_a_picture_of_another_kind_is_refused(path: Path, tmp_path: Path) -> None:

@@ -196,8 +196,8 @@ def test_what_cannot_be_finished_is_told_and_left(tmp_path: Path) -> None:
     (tmp_path / "a.mcap.part").write_bytes(b"torn")
     told = refused("record", tmp_path / "a.mcap", "--finish")
     assert (
-        "a.mcap.part cannot be turned into a recording (it is not an MCAP file) and was not changed: move or delete"
-        in told
+        "a.mcap.part cannot be turned into a recording (the file is not an MCAP file) and was not changed: move or "
+        "delete" in told
     )
     assert (tmp_path / "a.mcap.part").read_bytes() == b"torn"
 
@@ -303,7 +303,7 @@ def test_a_damaged_recording_ends_a_play_with_one_line(live: Live, tmp_path: Pat
     content = bytearray(path.read_bytes())
     content[content.index(b"zstd") + 40] ^= 0xFF
     path.write_bytes(content)
-    assert f"{path}: it is damaged" in refused("play", path)
+    assert f"{path}: the recording is damaged" in refused("play", path)
 
 
 def test_a_recording_that_breaks_off_is_named(live: Live, tmp_path: Path) -> None:
@@ -343,7 +343,7 @@ class TestUnfinishedInAFolder:
 
     def told_of(self, text: str, folder: Path) -> None:
         assert f"{folder / 'b.mcap.part'} is not finished: its messages so far are read" in text
-        assert f"not read: {folder / 'c.mcap.part'}: it is not an MCAP file" in text
+        assert f"not read: {folder / 'c.mcap.part'}: the file is not an MCAP file" in text
         assert f"{folder / 'a.mcap.part'} is not read, because the finished recording {folder / 'a.mcap'}" in text
 
     def test_commands_read_them_and_say_so(self, folder: Path) -> None:
@@ -359,7 +359,7 @@ class TestUnfinishedInAFolder:
 
     def test_a_file_that_is_named_is_read_or_refused(self, folder: Path) -> None:
         assert "newest" in actum("watch", "segment", "--from", folder / "b.mcap.part").stdout
-        assert "it is not an MCAP file" in refused("watch", "segment", "--from", folder / "c.mcap.part")
+        assert "the file is not an MCAP file" in refused("watch", "segment", "--from", folder / "c.mcap.part")
 
     def test_what_takes_folders_by_itself_logs_it(self, folder: Path, caplog: pytest.LogCaptureFixture) -> None:
         assert [recording.path.name for recording in select([folder])] == ["a.mcap", "b.mcap.part"]

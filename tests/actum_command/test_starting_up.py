@@ -97,7 +97,7 @@ def test_a_model_that_is_missing_or_cannot_be_used_is_named_with_what_may_be_mea
     for name, told in (
         ("nomodel.npz", f"'no model'; is {tmp_path / 'model.npz'} meant?"),
         ("nomodel.npz", f"there is no {tmp_path / 'nomodel.npz'}: until it is there, every action is answered with"),
-        ("foreign.npz", "foreign.npz: it is not a model of actum"),
+        ("foreign.npz", "foreign.npz: the file is not a model of actum"),
         ("model.npz", "model.npz finds no actions by itself, since it was trained without continuous recordings"),
     ):
         assert told in printed_by("--model", str(tmp_path / name))

@@ -77,7 +77,10 @@ def test_several_recordings_are_also_held_against_settings_picked_on_the_others(
     [
         (("--disabled-actions", "wvae"), "settings name actions that the model does not know: wvae"),
         (("--shortest-pause-s", "-1"), "shortest_pause_s"),
-        (("--cooldown-s", "lift"), "'lift' has no time: give each action its seconds, such as wave=3,clap=1"),
+        (
+            ("--cooldown-s", "lift"),
+            "'lift' is not of the form ACTION=SECONDS: give each action a number of seconds, such as wave=3,clap=1",
+        ),
     ],
 )
 def test_settings_that_cannot_be_used_are_refused(desk: Desk, options: tuple[str, str], reason: str) -> None:

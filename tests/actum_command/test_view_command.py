@@ -15,5 +15,7 @@ def test_a_file_that_is_there_is_kept(tmp_path: Path, monkeypatch: pytest.Monkey
     captured.write_bytes(b"an hour of somebody's streams")
     ended = CliRunner().invoke(app, ["view", "-o", str(captured)])
     assert ended.exit_code == 1
-    assert f"{captured} already exists: name another file, or remove this one" in " ".join(ended.stderr.split())
+    assert f"{captured} already exists: name another file, or remove the existing file" in " ".join(
+        ended.stderr.split()
+    )
     assert captured.read_bytes() == b"an hour of somebody's streams"

@@ -44,7 +44,7 @@ def test_what_was_imported_and_mended_since_is_not_imported_over(tmp_path: Path)
     msr_sequence(tmp_path, "a01_s02_e03", "x0x")
     import_msr_action3d(tmp_path, tmp_path / "out", lambda done, total: None)
     (tmp_path / "out" / "a01_s02_e03.mcap").write_bytes(b"mended")
-    with pytest.raises(FileExistsError, match="already exists: name another file, or remove this one"):
+    with pytest.raises(FileExistsError, match="already exists: name another file, or remove the existing file"):
         import_msr_action3d(tmp_path, tmp_path / "out", lambda done, total: None)
     assert (tmp_path / "out" / "a01_s02_e03.mcap").read_bytes() == b"mended"
 
@@ -110,7 +110,7 @@ def test_a_recording_that_is_there_is_not_overwritten(tmp_path: Path) -> None:
     msr_sequence(tmp_path, "a01_s02_e03", "x0x")
     (tmp_path / "out").mkdir()
     (tmp_path / "out/a01_s02_e03.mcap").write_bytes(b"mine")
-    with pytest.raises(OSError, match="already exists: name another file, or remove this one"):
+    with pytest.raises(OSError, match="already exists: name another file, or remove the existing file"):
         import_msr_action3d(tmp_path, tmp_path / "out", lambda done, total: None)
     assert (tmp_path / "out/a01_s02_e03.mcap").read_bytes() == b"mine"
 

@@ -31,7 +31,7 @@ def test_no_example_is_nothing_to_warn_of() -> None:
 
 def test_one_person_says_nothing_of_others() -> None:
     assert warnings_of(examples(ENOUGH, people=("anna",)), []) == [
-        "All examples are of one person, anna, so the differences between people are unknown. Record a second person."
+        "All examples are of one person, anna, so the model cannot learn how people differ. Record a second person."
     ]
 
 
@@ -42,7 +42,8 @@ def test_people_that_are_not_named_may_be_one() -> None:
 
 def test_few_examples_are_named_with_how_many_more() -> None:
     assert warnings_of(examples({"push": 2, "lift": 4, "pull": 5, "idle": 5}), []) == [
-        "Few examples: lift has 4 (1 more needed) and push has 2 (3 more needed). Record at least 5 of each action."
+        "Few examples: lift has 4 (1 more needed) and push has 2 (3 more needed). Record at least 5 examples of each "
+        "action."
     ]
 
 
@@ -52,8 +53,8 @@ def test_actions_may_have_three_times_as_many_examples_as_others() -> None:
 
 def test_more_than_three_times_as_many_are_unbalanced() -> None:
     assert warnings_of(examples({"push": 20, "pull": 6, "lift": 5, "turn": 7, "idle": 5}), []) == [
-        "Unbalanced examples: push has 20, more than 3 times as many as lift (5) and pull (6). "
-        "Record 2 more of lift and 1 more of pull."
+        "Unbalanced examples: push has 20 examples, more than 3 times as many as lift (5) and pull (6). Record 2 more "
+        "of lift and 1 more of pull."
     ]
 
 
@@ -64,7 +65,7 @@ def test_background_may_be_as_much_as_there_is() -> None:
 def test_without_background_what_is_none_of_the_actions_is_a_guess() -> None:
     (said,) = warnings_of(examples({"push": 6, "pull": 6}), [])
     assert said.startswith(
-        "The recordings hold less than a minute of background, so the model cannot reliably reject other movements."
+        "The recordings contain less than a minute of background (people who do none of the actions), so the model "
     )
     assert warnings_of(examples({"push": 6, "pull": 6, "background": 6}), []) == []
 
@@ -74,13 +75,14 @@ def test_without_background_what_is_none_of_the_actions_is_a_guess() -> None:
     [
         (
             [("push", "push")] * 4 + [("push", "pull")] * 2 + [("pull", "pull")] * 2,
-            "pull and push are confused: among examples left out of the training, push was taken for pull in 2 of 6. "
-            "Record 5 more examples of push, also by new people. ",
+            "The model confuses pull and push: in a test on examples left out of the training, push was taken for "
+            "pull in 2 of 6. Record 5 more examples of push, also by new people. ",
         ),
         (
             [("push", "push")] * 3 + [("push", "pull")] + [("pull", "pull")] * 3 + [("pull", "push")],
-            "pull and push are confused: among examples left out of the training, pull was taken for push in 1 of 4 "
-            "and push was taken for pull in 1 of 4. Record 5 more examples of pull and 5 more examples of push, ",
+            "The model confuses pull and push: in a test on examples left out of the training, pull was taken for "
+            "push in 1 of 4 and push was taken for pull in 1 of 4. Record 5 more examples of pull and 5 more examples "
+            "of push, ",
         ),
     ],
 )
@@ -108,4 +110,6 @@ def test_now_and_then_a_mistake_is_no_warning(held_out: list[tuple[str, str]]) -
 def test_the_pair_that_is_mixed_up_most_comes_first() -> None:
     held_out = [("push", "pull")] * 2 + [("lift", "turn")] * 3
     first, second = warnings_of(examples(ENOUGH), held_out)
-    assert first.startswith("lift and turn") and second.startswith("pull and push")
+    assert first.startswith("The model confuses lift and turn") and second.startswith(
+        "The model confuses pull and push"
+    )

@@ -244,7 +244,7 @@ def test_a_model_without_maps_is_asked_for_them_once_and_the_next_one_again(
     def classifier(service: str, command: str, **fields: Any) -> dict[str, Any]:
         asked.append(running[0])
         if running[0] == "without":
-            raise Refusal("the model has no maps: it is of kind 'other'")
+            raise Refusal("the model has no maps: models of kind 'other' contain none")
         return maps(service, command, **fields) | {"model": running[0], "action_map": None}
 
     colleague = Colleague(classifier)

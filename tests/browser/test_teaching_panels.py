@@ -310,7 +310,7 @@ def trained(held_out: float = 0.9) -> dict[str, Any]:
         "model": tiny_model().id,
         "scores": {"accuracy_held_out": held_out},
         "left_out": [],
-        "advice": [f"{MARKUP} and wave are confused: record 3 more of each from another person."],
+        "advice": [f"The model confuses {MARKUP} and wave: record 3 more examples of each."],
     }
 
 
@@ -321,7 +321,7 @@ def test_a_model_is_trained_put_into_use_compared_undone_and_deleted(room: Lesso
     says(models, "training", "Training: training the maps, 25 %")
     room.end_job(trained())
     says(models, "training", "90 % of the examples recognised correctly, each by a model trained without it.")
-    says(models, "training", f"{MARKUP} and wave are confused: record 3 more of each from another person.")
+    says(models, "training", f"The model confuses {MARKUP} and wave: record 3 more examples of each.")
     assert models.locator("#training img").count() == 0
     press(models, "Use this model")
     name = tiny_model().id[:8]
@@ -409,7 +409,7 @@ def test_names_that_are_none_are_refused_and_that_is_shown(room: Lesson, teach: 
         says(teach, "set", said)
         teach.get_by_role("combobox", name="Action").locator("visible=true").evaluate(SET_VALUE, name)
         press(teach, "Record")
-        says(teach, "record", said if name else "the take has no label")
+        says(teach, "record", said if name else "the action has no name")
         assert teach.locator("#set img, #record img").count() == 0
     assert [each["name"] for each in room.teacher.ask("list")["sets"]] == [SET]
 

@@ -96,7 +96,7 @@ def test_a_thousand_small_bombs_in_one_file_are_refused(tmp_path: Path) -> None:
             writer.add_message(channel, i, payload, i)
         writer.finish()
     assert path.stat().st_size < 100_000
-    assert "it has far more messages than a file of its size can hold" in refused(path)
+    assert "the recording has far more messages than a file of its size can contain" in refused(path)
 
 
 def test_a_lens_that_is_covered_makes_no_bomb(tmp_path: Path) -> None:
@@ -179,7 +179,7 @@ def test_a_model_that_grows_beyond_measure_is_refused(model: Path, tmp_path: Pat
     content = array("(100000000,)", bytes(100_000_000))
     bomb = with_member(model, tmp_path / "bomb.npz", name, content)
     tracemalloc.reset_peak()
-    assert "its arrays would take" in no_model(bomb)
+    assert "the arrays in the file would take" in no_model(bomb)
     assert tracemalloc.get_traced_memory()[1] < 2 * len(content)
 
 

@@ -41,27 +41,28 @@ def test_a_placement_turns_about_x_then_y_then_z(tmp_path) -> None:
 
 GOOD = "family: 4X4_50\nsize_m: 0.08\nobjects:\n  1: {name: cup}\n"
 BAD = {
-    "objects:\n  1: {name: cup, size_m: 0.1}\n": "line 2: objects.1: `family` is missing: set it here",
-    "family: 4X4_50\nobjects:\n  1: {name: cup}\n": "line 3: objects.1: `size_m` is missing: set it here",
+    "objects:\n  1: {name: cup, size_m: 0.1}\n": "line 2: objects.1: `family` is missing: set it in this entry",
+    "family: 4X4_50\nobjects:\n  1: {name: cup}\n": "line 3: objects.1: `size_m` is missing: set it in this entry",
     "family: 9X9\nsize_m: 0.1\nobjects:\n  1: {name: cup}\n": "line 1: family: '9X9' is not a marker dictionary: use",
     "family: 4X4_50\nsize_m: -1\nobjects:\n  1: {name: cup}\n": "line 2: size_m: Input should be greater than 0",
     GOOD + "  2: {nmae: box}\n": "line 5: objects.2.nmae: there is no such field: remove it or correct its spelling",
     GOOD + "  2: {size_m: 0.1}\n": "line 5: objects.2.name: is missing: add it",
-    GOOD + "  1: {name: box}\n": "line 5: 1 occurs twice: remove one",
-    GOOD + "  01: {name: box}\n": "line 5: 1 occurs twice: remove one",
+    GOOD + "  1: {name: box}\n": "line 5: the key 1 occurs twice: remove one",
+    GOOD + "  01: {name: box}\n": "line 5: the key 1 occurs twice: remove one",
     GOOD + "  2: box\n": "line 5: objects.2: has to have fields, such as {name: cup}",
     "family: 4X4_50\nobjects: [cup]\n": "line 2: objects: has to map ids to objects",
     GOOD + "  2: {name: box, markers: [{id: 2, object_from_marker: {translation_m: [0, 0, 35]}}]}\n": "equal to 5",
     GOOD
     + "  2: {name: box, markers: [{id: 1}]}\n": "marker 1 of DICT_4X4_50 is already on object 1: give object 2 anoth",
-    GOOD + "  60: {name: box}\n": "line 5: objects.60: DICT_4X4_50 has no marker 60: use ids from 0 to 49",
-    GOOD + "  2: {name: box, family: 4X4_100}\n": "DICT_4X4_100 and DICT_4X4_50 hold the same markers: use",
+    GOOD
+    + "  60: {name: box}\n": "line 5: objects.60: the dictionary DICT_4X4_50 has no marker 60: use ids from 0 to 49",
+    GOOD + "  2: {name: box, family: 4X4_100}\n": "DICT_4X4_100 and DICT_4X4_50 contain the same markers: use",
     GOOD
     + "  2:\n    name: box\n    markers:\n      - id: -3\n": "line 8: objects.2.markers.0.id: Input should be greater",
     GOOD + "  cup: {name: box}\n": "line 5: objects.cup: Input should be a valid integer",
     "family: 4X4_50\n": "objects: is missing: add it",
-    "": "is not a scene file: it needs `objects:`",
-    "[1, 2]": "is not a scene file: it needs `objects:`",
+    "": "is not a scene file: add `objects:`",
+    "[1, 2]": "is not a scene file: add `objects:`",
     "a: [1": "is not YAML",
     "a: !!int foo": "is not YAML",
     'a: !!int ""': "is not YAML",
@@ -95,7 +96,7 @@ def test_the_scene_comes_from_the_environment(monkeypatch, image_of, pose_at) ->
 
 
 def test_a_scene_and_plain_objects_exclude_each_other() -> None:
-    with pytest.raises(SceneFileError, match="set only one of them"):
+    with pytest.raises(SceneFileError, match="set only one of the two"):
         MarkerTracker(Settings(scene=EXAMPLE, objects={1: ObjectSpec(name="cup")}))
 
 

@@ -116,17 +116,17 @@ def test_a_set_is_not_called_as_a_device_of_windows_but_an_action_may_be(teacher
 @pytest.mark.parametrize(
     ("label", "why"),
     [
-        ("idle", "'idle' would be learned as an action, and reported whenever people do nothing in particular"),
-        ("Background", "'Background' would be learned as an action"),
-        ("none", "'none' is what the system answers where it recognises no action"),
-        ("unknown", "'unknown' is what the system answers"),
+        ("idle", "'idle' cannot be the name of an action, because the model would report it whenever"),
+        ("Background", "'Background' cannot be the name of an action"),
+        ("none", "'none' cannot be the name of an action, because the system reports it when it recognises no"),
+        ("unknown", "'unknown' cannot be the name of an action"),
     ],
 )
 def test_no_action_is_called_as_what_is_none(teacher: Teacher, label: str, why: str) -> None:
     example = teacher.examples()[0]["id"]
     with pytest.raises(Refusal, match=f"^{why}"):
         teacher.ask("record", set="kitchen", label=label)
-    with pytest.raises(Refusal, match="use another name, or record it as background$"):
+    with pytest.raises(Refusal, match=r"use another name, or record background \(people who do none of the actions\)$"):
         teacher.ask("relabel", set="kitchen", example=example, label=label)
     with pytest.raises(Refusal, match=f"^{why}"):
         teacher.ask("import_video", set="kitchen", upload="clip", label=label)
@@ -139,9 +139,11 @@ def test_a_name_that_is_refused_is_refused_in_a_sentence_without_the_command_or_
     for name in ("../x", "a/b", "<b>", ".hidden", "end "):
         with pytest.raises(Refusal, match=f"^{re.escape(repr(name))} cannot be a name: {rule}"):
             teacher.ask("create_set", set=name)
-    with pytest.raises(Refusal, match="^the name is empty: enter one$"):
+    with pytest.raises(Refusal, match="^the name is empty: enter a name$"):
         teacher.ask("create_set", set="")
-    with pytest.raises(Refusal, match="^the name has 65 characters: use at most 64$"):
+    with pytest.raises(
+        Refusal, match=r"^the name has 65 characters \(65 bytes in UTF-8\): use at most 64 characters and 200 bytes$"
+    ):
         teacher.ask("create_set", set="x" * 65)
 
 
@@ -162,7 +164,7 @@ def test_a_set_is_a_folder_that_can_be_copied_renamed_and_deleted(teacher: Teach
 def test_a_damaged_file_in_a_set_is_named_and_the_others_are_there(teacher: Teacher) -> None:
     (teacher.folder / "sets/kitchen/take-0001.mcap").write_bytes(b"no recording")
     (kitchen,) = teacher.ask("list")["sets"]
-    assert "take-0001.mcap: it is not an MCAP file" in kitchen["unreadable"][0]
+    assert "take-0001.mcap: the file is not an MCAP file" in kitchen["unreadable"][0]
     assert kitchen["actions"] == {"goggles": 5}
 
 

@@ -124,10 +124,16 @@ def test_a_set_of_one_person_is_tested_by_examples(
     teacher.ask("evaluate", set="kitchen")
     result = finish(teacher, capsys, monkeypatch)["result"]
     assert (result["by"], result["n"], result["accuracy"]) == ("examples", 10, 1.0)
-    assert any("All examples are of anna: record 5 of each action by a second person." in it for it in result["advice"])
+    assert any(
+        "All examples are of anna: record 5 examples of each action by a second person." in it
+        for it in result["advice"]
+    )
 
 
-ONE_ACTION = "a model needs examples of at least two actions, and there is only 'goggles': record another action"
+ONE_ACTION = (
+    "a model needs examples of at least two actions, but the recordings contain examples of only one action, "
+    "'goggles': record more actions"
+)
 
 
 def test_what_cannot_be_trained_fails_with_the_reason(
@@ -238,9 +244,9 @@ def test_a_file_comes_in_pieces_that_follow_one_another(teacher: Teacher) -> Non
         return teacher.ask("upload", name="clip.mp4", offset=offset, data=text, last=last)
 
     assert send(0, b"abc")["size"] == 3
-    with pytest.raises(Refusal, match="has 3 bytes so far, not 5: continue at offset 3"):
+    with pytest.raises(Refusal, match="has the offset 5, but 3 bytes of the file have arrived: continue at offset 3"):
         send(5, b"x")
-    with pytest.raises(Refusal, match="no finished upload 'clip.mp4'"):
+    with pytest.raises(Refusal, match="no file 'clip.mp4' was uploaded completely"):
         teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="wave")
     assert send(3, b"def", last=True) == {"upload": "clip.mp4", "size": 6}
     assert (teacher.folder / "uploads/.sent/clip.mp4").read_bytes() == b"abcdef"

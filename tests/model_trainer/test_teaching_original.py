@@ -98,5 +98,5 @@ def test_a_damaged_file_is_counted_once_and_the_model_before_stays(teacher: Teac
     assert teacher.tick(5 * LOOKS).model == own
     assert teacher.trainer.counters.rejects == {"bad_model": 1}
     assert teacher.trainer.counters.state.startswith(
-        f"model not renewed: {teacher.original}: it is not a model of actum"
+        f"model not renewed: {teacher.original}: the file is not a model of actum"
     )

@@ -111,7 +111,7 @@ def test_a_set_that_is_a_link_loses_the_link_alone(teacher: Teacher, tmp_path: P
 def test_a_file_in_the_place_of_the_model_in_use_is_not_overwritten(teacher: Teacher) -> None:
     (model,) = teacher.ask("list")["models"]
     teacher.model.write_text("my notes")
-    with pytest.raises(Refusal, match="cannot be read as a model and would be overwritten: move it away"):
+    with pytest.raises(Refusal, match="cannot be read as a model and would be overwritten: move this file"):
         teacher.ask("activate", model=model["id"])
     assert teacher.model.read_text() == "my notes"
 
@@ -309,7 +309,7 @@ def test_a_take_whose_folder_vanishes_is_lost_with_the_reason_and_another_can_be
     else:
         attempt(teacher, end)
     for again in ("stop", "discard"):
-        with pytest.raises(Refusal, match="no take is being recorded"):
+        with pytest.raises(Refusal, match="no recording is running"):
             teacher.ask(again)
     told = teacher.tick().recording
     assert told is None or told.phase == "done"
@@ -397,7 +397,7 @@ def test_a_set_that_vanishes_once_its_take_is_stored_ends_nothing(
     teacher.see(Stream().repeat(WAVES[:2]).skeletons(first_ns=10**12))
     monkeypatch.setattr(SetStore, "get", lambda *_: (_ for _ in ()).throw(PermissionError(13, "Permission denied")))
     reply = teacher.ask("stop")
-    assert reply["take"] == "take-0002" and "the old take take-0001 could not be deleted" in reply["doubts"][-1]
+    assert reply["take"] == "take-0002" and "the old recording take-0001 could not be deleted" in reply["doubts"][-1]
     monkeypatch.undo()
     go_on(teacher)
 

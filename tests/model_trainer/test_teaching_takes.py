@@ -170,23 +170,23 @@ def test_an_example_that_is_not_recorded_anew_stays(teacher: Teacher, end: str) 
 def test_one_thing_is_recorded_at_a_time(teacher: Teacher) -> None:
     teacher.ask("record", set="kitchen", label="wave")
     for command in ("record", "redo_last"):
-        with pytest.raises(Refusal, match="is being recorded into the set kitchen: stop or discard it"):
+        with pytest.raises(Refusal, match="a recording into the set kitchen is running: stop or discard this"):
             teacher.ask(command, set="kitchen", **({"label": "nod"} if command == "record" else {}))
-    with pytest.raises(Refusal, match="being recorded"):
+    with pytest.raises(Refusal, match="a recording into the set kitchen is running"):
         teacher.ask("delete_set", set="kitchen")
     teacher.ask("discard")
     for command in ("stop", "discard"):
-        with pytest.raises(Refusal, match="no take is being recorded: start one first"):
+        with pytest.raises(Refusal, match="no recording is running: start a recording first"):
             teacher.ask(command)
     teacher.ask("delete_set", set="kitchen")
 
 
 def test_what_is_recorded_needs_a_name_and_a_set(teacher: Teacher) -> None:
-    with pytest.raises(Refusal, match="the take has no label"):
+    with pytest.raises(Refusal, match="the action has no name"):
         teacher.ask("record", set="kitchen")
-    with pytest.raises(Refusal, match=r"no set 'garden': use an existing one \(kitchen\)"):
+    with pytest.raises(Refusal, match=r"no set 'garden': use an existing set \(kitchen\)"):
         teacher.ask("record", set="garden", label="wave")
-    with pytest.raises(Refusal, match="no take to redo"):
+    with pytest.raises(Refusal, match="no recording of an action to repeat"):
         teacher.ask("redo_last", set="kitchen")
 
 

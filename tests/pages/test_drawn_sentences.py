@@ -10,7 +10,10 @@ def errors() -> set[str]:
 
 
 def test_errors_of_services_of_commands_and_of_doctor_are_among_them(errors: set[str]) -> None:
-    assert "the source recording needs --path (ACTUM_PATH), the file or folder to play" in errors
+    assert (
+        "the source recording needs --path (ACTUM_PATH): give the recording to play, or a folder of recordings"
+        in errors
+    )
     assert "{file} is a folder: give the name of a file" in errors
     assert "{name} does not answer on its info key: restart it if this persists" in errors
 

@@ -91,5 +91,5 @@ def test_a_device_may_take_longer_for_its_first_picture_than_for_the_others() ->
     silence.check()
     now_s[0] += 0.2
 
-    with pytest.raises(CameraLostError, match="no picture came for 2 s"):
+    with pytest.raises(CameraLostError, match="the camera sent no picture for 2 s"):
         silence.check()

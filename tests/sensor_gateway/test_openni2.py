@@ -107,7 +107,7 @@ def test_depth_and_colour_that_are_never_of_the_same_time_are_refused(tmp_path: 
     depth = Track(DEPTH, [DEPTH_MM], [1_000])
     color = Track(IMAGE, colors()[:1], [900_000])
 
-    with pytest.raises(VideoError, match="no colour and depth images of the same time"):
+    with pytest.raises(VideoError, match="no colour image and depth image of the same time"):
         list(recorded_pictures(write_oni(tmp_path / "apart.oni", depth, color), 0))
 
 

@@ -237,7 +237,7 @@ def test_an_unplugged_camera_is_lost_at_once_and_a_silent_one_is_waited_for(monk
     assert picture is not None and picture.stamp_ns == START_NS
     assert capture.next(0.01) is None
     fake.connected = False
-    with pytest.raises(CameraLostError, match="RealSense 42 was unplugged"):
+    with pytest.raises(CameraLostError, match="RealSense camera with serial number 42 was unplugged"):
         capture.next(0.01)
     capture.close()
     assert fake.stopped

@@ -70,7 +70,10 @@ def test_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ("flag", "said"),
     [
         ("--segments=found", "segments"),
-        ("--cooldown-s=wave", "'wave' has no time: give each action its seconds, such as wave=3,clap=1"),
+        (
+            "--cooldown-s=wave",
+            "'wave' is not of the form ACTION=SECONDS: give each action a number of seconds, such as wave=3,clap=1",
+        ),
         ("--cooldown-s=wave=-1", "cooldown_s.wave"),
         ("--cooldown-s=wave=inf", "cooldown_s.wave"),
         ("--shortest-pause-s=-1", "shortest_pause_s"),

@@ -59,5 +59,5 @@ def test_without_a_model_there_are_none() -> None:
 
 
 def test_of_a_model_of_a_kind_without_maps_it_refuses_to_describe_any() -> None:
-    with pytest.raises(Refusal, match="the model has no maps: it is of kind 'foreign'"):
+    with pytest.raises(Refusal, match="the model has no maps: models of kind 'foreign' contain none"):
         maps_of(Foreign())

@@ -53,12 +53,12 @@ def test_a_model_that_is_not_there_is_named(running: System, scene_model: Path, 
         running.wait_for_services(client, "som_classifier")
         assert f"som_classifier: no model: there is no {model} yet, so every action is rejected" in diagnosed(running)
         model.write_bytes(b"not yet whole")
-        wait_for_line(classifier, f"no model: {model}: it is not a model of actum")
+        wait_for_line(classifier, f"no model: {model}: the file is not a model of actum")
         (tmp_path / "whole.npz").write_bytes(scene_model.read_bytes())
         (tmp_path / "whole.npz").rename(model)
         wait_for_line(classifier, "running again")
         model.write_bytes(b"damaged")
-        wait_for_line(classifier, f"model not renewed: {model}: it is not a model of actum")
+        wait_for_line(classifier, f"model not renewed: {model}: the file is not a model of actum")
     wait_for_line(classifier, f"no model: there is no {model} yet")
 
 

@@ -35,7 +35,8 @@ def gray(image: Image) -> Pixels:
     """
     if image.width * image.height > LARGEST_PIXELS:
         raise UnusableImageError(
-            "image_too_large", f"the image is {image.width}x{image.height}; at most {LARGEST_PIXELS} pixels are allowed"
+            "image_too_large",
+            f"the image has {image.width}x{image.height} pixels; at most {LARGEST_PIXELS} pixels in all are allowed",
         )
     return _from_jpeg(image) if image.format == "jpeg" else _from_bgr(image)
 
@@ -55,31 +56,43 @@ def _from_jpeg(image: Image) -> Pixels:
     size = _jpeg_size(image.data)
     if size[0] * size[1] > LARGEST_PIXELS:
         raise UnusableImageError(
-            "image_too_large", f"the JPEG is {size[0]}x{size[1]}; at most {LARGEST_PIXELS} pixels are allowed"
+            "image_too_large",
+            f"the JPEG has {size[0]}x{size[1]} pixels; at most {LARGEST_PIXELS} pixels in all are allowed",
         )
     if size != (image.width, image.height):
         raise UnusableImageError(
-            "image_size_mismatch", f"the JPEG is {size[0]}x{size[1]}, but its message says {image.width}x{image.height}"
+            "image_size_mismatch",
+            f"the JPEG has {size[0]}x{size[1]} pixels, but width and height of the image message are {image.width} "
+            f"and {image.height}",
         )
     if has_too_many_scans(image.data):
-        raise UnusableImageError("image_too_large", f"the JPEG has more than {MOST_SCANS} scans")
+        raise UnusableImageError(
+            "image_too_large", f"the JPEG has more than {MOST_SCANS} scans: send a JPEG that is not progressive"
+        )
     flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION
     pixels = cv2.imdecode(np.frombuffer(image.data, dtype=np.uint8), flags)
     if pixels is None or pixels.shape != (image.height, image.width):
-        raise UnusableImageError("undecodable_image", f"the JPEG of {len(image.data)} bytes is damaged")
+        raise UnusableImageError(
+            "undecodable_image", f"the JPEG of {len(image.data)} bytes is damaged and cannot be decoded"
+        )
     return pixels.astype(np.uint8, copy=False)
 
 
 def _jpeg_size(data: bytes) -> tuple[int, int]:
     """Read (width, height) from a JPEG's header."""
     if not data.startswith(JPEG_START):
-        raise UnusableImageError("undecodable_image", f"the {len(data)} bytes do not start like a JPEG")
+        raise UnusableImageError(
+            "undecodable_image",
+            f"the format of the image is jpeg, but its {len(data)} bytes do not start with FF D8 as those of a JPEG do",
+        )
     try:
         width, height = imagesize.get(io.BytesIO(data), exif_rotation=False)
     except (ValueError, struct.error) as error:
         raise UnusableImageError("undecodable_image", f"the header of the JPEG is damaged: {error}") from None
     if width <= 0 or height <= 0:
-        raise UnusableImageError("undecodable_image", f"the JPEG of {len(data)} bytes states no size")
+        raise UnusableImageError(
+            "undecodable_image", f"the JPEG of {len(data)} bytes is damaged: its header gives no image size"
+        )
     return width, height
 
 
@@ -88,7 +101,8 @@ def _from_bgr(image: Image) -> Pixels:
     if len(image.data) != expected:
         raise UnusableImageError(
             "image_size_mismatch",
-            f"the image has {len(image.data)} bytes; {image.width}x{image.height} pixels of bgr8 need {expected}",
+            f"the image has {len(image.data)} bytes; {image.width}x{image.height} pixels in the format bgr8 need "
+            f"{expected} bytes",
         )
     pixels = np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
     return cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)

@@ -48,14 +48,21 @@ def camera_model(image: Image, calibrated_size_px: tuple[int, int] | None = None
     if not all(0 < f < LARGEST_FOCAL_PX for f in focal) or np.abs(matrix).max() > LARGEST_FOCAL_PX:
         raise UnusableImageError(
             "bad_calibration",
-            f"a focal length in K is not above 0 ({focal[0]:g}, {focal[1]:g} px), or an entry of K is above "
-            f"{LARGEST_FOCAL_PX:g}: calibrate the camera again",
+            f"the camera matrix K has the focal lengths {focal[0]:g} and {focal[1]:g} px and {np.abs(matrix).max():g} "
+            f"as its largest entry; focal lengths must be above 0, and no entry above {LARGEST_FOCAL_PX:g}: calibrate "
+            "the camera again",
         )
     if not np.array_equal(matrix[2], (0, 0, 1)):
-        raise UnusableImageError("bad_calibration", f"the last row of K is {matrix[2].tolist()}, not [0, 0, 1]")
+        raise UnusableImageError(
+            "bad_calibration", f"the last row of the camera matrix K is {matrix[2].tolist()}; it must be [0, 0, 1]"
+        )
     skeleton_from_image = geometry.from_flat(image.skeleton_from_image)
     if not geometry.is_rigid(skeleton_from_image, MAX_COORDINATE_M):
-        raise UnusableImageError("bad_calibration", "skeleton_from_image is not a rigid transform")
+        raise UnusableImageError(
+            "bad_calibration",
+            "skeleton_from_image, the transform to the camera that sees the people, is not a rigid transform: run "
+            "'actum calibrate extrinsics' again",
+        )
     matrix = _matrix_for_size(matrix, (image.width, image.height), calibrated_size_px)
     return CameraModel(matrix, _distortion(image.distortion), skeleton_from_image)
 
@@ -71,15 +78,17 @@ def _matrix_for_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tup
         if (off_px > 1 + LARGEST_OFFSET * np.array(size_px)).any():
             raise UnusableImageError(
                 "calibration_size_mismatch",
-                f"the principal point ({matrix[0, 2]:g}, {matrix[1, 2]:g}) of K does not fit {width}x{height} pixels: "
-                "calibrate at this size, or set --calibrated-size-px",
+                f"the principal point ({matrix[0, 2]:g}, {matrix[1, 2]:g}) of the camera matrix K is far from the "
+                f"centre of an image of {width}x{height} pixels, so K is for another image size: calibrate the camera "
+                "at this size, or set --calibrated-size-px to the size of its calibration",
             )
         return matrix
     across, down = width / calibrated_px[0], height / calibrated_px[1]
     if abs(across / down - 1) > ASPECT_TOLERANCE:
         raise UnusableImageError(
             "calibration_size_mismatch",
-            f"the image is {width}x{height}, but the camera was calibrated at {calibrated_px[0]}x{calibrated_px[1]}",
+            f"the image is {width}x{height}, but the camera was calibrated at {calibrated_px[0]}x{calibrated_px[1]}, "
+            "which has another aspect ratio: calibrate the camera again, or send images with that aspect ratio",
         )
     half = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1]])
     scaled: Array = np.linalg.inv(half) @ np.diag([across, down, 1.0]) @ half @ matrix
@@ -90,9 +99,13 @@ def _distortion(coefficients: list[float]) -> Array:
     if len(coefficients) not in DISTORTION_LENGTHS:
         allowed = ", ".join(map(str, DISTORTION_LENGTHS))
         raise UnusableImageError(
-            "bad_calibration", f"distortion has {len(coefficients)} coefficients; the number has to be one of {allowed}"
+            "bad_calibration",
+            f"distortion has {len(coefficients)} coefficients; allowed numbers of coefficients are {allowed}",
         )
     distortion = np.array(coefficients, dtype=np.float64)
     if np.abs(distortion).max(initial=0) > LARGEST_COEFFICIENT:
-        raise UnusableImageError("bad_calibration", f"a distortion coefficient is larger than {LARGEST_COEFFICIENT:g}")
+        raise UnusableImageError(
+            "bad_calibration",
+            f"a distortion coefficient is outside of ±{LARGEST_COEFFICIENT:g}: calibrate the camera again",
+        )
     return distortion

@@ -51,7 +51,11 @@ def nite() -> Any | None:
     try:
         nite2.initialize(folders)
     except InitializationError as error:
-        log.warning("NiTE cannot be started, so people are found in the colour images: %s", error)
+        log.warning(
+            "NiTE (body tracking in depth images) cannot be started, so people are found in the colour images "
+            "instead: %s",
+            error,
+        )
         return None
     return nite2
 

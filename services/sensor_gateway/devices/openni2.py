@@ -99,7 +99,7 @@ def recorded_pictures(path: Path, start_ns: int, field_of_view_deg: float = 60.0
                 has_picture = True
                 yield picture
         if not has_picture:
-            raise VideoError(f"{path} contains no colour and depth images of the same time: record both streams")
+            raise VideoError(f"{path} contains no colour image and depth image of the same time: record both streams")
     finally:
         streams.close()
 
@@ -109,7 +109,7 @@ def _opened_file(openni2: Any, path: Path) -> Any:
     device = openni2.Device(os.fsencode(path.absolute()))
     if device.playback is None:
         device.close()
-        raise CameraLostError("OpenNI opened it as a camera, not as a file")
+        raise CameraLostError("OpenNI opened the file as a camera, not as a recording")
     device.playback.set_repeat_enabled(False)
     device.playback.set_speed(MANUAL)
     return device

@@ -15,7 +15,7 @@ class OpenNiError(ValueError):
     """The library is not installed; the message names the remedy and `problem`."""
 
     def __init__(self, problem: str) -> None:
-        remedy = f"{adding('openni2')}; on Debian also run: apt install libopenni2-0"
+        remedy = f"run {adding('openni2')}; on Debian also run: apt install libopenni2-0"
         super().__init__(f"the source openni2 needs OpenNI 2 ({problem}): {remedy}")
 
 
@@ -30,7 +30,9 @@ def library() -> Any:
     except ImportError as error:
         raise OpenNiError(str(error)) from None
     except TypeError:  # the bindings' enumerations are abstract classes to ctypes since Python 3.13
-        raise OpenNiError("its Python bindings do not work on Python 3.13 or newer") from None
+        raise OpenNiError(
+            "the Python bindings of OpenNI 2 do not work on Python 3.13 or newer; use Python 3.11 or 3.12"
+        ) from None
     if not openni2.is_initialized():
         _start(openni2)
     return openni2

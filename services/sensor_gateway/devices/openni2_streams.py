@@ -62,7 +62,7 @@ class Streams:
         self._openni2, self.device = openni2, device
         if not (device.has_sensor(openni2.SENSOR_DEPTH) and device.has_sensor(openni2.SENSOR_COLOR)):
             device.close()
-            raise CameraLostError("the camera does not have both colour and depth")
+            raise CameraLostError("the camera lacks colour or depth images: use a camera that has both")
         self._depth, self._color = device.create_depth_stream(), device.create_color_stream()
         self.uri: bytes = device.uri
         self._depths: deque[Frame] = deque(maxlen=WAITING)
@@ -121,7 +121,8 @@ class Streams:
             self.device.set_depth_color_sync_enabled(True)
         else:
             log.warning(
-                "the driver does not align depth with colour, so thin limbs may get the depth of the background"
+                "the camera driver does not align depth images with colour images, so thin limbs may get the depth of "
+                "the background"
             )
 
     def _pixels(self, stream: Any, frame: Any) -> NDArray[Any]:
@@ -133,7 +134,10 @@ class Streams:
         elif self._is(stream, self._openni2.PIXEL_FORMAT_RGB888):
             pixels = rows[:, : 3 * frame.width].reshape(frame.height, frame.width, 3)
         else:
-            raise CameraLostError(f"the camera sends colour as {stream.video_mode.pixelFormat!r}, not as RGB888")
+            raise CameraLostError(
+                f"the camera sends colour images in the format {stream.video_mode.pixelFormat!r}; only RGB888 is "
+                "supported"
+            )
         return (pixels[:, ::-1] if stream in self._mirrored else pixels).copy()
 
     def _is(self, stream: Any, pixel_format: Any) -> bool:

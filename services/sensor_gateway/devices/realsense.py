@@ -52,7 +52,7 @@ def library() -> Any:
         import pyrealsense2
     except ImportError as error:
         raise RealSenseError(
-            f"the source realsense needs pyrealsense2 ({error}): {adding('realsense')}; on Debian also run: apt "
+            f"the source realsense needs pyrealsense2 ({error}): run {adding('realsense')}; on Debian also run: apt "
             "install libusb-1.0-0"
         ) from None
     return pyrealsense2
@@ -128,7 +128,7 @@ class RealSenseCapture:
     def _check_connected(self) -> None:
         numbers = [device.get_info(self._rs.camera_info.serial_number) for device in self._context.query_devices()]
         if self._serial not in numbers:
-            raise CameraLostError(f"the RealSense {self._serial} was unplugged")
+            raise CameraLostError(f"the RealSense camera with serial number {self._serial} was unplugged")
 
     def _stamp_ns(self, frame: Any) -> int:
         stamp_ns = _device_ns(frame)
@@ -162,7 +162,7 @@ def recorded_pictures(path: Path, start_ns: int) -> Generator[Picture, None, Non
     finally:
         pipeline.stop()
     if not aligner.made:
-        raise VideoError(f"{path} contains no colour and depth images of the same time: record both streams")
+        raise VideoError(f"{path} contains no colour image and depth image of the same time: record both streams")
 
 
 def _played(
@@ -238,7 +238,9 @@ def _bgr(color: Any) -> NDArray[np.uint8]:
     if name == "bgr8":
         return image
     if name not in TO_BGR:
-        raise CameraLostError(f"the camera sends colour as {name}; supported: bgr8, {', '.join(TO_BGR)}")
+        raise CameraLostError(
+            f"the camera sends colour images in the format {name}; supported: bgr8, {', '.join(TO_BGR)}"
+        )
     packed = image.view(np.uint8).reshape(*image.shape[:2], -1)
     return np.asarray(cv2.cvtColor(packed, TO_BGR[name]), dtype=np.uint8)
 

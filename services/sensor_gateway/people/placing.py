@@ -80,7 +80,7 @@ def posed(world_m: Array, rays: Array, visibility: Array) -> Array:
     translation = np.linalg.lstsq(weighted[0].reshape(-1, 3), weighted[1].reshape(-1), rcond=None)[0]
     points_m: Array = rotated + translation
     if not (points_m[:, 2].min() > NEAREST_M and np.isfinite(points_m).all()):
-        raise PlacingError("no position in front of the camera fits the landmarks of the person")
+        raise PlacingError("the body points found in the image fit no position of the person in front of the camera")
     return points_m
 
 

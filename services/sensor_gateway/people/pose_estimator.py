@@ -175,7 +175,7 @@ def _mediapipe() -> Any:
     try:
         import mediapipe
     except ImportError as error:
-        raise PoseModelError(f"the camera needs MediaPipe ({error}): {adding('camera')}") from None
+        raise PoseModelError(f"finding people in images needs MediaPipe ({error}): run {adding('camera')}") from None
     return mediapipe
 
 

@@ -75,7 +75,8 @@ class Commander:
             meant.append([])
         if len(meant) != 1:
             raise Refusal(
-                f"{asked} matches {len(meant)} commands instead of one: use one of {', '.join(sorted(self._commands))}"
+                f"the key {asked} matches {len(meant)} commands instead of one: use one of the commands "
+                f"{', '.join(sorted(self._commands))}"
             )
         return meant[0]
 

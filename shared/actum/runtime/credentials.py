@@ -87,10 +87,17 @@ def check(folder: Path) -> None:
     except ssl.SSLError as error:
         problem = error.reason or "no certificate"
         raise SettingsError(
-            f"credentials: {folder} cannot be used ({problem}): copy the credentials folder again"
+            f"credentials: the certificate and key files in {folder} cannot be used together ({problem}): copy the "
+            "credentials folder again"
         ) from None
 
 
 def _unreadable(file: Path, error: OSError) -> str:
+    missing = isinstance(error, FileNotFoundError)
+    remedy = (
+        "correct ACTUM_CREDENTIALS, or copy the credentials folder again"
+        if missing
+        else "give that user read permission"
+    )
     who = f"user {os.getuid()}" if hasattr(os, "getuid") else "this user"
-    return f"credentials: {file} cannot be read by {who} ({error.strerror}): give that user read permission"
+    return f"credentials: {file} cannot be read by {who} ({error.strerror}): {remedy}"

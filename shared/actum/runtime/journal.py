@@ -104,7 +104,7 @@ class Journal:
             self._begun_ns = time.time_ns()
             self._opened()
             raise FileNotFoundError(
-                errno.ENOENT, "the file was deleted, and the answers in it are lost; it is created again", self._path
+                errno.ENOENT, "the file was deleted, so the answers in it are lost; a new file was created", self._path
             )
         if self._is_stored:
             return None

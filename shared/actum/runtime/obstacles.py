@@ -41,7 +41,10 @@ def _on_the_way(error: OSError, host: str, port: int) -> str:
             f"{host} does not answer: check that it is switched on and connected, and that firewalls allow port {port}"
         )
     if isinstance(error, ConnectionRefusedError):
-        return f"nothing listens on port {port} of {host}: start a router with 'actum router', or set ACTUM_CONNECT"
+        return (
+            f"nothing listens on port {port} of {host}: start a router with 'actum router', or set ACTUM_CONNECT to "
+            "the address of a running router"
+        )
     if error.errno in NO_ROUTE:
         return f"there is no route to {host} ({error.strerror}): check this machine's network connection"
     return f"{host} closes the connection ({error.strerror or error}): check that a router listens on port {port}"
@@ -55,8 +58,8 @@ def _between_sessions(settings: ServiceSettings, host: str, port: int) -> str:
     if speaks_tls(host, port):
         address = settings.connect.removeprefix("tcp/")
         return (
-            f"the router requires TLS: set ACTUM_CONNECT=tls/{address}, and ACTUM_CREDENTIALS to the credentials "
-            "folder of a role"
+            f"the router requires TLS: set ACTUM_CONNECT=tls/{address}, and ACTUM_CREDENTIALS to this program's "
+            "credentials folder"
         )
     return (
         f"port {port} accepts connections but does not answer as a router: another program may listen there, the "

@@ -69,7 +69,9 @@ class Reporter:
             successor = place.lost_to()
             if successor is not None:
                 log.warning(
-                    "%s replaces this instance for sensor %s: this instance stops", successor, self._settings.sensor
+                    "the instance %s replaces this instance for sensor %s: this instance stops",
+                    successor,
+                    self._settings.sensor,
                 )
                 stop.set()
 

@@ -98,7 +98,8 @@ class Resumption:
         self._counters.reject("unwritable_state", reason)
         if self._writes:
             log.warning(
-                "answers cannot be written to the journal, so their segments may get other answers after a restart: %s",
+                "answers cannot be written to the journal, so after a restart the same segments may get other "
+                "answers: %s",
                 reason,
             )
         self._writes = False

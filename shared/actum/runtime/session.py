@@ -63,7 +63,7 @@ def client_config(settings: ServiceSettings) -> zenoh.Config:
     if settings.credentials is not None:
         if not settings.connect.startswith(ENCRYPTED):
             raise SettingsError(
-                f"credentials cannot be used with {settings.connect}: set ACTUM_CONNECT to tls/host:port"
+                f"credentials need TLS, but ACTUM_CONNECT is {settings.connect}: set ACTUM_CONNECT to tls/host:port"
             )
         check(settings.credentials)
         insert(config, client_values(settings.credentials))

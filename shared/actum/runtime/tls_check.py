@@ -19,12 +19,17 @@ TURNS = 4
 """Turns of both sides in a handshake with oneself: more than TLS 1.3 takes."""
 
 _STRANGER = (
-    "the router trusts another authority than the one that signed {certificate}: use credentials of the router's "
-    "deployment"
+    "the router does not trust the authority that signed {certificate}: use credentials that 'actum deploy' made for "
+    "this router"
 )
-_NO_TLS = "the port does not use TLS: set ACTUM_CONNECT to tcp/ instead of tls/, or restart the router if it is frozen"
+_NO_TLS = (
+    "port {port} of {host} does not use TLS: write tcp/ instead of tls/ in ACTUM_CONNECT, or restart the router if it "
+    "is frozen"
+)
 _REFUSED = {
-    "CERTIFICATE_REQUIRED": "the router requires a certificate: set ACTUM_CREDENTIALS to the folder of a role",
+    "CERTIFICATE_REQUIRED": (
+        "the router requires a certificate: set ACTUM_CREDENTIALS to the credentials folder of this program"
+    ),
     "UNKNOWN_CA": _STRANGER,
     "DECRYPT_ERROR": _STRANGER,  # an authority of the same name, with another key
     "CERTIFICATE_EXPIRED": "the router refuses {certificate} as out of date: check the clock of the router's host",
@@ -136,12 +141,12 @@ def _routers_fault(host: str, port: int, tls: Tls) -> str | None:
         if error.verify_code not in _DISTRUSTED:
             known = f"the authority in {tls.authority}" if tls.authority else ("an authority that this machine trusts")
             problem = f"the router's certificate is not signed by {known} ({error.verify_message})"
-            return f"{problem}: use credentials of the router's deployment"
+            return f"{problem}: use credentials that 'actum deploy' made for this router"
         return _DISTRUSTED[error.verify_code].format(host=host, **_routers_certificate(host, port, tls))
     except ssl.SSLError as error:
-        return None if "ALERT" in (error.reason or "") else _NO_TLS
+        return None if "ALERT" in (error.reason or "") else _NO_TLS.format(port=port, host=host)
     except TimeoutError:
-        return _NO_TLS
+        return _NO_TLS.format(port=port, host=host)
     return None
 
 
@@ -169,7 +174,7 @@ def _refused(host: str, port: int, tls: Tls) -> str | None:
                 return meaning.format(certificate=tls.certificate)
         shown = tls.certificate or "clients without a certificate"
         reason = alert.lower().replace("_", " ")
-        return f"the router refuses {shown} ({reason}): use credentials of the router's deployment"
+        return f"the router refuses {shown} ({reason}): use credentials that 'actum deploy' made for this router"
     return None
 
 

@@ -50,7 +50,10 @@ class Codebook:
         weights = np.array(self.weights, dtype=float_type(self.weights), order="C")
         fits = weights.ndim == 2 and weights.shape[0] == self.rows * self.cols and weights.shape[1] > 0
         if not fits or min(self.rows, self.cols) < 1 or not np.isfinite(weights).all():
-            raise ValueError(f"weights of shape {weights.shape} are not {self.rows}×{self.cols} finite vectors")
+            raise ValueError(
+                f"the weights have shape {weights.shape}; expected {self.rows * self.cols} rows of finite numbers, "
+                f"one row for each unit of the grid of {self.rows}×{self.cols}"
+            )
         check_squarable(weights)
         weights.setflags(write=False)
         object.__setattr__(self, "weights", weights)
@@ -68,7 +71,7 @@ class Codebook:
         """
         stacked = np.asarray(planes)
         if stacked.ndim != 3:
-            raise ValueError(f"component planes of shape {stacked.shape} are not rows × cols × dim")
+            raise ValueError(f"the component planes have shape {stacked.shape}; expected (rows, cols, components)")
         rows, cols, dim = stacked.shape
         return cls(rows, cols, stacked.reshape(rows * cols, dim))
 
@@ -119,7 +122,9 @@ class Codebook:
             ValueError: the map has one unit only; or as `bmus`.
         """
         if len(self.weights) < 2:
-            raise ValueError("a map of one unit has no second-best unit")
+            raise ValueError(
+                "the map has only one unit, so there is no second-best unit: use a map of at least two units"
+            )
         rows = numbers(vectors)
         best_units = np.empty((len(rows), 2), np.intp)
         for chunk, scores in self.lookup.scores(rows):
@@ -176,7 +181,7 @@ class Codebook:
             ValueError: there is no row, no second unit, or no such number of neighbours.
         """
         if neighbours not in _FARTHEST2:
-            raise ValueError(f"a unit has {' or '.join(map(str, _FARTHEST2))} neighbours, not {neighbours}")
+            raise ValueError(f"neighbours is {neighbours}; allowed are {' and '.join(map(str, _FARTHEST2))}")
         first, second = self.coordinates[self.best_two(some_rows(vectors)).T]
         return float((np.square(first - second).sum(axis=1) > _FARTHEST2[neighbours]).mean())
 

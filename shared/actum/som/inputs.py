@@ -16,7 +16,7 @@ def some_rows(vectors: ArrayLike) -> Array:
     """
     rows = numbers(vectors)
     if not len(rows):
-        raise ValueError("no vectors are given: measuring a map needs at least one")
+        raise ValueError("no vectors are given: measuring a map needs at least one vector")
     return rows
 
 
@@ -39,7 +39,9 @@ def check_squarable(values: Array) -> None:
     """
     largest = np.nanmax(np.abs(values))
     if largest > np.sqrt(np.finfo(values.dtype).max / values.shape[1]) / 4:
-        raise ValueError(f"values up to {largest:.0e} are too large for distances in {values.dtype}: scale them down")
+        raise ValueError(
+            f"values up to {largest:.0e} are too large for distances in {values.dtype}: scale the values down"
+        )
 
 
 def training_vectors(vectors: ArrayLike, dim: int, dtype: np.dtype[np.floating]) -> Array:
@@ -51,7 +53,10 @@ def training_vectors(vectors: ArrayLike, dim: int, dtype: np.dtype[np.floating])
     """
     inputs = np.array(vectors, dtype=dtype, order="C")
     if inputs.ndim != 2 or inputs.shape[1] != dim or not len(inputs):
-        raise ValueError(f"cannot train on vectors of shape {inputs.shape}: give at least one row of {dim} components")
+        raise ValueError(
+            f"cannot train on vectors of shape {inputs.shape}; expected (number of vectors, {dim}) with at least one "
+            "vector"
+        )
     try:
         is_complete(inputs)
         check_squarable(inputs)
@@ -69,10 +74,15 @@ def is_complete(vectors: Array) -> bool:
     if np.isfinite(vectors).all():
         return True
     if np.isinf(vectors).any():
-        raise ValueError(f"row {np.flatnonzero(np.isinf(vectors).any(axis=1))[0]} has an infinite component")
+        raise ValueError(
+            f"row {np.flatnonzero(np.isinf(vectors).any(axis=1))[0]} of the vectors contains an infinite value: "
+            "remove the row, or replace the value"
+        )
     empty = np.isnan(vectors).all(axis=1)
     if empty.any():
-        raise ValueError(f"row {np.flatnonzero(empty)[0]} has only NaN components: remove or fill it")
+        raise ValueError(
+            f"row {np.flatnonzero(empty)[0]} of the vectors contains only NaN: remove the row, or fill in a value"
+        )
     return False
 
 
@@ -83,4 +93,4 @@ def check_rows(vectors: Array, dim: int) -> None:
         ValueError: it is not; the text names its shape.
     """
     if vectors.ndim != 2 or vectors.shape[1] != dim:
-        raise ValueError(f"vectors of shape {vectors.shape} are not rows of {dim} components")
+        raise ValueError(f"the vectors have shape {vectors.shape}; expected (number of vectors, {dim})")

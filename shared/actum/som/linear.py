@@ -30,7 +30,8 @@ def linear_weights(vectors: NDArray[Any], rows: int, cols: int) -> Doubles:
     known = ~np.isnan(vectors)
     if not known.any(axis=0).all():
         raise ValueError(
-            f"component {np.flatnonzero(~known.any(axis=0))[0]} is missing in every vector: remove or fill it"
+            f"component {np.flatnonzero(~known.any(axis=0))[0]} is NaN in every vector: remove this component, or "
+            "fill in values"
         )
     mean = np.nanmean(vectors, axis=0, dtype=np.float64)
     axes = principal_axes(np.where(known, vectors - mean, 0.0))

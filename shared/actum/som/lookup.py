@@ -59,7 +59,9 @@ class Lookup:
             ValueError: the vector has another length, an infinite component, or no known one.
         """
         if x.shape != self._shape:
-            raise ValueError(f"a vector of shape {x.shape} does not fit a map of {self.dim} components")
+            raise ValueError(
+                f"the vector has shape {x.shape}; expected ({self.dim},), as the map has {self.dim} components"
+            )
         centred = x - self.centre
         if centred.dtype != self.dtype:
             centred = centred.astype(self.dtype)

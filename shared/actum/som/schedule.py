@@ -89,7 +89,8 @@ class Steps:
         alphas, radii = np.array(self.alphas, np.float64), np.array(self.radii, np.float64)
         if alphas.shape != (steps,) or radii.shape != (steps,):
             raise ValueError(
-                f"{alphas.shape} alphas and {radii.shape} radii are given for {steps} steps: give one of each per step"
+                f"alphas have shape {alphas.shape} and radii {radii.shape}; expected ({steps},) for both, one value "
+                f"for each of the {steps} steps"
             )
         return alphas, radii
 

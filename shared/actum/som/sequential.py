@@ -107,9 +107,15 @@ def _gaussians(count: int, radii: NDArray[np.float64]) -> NDArray[np.float64]:
 def _checked_order(order: ArrayLike, rows: int) -> NDArray[np.intp]:
     indices = np.array(order)
     if indices.ndim != 1 or (indices.size and not np.issubdtype(indices.dtype, np.integer)):
-        raise ValueError(f"the order has to be an array of row numbers, not {indices.dtype} of shape {indices.shape}")
+        raise ValueError(
+            f"the order has type {indices.dtype} and shape {indices.shape}; expected a list of row numbers, which are "
+            "integers"
+        )
     if indices.size and (indices.min() < 0 or indices.max() >= rows):
-        raise ValueError(f"the order contains rows {indices.min()} to {indices.max()}, but there are only {rows} rows")
+        raise ValueError(
+            f"the order contains the row numbers {indices.min()} to {indices.max()}; expected 0 to {rows - 1}, as "
+            f"there are {rows} rows"
+        )
     return indices.astype(np.intp)
 
 

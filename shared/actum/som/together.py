@@ -31,8 +31,9 @@ class Together:
         """
         if len({(len(som.weights), som.dtype) for som in maps}) != 1:
             raise ValueError(
-                f"maps of {[(len(som.weights), str(som.dtype)) for som in maps]} units differ in their grids or data "
-                "types: give maps of the same grid and data type"
+                "the maps differ in their number of units or data type "
+                f"({[(len(som.weights), str(som.dtype)) for som in maps]}): give maps with the same number of units "
+                "and the same data type"
             )
         self._shape = (-1, len(maps), len(maps[0].weights))
         self._dtype = maps[0].dtype

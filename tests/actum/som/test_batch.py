@@ -117,7 +117,7 @@ def test_a_linear_map_of_one_dimension_or_of_equal_inputs_is_finite() -> None:
     [
         (np.zeros((0, 2)), "cannot train"),
         (np.zeros(2), "cannot train"),
-        ([[1.0, np.nan], [2.0, np.nan]], "component 1 is missing in every"),
+        ([[1.0, np.nan], [2.0, np.nan]], "component 1 is NaN in every"),
     ],
 )
 def test_a_linear_map_needs_vectors(vectors: np.ndarray, problem: str) -> None:

@@ -59,13 +59,13 @@ def test_a_row_without_any_known_component_is_refused() -> None:
     som = Som.random(2, 2, 2, rng())
     nothing = np.array([NAN, NAN])
     for lookup in (som.bmu, som.excess2):
-        with pytest.raises(ValueError, match="only NaN components"):
+        with pytest.raises(ValueError, match="only NaN"):
             lookup(nothing)
     rows = np.stack([np.zeros(2), nothing])
     for lookup in (som.bmus, som.best_two, som.excess2s, som.quantization_error, som.topographic_error):
-        with pytest.raises(ValueError, match="row 1 has only NaN components"):
+        with pytest.raises(ValueError, match="row 1 of the vectors contains only NaN"):
             lookup(rows)
-    with pytest.raises(ValueError, match="cannot train.* row 1 has only NaN components"):
+    with pytest.raises(ValueError, match="cannot train.* row 1 of the vectors contains only NaN"):
         som.train_batch(rows, 1, (1.0, 1.0))
 
 
