@@ -47,7 +47,7 @@ test: check  ## static checks, then every test but the long ones
 
 test-pythons:  ## install and test with each of PYTHONS that is at hand, each in an environment of its own
 	@tested=; for python in $(PYTHONS); do \
-	  if ! command -v $$python > /dev/null; then echo "$$python: not at hand"; continue; fi; \
+	  if ! $$python -c "" 2> /dev/null; then echo "$$python: not at hand"; continue; fi; \
 	  $(MAKE) --no-print-directory test PYTHON=$$python VENV=.venvs/$$python || { echo "$$python: failed" >&2; exit 1; }; \
 	  tested="$$tested $$python"; \
 	done; \

@@ -18,6 +18,7 @@ import cv2
 import zenoh
 from benchmarks.latency.__main__ import trained
 from benchmarks.latency.stopwatch import percentiles
+from benchmarks.originals import original
 from rich.console import Console
 from rich.table import Table
 
@@ -79,7 +80,7 @@ def main() -> None:
     pose_model = Path(os.environ["ACTUM_POSE_MODEL"])
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        video = write_video(Path(os.environ["ACTUM_DATA"]) / CLIP, folder / "camera.avi")
+        video = write_video(original(CLIP), folder / "camera.avi")
         alone = {people: list(alone_ms(video, pose_model, people)) for people in (1, 2)}
         trained(folder)
         watch = live(folder, video)

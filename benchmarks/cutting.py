@@ -5,14 +5,13 @@ ACTUM_DATA and ACTUM_POSE_MODEL. benchmarks/cutting.md is what it printed.
 """
 
 import argparse
-import os
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import cycle, islice
-from pathlib import Path
 
 import numpy as np
+from benchmarks.originals import original
 from numpy.typing import NDArray
 
 from actum.messages import Agent, Segment, Skeleton
@@ -145,7 +144,7 @@ def stretched(part: Array, factor: float) -> Array:
 
 def natural(people: str) -> Iterator[Iterator[Result]]:
     """MSRC-12 as it is: one gesture about ten times in each file."""
-    for path, name in msrc12.stream_names(data() / "msrc12"):
+    for path, name in msrc12.stream_names(original("msrc12")):
         take = msrc12.read_stream(path, name, "kinect0")
         points_ns = [int(point) * 1000 for point in msrc12.stored_stream(path, name).points_us]
         if chosen("msrc12", take.person, people) and len(points_ns) >= FEWEST_POINTS and seen(take):
@@ -192,7 +191,7 @@ def scene(people: str) -> Iterator[Iterator[Result]]:
 
 def by_person_and_action(people: str) -> dict[tuple[str, str], list[Array]]:
     executions: dict[tuple[str, str], list[Array]] = {}
-    for path in msr_action3d.sequence_files(data() / "msr_action3d"):
+    for path in msr_action3d.sequence_files(original("msr_action3d")):
         take = msr_action3d.read_sequence(path, "kinect0")
         if chosen("msr", take.person, people) and "excluded" not in take.metadata:
             executions.setdefault((take.person, take.metadata["action"]), []).append(joints_of(take.frames))
@@ -201,7 +200,7 @@ def by_person_and_action(people: str) -> dict[tuple[str, str], list[Array]]:
 
 def walks_of(people: str) -> Iterator[list[Skeleton]]:
     """Yield the labelled walks of UTKinect."""
-    folder = data() / "utkinect"
+    folder = original("utkinect")
     labels = utkinect.read_labels(folder)
     for path in utkinect.recording_files(folder):
         take = utkinect.read_labelled(path, "kinect0", labels)
@@ -224,13 +223,6 @@ def seen(take: Take) -> bool:
 
 def chosen(dataset: str, person: str, people: str) -> bool:
     return (person in HELD_OUT[dataset]) == (people == "held-out")
-
-
-def data() -> Path:
-    folder = os.environ.get("ACTUM_DATA")
-    if not folder:
-        raise SystemExit("set ACTUM_DATA to the folder that holds msrc12/, msr_action3d/ and utkinect/")
-    return Path(folder)
 
 
 def row(name: str, number: str, results: Sequence[Result]) -> str:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import cycle, islice
 
 import numpy as np
+from benchmarks.originals import original
 from numpy.typing import NDArray
 
 from actum.messages import Agent, Skeleton, Truth
@@ -137,10 +138,10 @@ class Stream:
 
 def standing(people: str) -> dict[str, tuple[list[Array], Stream]]:
     """Return the still stretches of each person, and one of their streams with ten points."""
-    from benchmarks.cutting import chosen, data
+    from benchmarks.cutting import chosen
 
     found: dict[str, tuple[list[Array], list[Stream]]] = {}
-    for path, name in msrc12.stream_names(data() / "msrc12"):
+    for path, name in msrc12.stream_names(original("msrc12")):
         take = msrc12.read_stream(path, name, "kinect0")
         if chosen("msrc12", take.person, people):
             points_ns = [int(point) * 1000 for point in msrc12.stored_stream(path, name).points_us]
@@ -231,11 +232,10 @@ def webcam(people: str, moves: bool) -> Iterator[Take]:
 
 def waved(person: str, moves: bool) -> tuple[list[NDArray[np.uint8]], list[tuple[int, int]]]:
     """Return the pictures of standing, then of five waves with pauses where the person moves; and the waves' frames."""
-    from benchmarks.cutting import data
 
     from sensor_gateway.devices.video import pictures_of
 
-    files = sorted((data() / "florence3d_rgb").glob(f"*actor{person}id*category1.mp4"))
+    files = sorted(original("florence3d_rgb").glob(f"*actor{person}id*category1.mp4"))
     clips = [[picture.image_bgr for picture in pictures_of(file)] for file in files]
     pictures, truths = [clips[0][0]] * (WEBCAM_STILL_S * WEBCAM_HZ), list[tuple[int, int]]()
     for clip in islice(cycle(clips), ASKED if moves else 0):

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 
 import cv2
 import numpy as np
-from benchmarks.chain import Chain
+from benchmarks.rig.chain import Chain
 
 from actum.messages import Event, Image, Message, Objects, Skeleton, Truth
 from actum.recording import Recording

@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from urllib.parse import urlsplit
 
-from benchmarks.chain import Chain
+from benchmarks.rig.chain import Chain
 from docs.picture import model
 from PIL import Image
 from playwright.sync_api import Route, sync_playwright

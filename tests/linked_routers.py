@@ -6,11 +6,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.chaos.hosts import router_configuration
+from benchmarks.rig.linked_router import router_configuration
+from benchmarks.rig.tcp_proxy import TcpProxy
 
 from actum.settings import ServiceSettings
 from live import System, free_endpoint
-from tcp_proxy import TcpProxy
 
 
 @dataclass

@@ -4,7 +4,7 @@ import threading
 from collections.abc import Iterable
 from pathlib import Path
 
-from benchmarks.chain import Chain
+from benchmarks.rig.chain import Chain
 
 from actum.messages import Event, Message, Truth
 from actum.runtime import Client, Listening

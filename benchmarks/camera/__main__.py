@@ -3,7 +3,6 @@
 ACTUM_DATA=… ACTUM_POSE_MODEL=… python -m benchmarks.camera
 """
 
-import os
 import platform
 import sys
 import tempfile
@@ -12,8 +11,7 @@ from collections.abc import Iterator, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from actum_model_trainer.samples import select
-
+from ..originals import ImportedSets
 from ..recognition.datasets import Example, examples_of
 from ..recognition.ours import OURS, PAPERS
 from ..recognition.peers import DTW, MINIROCKET, MINIROCKET_UPRIGHT, MULTIROCKET, Recogniser
@@ -27,30 +25,17 @@ RECOGNISERS: tuple[Recogniser, ...] = (OURS, PAPERS, MINIROCKET, MINIROCKET_UPRI
 
 
 def main() -> None:
-    folder, began_s = _clips(), time.perf_counter()
+    began_s = time.perf_counter()
     with tempfile.TemporaryDirectory() as imported:
-        examples = _seen(folder, Path(imported))
+        examples = examples_of(ImportedSets(Path(imported)).recordings("florence3d_rgb", import_florence, _show))
         imported_s = time.perf_counter() - began_s
         page = "\n\n".join([*_header(examples, imported_s), *_results(examples)])
     print(page)
     PAGE.write_text(page + "\n")
 
 
-def _clips() -> Path:
-    folder = Path(os.environ.get("ACTUM_DATA", "")) / "florence3d_rgb"
-    if not os.environ.get("ACTUM_DATA") or not folder.is_dir():
-        raise SystemExit("set ACTUM_DATA to the folder that holds florence3d_rgb/")
-    return folder
-
-
-def _seen(folder: Path, imported: Path) -> list[Example]:
-    import_florence(
-        folder,
-        imported,
-        lambda done, total: print(f"\r{done} of {total} clips", end="", file=sys.stderr, flush=True),
-    )
-    print(file=sys.stderr)
-    return examples_of(select([imported]))
+def _show(done: int, total: int) -> None:
+    print(f"\r{done} of {total} clips", end="" if done < total else "\n", file=sys.stderr, flush=True)
 
 
 def _header(examples: Sequence[Example], imported_s: float) -> Iterator[str]:

@@ -37,6 +37,7 @@ from sensor_gateway.cameras import estimator_of, optics_of
 from sensor_gateway.settings import Settings
 from som_classifier.presets import DEFAULT
 
+from ..originals import original
 from ..recognition.scores import table
 from .joined_clips import BACKGROUND, FRAMES_PER_SECOND, STILL_FRAMES, Joined, joined, stamp_ns
 
@@ -110,8 +111,8 @@ class Ear:
 
 
 def main() -> None:
-    clips = _folder("florence3d_rgb")
-    exercise = _folder("people_video") / "exercise.avi"
+    clips = original("florence3d_rgb")
+    exercise = original("people_video/exercise.avi")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         model = taught(clips, folder)
@@ -121,13 +122,6 @@ def main() -> None:
     page = "\n\n".join([*header(videos), *results(watched, videos)])
     print(page)
     PAGE.write_text(page + "\n")
-
-
-def _folder(name: str) -> Path:
-    folder = Path(os.environ.get("ACTUM_DATA", "")) / name
-    if not os.environ.get("ACTUM_DATA") or not folder.is_dir():
-        raise SystemExit(f"set ACTUM_DATA to the folder that holds {name}/")
-    return folder
 
 
 def taught(clips: Path, folder: Path) -> Path:

@@ -5,14 +5,15 @@ import os
 import signal
 import socket
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from tests.tcp_proxy import TcpProxy
+from benchmarks.rig.linked_router import router_configuration
+from benchmarks.rig.tcp_proxy import TcpProxy
 
 from actum.settings import ServiceSettings
 from actum_command import processes
@@ -138,20 +139,6 @@ class TwoHosts:
         file.write_text(json.dumps(router_configuration(link)))
         arguments = ["router", "--config", str(file), "--listen", listened]
         return Program(name, "actum_command", arguments, processes.common(self._settings))
-
-
-def router_configuration(link: str | None) -> Mapping[str, object]:
-    """Return a router's configuration: that of `actum router`, and the endpoint of the router that it links to."""
-    queue = {"size": {"data_high": 16}, "congestion_control": {"drop": {"wait_before_drop": 50_000}}}
-    retry = {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}
-    linked = {"endpoints": [link], "timeout_ms": -1, "exit_on_failure": False, "retry": retry}
-    return {
-        "mode": "router",
-        "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
-        "transport": {"shared_memory": {"enabled": False}, "link": {"tx": {"queue": queue}}},
-        "adminspace": {"enabled": True},
-        **({} if link is None else {"connect": linked}),
-    }
 
 
 def _router_of(name: str) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.chain import Chain
+from benchmarks.rig.chain import Chain
 
 from actum.messages import Event, Segment, Truth
 from actum.node import SECOND_NS, Source

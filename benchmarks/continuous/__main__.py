@@ -95,7 +95,7 @@ def section(bench: Bench, part: str) -> str:
 def main() -> None:
     only = part_asked_for("benchmarks.continuous", __doc__, PARTS)
     with tempfile.TemporaryDirectory() as folder:
-        bench = Bench(ContinuousSets.from_environment(Path(folder)))
+        bench = Bench(ContinuousSets(Path(folder)))
         measure_page(PAGE, only, header(), PARTS, partial(section, bench))
 
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from benchmarks.originals import original
 from benchmarks.recognition.scores import table
 
 from actum import keys
@@ -45,7 +46,7 @@ def never_trained(bench: Bench) -> Iterator[str]:
         folder = bench.data.imported / f"never_trained_{draw}"
         for how, training in (
             (UNLABELLED, unlabelled(fold.training, unknown, folder / "unlabelled")),
-            (ABSENT, absent(bench.data.originals / "msrc12", fold, unknown, folder / "absent")),
+            (ABSENT, absent(original("msrc12"), fold, unknown, folder / "absent")),
         ):
             rows += _rows(bench, Fold(training, fold.test), unknown, how)
     yield f"""MSRC-12 composed; {LEFT_OUT} of the 12 gestures are never trained, in {DRAWS} draws, each tested on

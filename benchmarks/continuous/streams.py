@@ -1,34 +1,27 @@
 """The public sets as continuous streams, each with its frames as our classifier gets them and as its peers do."""
 
-import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from benchmarks.originals import ImportedSets
 from benchmarks.recognition.datasets import with_joints
 from numpy.typing import NDArray
 
 from actum.node import Node
 from actum.recording import Recording
-from actum_dataset_importer.importing import (
-    ImportReport,
-    Progress,
-    import_msrc12_composed,
-    import_msrc12_trimmed,
-    import_utkinect,
-)
+from actum_dataset_importer.importing import import_msrc12_composed, import_msrc12_trimmed, import_utkinect
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from actum_model_trainer.continuous.watching import views_of, watched
 from actum_model_trainer.recorded_segments import FrameCollector
-from actum_model_trainer.samples import Samples, SegmentSample, sample_of, samples_from, select
+from actum_model_trainer.samples import Samples, SegmentSample, sample_of, samples_from
 from scene_simulator.everyday import ALL, FAMILIAR, Everyday
 
 from .simulated import TAUGHT, TAUGHT_REPETITIONS, TESTED, TESTED_REPETITIONS, recording_of
 
 Array = NDArray[np.float64]
-Import = Callable[[Path, Path, Progress], ImportReport]
 FOLDS = 5
 
 
@@ -88,34 +81,25 @@ class Fold:
 
 
 class ContinuousSets:
-    """The sets below one folder; each is imported into another when first asked for."""
+    """The streams of the public sets and of simulated people, imported into a folder when first asked for."""
 
-    def __init__(self, originals: Path, imported: Path) -> None:
-        self.originals, self.imported = originals, imported
-
-    @classmethod
-    def from_environment(cls, imported: Path) -> "ContinuousSets":
-        """Find the folder that ACTUM_DATA names."""
-        folder = os.environ.get("ACTUM_DATA")
-        if not folder or not Path(folder).is_dir():
-            raise SystemExit("set ACTUM_DATA to the folder that holds utkinect/ and msrc12/")
-        return cls(Path(folder), imported)
+    def __init__(self, imported: Path) -> None:
+        self.imported, self._sets = imported, ImportedSets(imported)
 
     @cached_property
     def utkinect(self) -> list[Stream]:
-        return self._streams("utkinect", import_utkinect)
+        return list(map(stream_of, self._sets.recordings("utkinect", import_utkinect)))
 
     @cached_property
     def composed(self) -> list[Stream]:
         """Two streams of mixed gestures of each person of MSRC-12."""
-        return self._streams("msrc12", import_msrc12_composed)
+        return list(map(stream_of, self._sets.recordings("msrc12", import_msrc12_composed)))
 
     @cached_property
     def natural(self) -> list[Stream]:
         """The first file of each gesture and person of MSRC-12 in which the gesture was marked."""
-        import_msrc12_trimmed(self.originals / "msrc12", self.imported / "natural", lambda done, total: None)
         first: dict[tuple[str, str], Recording] = {}
-        for recording in select([self.imported / "natural"]):
+        for recording in self._sets.recordings("msrc12", import_msrc12_trimmed):
             first.setdefault((recording.person, recording.metadata["gesture"].rstrip("A")), recording)
         return [stream_of(recording) for recording in first.values() if recording.action_points_ns]
 
@@ -130,11 +114,6 @@ class ContinuousSets:
             recording_of(person, TESTED_REPETITIONS, Everyday(ALL), self.imported / "simulated") for person in TESTED
         ]
         return Fold(tuple(map(stream_of, taught)), tuple(map(stream_of, tested)))
-
-    def _streams(self, name: str, import_set: Import) -> list[Stream]:
-        out = self.imported / import_set.__name__
-        import_set(self.originals / name, out, lambda done, total: None)
-        return [stream_of(recording) for recording in select([out])]
 
 
 def folds(training: Sequence[Stream], test: Sequence[Stream]) -> list[Fold]:

@@ -4,6 +4,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from benchmarks.originals import ImportedSets
 from benchmarks.recognition import splits
 from benchmarks.recognition.datasets import Datasets
 from benchmarks.recognition.splits import TEST_SHARE, leave_one_person_out, odd_even
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from actum.recording import Recording
 from actum_command.scene_marks import write_examples
-from actum_model_trainer.samples import SegmentSample, samples_from, select
+from actum_model_trainer.samples import SegmentSample, samples_from
 
 from .set1 import import_set1
 
@@ -30,16 +31,12 @@ class Data:
     """The sets below one folder, imported into another when first asked for."""
 
     def __init__(self, imported: Path) -> None:
-        self._public, self._imported = Datasets.from_environment(imported), imported
+        self._public, self._imported = Datasets(imported), imported
 
     @cached_property
     def set1(self) -> Samples:
         """The 276 sequences of the paper's first author."""
-        folder = self._public.folder / "gharaee_set1"
-        if not folder.is_dir():
-            raise SystemExit(f"{folder} is not there: ACTUM_DATA has to hold gharaee_set1/ as well")
-        import_set1(folder, self._imported / "set1", lambda done, total: None)
-        return samples_from(select([self._imported / "set1"])).usable
+        return samples_from(ImportedSets(self._imported).recordings("gharaee_set1", import_set1)).usable
 
     @cached_property
     def msr(self) -> Samples:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
-from benchmarks.chain import Chain
+from benchmarks.rig.chain import Chain
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 

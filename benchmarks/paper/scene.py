@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from benchmarks.chain import Chain
 from benchmarks.recognition.scores import table
+from benchmarks.rig.chain import Chain
 
 from action_fusion.settings import Settings as FusionSettings
 from actum.messages import Event, Truth

@@ -88,7 +88,7 @@ def section(bench: Bench, part: str) -> str:
 def main() -> None:
     only = part_asked_for("benchmarks.recognition", __doc__, PARTS)
     with tempfile.TemporaryDirectory() as folder:
-        bench = Bench(Datasets.from_environment(Path(folder)))
+        bench = Bench(Datasets(Path(folder)))
         measure_page(PAGE, only, header(), PARTS, partial(section, bench))
 
 

@@ -4,9 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from actum_model_trainer.calibration_error import BINS, calibration_error, confidence_bins
+
 from .bench import Bench
 from .ours import OURS, PAPERS, Maps
-from .scores import BINS, Floats, bins, expected_calibration_error, percent, table
+from .scores import Floats, percent, table
 from .splits import DRAWS, halves
 
 
@@ -32,11 +34,10 @@ def _answers(bench: Bench, maps: Maps) -> tuple[Floats, Floats]:
 
 
 def _summary(name: str, confidences: Floats, right: Floats) -> list[str]:
-    error = expected_calibration_error(confidences, right)
+    error = calibration_error(confidence_bins(confidences, right))
     return [name, f"{error:.3f}", f"{confidences.mean():.3f}", f"{right.mean():.3f}", str(len(right))]
 
 
 def _bins(confidences: Floats, right: Floats) -> Iterator[list[str]]:
-    for number, own in bins(confidences):
-        counts = [str(own.sum()), percent(confidences[own].mean()), percent(right[own].mean())]
-        yield [f"{number / BINS:.1f}–{(number + 1) / BINS:.1f}", *counts]
+    for each in confidence_bins(confidences, right):
+        yield [f"{each.low:.1f}–{each.high:.1f}", str(each.n), percent(each.confidence), percent(each.accuracy)]

@@ -1,13 +1,13 @@
 """The public sets, imported as `actum import` does, each sequence as our recogniser gets it and as its peers do."""
 
-import os
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from benchmarks.originals import ImportedSets, original
 from numpy.typing import NDArray
 
 from actum import keys, standard_body
@@ -15,19 +15,16 @@ from actum.messages import Agent, Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
 from actum_dataset_importer.importing import (
-    ImportReport,
-    Progress,
     import_msr_action3d,
     import_msrc12,
     import_msrc12_trimmed,
     import_utkinect,
 )
-from actum_model_trainer.samples import SegmentSample, samples_from, select
+from actum_model_trainer.samples import SegmentSample, samples_from
 
 from .videos import Pieces, import_exercise, import_florence
 
 Array = NDArray[np.float64]
-Import = Callable[[Path, Path, Progress], ImportReport]
 
 MSRC12_SEGMENTS = 5
 """How many segments of each gesture and person of MSRC-12 are drawn of the ten or more: 900 instead of 3105."""
@@ -68,18 +65,10 @@ class Example:
 
 
 class Datasets:
-    """The sets below one folder; each is imported into another when first asked for."""
+    """The sequences of the public sets, which are imported into a folder when first asked for."""
 
-    def __init__(self, originals: Path, imported: Path) -> None:
-        self.folder, self._imported = originals, imported
-
-    @classmethod
-    def from_environment(cls, imported: Path) -> "Datasets":
-        """Find the folder that ACTUM_DATA names."""
-        folder = os.environ.get("ACTUM_DATA")
-        if not folder or not Path(folder).is_dir():
-            raise SystemExit("set ACTUM_DATA to the folder that holds msr_action3d/, utkinect/ and msrc12/")
-        return cls(Path(folder), imported)
+    def __init__(self, imported: Path) -> None:
+        self._imported = ImportedSets(imported)
 
     @cached_property
     def msr(self) -> list[Example]:
@@ -88,7 +77,7 @@ class Datasets:
 
     @cached_property
     def msr_recordings(self) -> list[Recording]:
-        return self._recordings("msr_action3d", import_msr_action3d)
+        return self._imported.recordings("msr_action3d", import_msr_action3d)
 
     @cached_property
     def utkinect(self) -> list[Example]:
@@ -97,7 +86,7 @@ class Datasets:
 
     @cached_property
     def utkinect_recordings(self) -> list[Recording]:
-        return self._recordings("utkinect", import_utkinect)
+        return self._imported.recordings("utkinect", import_utkinect)
 
     @cached_property
     def msrc12(self) -> list[Example]:
@@ -120,33 +109,28 @@ class Datasets:
 
     @cached_property
     def _msrc12_recordings(self) -> list[Recording]:
-        return self._recordings("msrc12", import_msrc12)
+        return self._imported.recordings("msrc12", import_msrc12)
 
     @cached_property
     def msrc12_trimmed(self) -> list[Recording]:
         """The same streams, in which segments hold the gestures alone: between them people stand."""
-        import_msrc12_trimmed(self.folder / "msrc12", self._imported / "msrc12_trimmed", lambda done, total: None)
-        return select([self._imported / "msrc12_trimmed"])
+        return self._imported.recordings("msrc12", import_msrc12_trimmed)
 
     @cached_property
     def florence(self) -> list[Example]:
         """The RGB clips of Florence 3D Actions, people 1 to 6, seen by the pose model that ACTUM_POSE_MODEL names."""
-        return examples_of(self._recordings("florence3d_rgb", import_florence))
+        return examples_of(self._imported.recordings("florence3d_rgb", import_florence))
 
     @cached_property
     def exercise(self) -> list[Example]:
         """Pieces of a video of somebody who does exercises, those in which anybody was seen by the same pose model."""
-        pieces = [Pieces(recording.path) for recording in self._recordings("people_video", import_exercise)]
+        pieces = [Pieces(recording.path) for recording in self._imported.recordings("people_video", import_exercise)]
         return with_joints(samples_from(pieces).usable, pieces)
 
     def action_set(self, number: int) -> list[Example]:
         """Return the sequences of AS1, AS2 or AS3 that are among the 557."""
-        names = set((self.folder / "msr_action3d" / f"ActionSet{number}.txt").read_text().split())
+        names = set(original(f"msr_action3d/ActionSet{number}.txt").read_text().split())
         return [example for example in self.msr if example.name in names]
-
-    def _recordings(self, name: str, import_set: Import) -> list[Recording]:
-        import_set(self.folder / name, self._imported / name, lambda done, total: None)
-        return select([self._imported / name])
 
 
 def examples_of(recordings: Sequence[Recording]) -> list[Example]:

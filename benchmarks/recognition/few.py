@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from actum_model_trainer.answering import answer, encoded
+from actum_model_trainer.calibration_error import calibration_error, confidence_bins
 from som_classifier.pyramid_model import PyramidModel
 
 from .bench import Bench
@@ -13,7 +14,7 @@ from .datasets import Example
 from .development import development_sets, said_of_videos
 from .ours import OURS
 from .peers import DTW, MINIROCKET, MINIROCKET_UPRIGHT, Recogniser
-from .scores import Difference, Floats, Score, expected_calibration_error, percent, table
+from .scores import Difference, Floats, Score, percent, table
 from .splits import FEW_DRAWS, FEW_TESTED, FewExamples, few_examples
 
 PEERS: tuple[Recogniser, ...] = (DTW, MINIROCKET, MINIROCKET_UPRIGHT)
@@ -38,7 +39,7 @@ class Point:
 
     @property
     def calibration_error(self) -> float:
-        return expected_calibration_error(np.array(self.confidences), np.array(self.right))
+        return calibration_error(confidence_bins(self.confidences, self.right))
 
     def gap(self, peer: int) -> Difference:
         """Return ours minus a peer's, by draw."""

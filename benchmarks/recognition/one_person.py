@@ -7,6 +7,7 @@ import numpy as np
 from sklearn.metrics import roc_auc_score
 
 from actum.node import SECOND_NS
+from actum_model_trainer.calibration_error import calibration_error, confidence_bins
 from som_classifier.recognition import Recognition
 
 from .bench import Bench
@@ -14,7 +15,7 @@ from .datasets import Datasets, Example
 from .development import DevelopmentSet, development_sets, said_of_videos
 from .ours import OURS
 from .peers import MINIROCKET, MINIROCKET_UPRIGHT
-from .scores import Floats, expected_calibration_error, percent, table
+from .scores import Floats, percent, table
 from .splits import FEW_DRAWS, FEW_TESTED, SEED, FewExamples, few_examples
 from .videos import PIECE_NS, why_no_camera
 
@@ -144,7 +145,7 @@ def _areas(own: Asked) -> list[str]:
 
 def _told(own: Asked) -> list[str]:
     confidences, right = np.array([answer.confidence for answer in own.answers[KNOWN]]), np.array(own.right)
-    error = f"{expected_calibration_error(confidences, right):.3f}"
+    error = f"{calibration_error(confidence_bins(confidences, right)):.3f}"
     unknown = [own.unknown(name) for name in (KNOWN, LEFT_OUT, ELSEWHERE)]
     sure = [own.sure(name) for name in (LEFT_OUT, ELSEWHERE)]
     return [percent(right.mean()), percent(confidences.mean()), error, *unknown, *sure]

@@ -12,7 +12,6 @@ from actum_model_trainer.evaluation import wilson_interval
 from .datasets import Example
 
 Floats = NDArray[Any]
-BINS = 10
 
 
 @dataclass(frozen=True)
@@ -59,18 +58,6 @@ class Difference:
     def corrected_error(self, test_to_training: float) -> float:
         """Return the standard error with Nadeau and Bengio's (2003) correction for draws that overlap."""
         return float(self.values.std(ddof=1) * np.sqrt(1 / len(self.values) + test_to_training))
-
-
-def expected_calibration_error(confidences: Floats, right: Floats) -> float:
-    """Return the mean over all answers of |accuracy − mean confidence| of their bin."""
-    return float(sum(own.mean() * abs(right[own].mean() - confidences[own].mean()) for _, own in bins(confidences)))
-
-
-def bins(confidences: Floats) -> Iterable[tuple[int, NDArray[np.bool_]]]:
-    """Yield the number of each of the equal bins that is not empty, and which answers it holds."""
-    numbers = np.minimum((confidences * BINS).astype(int), BINS - 1)
-    for number in np.unique(numbers).tolist():
-        yield number, numbers == number
 
 
 def percent(share: float) -> str:

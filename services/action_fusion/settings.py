@@ -15,63 +15,81 @@ class Settings(ServiceSettings):
     measure: Literal["joint", "proximity"] = Field(
         "joint",
         description=(
-            "how to choose the object of an action: joint uses how near each object is to the hands, whether a hand "
-            "reaches for it, and whether it moves with a hand; proximity chooses the object nearest to a hand"
+            "how to choose the object of an action: joint considers how near each object is to the hands, whether a "
+            "hand reaches for the object, and whether the object moves with a hand; proximity chooses the object "
+            "nearest to a hand"
         ),
     )
     reach_m: float = Field(
         0.25,
         gt=0,
         description=(
-            "maximum distance from a hand to the marker of an object that the hand can reach; if the hand may hold "
-            "a tool, --grasp-m is added (m)"
+            "an object is within reach of a hand if its marker is at most this many metres from the hand; if the hand "
+            "may hold a tool, --grasp-m is added to this distance"
         ),
     )
     grasp_m: float = Field(
-        0.20, gt=0, description="maximum distance between the centres of a hand and an object that counts as held (m)"
+        0.20,
+        gt=0,
+        description=(
+            "an object can count as held only if its centre is at most this many metres from the centre of the hand"
+        ),
     )
-    moved_m: float = Field(0.03, gt=0, description="minimum displacement of an object that counts as moved (m)")
+    moved_m: float = Field(
+        0.03, gt=0, description="an object counts as moved if it is displaced by at least this many metres"
+    )
     pointing_labels: frozenset[str] = Field(
-        frozenset({"point"}), description="actions that point at their object, at any distance, such as point,show"
+        frozenset({"point"}),
+        description=(
+            "actions in which the person points at the object, such as point,show. For these actions the object is the "
+            "one in the direction of the arm, however far away it is"
+        ),
     )
     pointing_limit_deg: float = Field(
         30.0,
         gt=0,
         lt=180,
         description=(
-            "maximum angle between the pointing arm and the direction to an object that counts as pointed at (deg)"
+            "an object counts as pointed at only if the angle between the pointing arm and the direction to the object "
+            "is at most this many degrees"
         ),
     )
     uncertainty_m: float = Field(
         0.02,
         ge=0,
-        description="an event names two possible objects if their distances to the hand differ by less than this (m)",
+        description=(
+            "an event names several possible objects if the hand is almost equally near to all of them: their "
+            "distances to the hand differ by at most this many metres"
+        ),
     )
     pointing_uncertainty_deg: float = Field(
         2.0,
         ge=0,
-        description="an event names two possible objects if their angles to the arm differ by less than this (deg)",
+        description=(
+            "an event names several possible objects if the person points at all of them equally well: their angles to "
+            "the pointing arm differ by at most this many degrees"
+        ),
     )
     expected_outcomes: dict[str, str] = Field(
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description=(
-            "the result expected of each action, such as lift=lifted,push=pushed; an object held during one of these "
-            "actions is the object of that action, not a tool"
+            "the result that each action is expected to have on its object, such as lift=lifted,push=pushed. An object "
+            "held during one of these actions counts as the object of the action, not as a tool"
         ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(as_text)] = Field(
         None,
         description=(
-            "transform from camera coordinates to those of a room or robot: the 16 numbers of a 4 x 4 matrix, row by "
-            "row, lengths in metres, or a file with these numbers. Events then give object poses in both coordinate "
-            "systems. Default: camera coordinates only"
+            "transform from the coordinates of the camera to those of a room or robot: the 16 numbers of a 4 x 4 "
+            "matrix, row by row, lengths in metres, or a file with these numbers. Events then give object poses in "
+            "both coordinate systems. Default: events give object poses in camera coordinates only"
         ),
     )
     world_frame: str = Field(
         "world",
         min_length=1,
         max_length=200,
-        description="name that events use for the frame to which --world-from-camera transforms",
+        description="name of the coordinate system to which --world-from-camera transforms, as it appears in events",
     )
 
     @property

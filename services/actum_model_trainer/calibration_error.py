@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 MIN_ANSWERS = 30  # labelled answers: with fewer, the accuracy in a bin is chance
 BINS = 10  # equally wide, as is usual
@@ -33,8 +34,8 @@ class ConfidenceBin:
         return self.correct / self.n
 
 
-def confidence_bins(confidences: Sequence[float], correct: Sequence[bool]) -> list[ConfidenceBin]:
-    """Sort answers into bins by confidence, given whether each is correct; empty bins are left out."""
+def confidence_bins(confidences: ArrayLike, correct: ArrayLike) -> list[ConfidenceBin]:
+    """Sort answers into bins by confidence (n,), given whether each is correct (n,); empty bins are left out."""
     confidence, is_correct = np.array(confidences, dtype=np.float64), np.array(correct, dtype=bool)
     bin_indices = np.minimum((confidence * BINS).astype(int), BINS - 1)
     bins = []

@@ -30,13 +30,16 @@ class Settings(ServiceSettings):
             "--objects"
         ),
     )
-    dictionary: str = Field("DICT_4X4_50", description="the marker family that was printed, by OpenCV's name")
-    marker_size_m: float = Field(0.08, gt=0, le=10, description="side length of a marker's black square (m)")
+    dictionary: str = Field("DICT_4X4_50", description="family of the printed markers, by its name in OpenCV")
+    marker_size_m: float = Field(
+        0.08, gt=0, le=10, description="side length of the black square of a printed marker (m)"
+    )
     objects: dict[int, ObjectSpec] = Field(
         default_factory=dict,
         description=(
-            "the object that each marker id belongs to, with the marker's size if it differs, such as"
-            ' {"3": {"name": "cup", "size_m": 0.05}}. Default: each marker is an object of its own'
+            "the name of the object that carries each marker id and, if a marker does not have the size "
+            '--marker-size-m, the marker\'s size in metres, such as {"3": {"name": "cup", "size_m": 0.05}}. '
+            "Default: each marker is an object of its own"
         ),
     )
     memory_s: float = Field(
@@ -45,8 +48,8 @@ class Settings(ServiceSettings):
     calibrated_size_px: tuple[Pixels, Pixels] | None = Field(
         None,
         description=(
-            "width and height of the images used for calibration, such as 1280,720; needed if the camera now "
-            "delivers another size (px)"
+            "width and height of the images with which the camera was calibrated (px), such as 1280,720; needed only "
+            "if the camera now delivers images of another size"
         ),
     )
 

@@ -15,19 +15,20 @@ class Settings(ServiceSettings):
 
     trainer_data: Path = Field(
         default_factory=lambda: data_folder() / "teaching",
-        description="the folder in which the trainer keeps recorded examples, models and the results of trainings",
+        description="the folder in which the trainer stores recorded examples, models and the results of trainings",
     )
     model: Path | None = Field(
         None,
         description=(
-            "the file to which the trainer copies the model in use, for the classifier to load; default: model.npz "
-            "in --trainer-data"
+            "the model file that the classifier loads (.npz); the trainer copies each model that is put into use to "
+            "this file. Default: model.npz in --trainer-data"
         ),
     )
     original_model: Path | None = Field(
         None,
         description=(
-            "a model file to start from. The trainer only reads it: whenever the file changes, the trainer copies it "
-            "to --model, in place of the model in use. Trained models stay in --trainer-data. Default: none"
+            "a model file to put into use. The trainer copies this file to --model when it finds the file for the "
+            "first time, and again whenever the file changes, in place of the model in use; the trainer never writes "
+            "to this file. Trained models stay in --trainer-data. Default: no such file"
         ),
     )

@@ -12,13 +12,18 @@ class Settings(ServiceSettings):
         10.0,
         gt=0,
         le=1000,
-        description="maximum distance of a joint from the camera; frames that exceed it are rejected (m)",
+        description=(
+            "maximum distance of a joint from the camera along each axis (m); a person is ignored in frames in which a "
+            "joint is farther away"
+        ),
     )
     bone_limit_m: float = Field(
         1.5,
         gt=0,
         le=1000,
-        description="maximum length of a bone between two joints; frames that exceed it are rejected (m)",
+        description=(
+            "maximum length of a bone between two joints (m); a person is ignored in frames in which a bone is longer"
+        ),
     )
 
     @classmethod

@@ -31,7 +31,10 @@ class Settings(ServiceSettings):
     )
     ros_distro: Literal["humble", "jazzy", "kilted"] = Field(
         "jazzy",
-        description="the ROS 2 distribution that your nodes use; the topics of humble are named differently in Zenoh",
+        description=(
+            "the ROS 2 distribution of your nodes; it has to be right, because the topics of humble have other names "
+            "in Zenoh than those of jazzy and kilted"
+        ),
     )
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
         frozenset(get_args(TopicName)),
@@ -41,8 +44,9 @@ class Settings(ServiceSettings):
         None,
         min_length=1,
         description=(
-            "name of the camera's optical frame in your robot's tf tree; the bridge then publishes nothing on "
-            "/tf_static. Default: the bridge publishes SENSOR_link and, below it, SENSOR_optical_frame on /tf_static"
+            "name of the camera's optical frame, if your robot's tf tree already contains this frame; the bridge then "
+            "publishes nothing on /tf_static. Default: the bridge publishes the frames SENSOR_link and, below it, "
+            "SENSOR_optical_frame on /tf_static, such as kinect0_link"
         ),
     )
 

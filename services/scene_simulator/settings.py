@@ -19,7 +19,9 @@ class Settings(ServiceSettings):
     actor: int = Field(
         0,
         ge=0,
-        description="which simulated person acts: each number has another body height, tempo and preferred hand",
+        description=(
+            "number of the simulated person who acts; each person has another body height, tempo and preferred hand"
+        ),
     )
     seed: int = Field(
         1, ge=0, description="seed of the random variation between repetitions; the same seed gives the same movements"
@@ -27,40 +29,48 @@ class Settings(ServiceSettings):
     repetitions: int = Field(
         0,
         ge=0,
-        description="how often the simulated person does each action; 0 repeats them until the service is stopped",
+        description=(
+            "number of times that the simulated person does each action; 0 repeats the actions until the service is "
+            "stopped"
+        ),
     )
     image_hz: Annotated[Literal[0, 5, 10, 15, 30], BeforeValidator(_number)] = Field(
-        15, description="colour images per second; 0 publishes no images (1/s)"
+        15, description="number of colour images published per second; 0 publishes no images"
     )
     everyday: Choice = Field(
         "none",
         description=(
-            "background activity between the actions, such as scratching: none; familiar (some kinds, for "
-            "training); all (every kind, for tests); only (every kind, but no actions)"
+            "background activities between the actions, such as scratching: none; familiar (only some kinds, to train "
+            "a model with); all (all kinds, to test a model with); only (all kinds, and no actions)"
         ),
     )
     minutes: float = Field(
         1.0,
         ge=0,
         description=(
-            "minimum length of the scene; background activity fills the time after the last action. Without effect "
-            "if --everyday is none (min)"
+            "minimum length of the scene in minutes; the background activities of --everyday fill the time after the "
+            "last action. Ignored if --everyday is none"
         ),
     )
     pauses: Pauses = Field(
         "long",
         description=(
-            "what happens between two actions: long is up to three background activities and rests, short is at "
-            "most one. Without effect if --everyday is none"
+            "what happens between two actions: long (up to three background activities, and rests of seconds) or short "
+            "(at most one background activity, and short rests). Ignored if --everyday is none"
         ),
     )
     driven: bool = Field(
         False,
-        description="let the simulated person stand still until the page or the command 'perform' asks for an action",
+        description=(
+            "let the simulated person stand still until the web page, or the command 'perform' sent over Zenoh, asks "
+            "for an action"
+        ),
     )
     actors: int = Field(
         1,
         ge=1,
         le=MOST_PEOPLE,
-        description="number of simulated people who act side by side; images are published only if it is 1",
+        description=(
+            "number of simulated people who act side by side; with more than one person no images are published"
+        ),
     )

@@ -29,27 +29,34 @@ class Settings(ServiceSettings):
     source: SourceName | None = Field(
         None,
         description=(
-            "where skeletons and images come from: camera (webcam, URL or video file); marker-camera (a second "
-            "camera, for markers only); realsense; openni2 (Kinect); recording (the files in --path)"
+            "where skeletons and images come from: camera (webcam, URL or video file); marker-camera (a second camera "
+            "that sees only markers, so that it publishes no skeletons); realsense; openni2 (Kinect); recording (the "
+            "files in --path)"
         ),
     )
     path: Path | None = Field(
         None,
-        description="the recording to play with --source recording: a file, or a folder of files, played in order",
+        description=(
+            "the recording to play with --source recording: a file, or a folder whose files are played in the order of "
+            "their names"
+        ),
     )
-    loop: bool = Field(False, description="play the files again and again, with a pause of 1 s between two rounds")
+    loop: bool = Field(
+        False,
+        description="play the recording or video file again and again, with a pause of 1 s before each repetition",
+    )
     calibration: Path | None = Field(
         None,
         description=(
-            "the camera's calibration file, which `actum calibrate` wrote; default: the device's own lens data, or "
-            "--field-of-view-deg"
+            "calibration file of the camera, as written by `actum calibrate`; required with --source marker-camera. "
+            "Default: the lens data that a depth camera reports; for a webcam, a lens computed from --field-of-view-deg"
         ),
     )
     up_in_camera: Direction | None = Field(
         None,
         description=(
-            "the upward direction as x,y,z in the coordinates of a tilted camera; `actum calibrate up` prints it. "
-            "Default: the camera is level"
+            "the upward direction as x,y,z in the coordinates of a tilted camera; `actum calibrate up` prints this "
+            "value. Default: the camera is assumed to be level"
         ),
     )
     camera: Annotated[str, BeforeValidator(_text)] = Field(
@@ -62,29 +69,32 @@ class Settings(ServiceSettings):
     camera_size: str | None = Field(
         None,
         pattern=r"^\d{2,5}x\d{2,5}$",
-        description="image size to request from the camera, such as 1280x720; default: the camera's own choice (px)",
+        description=(
+            "width and height in pixels to request from the camera, such as 1280x720; default: 640x480 with --source "
+            "realsense or openni2, otherwise the camera's own choice"
+        ),
     )
     field_of_view_deg: float = Field(
         60.0,
         gt=5,
         lt=170,
         description=(
-            "angle of view along the longer side of the image; used only without --calibration, with --source "
-            "camera or openni2 (deg)"
+            "the camera's angle of view along the longer side of the image (deg); used only with --source camera or "
+            "openni2, and only if --calibration is not set"
         ),
     )
     mirrored: bool = Field(
         False,
         description=(
-            "set this if the camera delivers mirrored images, so that left and right are corrected; only with "
-            "--source camera"
+            "set this if the camera delivers mirrored images, so that left and right are corrected; only with --source "
+            "camera or marker-camera"
         ),
     )
     pose_model: Path = Field(
         default_factory=default_pose_model,
         description=(
-            "the model that finds people in images, as downloaded by `actum models fetch`; needed with every source "
-            "that is a camera"
+            "file of the model that finds people in images, as downloaded by `actum models fetch`; needed with "
+            "--source camera, realsense and openni2"
         ),
     )
     person_height_m: float | None = Field(
@@ -92,15 +102,15 @@ class Settings(ServiceSettings):
         gt=0.5,
         lt=2.5,
         description=(
-            "body height of the person, which makes estimated distances more exact; default: an average height is "
-            "assumed (m)"
+            "body height of the person (m), which makes estimated distances from the camera more exact; default: an "
+            "average height is assumed"
         ),
     )
     images: bool = Field(
         True,
         description=(
-            "publish images; use --no-images if a second process with --source marker-camera publishes them for "
-            "this sensor"
+            "publish the camera's images; use --no-images if a second process with --source marker-camera publishes "
+            "images for this sensor"
         ),
     )
     people: int = Field(2, ge=1, le=4, description="maximum number of people to find in a camera image")

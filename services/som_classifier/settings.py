@@ -42,17 +42,24 @@ class Settings(ServiceSettings):
 
     model: Path | None = Field(
         None,
-        description="the model file (.npz), loaded whenever it appears or changes; without one no action is recognised",
+        description=(
+            "the model file (.npz); it is loaded when it appears and whenever it changes. Without a model no action is "
+            "recognised"
+        ),
     )
     publish_maps: bool = Field(
         False,
-        description="publish, with each final action, the activity of the model's maps, which the web page draws",
+        description=(
+            "publish with each recognised action the activity of the model's self-organizing maps, which the web page "
+            "then draws"
+        ),
     )
     segments: WantedSegments = Field(
         "both",
         description=(
-            "which actions to recognise: those between start and end marks (marks), those that the classifier finds "
-            "without marks (auto), or both, where marks take precedence"
+            "which actions to recognise: marks (only actions whose start and end another program marks), auto (only "
+            "actions that the classifier finds by itself), or both (if a marked action overlaps a found one, only the "
+            "marked one counts)"
         ),
     )
     false_alarms_per_min: float | None = Field(
@@ -60,30 +67,38 @@ class Settings(ServiceSettings):
         gt=0,
         allow_inf_nan=False,
         description=(
-            "accepted rate of false alarms while no action is done; a higher rate misses fewer actions. "
-            "Default: the rate stored in the model (1/min)"
+            "accepted number of false alarms per minute while nobody does an action; with a higher number the "
+            "classifier misses fewer actions. Default: the number stored in the model"
         ),
     )
     shortest_pause_s: Seconds = Field(
-        0.0, description="minimum pause between two actions that the classifier finds without marks (s)"
+        0.0,
+        description=(
+            "an action that the classifier finds by itself is not published if it starts less than this many seconds "
+            "after the end of the previous one"
+        ),
     )
     cooldown_s: Annotated[dict[str, Seconds], NoDecode, BeforeValidator(_pairs)] = Field(
         {},
         description=(
-            "minimum time until the same action is published again, by action, such as wave=3,clap=1; marked "
-            "actions are not affected. Default: 0 for all (s)"
+            "for each action, the number of seconds after it in which the classifier does not publish the same action "
+            "again, such as wave=3,clap=1; actions whose start and end another program marks are not affected. "
+            "Default: 0 for all actions"
         ),
     )
     enabled_actions: Names = Field(
         frozenset(),
         description=(
-            "publish only these actions, such as wave,clap; marked actions are not affected. Default: all actions "
-            "of the model"
+            "of the actions that the classifier finds by itself, publish only these, such as wave,clap; actions whose "
+            "start and end another program marks are not affected. Default: all actions of the model are published"
         ),
     )
     disabled_actions: Names = Field(
         frozenset(),
-        description="never publish these actions, such as wave,clap; marked actions are not affected. Default: none",
+        description=(
+            "do not publish these actions, such as wave,clap, if the classifier finds them by itself; actions whose "
+            "start and end another program marks are not affected. Default: no action is disabled"
+        ),
     )
 
     @property

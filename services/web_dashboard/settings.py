@@ -30,29 +30,38 @@ class Settings(ServiceSettings):
 
     page_host: str = Field(
         "127.0.0.1",
-        description="address that the web page listens on; 0.0.0.0 admits other machines and requires --page-token",
+        description=(
+            "address on which the web page listens. With 127.0.0.1 only this machine can open the page; with 0.0.0.0 "
+            "other machines can open it too, and --page-token is required"
+        ),
     )
     page_port: int | None = Field(
-        None, ge=0, le=HIGHEST_PORT, description="port of the web page; default: 8080, or the next free port"
+        None,
+        ge=0,
+        le=HIGHEST_PORT,
+        description="port of the web page; default: 8080 or, if that is in use, the next free port",
     )
     page_token: str | None = Field(
         None,
         min_length=SHORTEST_TOKEN,
         pattern=r"^[A-Za-z0-9_.~-]+$",
-        description="secret that a browser needs to open the web page; required if --page-host admits other machines",
+        description=(
+            f"secret of at least {SHORTEST_TOKEN} characters that a browser needs to open the web page; required if "
+            "--page-host lets other machines open the page"
+        ),
     )
     page_guarded: bool = Field(
         False,
         description=(
-            "do not require --page-token; use this only if something else controls access, such as a container "
-            "whose port is published on 127.0.0.1 only"
+            "let other machines open the web page without --page-token; use this only if something else controls "
+            "access, such as a container whose port is published on 127.0.0.1 only"
         ),
     )
     page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(
         frozenset(),
         description=(
-            "further host names by which browsers may open the page, such as lab.example.org; requests for other "
-            "names are refused. Default: only this machine's own name and addresses"
+            "host names by which browsers may open the page, in addition to this machine's own name and addresses, "
+            "such as lab.example.org; requests for other host names are refused. Default: no further names"
         ),
     )
 

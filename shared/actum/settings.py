@@ -110,45 +110,51 @@ class ServiceSettings(BaseSettings):
     sensor: str = Field(
         "kinect0",
         pattern=f"^{CHUNK.pattern}$",
-        description="name of the sensor, such as kinect0; programs exchange messages only within one sensor",
+        description=(
+            "name of the sensor, such as kinect0; programs receive each other's messages only if they were started "
+            "with the same name"
+        ),
     )
     instance: str = Field(
         default_factory=default_instance,
         pattern=f"^{CHUNK.pattern}$",
         description=(
-            "name of this process, unique among processes of the same service; made from host name and process id "
-            "unless given"
+            "name of this process, different from that of every other process of the same service; if not set, it is "
+            "made from the host name and the process id"
         ),
     )
     take_over: bool = Field(
-        False, description="stop the instance of this service that already runs for this sensor, and replace it"
+        False,
+        description=(
+            "if an instance of this service already runs for this sensor, stop that instance and take its place"
+        ),
     )
     zenoh_config: Path | None = Field(
         None,
         description=(
-            "a Zenoh configuration file (JSON5), such as for TLS and user names; the program's own settings take "
-            "precedence over this file"
+            "a Zenoh configuration file (JSON5), for example with settings for TLS and user names; actum's own "
+            "settings, such as --connect, take precedence over this file"
         ),
     )
     credentials: Path | None = Field(
         None,
         description=(
-            "a folder of certificate and key that `actum deploy` wrote, such as credentials/viewer; needs --connect "
-            "tls/host:port"
+            "the folder with the certificate and key of this program, as written by `actum deploy`, such as "
+            "people/viewer; needs --connect tls/host:port"
         ),
     )
     state: Path | None = Field(
         None,
         description=(
-            "a folder in which the classifier and the fusion keep their last answers, to publish them again after a "
-            "restart; other services ignore it. Default: none are kept"
+            "a folder in which the service stores its last answers, to publish them again after a restart; only "
+            "som_classifier and action_fusion use this folder. Default: no answers are stored"
         ),
     )
     health_file: Path | None = Field(
         None,
         description=(
-            "a file whose modification time is renewed every second while the service works, for a container's "
-            "health check; default: none"
+            "a file whose modification time the service renews every second while it works, so that the health check "
+            "of a container can test the file; default: no file"
         ),
     )
 

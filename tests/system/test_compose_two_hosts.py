@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from benchmarks.rig.tcp_proxy import TcpProxy
 
 from actum import keys
 from actum.messages import Event
@@ -18,7 +19,6 @@ from actum.settings import ServiceSettings
 from compose_files import DEPLOY, gateway_of_bridge
 from live import collect, free_endpoint, wait_until
 from marked_scene import ACTIONS, SCENE, SCENE_S, Told, mark, on_one_host, told
-from tcp_proxy import TcpProxy
 
 HEALTHY_S = 120
 IMAGES = "actum/*/image/**"

@@ -6,13 +6,13 @@ import socket
 from pathlib import Path
 
 import pytest
+from benchmarks.rig.tcp_proxy import TcpProxy
 
 import wall_clocks
 from actum import __version__, keys
 from live import System, collect, described, system, wait_until
 from people import reaches
 from sensors import recording
-from tcp_proxy import TcpProxy
 from wall_clocks import WallClock
 
 pytestmark = pytest.mark.system

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from benchmarks.rig.tcp_proxy import TcpProxy
 
 from action_fusion.node import WAIT_NS
 from actum import keys
@@ -20,7 +21,6 @@ from people import FRAME_NS, reaches
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from scenes import acting_on, action, at
-from tcp_proxy import TcpProxy
 
 PUSH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65))
 SCENE = [*PUSH.postures(), *PUSH.sightings(), action("push")]

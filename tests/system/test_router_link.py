@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import pytest
-from benchmarks.chain import Chain
+from benchmarks.rig.chain import Chain
+from benchmarks.rig.tcp_proxy import TcpProxy
 
 from actum import keys
 from actum.messages import Event, Image, Message, Posture, Segment, Truth
@@ -18,7 +19,6 @@ from live import PATIENCE_S, collect, wait_until
 from scene_simulator.programme import Task
 from scene_simulator.simulator import Simulator
 from som_classifier.model_loading import load_model
-from tcp_proxy import TcpProxy
 from wire import without_seq
 
 PROGRAMME = (Task("lift", 1), Task("push", 2))

@@ -7,12 +7,12 @@ import time
 from collections.abc import Iterator
 
 import pytest
+from benchmarks.rig import tcp_proxy
+from benchmarks.rig.tcp_proxy import TcpProxy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import tcp_proxy
 from live import wait_until
-from tcp_proxy import TcpProxy
 
 SLACK_S = 2.0  # what a busy machine may take on top
 

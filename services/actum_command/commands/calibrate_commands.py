@@ -3,7 +3,7 @@
 import datetime
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
 
@@ -26,36 +26,55 @@ from actum_command.live_calibration import SilentStreamError, collect_pairs, col
 
 app = PlainTyper(
     no_args_is_help=True,
-    help="Measure a camera: its lens and position with the board of 'actum markers --board', its tilt with a person.",
+    help=(
+        "Measure a camera's lens, position and tilt. Lens and position are measured with the board that 'actum markers "
+        "--board' prints, the tilt with a person who stands in front of the camera."
+    ),
 )
 app.command("up")(up)
 
-Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration file to write (YAML)")]
+Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration file to write (.yaml)")]
 Squares = Annotated[
-    str, typer.Option("--board", help="number of columns and rows of squares on the board, such as 7x5")
+    str, typer.Option("--board", help="number of columns and rows of squares on the calibration board, such as 7x5")
 ]
-SquareMm = Annotated[float, typer.Option(help="side of one square on the board, as measured (mm)")]
-MarkerMm = Annotated[float, typer.Option(help="side of one marker on the board, as measured (mm)")]
-Family = Annotated[str, typer.Option(help="OpenCV's name of the marker family printed on the board")]
-Existing = typer.Option(exists=True, dir_okay=False)
+SquareMm = Annotated[
+    float,
+    typer.Option(help="side length of one square on the calibration board, as you measure it on the print (mm)"),
+]
+MarkerMm = Annotated[
+    float,
+    typer.Option(help="side length of one marker on the calibration board, as you measure it on the print (mm)"),
+]
+Family = Annotated[str, typer.Option(help="family of the markers on the calibration board, by its name in OpenCV")]
+
+
+def _intrinsics_of(seen: str) -> Any:
+    words = f"calibration file of the camera that sees the {seen}, written by 'actum calibrate intrinsics'"
+    return typer.Option(exists=True, dir_okay=False, help=words)
 
 
 @app.command("intrinsics")
 def intrinsics(
     output: Output,
-    images: Annotated[list[Path] | None, typer.Argument(help="pictures of the board, or folders of them")] = None,
+    images: Annotated[
+        list[Path] | None, typer.Argument(help="pictures of the calibration board, or folders of such pictures")
+    ] = None,
     live: Annotated[
-        bool, typer.Option("--live", help="take the pictures from the running camera, in place of files")
+        bool,
+        typer.Option(
+            "--live", help="take the pictures from the images that the running camera publishes, in place of files"
+        ),
     ] = False,
     board: Squares = "7x5",
     square_mm: SquareMm = 35.0,
     marker_mm: MarkerMm = 26.0,
     family: Family = "DICT_5X5_100",
 ) -> None:
-    """Find a camera's focal lengths, centre and distortion from 15 to 20 pictures of the board.
+    """Find a camera's focal lengths, centre and distortion from 15 to 20 pictures of the calibration board.
 
-    Do this once per camera, for exact positions of people and objects. It writes the calibration file that the camera's
-    service reads (--calibration), and beside it a picture of where the board was seen.
+    Print the board with 'actum markers --board'. Do this once per camera, for exact positions of people and objects.
+    The command writes a calibration file, which the sensor gateway reads with --calibration, and in the same folder a
+    picture that shows in which parts of the image the board was seen.
     """
     if live == bool(images):
         fail("give either pictures of the board, or --live")
@@ -79,16 +98,17 @@ def intrinsics(
 
 @app.command("extrinsics")
 def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
-    markers_camera: Annotated[Path, Existing],
-    people_camera: Annotated[Path, Existing],
+    markers_camera: Annotated[Path, _intrinsics_of("markers")],
+    people_camera: Annotated[Path, _intrinsics_of("people")],
     output: Output,
     pairs: Annotated[
         list[Path] | None,
         typer.Argument(
             help=(
-                "pairs of pictures taken at the same time: NAME_a.png from the camera that sees the markers, "
-                "NAME_b.png from the camera that sees the people; or a folder for each camera, in this order, with "
-                "the same name for both pictures of a pair"
+                "pairs of pictures of the calibration board, both taken at the same time: NAME_a.png by the camera "
+                "that sees the markers and NAME_b.png by the camera that sees the people. Or two folders: first the "
+                "pictures of the camera that sees the markers, then those of the camera that sees the people, with the "
+                "same file name for both pictures of a pair"
             )
         ),
     ] = None,
@@ -96,8 +116,8 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str | None,
         typer.Option(
             help=(
-                "take the pictures live from two sensors: first the one that sees the markers, then the one that sees "
-                "the people, such as kinect1,kinect0"
+                "take the pictures from two running cameras, in place of files: name first the sensor of the camera "
+                "that sees the markers, then the sensor of the camera that sees the people, such as kinect1,kinect0"
             )
         ),
     ] = None,
@@ -108,7 +128,8 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
 ) -> None:
     """Find where the camera that sees the markers is, relative to the camera that sees the people.
 
-    Do this only if you use two such cameras. The command needs 6 to 10 pairs of pictures of the board. It writes a
+    Do this only if you use one camera for the markers and another for the people, after 'actum calibrate intrinsics'
+    for both. The command needs 6 to 10 pairs of pictures of the board that 'actum markers --board' prints. It writes a
     calibration file for the camera that sees the markers.
     """
     if (live is not None) == bool(pairs):

@@ -22,13 +22,18 @@ def up(
     recording: Annotated[
         Path | None,
         typer.Argument(
-            exists=True, dir_okay=False, help="a recording of the standing person; default: the running camera"
+            exists=True,
+            dir_okay=False,
+            help=(
+                "a recording of a person who stands upright and still; default: the person whom the running camera sees"
+            ),
         ),
     ] = None,
 ) -> None:
-    """Find how a camera is tilted, from one person who stands upright and still in view for two seconds, arms down.
+    """Find how a camera is tilted from one person who stands upright and still in front of it for two seconds.
 
-    It prints the value to set as ACTUM_UP_IN_CAMERA.
+    The arms of the person have to hang down. The command prints the value for the environment variable
+    ACTUM_UP_IN_CAMERA of the sensor gateway.
     """
     frames = _live() if recording is None else _recorded(recording)
     estimator, instruction, instructed_ns = UpDirectionEstimator(), "", -PAUSE_NS

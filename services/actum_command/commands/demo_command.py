@@ -42,8 +42,8 @@ def demo(
         typer.Option(
             min=0,
             help=(
-                "number of simulated people to test on, none of whom the model was trained on; 0 tests on one "
-                "person whom the model was trained on"
+                "number of simulated people to test on, all of them new to the model; 0 tests on one person on whom "
+                "the model was trained"
             ),
         ),
     ] = SHOWN,
@@ -52,14 +52,19 @@ def demo(
         bool,
         typer.Option(
             "--marked",
-            help="repeat the paper's experiment: train on one person, and mark the start and end of every action",
+            help=(
+                "repeat the experiment of the paper that actum implements (Gharaee et al. 2017): train on one "
+                "simulated person, and give the classifier the start and end of every action"
+            ),
         ),
     ] = False,
 ) -> None:
-    """Test recognition on simulated people whom the model has never seen, and compare with published results.
+    """Test recognition on simulated people who are new to the model, and print the scores beside published ones.
 
-    The test needs no camera and no other running program. Between the actions the people do other things, and nobody
-    marks where an action starts or ends. The test takes 45 s per person; --people 9 repeats the whole experiment.
+    The published scores are those of the paper that actum implements (Gharaee et al. 2017). The test needs no camera
+    and no other running program. Between the actions the people do other things, such as scratching, and nobody marks
+    where an action starts or ends. The test takes 45 s per person. With --people 9, each action is tested 9 times, as
+    in the paper.
     """
     here = settings()
     try:

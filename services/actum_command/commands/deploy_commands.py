@@ -17,12 +17,18 @@ from actum_deployer.deployment import Deployment, Host, hosts_of
 
 app = PlainTyper(
     no_args_is_help=True,
-    help="Write the files for running actum on several hosts: routers, containers, systemd units, credentials.",
+    help=(
+        "Write the files for running actum on several hosts: configurations of routers and containers, systemd units, "
+        "credentials."
+    ),
 )
 
 DirArgument = Annotated[
     Path,
-    typer.Argument(metavar="DIR", help="the folder of all hosts' files; it holds private keys, so keep it private"),
+    typer.Argument(
+        metavar="DIR",
+        help="the folder for the files of all hosts; it contains private keys, so let nobody else read it",
+    ),
 ]
 YEAR = 365
 """How long certificates are valid (days) where nothing else is said."""
@@ -40,8 +46,10 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             metavar="NAME=ADDRESS,…",
             help=(
-                "the hosts and their addresses, such as camera=192.168.1.5,compute=192.168.1.6. Name further hosts "
-                "camera2, compute2; append :PORT to an address if its router uses another port than 7447"
+                "names and addresses of the hosts, such as camera=192.168.1.5,compute=192.168.1.6. A host whose name "
+                "begins with camera runs a camera and the marker tracker; one whose name begins with compute runs the "
+                "other services. Name further hosts camera2, compute2. If the router of a host uses another port than "
+                "7447, append :PORT to the address"
             ),
         ),
     ],
@@ -49,11 +57,17 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str | None,
         typer.Option(
             metavar="NAME,…",
-            help="the sensors' names, one for each camera host, such as door,window; default: kinect0,kinect1,…",
+            help=(
+                "names of the sensors, one for each camera host in the order of --hosts, such as door,window; default: "
+                "kinect0,kinect1,…"
+            ),
         ),
     ] = None,
     one_router: Annotated[
-        bool, typer.Option("--one-router", help="run a single router, on the first host; default: one on each host")
+        bool,
+        typer.Option(
+            "--one-router", help="run a single router, on the first host of --hosts; default: one router on each host"
+        ),
     ] = False,
     passwords: Annotated[
         bool,
@@ -63,7 +77,10 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         ),
     ] = False,
     images: Annotated[
-        bool, typer.Option("--images", help="let images cross to other hosts; default: they stay on the camera's host")
+        bool,
+        typer.Option(
+            "--images", help="also send camera images to other hosts; default: images stay on the camera's host"
+        ),
     ] = False,
     simulate: Annotated[bool, typer.Option("--simulate", help="run the simulated scene in place of cameras")] = False,
     ros2: Annotated[
@@ -72,17 +89,20 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
             metavar="DOMAIN",
             min=0,
             max=232,
-            help="add the bridge to ROS 2, for nodes with this ROS_DOMAIN_ID (usually 0); default: no bridge",
+            help="add the bridge to ROS 2, for ROS 2 nodes with this ROS_DOMAIN_ID (usually 0); default: no bridge",
         ),
     ] = None,
     not_secured: Annotated[
-        bool, typer.Option("--open", help="disable TLS, passwords and access control; use it only on a trusted network")
+        bool,
+        typer.Option(
+            "--open", help="disable TLS, passwords and access control; use this option only on a trusted network"
+        ),
     ] = False,
 ) -> None:
     """Write a folder of files for each host of a deployment, and folders of credentials for users' programs.
 
-    Copy each host's folder to that host, and a folder of credentials to each user's machine. Run the command again to
-    change the deployment.
+    Copy each host's folder to that host and follow its README.md there. Copy one of the folders in people/ to each
+    user's machine. To change the deployment, run the command again with other options.
     """
     if not_secured and passwords:
         fail("--open and --passwords exclude each other: leave out one of them")
@@ -112,24 +132,26 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
 def rotate(
     folder: DirArgument,
     days: Annotated[
-        float, typer.Option(min=LEAST_DAYS, max=MOST_DAYS, help="validity of the new certificates (days)")
+        float,
+        typer.Option(min=LEAST_DAYS, max=MOST_DAYS, help="number of days for which the new certificates are valid"),
     ] = YEAR,
     revoke: Annotated[
         list[str] | None,
         typer.Option(
             metavar="NAME",
             help=(
-                "make routers refuse the old certificate of this credentials folder, such as viewer; may be "
-                "repeated. Default: none is refused"
+                "name of a credentials folder, such as viewer, whose old certificate the routers must refuse; may be "
+                "repeated. Default: no certificate is refused"
             ),
         ),
     ] = None,
 ) -> None:
     """Renew all certificates and keys, before they expire or after some were lost.
 
-    Copy the folders to the hosts afterwards; services read the new certificates without a restart. If credentials were
-    lost or stolen, also name their folder with --revoke. A router refuses the old credentials once its new router.json5
-    has been copied.
+    Afterwards copy the folder credentials/ of each host, and the folders in people/, to their machines again; services
+    read the new certificates without a restart. If credentials were lost or stolen, also name their folder with
+    --revoke, and copy router.json5 to each host: a router then refuses the old credentials. A router in a container has
+    to be restarted for this.
     """
     with _refusing(), needs_extra("deploy"):
         from actum_deployer.writing import alone, write_deployment

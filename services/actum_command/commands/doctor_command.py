@@ -25,7 +25,7 @@ SOURCES = {"sensor_gateway": "sensor", "marker_camera": "marker camera"}
 def doctor() -> None:
     """Check the running system and print what is wrong: router, services, streams, versions, clocks, names of settings.
 
-    Run it when events are missing. It exits with 1 if it finds a problem.
+    Run this command when events are missing. Its exit code is 1 if it finds a problem.
     """
     with connect() as client:
         found = examine(client)

@@ -16,18 +16,21 @@ COLUMNS = 3  # pictures side by side: two rows for the six that are drawn by def
 
 
 def draw(
-    video: Annotated[Path, typer.Argument(help="a video file", exists=True, dir_okay=False)],
+    video: Annotated[Path, typer.Argument(help="the video file in which to find people", exists=True, dir_okay=False)],
     output: Annotated[Path, typer.Option("-o", "--output", help="the image file to write (.png or .jpg)")],
     count: Annotated[
-        int, typer.Option("--pictures", min=1, max=30, help="number of pictures, spread evenly over the video")
+        int,
+        typer.Option(
+            "--pictures", min=1, max=30, help="number of pictures to draw, taken at even intervals from the video"
+        ),
     ] = 6,
     people: Annotated[int, typer.Option(min=1, max=4, help="maximum number of people to find in a picture")] = 2,
 ) -> None:
     """Draw the joints of the people found in a video, to check the camera before use.
 
-    It writes one image with several pictures of the video. Check that people are found, and that left and right are
-    correct. The camera's settings are read from the environment: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or
-    ACTUM_CALIBRATION, ACTUM_MIRRORED.
+    The command writes one image that contains several pictures of the video. Check that people are found, and that left
+    and right are correct. The camera's settings are read from the environment: ACTUM_POSE_MODEL,
+    ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION, ACTUM_MIRRORED.
     """
     if not cv2.haveImageWriter(str(output)):
         fail(f"{output} does not end in the name of a picture format: use .png or .jpg")

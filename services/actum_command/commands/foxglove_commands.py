@@ -24,27 +24,33 @@ def foxglove(
     recording: RecordingArgument = None,
     host: Annotated[
         str,
-        typer.Option(help="address to listen on; with any other than 127.0.0.1, everybody on your network can watch"),
+        typer.Option(
+            help=(
+                "address to listen on. With 127.0.0.1 only this machine can connect; with any other address everybody "
+                "on your network can watch"
+            )
+        ),
     ] = ("127.0.0.1"),
     port: Annotated[int, typer.Option(min=0, max=65535, help="port to listen on; 0 picks a free port")] = 8765,
     origin: Annotated[
         list[str] | None,
         typer.Option(
             help=(
-                "a website that may connect, such as https://app.foxglove.dev; may be repeated. Default: only "
-                "programs, no websites"
+                "address of a website that may connect, such as https://app.foxglove.dev; may be repeated. Default: no "
+                "website may connect, only programs such as Foxglove's desktop program"
             )
         ),
     ] = None,
     speed: Annotated[
-        float, typer.Option(min=0.01, help="playback speed of a recording; 1 is real time, 2 is twice as fast")
+        float,
+        typer.Option(min=0.01, help="playback speed if a recording is shown; 1 is real time, 2 is twice as fast"),
     ] = 1.0,
 ) -> None:
     """Serve live streams or a recording to the Foxglove viewer, with people, objects, images and events, until Ctrl-C.
 
-    Foxglove's desktop program can connect at once; a website needs --origin, and refused websites are printed. A
-    recording starts to play when a viewer connects. To move back and forth in a recording, convert it with 'actum
-    export' instead.
+    Foxglove's desktop program can connect without further options. A website can connect only if --origin names it; the
+    command prints the websites that it refuses. A recording starts to play when a viewer connects. To move back and
+    forth in a recording, convert the recording with 'actum export' instead.
     """
     refuse_without("foxglove", "foxglove-sdk", "foxglove")
     from actum_command.viewers.foxglove_sinks import ServerError, served
@@ -109,10 +115,15 @@ def export(
     output: Annotated[Path, typer.Argument(metavar="OUT", help="the file to write (.mcap)")],
     for_foxglove: Annotated[
         bool,
-        typer.Option("--foxglove", help="write Foxglove's message types; required, as there is no other format yet"),
+        typer.Option(
+            "--foxglove",
+            help=(
+                "write the messages in Foxglove's format; this option is required, because there is no other format yet"
+            ),
+        ),
     ] = False,
 ) -> None:
-    """Convert a recording to a file that Foxglove opens: actum export --foxglove REC OUT."""
+    """Convert a recording to a file that Foxglove can open, such as actum export --foxglove REC OUT."""
     if not for_foxglove:
         fail("no output format is given: add --foxglove")
     refuse_without("foxglove", "foxglove-sdk", "foxglove")

@@ -31,19 +31,19 @@ app = PlainTyper(
     help="Convert public data sets and video clips to recordings, to train or test a model on them.",
 )
 
-Source = Annotated[Path, typer.Argument(help="the folder of the downloaded data set", exists=True)]
-Out = Annotated[Path, typer.Argument(help="the folder for the recordings")]
+Source = Annotated[Path, typer.Argument(help="the folder that contains the downloaded data set", exists=True)]
+Out = Annotated[Path, typer.Argument(help="the folder to which the recordings are written")]
 
 
 @app.command("msr-action3d")
 def msr_action3d(source: Source, out: Out) -> None:
-    """Import the data set MSR Action3D: one recording per sequence, which is one labelled action."""
+    """Import the data set MSR Action3D; each sequence becomes a recording of one labelled action."""
     _run(import_msr_action3d, source, out)
 
 
 @app.command("utkinect")
 def utkinect(source: Source, out: Out) -> None:
-    """Import the data set UTKinect-Action3D: one recording per file, with its labelled segments."""
+    """Import the data set UTKinect-Action3D; each file becomes a recording with labelled segments."""
     _run(import_utkinect, source, out)
 
 
@@ -56,8 +56,8 @@ def msrc12(
         typer.Option(
             "--trimmed",
             help=(
-                "start and end each segment where the movement visibly starts and ends; default: up to 1.5 s before "
-                "and after the point in time of the gesture"
+                "let each segment start and end where the movement visibly starts and ends; default: a segment extends "
+                "up to 1.5 s before and after the point in time that the data set gives for the gesture"
             ),
         ),
     ] = False,
@@ -66,15 +66,15 @@ def msrc12(
         typer.Option(
             "--composed",
             help=(
-                "combine the gestures of each person into two new recordings; segments are trimmed as by --trimmed. "
-                "Default: one recording per original file"
+                "combine the gestures of each person into two new recordings, in which all gestures come in mixed "
+                "order; segments start and end as with --trimmed. Default: one recording per sequence of the data set"
             ),
         ),
     ] = False,
 ) -> None:
-    """Import the data set MSRC-12: one recording per file, with labelled segments.
+    """Import the data set MSRC-12; each sequence becomes a recording with labelled segments.
 
-    The data set gives one point in time per gesture; a segment extends up to 1.5 s before and after it.
+    The data set gives one point in time per gesture. Each segment extends up to 1.5 s before and after this point.
     """
     if trimmed and composed:
         fail("--composed and --trimmed exclude each other, because --composed trims by itself: leave out --trimmed")
@@ -84,34 +84,42 @@ def msrc12(
 
 @app.command("bimacs")
 def bimacs(source: Source, out: Out) -> None:
-    """Import OptiTrack data of two hands and objects: one recording per file, with each hand's labelled segments."""
+    """Import OptiTrack data of two hands and objects.
+
+    Each file becomes a recording with labelled segments of each hand.
+    """
     _run(import_bimacs, source, out)
 
 
 @app.command("video")
 def video(
-    source: Annotated[Path, typer.Argument(help="a folder of video clips, each of one action", exists=True)],
+    source: Annotated[
+        Path, typer.Argument(help="a folder of video clips, each of which shows one action", exists=True)
+    ],
     out: Out,
     pattern: Annotated[
         str,
         typer.Option(
             help=(
-                "regular expression for the file names without their ending; its named groups action and person "
-                "supply label and person"
+                "regular expression that matches the file names without their ending; its named groups 'action' and "
+                "'person' are the label and the person of the recording"
             )
         ),
     ] = DEFAULT_PATTERN,
     names: Annotated[
         str,
         typer.Option(
-            help="what the actions in file names are called, such as 1=wave,2=drink; default: as in the file names"
+            help=(
+                "labels for the actions in the file names, such as 1=wave,2=drink if the file names contain numbers; "
+                "default: the label is the action as written in the file name"
+            )
         ),
     ] = "",
     people: Annotated[int, typer.Option(min=1, max=4, help="maximum number of people to find in a clip")] = 1,
 ) -> None:
-    """Import video clips of one action each, named after action and person (wave_anna_2.mp4).
+    """Import video clips that show one action each and are named after action and person, such as wave_anna_2.mp4.
 
-    Each clip becomes a recording with one labelled segment, without images. The camera's settings are read from the
+    Each clip becomes a recording with one labelled segment and without images. The camera's settings are read from the
     environment: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION, ACTUM_MIRRORED, ACTUM_PERSON_HEIGHT_M.
     """
     try:

@@ -27,7 +27,9 @@ def inspect(
     output: Annotated[
         Path,
         typer.Option(
-            "-o", "--output", help="the folder for the pictures and index.html; pictures of an earlier run are removed"
+            "-o",
+            "--output",
+            help="the folder for the pictures and index.html; pictures of an earlier run in this folder are removed",
         ),
     ],
     files: Annotated[
@@ -35,8 +37,8 @@ def inspect(
         typer.Argument(
             metavar="[REC]...",
             help=(
-                "recordings, or folders of them, whose actions the model is to recognise; default: only the model is "
-                "drawn"
+                "recordings, or folders of recordings; the command also draws how the model recognises the actions in "
+                "them. Default: only the model is drawn"
             ),
         ),
     ] = None,
@@ -46,9 +48,9 @@ def inspect(
     ] = "png",
     with_excluded: AllOption = False,
 ) -> None:
-    """Draw what a model has learnt and, for given recordings, how it recognises their actions.
+    """Draw what a model has learnt and, if recordings are given, how the model recognises the actions in them.
 
-    It writes pictures and a page, index.html, that shows them.
+    The command writes pictures, and a page that shows all pictures (index.html).
     """
     began_s = time.monotonic()
     if picture_format not in FORMATS:

@@ -34,35 +34,44 @@ app = PlainTyper(
     cls=ListingGroup,
     no_args_is_help=True,
     help=(
-        "List the marked segments of recordings (actum label REC…), add and correct them. Times are seconds from the "
-        "start of the recording."
+        "List, add and correct the segments of recordings; a segment is one action with its start and end. 'actum "
+        "label REC…' lists the segments. Times are seconds from the beginning of the recording."
     ),
 )
 
 SegmentName = Annotated[
     str,
-    typer.Argument(metavar="SEGMENT", help="number of the segment in the first column of 'actum label REC', or its id"),
+    typer.Argument(
+        metavar="SEGMENT",
+        help=(
+            "the segment: its number in the first column of the list that 'actum label REC' prints, or its segment id"
+        ),
+    ),
 ]
 Label = Annotated[str, typer.Argument(metavar="LABEL", help="label of the action, such as wave")]
 Agent = Annotated[
     int | None,
     typer.Option(
         min=1,
-        help="track number of the person who acts (agent in the messages); default: the person nearest to the camera",
+        help=(
+            "number of the person who acts, as in the field agent of messages; default: the person nearest to the "
+            "camera"
+        ),
     ),
 ]
 
 
 @app.command(LISTS)
 def list_command(
-    files: Annotated[list[Path], typer.Argument(metavar="REC...", help="recordings, or folders of them")],
+    files: Annotated[list[Path], typer.Argument(metavar="REC...", help="recordings, or folders of recordings")],
     person: PersonOption = None,
     with_excluded: AllOption = False,
 ) -> None:
-    """List the marked segments, and whether training can use them.
+    """List the marked segments of recordings, and whether training can use each of them.
 
-    Columns: number, start, end, duration, segment id, label, who marked it, who acts, usable for training, the
-    recorded answer; in a recording of several sensors also the sensor.
+    A segment is one action with its start and end. Columns: number, start, end, duration, segment id, label, who marked
+    the segment, who acts, usable for training, recorded answer of the classifier and, if the recording has several
+    sensors, the sensor.
     """
     recordings, all_lines = chosen(files, person, with_excluded), []
     try:
@@ -85,17 +94,23 @@ def move(
     start: Annotated[
         str | None,
         typer.Option(
-            help="new start, such as 12.3, or relative to the old: +0.2 is later, -0.1 earlier; default: unchanged (s)"
+            help=(
+                "new start in seconds from the beginning of the recording, such as 12.3; or a shift in seconds: +0.2 "
+                "moves the start later, -0.1 earlier. Default: the start is not changed"
+            )
         ),
     ] = None,
     end: Annotated[
         str | None,
         typer.Option(
-            help="new end, such as 14.1, or relative to the old: +0.2 is later, -0.1 earlier; default: unchanged (s)"
+            help=(
+                "new end in seconds from the beginning of the recording, such as 14.1; or a shift in seconds: +0.2 "
+                "moves the end later, -0.1 earlier. Default: the end is not changed"
+            )
         ),
     ] = None,
 ) -> None:
-    """Move the start or the end of a segment; the answers in the recording stay as they are."""
+    """Move the start or the end of a segment; the recorded answers of the classifier are not changed."""
     take, segment = _found(file, name)
     start_ns = _moved_to(start, segment.start_ns, take.first_ns)
     end_ns = _moved_to(end, segment.end_ns, take.first_ns)
@@ -107,9 +122,9 @@ def move(
 
 @app.command("delete")
 def delete(file: RecordingFile, name: SegmentName) -> None:
-    """Delete a segment: its marks, its answers and the frames of the person who acts in it.
+    """Delete a segment: its start and end marks, its recorded answers, and the frames of the person who acts in it.
 
-    The frames stay if the segment has no label, or if another labelled segment of that person needs them.
+    The frames stay if the segment has no label, or if another labelled segment of that person needs the same frames.
     """
     take, segment = _found(file, name)
     with _editing(file):
@@ -122,7 +137,7 @@ def delete(file: RecordingFile, name: SegmentName) -> None:
 
 @app.command("relabel")
 def relabel(file: RecordingFile, name: SegmentName, label: Label) -> None:
-    """Give a segment another label."""
+    """Change the label of a segment."""
     take, segment = _found(file, name)
     refuse_length(label)
     with _editing(file):
@@ -133,12 +148,17 @@ def relabel(file: RecordingFile, name: SegmentName, label: Label) -> None:
 @app.command("add")
 def add(
     file: RecordingFile,
-    start: Annotated[float, typer.Argument(metavar="START", help="start, from the beginning of the recording (s)")],
-    end: Annotated[float, typer.Argument(metavar="END", help="end, from the beginning of the recording (s)")],
+    start: Annotated[
+        float,
+        typer.Argument(metavar="START", help="start of the action, in seconds from the beginning of the recording"),
+    ],
+    end: Annotated[
+        float, typer.Argument(metavar="END", help="end of the action, in seconds from the beginning of the recording")
+    ],
     label: Label,
     agent: Agent = None,
 ) -> None:
-    """Add a labelled segment, such as actum label add REC 12.3 14.1 wave."""
+    """Label an action in a recording by its start and end, such as actum label add REC 12.3 14.1 wave."""
     take = _opened(file)
     refuse_length(label)
     with _editing(file):
@@ -150,14 +170,15 @@ def add(
 def cut(
     file: RecordingFile,
     times: Annotated[
-        int, typer.Argument(metavar="TIMES", min=1, help="number of times that the action is done in the recording")
+        int,
+        typer.Argument(metavar="TIMES", min=1, help="number of times that the person does the action in the recording"),
     ],
     label: Label,
 ) -> None:
-    """Find the repetitions of one action in the recording again, and label each.
+    """Find the repetitions of one action in a recording again, and label each repetition.
 
-    Use it if 'actum record --times' miscounted. Repetitions that were found before are replaced; segments marked or
-    moved by hand stay.
+    Use this command if 'actum record --times' miscounted. The repetitions that were found before are replaced; segments
+    that were marked or moved by hand stay.
     """
     take = _opened(file)
     refuse_length(label)
@@ -178,13 +199,16 @@ def picture(
         Path | None,
         typer.Option(
             help=(
-                "a model file to run on the recording: draw this model's answers to the marked segments, and the "
-                "segments that this model finds, in place of the recorded answers"
+                "a model file: draw what this model recognises in the marked segments, and the actions that it finds "
+                "by itself. Default: draw the answers that are stored in the recording"
             )
         ),
     ] = None,
 ) -> None:
-    """Draw the motion over time, with the labelled segments and the recorded answers, to check the labels."""
+    """Draw the motion in a recording, its labelled segments and the classifier's answers over time.
+
+    Use the picture to check the labels.
+    """
     if find_spec("matplotlib") is None:
         fail(f"matplotlib, which draws the picture, is not installed: {adding('model-inspector')}")
     from actum_command.recording_picture import write_picture

@@ -16,22 +16,22 @@ MOST_IDS = 1000  # as many as the largest family has
 def markers(
     output: Annotated[Path, typer.Option("-o", "--output", help="the PDF file to write")],
     family: Annotated[
-        str, typer.Option(help="OpenCV's name of the marker family to print; ignored with --board")
+        str, typer.Option(help="the marker family to print, by its name in OpenCV; ignored with --board")
     ] = "DICT_4X4_50",
     ids: Annotated[
         str, typer.Option(help="ids of the markers to print, such as 1,2,3 or 0-9; ignored with --board")
     ] = "0-3",
     size_mm: Annotated[
-        float, typer.Option(help="side length of a marker's black square; ignored with --board (mm)")
+        float, typer.Option(help="side length of the black square of a marker (mm); ignored with --board")
     ] = 80.0,
     paper: Annotated[SheetSize, typer.Option(help="paper size of the sheets")] = SheetSize.A4,
     board: Annotated[
         bool, typer.Option("--board", help="print the board that 'actum calibrate' needs, in place of markers")
     ] = False,
 ) -> None:
-    """Write a PDF to print, in true size: markers to put on objects, or the board for calibration.
+    """Write a PDF to print: markers to put on objects or, with --board, the board for calibrating cameras.
 
-    Print it at 100 %, without fitting it to the page.
+    Print the PDF at 100 %, without fitting it to the page, so that the sizes are right.
     """
     from actum_calibrator.board_sheet import board_sheet  # the PDF library is needed here alone
     from actum_calibrator.marker_sheet import marker_sheet

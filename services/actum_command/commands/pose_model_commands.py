@@ -13,7 +13,8 @@ from actum_command.model_download import POSE_MODEL, FetchError, Published, fetc
 from sensor_gateway.settings import default_pose_model
 
 app = PlainTyper(
-    no_args_is_help=True, help="Download the model that finds people in camera images; needed before a camera is used."
+    no_args_is_help=True,
+    help="Download the model that finds people in camera images. Do this before you use a camera.",
 )
 
 
@@ -27,16 +28,24 @@ def fetch_command(
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", help="the file to write (.task); default: where the camera's service looks for it"
+            "-o",
+            "--output",
+            help="the file to write (.task); default: the file from which the sensor gateway reads the model",
         ),
     ] = None,
     url: Annotated[
-        str, typer.Option(help="address to download from, such as a mirror; the file has to be the same")
+        str,
+        typer.Option(
+            help=(
+                "address to download from, such as that of a mirror; the checksum of the file is compared with that of "
+                "the original"
+            )
+        ),
     ] = POSE_MODEL.url,
 ) -> None:
     """Download MediaPipe's pose model (9 MB, Apache-2.0) and check that the file is the expected one.
 
-    Do this once before a camera is used.
+    Do this once, before you use a camera.
     """
     if output is not None:
         refuse_ending(output, ".task")

@@ -34,21 +34,25 @@ ALL = "all"
 @with_history_flags
 def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     output: Annotated[
-        Path, typer.Argument(help="the recording to write (.mcap); with --events the folder for the history")
+        Path,
+        typer.Argument(help="the recording to write (.mcap); with --events, the folder for the files of the history"),
     ],
     person: Annotated[
         str,
         typer.Option(
             help=(
-                "name or number of the person who acts; stored in the file, so that a model can be tested on people "
-                "it was not trained on"
+                "name or number of the person who acts; stored in the recording, so that a model can be tested on "
+                "people on whom it was not trained"
             )
         ),
     ] = "",
     label: Annotated[
         str | None,
         typer.Option(
-            help="label of all actions marked during the recording, such as wave; default: the label in each mark"
+            help=(
+                "label of every action whose start and end are marked during the recording, such as wave; default: the "
+                "label that the mark itself contains"
+            )
         ),
     ] = None,
     times: Annotated[
@@ -56,8 +60,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             min=1,
             help=(
-                "number of times that the person does --label; the recording stops after the last, and each "
-                "repetition is found and labelled automatically"
+                "number of times that the person is going to do the action --label. The recording stops after the last "
+                "time; each repetition is found and labelled automatically"
             ),
         ),
     ] = None,
@@ -65,41 +69,48 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str | None,
         typer.Option(
             help=(
-                "which marks to store, separated by commas: manual (by people and programs), simulator, replay (by "
-                "actum play), auto (found by the classifier); or all. Default: manual; with --times none"
+                "which start and end marks of actions to store, chosen by who made them and separated by commas: "
+                "manual (people and other programs), simulator (the simulated scene), replay ('actum play'), auto (the "
+                "classifier); or all. Default: manual; with --times, none of them"
             )
         ),
     ] = None,
     images: Annotated[bool, typer.Option(help="also store images; they show faces, which are personal data")] = False,
     seconds: Annotated[
-        float | None, typer.Option(min=0, help="length of the recording; default: until Ctrl-C (s)")
+        float | None, typer.Option(min=0, help="length of the recording (s); default: until Ctrl-C")
     ] = None,
     finish: Annotated[
         bool,
         typer.Option(
             "--finish",
-            help="record nothing; make a recording of OUTPUT.part, which a killed process or a full disk left",
+            help=(
+                "record nothing, but turn the unfinished file OUTPUT.part, which a killed process or a full disk left, "
+                "into the recording OUTPUT"
+            ),
         ),
     ] = False,
     events: Annotated[
         bool,
         typer.Option(
             "--events",
-            help="run as a service that keeps a history: events, final actions and all marks, in files in OUTPUT",
+            help=(
+                "run as a service that keeps a history: it stores only events, final actions and start and end marks, "
+                "in files in the folder OUTPUT"
+            ),
         ),
     ] = False,
     *,
     given: Given,
 ) -> None:
-    """Record a sensor's streams and marks to a file, for training or to play them again.
+    """Record a sensor's streams, and the start and end marks of actions, to a file for training or for playing again.
 
     With --label and --times, the recording is labelled automatically, such as actum record wave.mcap --label wave
     --times 5.
 
     No file is ever overwritten. If recording was interrupted, run the command with the same OUTPUT and --finish.
 
-    With --events it runs as a service that stores only events, actions and marks in the folder OUTPUT; the --history
-    options apply only with --events.
+    With --events, the command runs as a service that stores only events, final actions and marks, in the folder OUTPUT.
+    The --history options apply only with --events.
     """
     if events:
         keep_events(output, given)
@@ -219,12 +230,14 @@ def _listed(counts: Counter[str]) -> str:
 
 
 def play(
-    files: Annotated[list[Path], typer.Argument(help="recordings, or folders of them, played one after another")],
+    files: Annotated[
+        list[Path], typer.Argument(help="recordings, or folders of recordings, which are played one after another")
+    ],
     speed: Annotated[float, typer.Option(min=0.01, help="playback speed; 1 is real time, 2 is twice as fast")] = 1.0,
     person: PersonOption = None,
     with_excluded: AllOption = False,
 ) -> None:
-    """Play recordings as if they were a live sensor: publish their frames and marks, but not their labels."""
+    """Play recordings as if they were a live sensor: publish frames and the start and end of actions, but no labels."""
     recordings = chosen(files, person, with_excluded)
     stop = stop_on_signals()
     with connect() as client:

@@ -18,11 +18,13 @@ PersonOption = Annotated[
     typer.Option(
         help=(
             "use only recordings of these people, named as in 'actum record --person', such as 1,3,5; default: "
-            "everybody"
+            "recordings of everybody"
         )
     ),
 ]
-RecordingFile = Annotated[Path, typer.Argument(metavar="REC", help="the recording file", exists=True, dir_okay=False)]
+RecordingFile = Annotated[
+    Path, typer.Argument(metavar="REC", help="the recording (.mcap)", exists=True, dir_okay=False)
+]
 AllOption = Annotated[
     bool,
     typer.Option(

@@ -8,7 +8,7 @@ from ros2_bridge.settings import Settings
 
 @with_bridge_flags
 def ros2(*, given: Given) -> None:
-    """Exchange messages with ROS 2 until Ctrl-C: publish skeletons, objects and events, and receive marks.
+    """Exchange messages with ROS 2 until Ctrl-C: publish skeletons, objects and events; receive start and end marks.
 
     The ROS 2 nodes have to use rmw_zenoh and the same router (--connect). ROS 2 need not be installed on this machine.
     """

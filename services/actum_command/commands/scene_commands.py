@@ -13,15 +13,21 @@ from scene_simulator.everyday import Choice, Pauses
 
 
 def simulate(
-    output: Annotated[Path, typer.Argument(help="the recording to write")],
+    output: Annotated[Path, typer.Argument(help="the recording to write (.mcap)")],
     repetitions: Annotated[
         int,
-        typer.Option(min=1, help="number of times that each of the five actions is done; ignored with --everyday only"),
+        typer.Option(
+            min=1,
+            help="number of times that the person does each of the five actions; ignored if --everyday is 'only'",
+        ),
     ] = 12,
     actor: Annotated[
         int,
         typer.Option(
-            min=0, help="which simulated person acts: each number has another body height, tempo and preferred hand"
+            min=0,
+            help=(
+                "number of the simulated person who acts; each person has another body height, tempo and preferred hand"
+            ),
         ),
     ] = 0,
     seed: Annotated[
@@ -34,8 +40,8 @@ def simulate(
         Choice,
         typer.Option(
             help=(
-                "background activity between the actions, such as scratching: none; familiar (some kinds, for "
-                "training); all (every kind, for tests); only (every kind, but no actions)"
+                "background activities between the actions, such as scratching: none; familiar (only some kinds, to "
+                "train a model with); all (all kinds, to test a model with); only (all kinds, and no actions)"
             )
         ),
     ] = "none",
@@ -44,8 +50,8 @@ def simulate(
         typer.Option(
             min=0,
             help=(
-                "minimum length of the scene; background activity fills the time after the last action. Without "
-                "effect if --everyday is none (min)"
+                "minimum length of the scene in minutes; the background activities of --everyday fill the time after "
+                "the last action. Ignored if --everyday is none"
             ),
         ),
     ] = 1.0,
@@ -53,8 +59,8 @@ def simulate(
         Pauses,
         typer.Option(
             help=(
-                "what happens between two actions: long is up to three background activities and rests, short is at "
-                "most one. Without effect if --everyday is none"
+                "what happens between two actions: long (up to three background activities, and rests of seconds) or "
+                "short (at most one background activity, and short rests). Ignored if --everyday is none"
             )
         ),
     ] = "long",
@@ -77,7 +83,7 @@ def simulate(
 def scene() -> None:
     """Publish start and end marks for the actions of the simulated scene, until Ctrl-C.
 
-    Use it to try recognition with marks if the scene runs without 'actum up --marked'.
+    Use this command to try recognition with marks if the scene was started without 'actum up --marked'.
     """
     with connect_whenever() as client:
         mark_truth(client, stop_on_signals())

@@ -18,20 +18,29 @@ from actum_command.commands.terminal import connect, console, fail, say, setting
 WAIT_S = 5.0  # how long to wait for a classifier that is starting to subscribe
 
 app = PlainTyper(
-    no_args_is_help=True, help="Mark the start and the end of an action by hand, for recordings or exact recognition."
+    no_args_is_help=True,
+    help=(
+        "Mark the start and the end of an action by hand, to label a recording or to have exactly this action "
+        "recognised."
+    ),
 )
 
 Id = Annotated[
     str,
     typer.Argument(
-        help="any name for this action, such as a1; start and end use the same name, and each action needs a new one"
+        help=(
+            "any name for this action, such as a1; use the same name for start and end, and a new name for each action"
+        )
     ),
 ]
 AgentOption = Annotated[
     int | None,
     typer.Option(
         min=1,
-        help="track number of the person who acts (agent in the messages); default: the person nearest to the camera",
+        help=(
+            "number of the person who acts, as in the field agent of messages; default: the person nearest to the "
+            "camera"
+        ),
     ),
 ]
 HandOption = Annotated[str | None, typer.Option(help="the hand that acts, left or right; default: not specified")]
@@ -40,7 +49,13 @@ LabelOption = Annotated[
     typer.Option(help="label of the action, such as wave, stored by 'actum record' for training; default: no label"),
 ]
 StampOption = Annotated[
-    int | None, typer.Option(min=0, help="time of the mark on the sensor's clock; default: now (ns)")
+    int | None,
+    typer.Option(
+        min=0,
+        help=(
+            "time of the mark in nanoseconds, on the clock of the field stamp_ns of the sensor's messages; default: now"
+        ),
+    ),
 ]
 
 
@@ -62,7 +77,7 @@ def start(
 @app.command()
 @with_router_flags
 def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
-    """Mark the end of the action that was started with this SEGMENT_ID; the classifier then answers."""
+    """Mark the end of the action that was started with this SEGMENT_ID; the classifier then publishes its answer."""
     mark = _mark("end", segment_id, stamp_ns=stamp_ns)
     with connect() as client:
         _put(client, mark)
@@ -71,7 +86,7 @@ def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
 @app.command()
 @with_router_flags
 def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOption = None) -> None:
-    """Mark actions with the keyboard: Enter starts one, Enter again ends it and prints the answer, Ctrl-D quits."""
+    """Mark actions with the keyboard: Enter marks a start, Enter again the end and prints the answer, Ctrl-D quits."""
     with connect() as client:
         answers, number = Answers(client), 0
         while _waits_for_enter(f"press Enter to start action {number + 1}, Ctrl-D to quit "):

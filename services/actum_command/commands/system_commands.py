@@ -28,15 +28,29 @@ SOURCES = [name for name in get_args(SourceName) if name != "marker-camera"]
 
 def router(
     listen: Annotated[
-        str | None, typer.Option(help=f"address to listen on; default: {DEFAULT_ENDPOINT}, or as --config says")
+        str | None,
+        typer.Option(
+            help=(
+                "address to listen on; default: the address that the --config file or ACTUM_CONNECT sets, otherwise "
+                f"{DEFAULT_ENDPOINT}"
+            )
+        ),
     ] = None,
     config: Annotated[
-        Path | None, typer.Option(help="a Zenoh router configuration (JSON5); default: actum's own", exists=True)
+        Path | None,
+        typer.Option(
+            help=(
+                "a configuration file for the Zenoh router (JSON5); default: a configuration that is built into actum"
+            ),
+            exists=True,
+        ),
     ] = None,
     credentials: Annotated[
         Path | None,
         typer.Option(
-            help="the folder with a router's certificate and key, as written by 'actum deploy'; default: no TLS",
+            help=(
+                "the folder with the certificate and key of this router, as written by 'actum deploy'; default: no TLS"
+            ),
             envvar="ACTUM_CREDENTIALS",
         ),
     ] = None,
@@ -44,15 +58,16 @@ def router(
         str | None,
         typer.Option(
             help=(
-                "address of a router on another host, such as tcp/192.168.1.6:7447; the programs of both hosts then "
-                "see each other. Default: none"
+                "address of a router on another host to connect to, such as tcp/192.168.1.6:7447; the programs of both "
+                "hosts then exchange messages. Default: no other router"
             )
         ),
     ] = None,
 ) -> None:
     """Run the Zenoh router alone, for services that are started one by one or on several hosts.
 
-    'actum up' already runs one. With --credentials, renewed certificates are used without a restart.
+    Do not run this command beside 'actum up', which starts its own router. With --credentials, the router uses renewed
+    certificates without a restart.
     """
     logging.basicConfig(level="INFO", format="router: %(message)s")
     here = settings()
@@ -72,22 +87,26 @@ def up(
     source: Annotated[
         str | None,
         typer.Option(
-            help=f"where skeletons come from: {', '.join(SOURCES)}, simulator (a simulated person), or "
-            "none (another process). Default: camera if --camera is given, otherwise simulator"
+            help=f"where the skeletons of people come from: {', '.join(SOURCES)}, simulator (a simulated person), or "
+            "none (another program publishes them). Default: camera if --camera is given, otherwise simulator"
         ),
     ] = None,
     path: Annotated[
         Path | None,
         typer.Option(
-            help="the recording to play with --source recording: a file, or a folder whose files are played in order"
+            help=(
+                "the recording to play with --source recording: a file, or a folder whose files are played in the "
+                "order of their names"
+            )
         ),
     ] = None,
     model: Annotated[
         Path | None,
         typer.Option(
             help=(
-                "the model file (.npz), loaded whenever it appears or changes. Default: the model last put into use "
-                "on the web page or, for the simulated scene, the one supplied with actum"
+                "the model file (.npz); it is loaded when it appears and whenever it changes. Default: the model that "
+                "was last put into use on the web page; if there is none and the scene is simulated, the model "
+                "supplied with actum"
             ),
             envvar="ACTUM_MODEL",
         ),
@@ -97,8 +116,8 @@ def up(
         typer.Option(
             "--marked",
             help=(
-                "publish start and end marks of the simulated person's actions; default: the classifier has to find "
-                "them itself"
+                "publish the start and end of each action of the simulated person; default: the classifier has to find "
+                "the actions by itself"
             ),
         ),
     ] = False,
@@ -108,7 +127,8 @@ def up(
 ) -> None:
     """Run the whole system on this machine until Ctrl-C: the router, all services and the web page.
 
-    Without options it shows the simulated scene; use --camera 0 for a webcam. A service that ends is started again.
+    Without options, the system runs with a simulated scene; use --camera 0 for a webcam. A service that ends is started
+    again.
     """
     here = settings()
     if here.credentials is not None:

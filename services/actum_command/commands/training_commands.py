@@ -30,19 +30,22 @@ from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
 from som_classifier.segmentation import Segmentation
 
-Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of them")]
+Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of recordings")]
 PresetOption = Annotated[
     str,
     typer.Option(
         metavar=f"<{'|'.join(PRESETS)}>",
-        help=f"kind of model to train: {DEFAULT.name} is more accurate; {PAPER.name} is the published method",
+        help=(
+            f"kind of model to train: {PAPER.name} is the method of the paper that actum implements (Gharaee et al. "
+            f"2017); {DEFAULT.name} is more accurate"
+        ),
     ),
 ]
 SET_HELP = (
-    f"change a setting of --preset {PAPER.name}, such as origin=hips; may be repeated. axes: posture (axes of the "
-    "body, computed anew in each frame) or upright (vertical and smoothed over time; default). origin: the point that "
-    "positions are relative to, torso (default) or hips. attention: the body part whose joints are used, one of "
-    f"{', '.join(ATTENTIONS)}; moving (default) is the part that moves most"
+    f"change a setting of --preset {PAPER.name}, such as origin=hips; may be repeated. axes, the directions of the "
+    "coordinate system: upright (default; vertical, and smoothed over time) or posture (along the body, computed anew "
+    "in each frame). origin, the point from which positions are measured: torso (default) or hips. attention, the "
+    f"body part whose joints are used: {', '.join(ATTENTIONS)} (default: moving, which is the part that moves most)"
 )
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP)]
 SeedOption = Annotated[
@@ -52,7 +55,7 @@ SeedOption = Annotated[
 
 def train_command(
     files: Files,
-    output: Annotated[Path, typer.Option("-o", "--output", help="the model file to write")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="the model file to write (.npz)")],
     preset: PresetOption = DEFAULT.name,
     settings: SetOption = None,
     person: PersonOption = None,
@@ -90,7 +93,10 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     files: Annotated[
         list[Path],
         typer.Argument(
-            help="a model file, then recordings or folders of them; with --leave-one-person-out only recordings"
+            help=(
+                "the model file to test, then labelled recordings or folders of recordings; with "
+                "--leave-one-person-out no model file"
+            )
         ),
     ],
     person: PersonOption = None,
@@ -102,8 +108,8 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--leave-one-person-out",
             help=(
-                "in place of testing a model file, train on all people but one and test on that one, for each "
-                "person in turn"
+                "test without a model file: for each person in turn, train a model on all other people and test it on "
+                "this person"
             ),
         ),
     ] = False,
@@ -112,8 +118,8 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--continuous",
             help=(
-                "test whether the model finds the actions by itself; default: it is given the start and end of each "
-                "labelled action"
+                "test whether the model finds the actions by itself; default: the model is given the start and end of "
+                "each labelled action"
             ),
         ),
     ] = False,

@@ -24,14 +24,17 @@ def tune(
         list[Path],
         typer.Argument(
             metavar="REC...",
-            help="recordings, or folders of them, in which all actions are labelled and people also do other things",
+            help=(
+                "recordings, or folders of recordings, in which all actions are labelled and people also do other "
+                "things between the actions"
+            ),
         ),
     ],
     false_alarms_per_min: Annotated[
         float | None,
         typer.Option(
             metavar="X",
-            help="maximum rate of false alarms while no action is done; default: no limit (1/min)",
+            help="maximum number of false alarms per minute while nobody does an action; default: no limit",
         ),
     ] = None,
     output: Annotated[
@@ -40,17 +43,18 @@ def tune(
             "-o",
             "--output",
             help=(
-                "write the chosen settings to this file (.toml); services read it if ACTUM_CONFIG names it. "
-                "Default: they are only printed"
+                "the file to write the chosen settings to (.toml); services read this file if ACTUM_CONFIG is set to "
+                "its path. Default: the settings are only printed"
             ),
         ),
     ] = None,
     person: PersonOption = None,
     with_excluded: AllOption = False,
 ) -> None:
-    """Choose settings with which a model finds actions without marks best, and print the settings and their effect.
+    """Choose the settings with which a model best finds actions by itself, and print the settings and their effect.
 
-    It chooses --false-alarms-per-min, --shortest-pause-s, --cooldown-s and --disabled-actions of the classifier.
+    The command chooses --false-alarms-per-min, --shortest-pause-s, --cooldown-s and --disabled-actions of the
+    classifier.
     """
     began_s = time.monotonic()
     if false_alarms_per_min is not None and not 0 < false_alarms_per_min < float("inf"):

@@ -25,10 +25,19 @@ def view(
         Path | None, typer.Option("-o", "--output", help="write a Rerun file (.rrd) in place of opening a viewer")
     ] = None,
     web: Annotated[
-        bool, typer.Option("--web", help="show the viewer in a browser on this machine, in place of a window")
+        bool,
+        typer.Option(
+            "--web",
+            help=(
+                "serve the viewer as a page for a browser on this machine and print its address, in place of opening a "
+                "window"
+            ),
+        ),
     ] = False,
     port: Annotated[int, typer.Option(min=1, max=65535, help="port at which the Rerun viewer receives data")] = 9876,
-    web_port: Annotated[int, typer.Option(min=1, max=65535, help="port of the web page; only with --web")] = 9090,
+    web_port: Annotated[
+        int, typer.Option(min=1, max=65535, help="port of the page of the Rerun viewer; used only with --web")
+    ] = 9090,
 ) -> None:
     """Show live streams or a recording in the Rerun viewer: people, objects, images, curves and events, until Ctrl-C.
 

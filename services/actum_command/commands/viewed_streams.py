@@ -16,7 +16,8 @@ from actum_command.commands.terminal import connect, fail, say
 from actum_command.viewers.showing import LiveStreams, RecordedStreams, Showing, Streams
 
 RecordingArgument = Annotated[
-    Path | None, typer.Argument(metavar="[REC]", help="a recording to show; default: the sensor's live streams")
+    Path | None,
+    typer.Argument(metavar="[REC]", help="the recording to show; default: the live streams of the sensor (--sensor)"),
 ]
 
 

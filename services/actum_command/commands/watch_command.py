@@ -33,13 +33,19 @@ def watch(
     ] = False,
     recorded: Annotated[
         list[Path] | None,
-        typer.Option("--from", help="recordings, or folders of them, to print in place of live messages"),
+        typer.Option(
+            "--from",
+            help=(
+                "print the messages of these recordings, or of all recordings in these folders, in place of live "
+                "messages"
+            ),
+        ),
     ] = None,
 ) -> None:
-    """Print live messages, one per line with time, key, segment and content, until Ctrl-C.
+    """Print live messages, one per line with time, key, segment id and content, until Ctrl-C.
 
-    On a terminal, a line at the bottom also shows each person's ongoing action and how complete it is. With --from it
-    prints recordings instead, even those that 'actum record --events' is still writing.
+    On a terminal, a line at the bottom also shows each person's ongoing action and how complete it is. With --from, the
+    command prints the messages of recordings instead, even of those that 'actum record --events' is still writing.
     """
     named = {name: WATCHABLE.get(name) or WATCHABLE.get(name.removesuffix("s")) for name in topics or []}
     for name in (name for name, topic in named.items() if topic is None):

@@ -8,15 +8,29 @@ from actum.settings import ServiceSettings
 class Settings(ServiceSettings):
     """What `actum record --events` can be told beside what every service can."""
 
-    history_file_mb: float = Field(16.0, gt=0, description="maximum size of a file; then the next file is started (MB)")
+    history_file_mb: float = Field(
+        16.0,
+        gt=0,
+        description="size of a file of the history (MB) at which the file is finished and the next one is started",
+    )
     history_file_hours: float = Field(
-        24.0, gt=0, description="maximum time that a file covers; then the next file is started (h)"
+        24.0,
+        gt=0,
+        description="maximum time that one file of the history covers (h); after this time the next file is started",
     )
     history_keep_files: int | None = Field(
-        None, ge=1, description="maximum number of finished files; the oldest are deleted. Default: all are kept"
+        None,
+        ge=1,
+        description=(
+            "maximum number of finished files of the history; if there are more, the oldest are deleted. Default: all "
+            "files are kept"
+        ),
     )
     history_keep_mb: float | None = Field(
         None,
         gt=0,
-        description="maximum total size of the finished files; the oldest are deleted. Default: all are kept (MB)",
+        description=(
+            "maximum total size of the finished files of the history (MB); if the total is larger, the oldest are "
+            "deleted. Default: all files are kept"
+        ),
     )
