@@ -1,47 +1,65 @@
-"""What to record next, in plain sentences, from what a set holds and how its models do on what they were not taught."""
+"""What to record or correct next, in sentences: from the examples, and from how models do on what was left out."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from math import ceil
 
 from actum_model_trainer.continuous.scoring import ContinuousScores
-from actum_model_trainer.warnings import (
-    CONFUSED_SHARE,
-    CONFUSED_TIMES,
-    ENOUGH_BACKGROUND_S,
-    MIN_EXAMPLES,
-    few,
-    listed,
-    unbalanced,
-)
+from actum_model_trainer.samples import SegmentSample
 
-MORE_EXAMPLES = 3
-"""Examples to record of each of two actions that are confused: of another person they tell much."""
+MIN_EXAMPLES = 5
+"""Examples of an action: fewer say little of how its performances differ."""
+MAX_RATIO = 3
+"""Ratio of the numbers of examples of two actions: above it, the rarer one is hardly learnt."""
+CONFUSED_SHARE = 0.25
+"""Share of wrong answers within a pair of actions from which the pair counts as confused: guessing makes half."""
+CONFUSED_TIMES = 2
+"""Wrong answers within a pair from which it counts as confused: a single one may be chance."""
+ENOUGH_BACKGROUND_S = 60.0
+"""Background (s): with less, false alarms cannot be counted."""
+BACKGROUND = ("idle", "background")
+"""Labels of segments in which none of the actions is done."""
 MANY_FALSE_PER_MIN = 1.0
-"""False alarms in a minute of which people complain."""
+"""False alarms per minute about which people complain."""
 LOW_RECALL = 0.7
-"""Share of an action's performances below which it is said that it is seldom found."""
+"""Share of an action's performances below which it counts as seldom found."""
 FEWEST_DONE = 3
-"""Performances of an action for that: of two a half may be chance."""
+"""Performances of an action for that: half of two may be chance."""
 
 
 @dataclass(frozen=True)
-class SetContents:
-    """What a set holds: the number of examples by action, who is in it, background (s), examples that are doubted."""
+class Contents:
+    """What there is to learn from.
+
+    Attributes:
+        examples: their number, by action.
+        people: who performs them; "" stands for people without a name.
+        background_s: duration of the background (s), in which people do none of the actions.
+        doubted: number of examples that may have a wrong start or end, by action.
+    """
 
     examples: Mapping[str, int]
     people: frozenset[str]
     background_s: float
-    doubted: Mapping[str, int]
+    doubted: Mapping[str, int] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, samples: Sequence[SegmentSample], background_s: float) -> "Contents":
+        """Return the contents of samples; a segment that is labelled as background counts as enough of it."""
+        counts = Counter(sample.label for sample in samples)
+        labelled = sum(counts.pop(label, 0) for label in BACKGROUND)
+        people = frozenset(sample.person for sample in samples)
+        return cls(dict(sorted(counts.items())), people, ENOUGH_BACKGROUND_S if labelled else background_s)
 
 
 def advice(
-    contents: SetContents, answers: Sequence[tuple[str, str]] = (), found: ContinuousScores | None = None
+    contents: Contents, answers: Sequence[tuple[str, str]] = (), found: ContinuousScores | None = None
 ) -> list[str]:
-    """Say what to record or mend next, the most urgent first.
+    """Return sentences about what to record or correct next, the most urgent first.
 
     Args:
-        contents: of the set.
+        contents: of the set or the recordings.
         answers: action done and action answered, for each example left out in a cross-validation.
         found: what was found in whole takes left out.
     """
@@ -49,8 +67,8 @@ def advice(
         *_too_few_actions(contents),
         *_doubted(contents),
         *_confused(contents, answers),
-        *few(contents.examples),
-        *unbalanced(contents.examples),
+        *_few(contents),
+        *_unbalanced(contents),
         *_one_person(contents),
         *_background(contents),
         *(_false_alarms(found) if found is not None else ()),
@@ -58,50 +76,83 @@ def advice(
     ]
 
 
-def _too_few_actions(contents: SetContents) -> Iterator[str]:
+def _too_few_actions(contents: Contents) -> Iterator[str]:
     if len(contents.examples) < 2:
         known = next(iter(contents.examples), None)
         yield (
-            f"The set has examples of only one action, {known}: record at least one more action."
+            f"There are examples of only one action, {known}: record at least one more action."
             if known
-            else "The set has no examples yet: record at least two actions."
+            else "There are no examples yet: record at least two actions."
         )
 
 
-def _doubted(contents: SetContents) -> Iterator[str]:
+def _doubted(contents: Contents) -> Iterator[str]:
     if contents.doubted:
-        named = listed(f"{n} of {label}" for label, n in sorted(contents.doubted.items()))
+        named = _listed(f"{n} of {label}" for label, n in sorted(contents.doubted.items()))
         yield f"Some examples may have a wrong start or end ({named}): check them, and trim or delete the wrong ones."
 
 
-def _confused(contents: SetContents, answers: Sequence[tuple[str, str]]) -> Iterator[str]:
-    """Name each pair of actions that are taken for one another, the worst first."""
+def _confused(contents: Contents, answers: Sequence[tuple[str, str]]) -> Iterator[str]:
+    """Name each pair of actions of which one is answered for the other, the worst first."""
     times = Counter(answers)
-    mistaken: Counter[tuple[str, str]] = Counter()
-    for (done, answered), n in times.items():
-        if done != answered:
-            mistaken[min(done, answered), max(done, answered)] += n
-    another = "another person" if len(contents.people) < 2 else "other people"
+    pairs = {tuple(sorted(answer)) for answer in times if answer[0] != answer[1]}
+    mistaken = {(a, b): times[a, b] + times[b, a] for a, b in pairs}
+    others = "another person" if len(contents.people) < 2 else "other people"
     for (a, b), wrong in sorted(mistaken.items(), key=lambda item: (-item[1], item[0])):
-        tested = wrong + times[a, a] + times[b, b]
-        if wrong >= CONFUSED_TIMES and wrong >= CONFUSED_SHARE * tested:
+        if wrong >= CONFUSED_TIMES and wrong >= CONFUSED_SHARE * (wrong + times[a, a] + times[b, b]):
             yield (
-                f"The model confuses {a} and {b} (in {wrong} of {tested} test examples): record {MORE_EXAMPLES} more "
-                f"examples of each by {another}, or perform the two actions more differently."
+                f"The model confuses {a} and {b}: in a test on examples left out of the training, "
+                f"{_mistakes(a, b, times)}. Record {MIN_EXAMPLES} more examples of each by {others}, or perform the "
+                "two actions more differently."
             )
 
 
-def _one_person(contents: SetContents) -> Iterator[str]:
-    if len(contents.people) == 1:
-        who = next(iter(contents.people)) or "one person, without a name"
+def _mistakes(a: str, b: str, times: Mapping[tuple[str, str], int]) -> str:
+    tested = {label: sum(n for (done, _), n in times.items() if done == label) for label in (a, b)}
+    return _listed(
+        f"{done} was taken for {answered} in {times[done, answered]} of {tested[done]}"
+        for done, answered in ((a, b), (b, a))
+        if times[done, answered]
+    )
+
+
+def _few(contents: Contents) -> Iterator[str]:
+    few = {label: n for label, n in contents.examples.items() if n < MIN_EXAMPLES}
+    if few:
+        named = _listed(f"{label} has {n} ({MIN_EXAMPLES - n} more needed)" for label, n in few.items())
+        yield f"Few examples: {named}. Record at least {MIN_EXAMPLES} examples of each action."
+
+
+def _unbalanced(contents: Contents) -> Iterator[str]:
+    actions = contents.examples
+    largest = max(actions, key=lambda label: actions[label], default="")
+    rare = {label: n for label, n in actions.items() if MAX_RATIO * n < actions[largest]}
+    if rare:
+        named = _listed(f"{label} ({n})" for label, n in rare.items())
+        needed = ceil(actions[largest] / MAX_RATIO)
+        more = _listed(f"{needed - n} more of {label}" for label, n in rare.items())
+        yield (
+            f"Unbalanced examples: {largest} has {actions[largest]} examples, more than {MAX_RATIO} times as many as "
+            f"{named}. Record {more}."
+        )
+
+
+def _one_person(contents: Contents) -> Iterator[str]:
+    if contents.people == {""}:
+        yield (
+            "No example names the person who performs it, so the model cannot learn how people differ: record at least "
+            "two people, each under a name."
+        )
+    elif len(contents.people) == 1:
+        who = next(iter(contents.people))
         yield f"All examples are of {who}: record {MIN_EXAMPLES} examples of each action by a second person."
 
 
-def _background(contents: SetContents) -> Iterator[str]:
+def _background(contents: Contents) -> Iterator[str]:
     lacking_s = ENOUGH_BACKGROUND_S - contents.background_s
-    if lacking_s > 0:
+    if contents.examples and lacking_s > 0:
         yield (
-            f"The set has only {contents.background_s:.0f} s of background, that is, of people who do none of the "
+            f"There are only {contents.background_s:.0f} s of background, that is, of people who do none of the "
             f"actions: record at least {lacking_s:.0f} s more."
         )
 
@@ -124,3 +175,9 @@ def _seldom_found(found: ContinuousScores) -> Iterator[str]:
                 f"The test found only {score.right} of {score.truths} performances of {label}: record more examples "
                 f"of {label}, with a second of rest before and after each."
             )
+
+
+def _listed(parts: Iterator[str]) -> str:
+    """Join one or more parts in words: a, b and c."""
+    *others, last = parts
+    return f"{', '.join(others)} and {last}" if others else last

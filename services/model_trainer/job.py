@@ -20,7 +20,7 @@ from actum.installing import adding
 from actum.recording import Recording, RecordingError
 from actum.runtime.parent import end_with_parent
 from actum_examples.take import read_take
-from actum_model_trainer.advice import SetContents, advice
+from actum_model_trainer.advice import Contents, advice
 from actum_model_trainer.continuous.watching import NoSpotterError
 from actum_model_trainer.samples import Samples, samples_from, select
 from actum_model_trainer.training import TrainingError, train_to_spot
@@ -137,11 +137,11 @@ def _snapshot(told: Told) -> Path:
     return snapshot
 
 
-def _contents(told: Told, model: Model | None) -> SetContents:
+def _contents(told: Told, model: Model | None) -> Contents:
     """Return what the set holds, as it was when the job began."""
     takes = [read_take(Recording(path)) for path in sorted((told.folder / "takes").glob("*.mcap"))]
     background_s = sum(take.background_s for take in takes)
-    return SetContents(
+    return Contents(
         dict(sorted(Counter(label for take in takes for label in take.labels).items())),
         frozenset(take.person for take in takes if take.examples),
         background_s if model is None else model.background_s or 0.0,

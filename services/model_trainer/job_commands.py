@@ -7,13 +7,12 @@ from typing import Any
 
 from actum.commands import Command, Refusal
 from actum.messages import JobState
-from actum_model_trainer.warnings import counted
 from model_trainer.changes import Changes, on_disk
 from model_trainer.job import MODEL, TAKE
 from model_trainer.job_process import Ended, JobRequest, RunningJob
 from model_trainer.job_store import Job, JobStore
 from model_trainer.model_store import ModelStore
-from model_trainer.replies import Uploaded
+from model_trainer.replies import Uploaded, counted
 from model_trainer.requests import ImportVideo, OfJob, OfSet, Train, Upload
 from model_trainer.set_store import SetStore
 from model_trainer.upload_store import UploadStore

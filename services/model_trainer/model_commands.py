@@ -3,10 +3,9 @@
 from typing import Any
 
 from actum.commands import Command, NoFields, Refusal
-from actum_model_trainer.warnings import counted
 from model_trainer.changes import Changes
 from model_trainer.model_store import ModelStore
-from model_trainer.replies import Comparison, Done, ModelListed
+from model_trainer.replies import Comparison, Done, ModelListed, counted
 from model_trainer.requests import Compare, OfModel
 
 

@@ -242,3 +242,8 @@ class Comparison(Reply):
     """The actions that only the other tells apart."""
     sentence: str
     """What the difference comes to."""
+
+
+def counted(number: int, one: str, several: str = "") -> str:
+    """Return a number with its noun: 1 example, 2 examples."""
+    return f"{number} {one if number == 1 else several or f'{one}s'}"

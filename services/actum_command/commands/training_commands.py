@@ -18,12 +18,12 @@ from actum_command.commands.terminal import console, fail, refuse_ending, refuse
 from actum_command.preset_settings import PresetError, preset_named
 from actum_command.search_settings import segmentation_of
 from actum_command.service_settings import Given, flag_of
+from actum_model_trainer.advice import Contents, advice
 from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import Evaluation, evaluate
 from actum_model_trainer.report import report
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import TrainingError, train_to_spot
-from actum_model_trainer.warnings import warnings_of
 from som_classifier.attention import ATTENTIONS
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
@@ -83,8 +83,9 @@ def train_command(
         f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
         f"{time.monotonic() - began_s:.1f} s, written to {output}"
     )
-    for warning in warnings_of(samples.usable, model.metadata.held_out_answers, model.background_s or 0.0):
-        say(warning, style="yellow")
+    contents = Contents.of(samples.usable, model.background_s or 0.0)
+    for sentence in advice(contents, model.metadata.held_out_answers):
+        say(sentence, style="yellow")
 
 
 @with_search_flags

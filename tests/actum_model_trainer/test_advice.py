@@ -1,12 +1,12 @@
-"""What training examples cannot teach is told in words, with what to record next."""
+"""What examples cannot teach is said in sentences, with what to record next."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pytest
 
+from actum_model_trainer.advice import Contents, advice
 from actum_model_trainer.samples import SegmentSample
-from actum_model_trainer.warnings import warnings_of
 
 NOTHING = np.zeros(0)
 ENOUGH = {"push": 6, "pull": 6, "idle": 6}
@@ -21,53 +21,60 @@ def examples(counts: Mapping[str, int], people: tuple[str, ...] = ("anna", "ben"
     ]
 
 
+def advised(samples: Sequence[SegmentSample], answers: Sequence[tuple[str, str]] = ()) -> list[str]:
+    return advice(Contents.of(samples, 0.0), answers)
+
+
 def test_enough_examples_by_two_people_with_background_need_no_warning() -> None:
-    assert warnings_of(examples(ENOUGH), [("push", "push"), ("pull", "pull")] * 6) == []
+    assert advised(examples(ENOUGH), [("push", "push"), ("pull", "pull")] * 6) == []
 
 
-def test_no_example_is_nothing_to_warn_of() -> None:
-    assert warnings_of([], []) == []
+def test_two_actions_are_the_fewest() -> None:
+    assert advised([]) == ["There are no examples yet: record at least two actions."]
+    first, *_ = advised(examples({"push": 6, "idle": 6}))
+    assert first == "There are examples of only one action, push: record at least one more action."
 
 
 def test_one_person_says_nothing_of_others() -> None:
-    assert warnings_of(examples(ENOUGH, people=("anna",)), []) == [
-        "All examples are of one person, anna, so the model cannot learn how people differ. Record a second person."
+    assert advised(examples(ENOUGH, people=("anna",))) == [
+        "All examples are of anna: record 5 examples of each action by a second person."
     ]
 
 
 def test_people_that_are_not_named_may_be_one() -> None:
-    (said,) = warnings_of(examples(ENOUGH, people=("",)), [])
-    assert said.startswith("No recording names a person") and "--person" in said
+    (said,) = advised(examples(ENOUGH, people=("",)))
+    assert said.startswith("No example names the person who performs it")
 
 
 def test_few_examples_are_named_with_how_many_more() -> None:
-    assert warnings_of(examples({"push": 2, "lift": 4, "pull": 5, "idle": 5}), []) == [
+    assert advised(examples({"push": 2, "lift": 4, "pull": 5, "idle": 5})) == [
         "Few examples: lift has 4 (1 more needed) and push has 2 (3 more needed). Record at least 5 examples of each "
         "action."
     ]
 
 
 def test_actions_may_have_three_times_as_many_examples_as_others() -> None:
-    assert warnings_of(examples({"push": 18, "pull": 6, "idle": 6}), []) == []
+    assert advised(examples({"push": 18, "pull": 6, "idle": 6})) == []
 
 
 def test_more_than_three_times_as_many_are_unbalanced() -> None:
-    assert warnings_of(examples({"push": 20, "pull": 6, "lift": 5, "turn": 7, "idle": 5}), []) == [
+    assert advised(examples({"push": 20, "pull": 6, "lift": 5, "turn": 7, "idle": 5})) == [
         "Unbalanced examples: push has 20 examples, more than 3 times as many as lift (5) and pull (6). Record 2 more "
         "of lift and 1 more of pull."
     ]
 
 
 def test_background_may_be_as_much_as_there_is() -> None:
-    assert warnings_of(examples({"push": 6, "pull": 6, "idle": 100}), []) == []
+    assert advised(examples({"push": 6, "pull": 6, "idle": 100, "background": 2})) == []
 
 
 def test_without_background_what_is_none_of_the_actions_is_a_guess() -> None:
-    (said,) = warnings_of(examples({"push": 6, "pull": 6}), [])
-    assert said.startswith(
-        "The recordings contain less than a minute of background (people who do none of the actions), so the model "
-    )
-    assert warnings_of(examples({"push": 6, "pull": 6, "background": 6}), []) == []
+    (said,) = advised(examples({"push": 6, "pull": 6}))
+    assert said.startswith("There are only 0 s of background") and said.endswith("record at least 60 s more.")
+    (said,) = advice(Contents.of(examples({"push": 6, "pull": 6}), 22.0))
+    assert said.startswith("There are only 22 s of background") and said.endswith("record at least 38 s more.")
+    assert advice(Contents.of(examples({"push": 6, "pull": 6}), 60.0)) == []
+    assert advised(examples({"push": 6, "pull": 6, "background": 6})) == []
 
 
 @pytest.mark.parametrize(
@@ -76,22 +83,21 @@ def test_without_background_what_is_none_of_the_actions_is_a_guess() -> None:
         (
             [("push", "push")] * 4 + [("push", "pull")] * 2 + [("pull", "pull")] * 2,
             "The model confuses pull and push: in a test on examples left out of the training, push was taken for "
-            "pull in 2 of 6. Record 5 more examples of push, also by new people. ",
+            "pull in 2 of 6. Record 5 more examples of each by other people, ",
         ),
         (
             [("push", "push")] * 3 + [("push", "pull")] + [("pull", "pull")] * 3 + [("pull", "push")],
             "The model confuses pull and push: in a test on examples left out of the training, pull was taken for "
-            "push in 1 of 4 and push was taken for pull in 1 of 4. Record 5 more examples of pull and 5 more examples "
-            "of push, ",
+            "push in 1 of 4 and push was taken for pull in 1 of 4. Record 5 more examples of each by other people, ",
         ),
     ],
 )
 def test_two_actions_that_are_mixed_up_are_named_with_what_to_record(
     held_out: list[tuple[str, str]], said: str
 ) -> None:
-    (warning,) = warnings_of(examples(ENOUGH), held_out)
+    (warning,) = advised(examples(ENOUGH), held_out)
     assert warning.startswith(said)
-    assert warning.endswith("perform the actions more differently, or give both the same label.")
+    assert warning.endswith("or perform the two actions more differently.")
 
 
 @pytest.mark.parametrize(
@@ -104,12 +110,12 @@ def test_two_actions_that_are_mixed_up_are_named_with_what_to_record(
     ids=["a single mistake", "less than a quarter", "two mistakes of different kinds"],
 )
 def test_now_and_then_a_mistake_is_no_warning(held_out: list[tuple[str, str]]) -> None:
-    assert warnings_of(examples(ENOUGH), held_out) == []
+    assert advised(examples(ENOUGH), held_out) == []
 
 
 def test_the_pair_that_is_mixed_up_most_comes_first() -> None:
     held_out = [("push", "pull")] * 2 + [("lift", "turn")] * 3
-    first, second = warnings_of(examples(ENOUGH), held_out)
+    first, second = advised(examples(ENOUGH), held_out)
     assert first.startswith("The model confuses lift and turn") and second.startswith(
         "The model confuses pull and push"
     )
