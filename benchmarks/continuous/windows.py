@@ -46,8 +46,7 @@ class Window:
 def durations_s(streams: Sequence[Stream]) -> NDArray[np.float64]:
     """Return the windows' durations (DURATIONS,) in seconds."""
     lengths_s = [(truth.end_ns - truth.start_ns) / SECOND_NS for stream in streams for truth in stream.truths]
-    quantiles: NDArray[np.float64] = np.quantile(lengths_s, np.linspace(*QUANTILES, DURATIONS))
-    return quantiles
+    return np.asarray(np.quantile(lengths_s, np.linspace(*QUANTILES, DURATIONS)), dtype=np.float64)
 
 
 def sliding(stream: Stream, lengths_s: NDArray[np.float64]) -> tuple[Indices, Indices]:

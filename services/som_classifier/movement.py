@@ -35,4 +35,5 @@ def _averaged(stamps_ns: NDArray[np.int64], postures: Array) -> Array:
     first = np.unique((stamps_ns - stamps_ns[0]) // AVERAGED_NS, return_index=True)[1]
     known = np.add.reduceat(~np.isnan(postures), first, axis=0, dtype=np.float64)
     sums: Array = np.add.reduceat(np.nan_to_num(postures), first, axis=0)
-    return np.divide(sums, known, out=np.full_like(sums, np.nan), where=known > 0)
+    means: Array = np.divide(sums, known, out=np.full_like(sums, np.nan), where=known > 0)
+    return means
