@@ -37,8 +37,9 @@ def bound_socket(host: str, port: int | None) -> socket.socket:
             return socket_at(host, candidate)
         except OSError as error:
             trouble = error
+    tried = f"port {port}" if port is not None else f"ports {PORTS.start} to {PORTS.stop - 1}"
     raise SettingsError(
-        f"the page cannot be served at {host}, port {port or PORTS.start} ({trouble}): choose another --page-port"
+        f"the web page cannot be served at {host}, {tried} ({trouble}): choose another --page-port or --page-host"
     )
 
 

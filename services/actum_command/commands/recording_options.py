@@ -41,7 +41,11 @@ def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[R
     except RecordingError as error:
         fail(str(error))
     if not recordings:
-        fail(f"there are no recordings of person {person or '(any)'} in {', '.join(map(str, files)) or 'nothing'}")
+        whose = f" of person {person}" if person else ""
+        hint = "" if with_excluded else ", or add --all to use recordings marked as excluded"
+        fail(
+            f"there are no recordings{whose} in {', '.join(map(str, files))}: give other *.mcap files or folders{hint}"
+        )
     return recordings
 
 
@@ -82,4 +86,4 @@ def in_ns(seconds: float) -> int:
     try:
         return round(seconds * SECOND_NS)
     except (ValueError, OverflowError):
-        fail(f"{seconds:g} is not a time: give seconds such as 12.3")
+        fail(f"{seconds:g} is not a time: give a number of seconds such as 12.3")
