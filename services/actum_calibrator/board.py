@@ -88,10 +88,10 @@ class Board:
                 f"a board with markers of {self.marker_m * 1000:g} mm in squares of {self.square_m * 1000:g} mm cannot "
                 "be made: the markers have to be smaller than the squares, and the squares at most 1000 mm wide"
             )
-        if (needed := self.columns * self.rows // 2) > (there := len(dictionary_of(self.family).bytesList)):
+        if (needed := self.columns * self.rows // 2) > (available := len(dictionary_of(self.family).bytesList)):
             raise PatternError(
-                f"the board needs {needed} markers, but the marker family {self.family} has only {there}: use fewer "
-                "squares, or a family with more markers"
+                f"the board needs {needed} markers, but the marker family {self.family} has only {available}: use "
+                "fewer squares, or a family with more markers"
             )
 
     @property

@@ -52,13 +52,16 @@ def grey_from_message(image: Image, name: str) -> Pixels:
         pixels = decode_grey(image.data, name)
         if pixels.shape != (image.height, image.width):
             height, width = pixels.shape
-            stated = f"{image.width}x{image.height}"
-            raise UnusablePictureError(name, f"the JPEG is {width}x{height}, but its message says {stated}")
+            raise UnusablePictureError(
+                name, f"the JPEG is {width}x{height}, but its message says {image.width}x{image.height}"
+            )
         return pixels
     if image.format != "bgr8" or len(image.data) != image.width * image.height * 3:
-        expected = f"jpeg, or bgr8 with {image.width * image.height * 3} bytes for {image.width}x{image.height} pixels"
+        expected_bytes = image.width * image.height * 3
         raise UnusablePictureError(
-            name, f"the image has the format {image.format} and {len(image.data)} bytes; expected {expected}"
+            name,
+            f"the image has the format {image.format} and {len(image.data)} bytes; expected the format jpeg, or bgr8 "
+            f"with {expected_bytes} bytes",
         )
     colours = np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
     return cv2.cvtColor(colours, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)

@@ -99,7 +99,7 @@ def _grid(tile: Tile, sheet_size: SheetSize) -> tuple[int, int]:
         largest = int((width - 2 * EDGE_MM) / (1 + 2 * WHITE_SHARE))
         raise PatternError(
             f"markers of {tile.size_mm:g} mm cannot be printed on {sheet_size}: use markers of {SMALLEST_MM:g} to "
-            f"{largest} mm, which leaves room for a white margin around each"
+            f"{largest} mm, which leaves room for a white margin around each marker"
         )
     return columns, rows
 

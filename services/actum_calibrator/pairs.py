@@ -40,14 +40,14 @@ def pair_files(paths: Sequence[Path]) -> list[tuple[str, Path, Path]]:
         files = [file for path in paths for file in (pictures_in(path) if path.is_dir() else [path])]
         if strays := [file.name for file in files if not file.stem.endswith(SUFFIXES)]:
             raise PairingError(
-                f"the picture {strays[0]} is not named NAME_a or NAME_b: rename it (_a for the camera that sees the "
-                "markers, _b for the camera that sees the people), or give one folder per camera"
+                f"the picture {strays[0]} is not named NAME_a or NAME_b: rename this file (_a for the camera that sees "
+                "the markers, _b for the camera that sees the people), or give one folder per camera"
             )
         sides = [_by_name([f for f in files if f.stem.endswith(end)], lambda f: f.stem[:-2]) for end in SUFFIXES]
     if alone := sorted(set(sides[0]) ^ set(sides[1])):
         raise PairingError(
             f"only one of the two cameras has a picture named {', '.join(alone)}: add the picture of the other camera, "
-            "or remove this one"
+            "or remove this picture"
         )
     return [(name, sides[0][name], sides[1][name]) for name in sorted(sides[0])]
 

@@ -47,7 +47,8 @@ def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
             f"{flag_of(name)} is a setting of {service_of(name)}, which --source {source} does not start{remedy}"
         )
     if path is not None and source in FILES_ELSEWHERE:
-        raise SettingsError(f"--source {source} takes no file: to play {path}, {FILES_ELSEWHERE[source]}")
+        remedy = FILES_ELSEWHERE[source]
+        raise SettingsError(f"--source {source} takes no file: to play {path}, {remedy}")
     return source
 
 

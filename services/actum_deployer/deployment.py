@@ -178,9 +178,9 @@ class Deployment:
                 f"{folder} contains no {FILE}: create the deployment with 'actum deploy init'"
             ) from None
         except (OSError, ValidationError, SettingsError, InvalidKeyError) as error:
-            told = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
+            problem = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
             raise SettingsError(
-                f"{folder / FILE} cannot be used ({told}): correct this file, because it lists the revoked "
+                f"{folder / FILE} cannot be used ({problem}): correct this file, because it lists the revoked "
                 "credentials. If you cannot, delete this file and authority/, run 'actum deploy init' and copy all "
                 "folders to their machines again"
             ) from None
@@ -202,7 +202,7 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
     named = sensors.split(",") if sensors is not None else [f"kinect{number}" for number in range(len(cameras))]
     if not cameras or not computing or len({host.name for host in hosts}) < len(hosts):
         raise SettingsError(
-            f"hosts: {text!r}: give at least one camera=ADDRESS and one compute=ADDRESS, and each host another name"
+            f"hosts: {text!r}: give at least one camera=ADDRESS and one compute=ADDRESS, with different names"
         )
     if len(named) != len(cameras) or len(set(named)) < len(named):
         raise SettingsError(f"sensors: {sensors!r}: give {len(cameras)} different sensor names, one per camera")
@@ -246,7 +246,7 @@ def _host(text: str) -> Host:
     address = address.removeprefix("[").removesuffix("]")
     if not _can_be_reached(address):
         raise SettingsError(
-            f"hosts: {text!r}: {address!r} is not an address of a machine: use a host name or an IP address"
+            f"hosts: {text!r}: {address!r} is not the address of a machine: use a host name or an IP address"
         )
     return Host(name, address, int(own_port))
 

@@ -56,8 +56,9 @@ def move(take: Take, segment: MarkedSegment, start_ns: int, end_ns: int) -> None
         if moved.mirrored != other.mirrored and moved.shares_frames(other):
             mirrored, plain = (moved, other) if moved.mirrored else (other, moved)
             raise EditError(
-                f"the segments {mirrored.segment_id} and {plain.segment_id} cannot share frames, because only "
-                f"{mirrored.segment_id} is mirrored: move the segments apart, or mirror one of them first"
+                f"the segments {mirrored.segment_id} and {plain.segment_id} cannot share frames, because left "
+                f"and right are exchanged only in {mirrored.segment_id}: move the segments apart, or mirror one of "
+                "the two first"
             )
     _mend(take, [(segment, moved)])
 
@@ -135,11 +136,11 @@ def _refuse_bounds(take: Take, segment: MarkedSegment, others: Iterable[MarkedSe
 def _refuse_overlap(take: Take, segment: MarkedSegment, others: Iterable[MarkedSegment]) -> None:
     for other in others:
         if segment.overlaps(other):
-            there, wanted = (
+            other_span, span = (
                 " to ".join(_seconds(take, ns) for ns in each.bounds_ns or ()) for each in (other, segment)
             )
             raise EditError(
-                f"the segment would last from {wanted} s and overlap segment {other.segment_id} ({there} s): first "
+                f"the segment would last from {span} s and overlap segment {other.segment_id} ({other_span} s): first "
                 f"move or delete the segment {other.segment_id}"
             )
 

@@ -107,7 +107,7 @@ def test_takes_become_one_recording_each(tmp_path: Path) -> None:
 
 
 def test_what_is_no_take_is_named(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match="give the data set's folder"):
+    with pytest.raises(DatasetError, match="give the folder of the data set"):
         take_files(tmp_path)
     path = take(tmp_path)
     path.write_text(path.read_text().replace("Bowl_x", "Pot_x"))

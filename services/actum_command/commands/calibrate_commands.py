@@ -58,7 +58,7 @@ def intrinsics(
     service reads (--calibration), and beside it a picture of where the board was seen.
     """
     if live == bool(images):
-        fail("give either pictures of the board, or --live to take them now")
+        fail("give either pictures of the board, or --live to take the pictures now")
     files = _files(images or [])
     picture = _coverage_picture_of(output, files)
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))

@@ -219,8 +219,8 @@ def _found(file: Path, name: str) -> tuple[Take, MarkedSegment]:
     if chosen_one is None:
         near = get_close_matches(name, [each.segment_id for each in take.segments], n=1)
         all_there = f"the recording has segments 1 to {len(numbers)}" if numbers else "the recording has no segments"
-        there = f"did you mean {near[0]}?" if near else all_there
-        fail(f"there is no segment {name!r} in {file}: {there}")
+        hint = f"did you mean {near[0]}?" if near else all_there
+        fail(f"there is no segment {name!r} in {file}: {hint}")
     if name not in named and len(named) > 1:
         fail(f"{len(named)} segments have the id {name!r}: give the number of one of them, {' or '.join(named)}")
     return take, chosen_one
@@ -245,7 +245,7 @@ def _moved_to(text: str | None, now_ns: int | None, first_ns: int) -> int:
         offset_ns = round(float(text) * SECOND_NS)
     except (ValueError, OverflowError):
         fail(
-            f"{text!r} is not a time: give seconds from the start of the recording, such as 12.3, or a shift of the "
-            "present time, such as +0.2 or -0.1"
+            f"{text!r} is not a time: give seconds from the start of the recording, such as 12.3, or how far to shift "
+            "the current time, such as +0.2 or -0.1"
         )
     return ((now_ns or 0) if text[:1] in "+-" else first_ns) + offset_ns

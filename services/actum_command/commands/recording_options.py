@@ -41,11 +41,10 @@ def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[R
     except RecordingError as error:
         fail(str(error))
     if not recordings:
-        whose = f" of person {person}" if person else ""
+        of_person = f" of person {person}" if person else ""
         hint = "" if with_excluded else ", or add --all to use recordings marked as excluded"
-        fail(
-            f"there are no recordings{whose} in {', '.join(map(str, files))}: give other *.mcap files or folders{hint}"
-        )
+        places = ", ".join(map(str, files))
+        fail(f"there are no recordings{of_person} in {places}: give other *.mcap files or folders{hint}")
     return recordings
 
 

@@ -61,8 +61,8 @@ def connect(wait_s: float = 5.0) -> Client:
     try:
         return Client(here, wait_s)
     except RouterUnreachableError as error:
-        found = obstacle(here)
-        fail(f"no router answers at {here.connect}: {found}" if found else str(error))
+        reason = obstacle(here)
+        fail(f"no router answers at {here.connect}: {reason}" if reason else str(error))
     except SettingsError as error:
         fail(str(error))
 
