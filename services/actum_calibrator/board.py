@@ -56,7 +56,7 @@ def black_cells(family: str, marker_id: int) -> Mask:
     dictionary = dictionary_of(family)
     count = len(dictionary.bytesList)
     if not 0 <= marker_id < count:
-        raise PatternError(f"{family} has no marker {marker_id}: use ids from 0 to {count - 1}")
+        raise PatternError(f"the marker family {family} has no marker {marker_id}: use ids from 0 to {count - 1}")
     side = dictionary.markerSize + 2
     black: Mask = np.asarray(cv2.aruco.generateImageMarker(dictionary, marker_id, side)) == 0
     return black
@@ -85,13 +85,13 @@ class Board:
             )
         if not 0 < self.marker_m < self.square_m <= LARGEST_SQUARE_M:
             raise PatternError(
-                f"markers of {self.marker_m * 1000:g} mm do not fit into squares of {self.square_m * 1000:g} mm: a "
-                "marker has to be smaller than its square, and a square at most 1 m"
+                f"a board with markers of {self.marker_m * 1000:g} mm in squares of {self.square_m * 1000:g} mm cannot "
+                "be made: the markers have to be smaller than the squares, and the squares at most 1000 mm wide"
             )
-        if (needed := self.columns * self.rows // 2) > (there := len(dictionary_of(self.family).bytesList)):
+        if (needed := self.columns * self.rows // 2) > (available := len(dictionary_of(self.family).bytesList)):
             raise PatternError(
-                f"the board needs {needed} markers, but {self.family} has only {there}: use fewer squares or a "
-                "larger family"
+                f"the board needs {needed} markers, but the marker family {self.family} has only {available}: use "
+                "fewer squares, or a family with more markers"
             )
 
     @property

@@ -69,7 +69,8 @@ class BoardFinder:
         blur = blur_px(pixels, self._board, ids, corners_px)
         if blur > (limit_px := _most_blur_px(pixels)):
             raise BlurredError(
-                name, f"the picture is blurred by {blur:.1f} px, more than {limit_px:.1f} px: hold the board still"
+                name,
+                f"the picture is blurred by {blur:.1f} px; at most {limit_px:.1f} px are usable: hold the board still",
             )
         return View(name, (width, height), self._board, ids, corners_px, blur)
 
@@ -97,12 +98,12 @@ def _unfound(pixels: Pixels, name: str, corners: int) -> UnusablePictureError:
     """Return the error that tells why the board was not found."""
     blur = image_blur_px(pixels)
     if blur is None:
-        return UnusablePictureError(name, "too dark, too bright or empty")
+        return UnusablePictureError(name, "the picture is too dark, too bright or empty")
     if blur > BLINDING_SHARE * _most_blur_px(pixels):
-        return BlurredError(name, f"blurred by about {blur:.1f} px, too much to find the board")
+        return BlurredError(name, f"the picture is blurred by about {blur:.1f} px, too much to find the board")
     if corners == 0:
-        return UnusablePictureError(name, "no board found")
-    return UnusablePictureError(name, f"only {corners} corners of the board found")
+        return UnusablePictureError(name, "no board was found in the picture")
+    return UnusablePictureError(name, f"only {corners} corners of the board were found in the picture")
 
 
 def _most_blur_px(pixels: Pixels) -> float:

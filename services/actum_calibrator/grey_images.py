@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Pixels
-from actum.jpeg import has_too_many_scans
+from actum.jpeg import MOST_SCANS, has_too_many_scans
 from actum.messages import Image
 
 LARGEST_PIXELS = 10_000 * 10_000  # 100 MB of grey levels; no camera has more
@@ -51,10 +51,18 @@ def grey_from_message(image: Image, name: str) -> Pixels:
     if image.format == "jpeg":
         pixels = decode_grey(image.data, name)
         if pixels.shape != (image.height, image.width):
-            raise UnusablePictureError(name, "the JPEG has another size than its message states")
+            height, width = pixels.shape
+            raise UnusablePictureError(
+                name, f"the JPEG is {width}x{height}, but its message says {image.width}x{image.height}"
+            )
         return pixels
     if image.format != "bgr8" or len(image.data) != image.width * image.height * 3:
-        raise UnusablePictureError(name, f"the data are not a complete colour image of {image.width}x{image.height}")
+        expected_bytes = image.width * image.height * 3
+        raise UnusablePictureError(
+            name,
+            f"the image has the format {image.format} and {len(image.data)} bytes; expected the format jpeg, or bgr8 "
+            f"with {expected_bytes} bytes",
+        )
     colours = np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
     return cv2.cvtColor(colours, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
 
@@ -70,14 +78,16 @@ def decode_grey(data: bytes, name: str) -> Pixels:
     except (ValueError, struct.error):
         width, height = -1, -1
     if width <= 0 or height <= 0:
-        raise UnusablePictureError(name, "the file is not an image")
+        raise UnusablePictureError(name, "the file is not an image: use a picture file such as .png or .jpg")
     if width * height > LARGEST_PIXELS:
-        raise UnusablePictureError(name, f"the image is too large ({width}x{height}; at most {LARGEST_PIXELS} pixels)")
+        raise UnusablePictureError(name, f"the image is {width}x{height}; at most {LARGEST_PIXELS} pixels are allowed")
     if has_too_many_scans(data):
-        raise UnusablePictureError(name, "the JPEG has too many scans: save it again as a baseline JPEG")
+        raise UnusablePictureError(
+            name, f"the JPEG has more than {MOST_SCANS} scans: save the picture again as a baseline JPEG"
+        )
     pixels = _decoded(data)
     if pixels is None:
-        raise UnusablePictureError(name, "the image is damaged")
+        raise UnusablePictureError(name, "the image is damaged: take the picture again")
     return pixels.astype(np.uint8, copy=False)
 
 

@@ -98,8 +98,8 @@ def _grid(tile: Tile, sheet_size: SheetSize) -> tuple[int, int]:
     if columns * rows == 0:
         largest = int((width - 2 * EDGE_MM) / (1 + 2 * WHITE_SHARE))
         raise PatternError(
-            f"markers of {tile.size_mm:g} mm do not fit on {sheet_size}: use {SMALLEST_MM:g} to {largest} mm, "
-            "which leaves a white margin around them"
+            f"markers of {tile.size_mm:g} mm cannot be printed on {sheet_size}: use markers of {SMALLEST_MM:g} to "
+            f"{largest} mm, which leaves room for a white margin around each marker"
         )
     return columns, rows
 

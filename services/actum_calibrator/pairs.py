@@ -40,12 +40,14 @@ def pair_files(paths: Sequence[Path]) -> list[tuple[str, Path, Path]]:
         files = [file for path in paths for file in (pictures_in(path) if path.is_dir() else [path])]
         if strays := [file.name for file in files if not file.stem.endswith(SUFFIXES)]:
             raise PairingError(
-                f"the name {strays[0]} does not end in _a or _b: rename it, or give one folder per camera"
+                f"the picture {strays[0]} is not named NAME_a or NAME_b: rename this file (_a for the camera that sees "
+                "the markers, _b for the camera that sees the people), or give one folder per camera"
             )
         sides = [_by_name([f for f in files if f.stem.endswith(end)], lambda f: f.stem[:-2]) for end in SUFFIXES]
     if alone := sorted(set(sides[0]) ^ set(sides[1])):
         raise PairingError(
-            f"one of two pictures is missing for {', '.join(alone)}: add it, or remove the picture of the other camera"
+            f"only one of the two cameras has a picture named {', '.join(alone)}: add the picture of the other camera, "
+            "or remove this picture"
         )
     return [(name, sides[0][name], sides[1][name]) for name in sorted(sides[0])]
 
@@ -59,6 +61,6 @@ def _by_name(files: Sequence[Path], name_of: Callable[[Path], str]) -> dict[str,
     named: dict[str, Path] = {}
     for file in files:
         if name_of(file) in named:
-            raise PairingError(f"two pictures are named {name_of(file)}: keep one of them")
+            raise PairingError(f"two pictures of the same camera are named {name_of(file)}: keep only one of the two")
         named[name_of(file)] = file
     return named

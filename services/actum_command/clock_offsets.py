@@ -44,6 +44,8 @@ def remarks(found: dict[str, ClockOffset]) -> Iterator[str]:
             sharing[round(each.ahead_s / TOLD_S)].append(host)
     for hosts in sharing.values():
         each = found[hosts[0]]
-        apart = f"{abs(each.ahead_s):.2f} s {'ahead of' if each.ahead_s > 0 else 'behind'} this one's"
-        clock = f"the clock of {', '.join(sorted(hosts))} is {apart}, ± {each.uncertainty_s:.3f} s"
-        yield f"{clock}: recognition is not affected; for equal times in the logs, run NTP on both hosts"
+        yield (
+            f"the clock of {', '.join(sorted(hosts))} is {abs(each.ahead_s):.2f} s (± {each.uncertainty_s:.3f} s) "
+            f"{'ahead of' if each.ahead_s > 0 else 'behind'} the clock of this host. Recognition is not affected; to "
+            "get equal times in the logs, run NTP on all these hosts"
+        )

@@ -5,7 +5,7 @@ from typing import Protocol
 
 from actum_command.heard import Heard
 
-ROLE = "set ACTUM_CREDENTIALS to the folder of a role that may read, such as viewer"
+ROLE = "set ACTUM_CREDENTIALS to the credentials folder of a role that may read messages, such as viewer"
 """What to do."""
 
 
@@ -27,14 +27,14 @@ def everything_denied(heard: Heard, client: Asking, expected: Iterable[str]) -> 
         return None
     if any(client.offers(service) for service in expected):
         return (
-            "services run, but the router's access control denies this program permission to read their messages: "
+            "services run, but the router's access control denies this program permission to read what they publish: "
             f"{ROLE}"
         )
     if client.router_tells():
         return None
     return (
-        "the router accepts this program but answers no query: its access control denies this program all "
-        f"reading, or no service runs. If services should run, {ROLE}"
+        "the router lets this program connect but answers none of its queries: either no service runs, or the router's "
+        f"access control denies this program permission to read anything. If services should be running, {ROLE}"
     )
 
 
@@ -47,6 +47,6 @@ def partly_denied(heard: Heard) -> Iterator[str]:
             yield f"services run, but the router's access control denies this program permission to read {what}: {ROLE}"
     if heard.tokens and not heard.statuses:
         yield (
-            "services run, but no status arrives: either all services hang (restart them), or the router's access "
-            f"control denies this program permission to read their status ({ROLE})"
+            "services run, but none of their status messages arrives. Either all services hang: restart the services. "
+            f"Or the router's access control denies this program permission to read status messages: {ROLE}"
         )

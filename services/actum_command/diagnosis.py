@@ -139,15 +139,15 @@ def _problems(name: str, instances: list[str], infos: list[Info], status: Status
     if len(instances) > 1 or len(infos) > 1:
         who = _who(infos, instances)
         yield (
-            f"{name} runs more than once, so that every segment is answered more than once: stop all but one of these "
-            f"instances: {who}"
+            f"more than one instance of {name} runs, so every action is answered more than once: stop all but one of "
+            f"these instances: {who}"
         )
     if status is None:
-        yield f"{name} is alive but published no status in {STATUS_S:g} s: restart it if this persists"
+        yield f"{name} runs but published no status message for {STATUS_S:g} s: if this persists, restart {name}"
     else:
         yield from _troubles(name, status, next((f" ({info.source})" for info in infos if info.source), ""))
     if not infos:
-        yield f"{name} does not answer on its info key: restart it if this persists"
+        yield f"{name} does not answer queries on its info key: if this persists, restart {name}"
     yield from dict.fromkeys(line for info in infos for line in _versions(info))
 
 
@@ -160,14 +160,15 @@ def _who(infos: list[Info], instances: list[str]) -> str:
 def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
     """Yield the problems that a service's own state names; `source` is the source that it reads, in brackets."""
     if status.state.startswith("camera lost"):
-        yield f"{name}: {status.state}{source}; it retries by itself"
+        yield f"{name}: {status.state}{source}; {name} keeps trying to open the camera again"
     elif status.state == SOURCE_ENDED:
         endless = "--repetitions 0" if DESCRIPTION in source else "--loop"
         yield (
-            f"{name}: {status.state}{source}; start it again to play once more, or with {endless} to play without end"
+            f"{name}: {status.state}{source}; restart {name} to play the source once more, or with {endless} to "
+            "repeat the source without end"
         )
     elif status.state.startswith(NO_MODEL):
-        yield f"{name}: {status.state}, so every action is rejected; name a model in --model or ACTUM_MODEL"
+        yield f"{name}: {status.state}, so every action is rejected; set --model or ACTUM_MODEL to a model file"
     elif status.state.startswith(OLD_MODEL):
         yield f"{name}: {status.state}; the previous model stays in use"
     elif status.state.startswith(UNUSED):
@@ -179,13 +180,13 @@ def _remarks(name: str, status: Status) -> Iterator[str]:
     met = [f"{kind} {n}" for kind, n in status.rejects.items() if kind.startswith(LIMIT)]
     if met:
         yield (
-            f"{name} reached its limits ({', '.join(met)}): find the program that publishes too much; "
-            "docs/messages.md explains each limit"
+            f"{name} received more than its limits allow ({', '.join(met)}): find the program that publishes too much; "
+            "docs/messages.md explains what each limit does"
         )
     if ignored := status.counts.get(MARKS_IGNORED):
         yield (
-            f"{name} rejected {ignored} marks, because it runs with --segments auto: use --segments both to accept "
-            "marks as well"
+            f"{name} rejected {ignored} start and end marks of actions, because it runs with --segments auto: restart "
+            f"{name} with --segments both to accept marks as well"
         )
     if status.state.startswith(AND):
         yield from (f"{name}: {remark}" for remark in status.state.removeprefix(AND).split("; "))

@@ -17,7 +17,7 @@ def keep_events(folder: Path, given: Given) -> None:
 
         def build(settings: Settings) -> EventRecorder:
             if folder.suffix == ".mcap" or folder.is_file():
-                raise ValueError(f"{folder} looks like a file: give --events a folder, which will hold several files")
+                raise ValueError(f"{folder} looks like a file, but --events writes several files: give a folder")
             files = EventFiles(folder, settings.sensor, settings)
             recorder = EventRecorder(files, steady_clock.now_ns)
             ending.callback(recorder.close)

@@ -33,8 +33,8 @@ def write_inspection(
     segments = answered_segments(maps, recordings, progress)
     if recordings and not segments:
         raise NoSegmentError(
-            "these recordings contain no segment: mark actions while recording (see 'actum segment --help') or with "
-            "'actum label'"
+            "the given recordings contain no marked action: mark when actions start and end, either while recording "
+            "(see 'actum segment --help') or afterwards with 'actum label'"
         )
     labelled = any(segment.label is not None for segment in segments)
     evaluation = evaluate(model, recordings, progress) if labelled else None

@@ -14,7 +14,10 @@ from actum_calibrator.view_collector import PairCollector, ViewCollector
 
 SILENCE_S = 10.0  # longer than the slowest camera takes from the gateway's start to the first frame
 POLL_S = 0.01  # a third of a frame's interval
-REMEDY = "If the gateway's ACTUM_CALIBRATION is for another image size, start the gateway without it"
+REMEDY = (
+    "If ACTUM_CALIBRATION of the sensor gateway is for another image size than the camera's, start the sensor gateway "
+    "without ACTUM_CALIBRATION"
+)
 
 Tell = Callable[[str], object]
 """Called with each line of console markup that says what has happened or what to do next."""

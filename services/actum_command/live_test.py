@@ -103,7 +103,7 @@ class LiveTest:
             running = {key.split("/")[-2] for key in client.alive()}
             if running >= set(processes.SERVICES) and client.wait_for_subscriber(listened, SUBSCRIBER_POLL_S):
                 return
-        raise ExperimentError(f"not all services started within {READY_S:g} s; see {self._log}")
+        raise ExperimentError(f"some services did not start within {READY_S:g} s: see the log {self._log}")
 
     def _tell_page(self, client: Client) -> None:
         deadline_s = time.monotonic() + PAGE_S

@@ -70,7 +70,7 @@ def _received(published: Published, file: BinaryIO, progress: Progress) -> tuple
 
 def _chunks(url: str) -> Iterator[bytes]:
     if not url.startswith(("http://", "https://")):
-        raise FetchError(f"{url} is not an http or https address")
+        raise FetchError(f"{url} does not begin with http:// or https://: use such an address")
     try:
         with urllib.request.urlopen(url, timeout=TIMEOUT_S) as answer:
             while chunk := answer.read(CHUNK_BYTES):
@@ -87,6 +87,6 @@ def _check(published: Published, size: int, sha256: str) -> None:
         raise FetchError(f"{published.url}: the download stopped after {size} of {published.size} bytes; try again")
     if size > published.size or sha256 != published.sha256:
         raise FetchError(
-            f"{published.url} is not the published file (SHA-256 {sha256}, expected {published.sha256}), so the "
-            "download was deleted: check the proxy, and try again"
+            f"the file downloaded from {published.url} is not the published one (SHA-256 {sha256}, expected "
+            f"{published.sha256}) and was deleted: check the proxy, and try again"
         )

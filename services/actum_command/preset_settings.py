@@ -29,9 +29,10 @@ def preset_named(name: str, settings: Sequence[str] = ()) -> Preset:
         return preset
     if not isinstance(preset, PaperPreset):
         raise PresetError(
-            f"preset {name} has no settings: leave them out, or use preset {PAPER.name}, which has {', '.join(CHOICES)}"
+            f"preset {name} has no settings: leave out --set, or use --preset {PAPER.name}, which has the settings "
+            f"{', '.join(CHOICES)}"
         )
     for setting, value in changes.items():
         if value not in CHOICES.get(setting, ()):
-            raise PresetError(f"{setting}={value} is not a setting of preset {name}: use some of {SETTINGS}")
+            raise PresetError(f"{setting}={value} is not a setting of preset {name}: use one or more of {SETTINGS}")
     return replace(preset, posture=replace(preset.posture, **changes))

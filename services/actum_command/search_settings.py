@@ -61,11 +61,11 @@ def refuse_other_settings(file: Path) -> None:
     try:
         held = tomllib.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
     except (tomllib.TOMLDecodeError, UnicodeDecodeError):
-        raise OtherSettingsError(f"{file} already exists and is not TOML: name another file") from None
+        raise OtherSettingsError(f"{file} already exists and is not a TOML file: give another file") from None
     if others := sorted(held.keys() - set(SEARCH_SETTINGS)):
         raise OtherSettingsError(
-            f"{file} also sets {', '.join(others)}, which would be lost: write to another file, then copy the new "
-            f"lines into {file}"
+            f"{file} also sets {', '.join(others)}, which overwriting the file would delete: write to another file, "
+            f"then copy the new lines into {file}"
         )
 
 

@@ -15,9 +15,9 @@ CHECK_S = 0.2  # interval of checks for the router: so short that nobody notices
 ROUTER_S = 5.0  # a router is up within a second; services wait for it by themselves where it takes longer
 
 FILES_ELSEWHERE = {
-    "simulator": "--source recording",
-    "none": "--source recording",
-    "camera": "a video file in ACTUM_CAMERA",
+    "simulator": "use --source recording",
+    "none": "use --source recording",
+    "camera": "set ACTUM_CAMERA to this video file",
 }
 """The sources that play no file, each with how a file is named instead."""
 
@@ -47,7 +47,8 @@ def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
             f"{flag_of(name)} is a setting of {service_of(name)}, which --source {source} does not start{remedy}"
         )
     if path is not None and source in FILES_ELSEWHERE:
-        raise SettingsError(f"--source {source} plays no file: to play {path}, use {FILES_ELSEWHERE[source]}")
+        remedy = FILES_ELSEWHERE[source]
+        raise SettingsError(f"--source {source} takes no file: to play {path}, {remedy}")
     return source
 
 
@@ -58,9 +59,13 @@ def refuse_marks(marked: bool, source: str, segments: str) -> None:
         SettingsError: the source is no simulated scene, or marks are not answered.
     """
     if marked and source != "simulator":
-        raise SettingsError(f"--marked works only with --source simulator, not with --source {source}: leave it out")
+        raise SettingsError(
+            f"--marked works only with --source simulator, not with --source {source}: leave out --marked"
+        )
     if marked and segments == "auto":
-        raise SettingsError("--segments auto ignores marks: leave out --marked, or use --segments both")
+        raise SettingsError(
+            "--segments auto ignores the marks that --marked publishes: leave out --marked, or use --segments both"
+        )
 
 
 def refuse_taken(endpoint: str) -> None:
@@ -77,7 +82,7 @@ def refuse_taken(endpoint: str) -> None:
     except OSError as error:
         raise SettingsError(
             f"the router cannot listen at {endpoint} ({error.strerror}): stop the program that uses this port, or set "
-            "ACTUM_CONNECT to another one"
+            "ACTUM_CONNECT to an endpoint with another port"
         ) from None
 
 

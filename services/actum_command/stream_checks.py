@@ -64,14 +64,15 @@ def _put_hz(topic: Topic, statuses: Statuses, streams: Mapping[Topic, Watched]) 
 def _slow_source(infos: Sequence[Info], put_hz: float, skeletons: Watched) -> Iterator[str]:
     for info in infos:
         if info.service == SENSOR and info.rate_hz and 0 < put_hz < SLOW * info.rate_hz:
-            few = f"{SENSOR} publishes {put_hz:.0f} frames per second, but its source is set to {info.rate_hz:g}"
             yield (
-                f"{few}: the machine may be busy, the room too dark for short exposures, or the camera's cable too slow"
+                f"{SENSOR} publishes {put_hz:.0f} frames per second, but its source is set to {info.rate_hz:g} frames "
+                "per second: the machine may be busy, the room too dark for short exposures, or the camera's cable too "
+                "slow"
             )
     if 0 < skeletons.rate_hz < SLOW * skeletons.stamped_hz:
         yield (
-            f"{skeletons.rate_hz:.0f} skeletons arrive per second, but their stamps show that "
-            f"{skeletons.stamped_hz:.0f} per second were captured: the source or the network is too slow"
+            f"{skeletons.rate_hz:.0f} skeletons arrive per second, but their time stamps show that the sensor captured "
+            f"{skeletons.stamped_hz:.0f} per second: the sensor service or the network is too slow"
         )
 
 
@@ -80,16 +81,20 @@ def _stopped(statuses: Statuses) -> Iterator[str]:
     for topic in (keys.SKELETON, keys.COLOR) if gateway and gateway[-1].state.startswith("running") else ():
         if handled_hz(gateway, topic) == 0 and _handled(gateway[-1], topic):
             yield (
-                f"{SENSOR} stopped publishing {topic.leaf} after {_handled(gateway[-1], topic)} messages: restart it"
+                f"{SENSOR} stopped publishing {topic.leaf} after {_handled(gateway[-1], topic)} messages: restart "
+                f"{SENSOR}"
             )
 
 
 def _frozen(streams: Mapping[Topic, Watched]) -> Iterator[str]:
     for topic, words in ((keys.SKELETON, "skeletons"), (keys.COLOR, "images")):
         if streams[topic].stands_still:
-            yield f"the stamps of {words} do not increase, so all but the first are refused: restart the sensor service"
+            yield (
+                f"the time stamps of the {words} do not increase, so services refuse all {words} but the first: "
+                "restart the sensor service"
+            )
         elif streams[topic].repeats:
-            yield f"{words} are all identical, so the camera is frozen: unplug it and plug it in again"
+            yield f"all {words} are identical, so the camera is frozen: unplug the camera and plug it in again"
 
 
 def _readers(statuses: Statuses, put_hz: Mapping[Topic, float]) -> Iterator[str]:
@@ -98,12 +103,14 @@ def _readers(statuses: Statuses, put_hz: Mapping[Topic, float]) -> Iterator[str]
             got_hz, all_hz = handled_hz(statuses.get(service, ()), topic), put_hz[topic]
             if got_hz is None or all_hz < FEWEST_HZ:
                 continue
-            of_all = f"of the {all_hz:.0f} messages a second on {topic.leaf.removesuffix('/{}')}"
+            name = topic.leaf.removesuffix("/{}")
             if got_hz == 0:
                 yield (
-                    f"{service} receives none {of_all}: check that the role of {service} may read this topic, and "
-                    "that all routers are connected to each other"
+                    f"{service} receives none of the {all_hz:.0f} messages per second on the topic {name}: check that "
+                    f"the role of {service} may read this topic, and that all routers are connected to each other"
                 )
             elif got_hz < SLOW * all_hz and topic is not keys.COLOR:
-                few = f"{service} receives only {got_hz:.0f} {of_all}"
-                yield f"{few}: the machine that runs {service}, or the network, may be too slow"
+                yield (
+                    f"{service} receives only {got_hz:.0f} of the {all_hz:.0f} messages per second on the topic "
+                    f"{name}: the machine that runs {service}, or the network, may be too slow"
+                )

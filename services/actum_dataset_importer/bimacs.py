@@ -94,7 +94,9 @@ def take_files(folder: Path) -> list[Path]:
     """
     files = [file for file in folder.glob(PATTERN) if NAME.fullmatch(file.stem)]
     if not files:
-        raise DatasetError(f"{folder} contains no {PATTERN}: give the folder of the takes")
+        raise DatasetError(
+            f"{folder} contains no file named {PATTERN}: give the folder of the data set that holds these files"
+        )
     return sorted(files, key=lambda file: tuple(map(int, re.findall(r"\d+", file.stem))))
 
 
@@ -120,7 +122,8 @@ def read_take(path: Path, sensor: str) -> HandsTake:
         truths = [t for i, label in enumerate(kept) for t in _truths(label, _id(path, label, i), stamps_ns, sensor)]
     except (KeyError, TypeError, ValueError, IndexError, InvalidOperation) as error:
         raise DatasetError(
-            f"{path} is not a table with a stamp and the poses for every labelled frame ({error!r}): download it again"
+            f"{path} does not hold a time stamp and the poses for every labelled frame ({error!r}): download the file "
+            "again"
         ) from None
     skipped = [f"{path.stem} {label.hand} {label.action}" for label in labels if label.first >= label.last]
     return HandsTake(path.stem, match["person"], postures, objects, marks, truths, skipped)
@@ -209,14 +212,15 @@ def _labels(folder: Path, person: str, take: str) -> list[Label]:
     files = sorted(folder.glob(f"labels_subject_{person}/*/take_{take}.json"))
     if not files:
         raise DatasetError(
-            f"{folder} contains no labels_subject_{person}/*/take_{take}.json: put the labels next to the takes"
+            f"{folder} contains no labels_subject_{person}/*/take_{take}.json: put the folder labels_subject_{person} "
+            f"next to subject{person}_take{take}.csv"
         )
     try:
         content = json.loads(files[0].read_text())
         return [label for hand in HANDS for label in _hand_labels(hand, content[f"{hand}_hand"])]
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise DatasetError(
-            f"{files[0]} does not list frame numbers and labels in turn for each hand ({error!r}): download it again"
+            f"{files[0]} does not alternate frame numbers and labels for each hand ({error!r}): download the file again"
         ) from None
 
 

@@ -46,11 +46,14 @@ class Naming:
         except re.error as error:
             raise DatasetError(f"--pattern {pattern!r} is not a regular expression: {error}") from None
         if "action" not in compiled.groupindex:
-            raise DatasetError(f"--pattern {pattern!r} has no group for the action: add (?P<action>…)")
+            raise DatasetError(
+                f"--pattern {pattern!r} does not say which part of a file name is the action: enclose that part in "
+                "(?P<action>…)"
+            )
         pairs = [pair.partition("=") for pair in names.split(",") if pair]
         if not all(key.strip() and name.strip() for key, _, name in pairs):
             raise DatasetError(
-                f"--names {names!r} is not a list of names: write it as NUMBER=NAME, such as 1=wave,2=drink"
+                f"--names {names!r} does not have the form NUMBER=NAME,NUMBER=NAME: write for example 1=wave,2=drink"
             )
         return cls(compiled, {key.strip(): name.strip() for key, _, name in pairs})
 
@@ -79,7 +82,9 @@ def clip_files(folder: Path) -> list[Path]:
     """
     files = sorted(file for file in folder.rglob("*") if file.suffix.lower() in SUFFIXES)
     if not files:
-        raise DatasetError(f"{folder} contains no video ({', '.join(sorted(SUFFIXES))})")
+        raise DatasetError(
+            f"{folder} contains no video file ({', '.join(sorted(SUFFIXES))}): give a folder with videos"
+        )
     return files
 
 

@@ -130,16 +130,17 @@ def stored_stream(path: Path, name: str) -> Stream:
     """
     match = NAME.fullmatch(name)
     if match is None or not 1 <= int(match["number"]) <= len(GESTURES):
-        raise DatasetError(f"{path}: {name!r} is not named like P1_1_10A_p01; keep the data set's own names")
+        raise DatasetError(f"{path}: the stream {name!r} is not named like P1_1_10A_p01: keep the data set's own names")
     try:
         with path.open("rb") as stored, np.load(stored) as arrays:
             xyz_mm, stamps_us, points_us = (arrays[f"{name}.{part}"] for part in PARTS)
     except (KeyError, *DAMAGED):
-        raise DatasetError(f"{path}: {name} is incomplete; download it again") from None
+        raise DatasetError(f"{path}: the stream {name} is incomplete: download the file again") from None
     stamps_rise = stamps_us.size and (np.diff(stamps_us) > 0).all()
     if xyz_mm.shape != (len(stamps_us), SOURCE_JOINTS, 3) or not stamps_rise or not (np.diff(points_us) > 0).all():
         raise DatasetError(
-            f"{path}: {name} does not hold frames of {SOURCE_JOINTS} joints with rising stamps; download it again"
+            f"{path}: the stream {name} does not consist of frames of {SOURCE_JOINTS} joints with increasing time "
+            "stamps: download the file again"
         )
     return Stream(name, xyz_mm, stamps_us, points_us)
 
@@ -200,7 +201,7 @@ def _names(file: Path) -> list[str]:
         with file.open("rb") as stored, np.load(stored) as arrays:
             return sorted({array.rpartition(".")[0] for array in arrays.files})
     except DAMAGED:
-        raise DatasetError(f"{file} is not a readable file of MSRC-12 streams: download it again") from None
+        raise DatasetError(f"{file} cannot be read as a file of MSRC-12 streams: download the file again") from None
 
 
 def _skeleton(stamp_us: int, joints_mm: Integers, sensor: str, session_id: str) -> Skeleton:

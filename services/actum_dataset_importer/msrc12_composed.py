@@ -75,7 +75,7 @@ def composed(path: Path, names: Sequence[str], sensor: str) -> Iterator[Take]:
         pieces = [piece for of_one in drawn.values() for piece in of_one[own]]
         if not _can_be_mixed(pieces):
             raise DatasetError(
-                f"{path} holds too few different gestures to compose a stream: use the data set's own files"
+                f"{path} holds too few different gestures to compose a recording of them: use the data set's own files"
             )
         yield _joined(mixed(pieces, rng), f"composed_p{int(person):02d}_{number + 1}", person, sensor)
 

@@ -50,7 +50,9 @@ def files_of(path: Path, pattern: str) -> list[Path]:
     """
     files = [path] if path.is_file() else sorted(path.glob(pattern))
     if not files:
-        raise DatasetError(f"{path} contains no {pattern}: give such a file, or the folder of such files")
+        raise DatasetError(
+            f"{path} contains no file named {pattern}: give a file with such a name, or the folder of these files"
+        )
     return files
 
 
@@ -65,9 +67,11 @@ def read_rows(path: Path, columns: int) -> NDArray[np.float64]:
             warnings.filterwarnings("ignore", "loadtxt: input contained no data")
             rows = np.loadtxt(path, ndmin=2)
     except (OSError, ValueError) as error:
-        raise DatasetError(f"{path} does not hold rows of {columns} numbers ({error}): download it again") from None
+        raise DatasetError(
+            f"{path} does not consist of rows of {columns} numbers ({error}): download the file again"
+        ) from None
     if rows.shape[0] == 0 or rows.shape[1] != columns or not np.isfinite(rows).all():
-        raise DatasetError(f"{path} does not hold rows of {columns} finite numbers: download it again")
+        raise DatasetError(f"{path} does not consist of rows of {columns} finite numbers: download the file again")
     return rows
 
 

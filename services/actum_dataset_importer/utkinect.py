@@ -81,9 +81,7 @@ def read_labelled(path: Path, sensor: str, labels: dict[str, list[LabelledSegmen
     """
     name = path.stem.removeprefix("joints_")
     if name not in labels:
-        raise DatasetError(
-            f"{path}: {LABELS} has no entry named {name}; use the label file that belongs to the data set"
-        )
+        raise DatasetError(f"{LABELS} has no entry {name} for {path}: use the label file that belongs to the data set")
     return read_recording(path, sensor, labels[name])
 
 
@@ -96,7 +94,7 @@ def read_labels(folder: Path) -> dict[str, list[LabelledSegment]]:
     path = folder / LABELS
     if not path.is_file():
         is_original = (folder / ORIGINAL_LABELS).is_file()
-        hint = f"; {ORIGINAL_LABELS} exists, but some of its bounds are wrong" if is_original else ""
+        hint = f" (some starts and ends in {ORIGINAL_LABELS} are wrong)" if is_original else ""
         raise DatasetError(f"{path} is missing{hint}: put the corrected label file {LABELS} next to the recordings")
     recordings: dict[str, list[LabelledSegment]] = {}
     segments: list[LabelledSegment] | None = None
@@ -108,7 +106,7 @@ def read_labels(folder: Path) -> dict[str, list[LabelledSegment]]:
             segment = _labelled_segment(text)
             if segment is None or segments is None:
                 raise DatasetError(
-                    f"{path}, line {number}: {text!r} does not have the form `action: start end`; correct the line"
+                    f"{path}, line {number}: {text!r} does not have the form `action: start end`: correct this line"
                 )
             segments.append(segment)
     return recordings
@@ -134,7 +132,9 @@ def _rows(path: Path) -> NDArray[np.float64]:
     """Read the rows (rows, 61): an image number that never falls, and twenty joints (m)."""
     rows = read_rows(path, columns=1 + 3 * SOURCE_JOINTS)
     if rows[0, 0] < 0 or (np.diff(rows[:, 0]) < 0).any():
-        raise DatasetError(f"{path}: the image numbers in the first column decrease; download it again")
+        raise DatasetError(
+            f"{path}: the image numbers in the first column are negative or decrease: download the file again"
+        )
     return rows
 
 

@@ -113,12 +113,12 @@ def authority_of(root: Path, may_be_made: bool) -> Signed:
         (folder / KEY).chmod(PRIVATE)
         found = Signed.load((folder / AUTHORITY).read_bytes(), (folder / KEY).read_bytes())
         if lasting(found, 1) <= 0:
-            raise ValueError(f"it expired at {found.certificate.not_valid_after_utc:%Y-%m-%d %H:%M} UTC")
+            raise ValueError(f"the certificate expired at {found.certificate.not_valid_after_utc:%Y-%m-%d %H:%M} UTC")
     except (OSError, ValueError) as error:
         raise SettingsError(
-            f"the authority in {folder} cannot be used ({error}): restore its two files. Or delete the folder, run "
-            "'actum deploy init' and copy all credentials folders again: routers do not trust certificates of another "
-            "authority"
+            f"the certificate authority in {folder} cannot be used ({error}): restore {AUTHORITY} and {KEY} in this "
+            "folder. Or delete the folder, run 'actum deploy init' and copy the new files to all machines, because a "
+            "new authority makes all earlier credentials invalid"
         ) from None
     return found
 
@@ -134,7 +134,7 @@ def _passwords(written: Sequence[Folder]) -> dict[str, str]:
         try:
             login = login_values(folder.path)
         except SettingsError as error:
-            raise SettingsError(f"{error}, or delete this file to get a new password") from None
+            raise SettingsError(f"{error}, or delete {folder.path / USER} to get a new password") from None
         if login:
             passwords[login[f"{LOGIN}/user"]] = login[f"{LOGIN}/password"]
         passwords.setdefault(folder.name, secrets.token_urlsafe(PASSWORD_BYTES))

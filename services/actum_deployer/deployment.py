@@ -29,8 +29,8 @@ from actum_deployer.roles import (
 )
 
 ROUTERS_CANNOT = (
-    "The credentials of a router cannot be revoked, because clients would still trust its stolen key. To replace "
-    "them, delete authority/, run 'actum deploy init' and copy all folders again"
+    "A router's credentials cannot be revoked, because clients would still trust its stolen key. To replace a router's "
+    "credentials, delete authority/, run 'actum deploy init' and copy all folders to their machines again"
 )
 """Why the credentials of a router cannot be revoked: clients know it by its address, not by its name."""
 FILE = "deployment.json"
@@ -152,7 +152,10 @@ class Deployment:
         known = {identity(role, sensor) for role, sensor in self.subjects}
         for each in identities:
             if each not in known:
-                raise SettingsError(f"revoke: {each!r} is not one of {', '.join(sorted(known))}. {ROUTERS_CANNOT}")
+                raise SettingsError(
+                    f"revoke: {each!r} names no credentials that can be revoked: use one of "
+                    f"{', '.join(sorted(known))}. {ROUTERS_CANNOT}"
+                )
         again = {each: self.revoked.get(each, 0) + 1 for each in identities}
         return replace(self, revoked={**self.revoked, **again})
 
@@ -175,11 +178,11 @@ class Deployment:
                 f"{folder} contains no {FILE}: create the deployment with 'actum deploy init'"
             ) from None
         except (OSError, ValidationError, SettingsError, InvalidKeyError) as error:
-            told = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
+            problem = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
             raise SettingsError(
-                f"{folder / FILE} cannot be used ({told}): correct this file, because it lists the revoked "
+                f"{folder / FILE} cannot be used ({problem}): correct this file, because it lists the revoked "
                 "credentials. If you cannot, delete this file and authority/, run 'actum deploy init' and copy all "
-                "folders again"
+                "folders to their machines again"
             ) from None
         return read
 
@@ -202,13 +205,14 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
             f"hosts: {text!r}: give at least one camera=ADDRESS and one compute=ADDRESS, with different names"
         )
     if len(named) != len(cameras) or len(set(named)) < len(named):
-        raise SettingsError(f"sensors: {sensors!r}: give one sensor name per camera ({len(cameras)}), all different")
+        raise SettingsError(f"sensors: {sensors!r}: give {len(cameras)} different sensor names, one per camera")
     places = [_normal(host.endpoint) for host in hosts]
     if len({*places}) < len(places):
-        raise SettingsError(f"hosts: {text!r}: two hosts have the same address and port: change one")
+        raise SettingsError(f"hosts: {text!r}: two hosts have the same address and port: change one of the two hosts")
     if len(computing) > len(named):
         raise SettingsError(
-            f"hosts: {len(computing)} compute hosts are too many for {len(named)} cameras: give at most one per camera"
+            f"hosts: {len(computing)} compute hosts are too many for {len(named)} cameras: give at most one compute "
+            "host per camera"
         )
     its: dict[str, tuple[str, ...]] = {host.name: (chunk(sensor),) for host, sensor in zip(cameras, named, strict=True)}
     its |= {host.name: tuple(named[i :: len(computing)]) for i, host in enumerate(computing)}
@@ -218,7 +222,7 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
 def _check(hosts: Sequence[Host]) -> None:
     """Check what a file says of hosts as if it had been said to `actum deploy init`."""
     if not hosts:
-        raise SettingsError("the list of hosts is empty")
+        raise SettingsError("the list `hosts` is empty")
     for host in hosts:
         _host(f"{host.name}={host.endpoint}")
         for sensor in host.sensors:
@@ -233,14 +237,16 @@ def _host(text: str) -> Host:
     chunk(name)
     if not any(name.startswith(kind) for kind in KINDS):
         raise SettingsError(
-            f"hosts: {text!r}: a host name begins with {' or '.join(KINDS)}, such as camera=192.168.1.5"
+            f"hosts: {text!r}: the name before = has to begin with {' or '.join(KINDS)}, such as camera=192.168.1.5"
         )
     if not address or not own_port.isdecimal() or not 0 < int(own_port) <= HIGHEST_PORT:
-        raise SettingsError(f"hosts: {text!r}: use NAME=ADDRESS or NAME=ADDRESS:PORT")
+        raise SettingsError(
+            f"hosts: {text!r}: use NAME=ADDRESS or NAME=ADDRESS:PORT, with a port from 1 to {HIGHEST_PORT}"
+        )
     address = address.removeprefix("[").removesuffix("]")
     if not _can_be_reached(address):
         raise SettingsError(
-            f"hosts: {text!r}: {address!r} is not valid in a certificate: use a host name or an IP address"
+            f"hosts: {text!r}: {address!r} is not the address of a machine: use a host name or an IP address"
         )
     return Host(name, address, int(own_port))
 

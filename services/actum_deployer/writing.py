@@ -41,7 +41,7 @@ def alone(root: Path) -> Iterator[None]:
     """
     with (root / LOCK).open("ab") as file:
         if not claim(file):
-            raise SettingsError(f"another 'actum deploy' is writing {root}: wait until it has ended")
+            raise SettingsError(f"another 'actum deploy' is writing {root}: wait until that command has ended")
         yield
 
 
@@ -80,8 +80,8 @@ def revoked_before(root: Path) -> Mapping[str, int]:
     if (root / FILE).exists() or not (root / AUTHORITYS).exists():
         return Deployment.load(root).revoked if (root / FILE).exists() else {}
     raise SettingsError(
-        f"{root} has an authority but no {FILE}, which lists the revoked credentials: delete {AUTHORITYS}/ to "
-        "write all files again"
+        f"{root} contains {AUTHORITYS}/ but no {FILE}, which lists the revoked credentials: restore {FILE}, or delete "
+        f"{AUTHORITYS}/, run 'actum deploy init' again and copy all folders to their machines again"
     )
 
 

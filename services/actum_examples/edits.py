@@ -33,7 +33,9 @@ def relabel(take: Take, segment: MarkedSegment, label: str) -> None:
         EditError: it has no start mark to hold the label.
     """
     if segment.start_ns is None:
-        raise EditError(f"{segment.segment_id} cannot be labelled, because it has no start mark: delete the segment")
+        raise EditError(
+            f"segment {segment.segment_id} cannot be labelled, because it has no start mark: delete the segment"
+        )
     origin = MANUAL if segment.origin == AUTO else segment.origin
     _mend(take, [(segment, replace(segment, label=label, origin=origin))])
 
@@ -46,7 +48,7 @@ def move(take: Take, segment: MarkedSegment, start_ns: int, end_ns: int) -> None
     """
     if segment.bounds_ns is None:
         missing = "start" if segment.start_ns is None else "end"
-        raise EditError(f"{segment.segment_id} has no {missing} mark: delete the segment and add it again")
+        raise EditError(f"segment {segment.segment_id} has no {missing} mark: delete the segment and add it again")
     moved = replace(segment, start_ns=start_ns, end_ns=end_ns, origin=MANUAL, doubts=())
     others = [other for other in take.segments if other is not segment]
     _refuse_bounds(take, moved, others)
@@ -54,8 +56,9 @@ def move(take: Take, segment: MarkedSegment, start_ns: int, end_ns: int) -> None
         if moved.mirrored != other.mirrored and moved.shares_frames(other):
             mirrored, plain = (moved, other) if moved.mirrored else (other, moved)
             raise EditError(
-                f"{mirrored.segment_id} is mirrored and {plain.segment_id} is not, so they cannot share frames: "
-                "move them apart, or mirror one of them first"
+                f"the segments {mirrored.segment_id} and {plain.segment_id} cannot share frames, because left "
+                f"and right are exchanged only in {mirrored.segment_id}: move the segments apart, or mirror one of "
+                "the two first"
             )
     _mend(take, [(segment, moved)])
 
@@ -93,7 +96,9 @@ def cut_again(take: Take, times: int, label: str) -> Cuts:
     sensor = _only_sensor(take)
     cuts = cut(recorded_courses(take.recording, sensor), times, take.first_ns)
     if cuts is None:
-        raise EditError(f"{take.path} shows no person who moves, so no repetitions can be found: record it again")
+        raise EditError(
+            f"{take.path} shows no person who moves, so no repetitions can be found: record the action again"
+        )
     old = [each for each in take.segments if each.origin == CUT]
     kept = [each for each in take.segments if each.origin != CUT]
     for each in cuts.repetitions:
@@ -119,11 +124,11 @@ def _refuse_bounds(take: Take, segment: MarkedSegment, others: Iterable[MarkedSe
     start_ns, end_ns = segment.bounds_ns
     span = f"{_seconds(take, start_ns)} to {_seconds(take, end_ns)} s"
     if end_ns - start_ns < SHORTEST_NS:
-        raise EditError(f"the segment would run from {span}: the end has to be at least 0.1 s later than the start")
+        raise EditError(f"the segment would last from {span}: its end has to be at least 0.1 s after its start")
     if start_ns < take.first_ns or end_ns > take.last_ns:
         raise EditError(
-            f"{span} lies outside the recording's frames, which last {_seconds(take, take.last_ns)} s: use times "
-            "within them"
+            f"the segment would last from {span}: use times from 0 to {_seconds(take, take.last_ns)} s, for which the "
+            "recording has frames"
         )
     _refuse_overlap(take, segment, others)
 
@@ -131,10 +136,13 @@ def _refuse_bounds(take: Take, segment: MarkedSegment, others: Iterable[MarkedSe
 def _refuse_overlap(take: Take, segment: MarkedSegment, others: Iterable[MarkedSegment]) -> None:
     for other in others:
         if segment.overlaps(other):
-            there, wanted = (
+            other_span, span = (
                 " to ".join(_seconds(take, ns) for ns in each.bounds_ns or ()) for each in (other, segment)
             )
-            raise EditError(f"{wanted} s overlaps {other.segment_id} ({there} s): move or delete that segment first")
+            raise EditError(
+                f"the segment would last from {span} s and overlap segment {other.segment_id} ({other_span} s): first "
+                f"move or delete the segment {other.segment_id}"
+            )
 
 
 def _seconds(take: Take, stamp_ns: int) -> str:
@@ -144,8 +152,9 @@ def _seconds(take: Take, stamp_ns: int) -> str:
 def _only_sensor(take: Take) -> str:
     names = take.recording.sensors(frames_topic(take.recording))
     if len(names) != 1:
+        found = f" ({', '.join(names)})" if names else ""
         raise EditError(
-            f"{take.path} contains skeletons of {', '.join(names) or 'nobody'}: labelling needs a recording of "
-            "exactly one sensor"
+            f"{take.path} contains skeletons of {len(names)} sensors{found}: only a recording of exactly one sensor "
+            "can be labelled"
         )
     return names[0]

@@ -23,8 +23,8 @@ MOST_MARKED = 500
 LONGEST_NAME = 50
 """Characters of a segment's name that a refusal quotes."""
 NOT_KEPT = "nothing was kept: {}, and record it again"
-BEGUN_ANEW = "the sensor restarted during the take, so nothing was kept: record it again"
-JUMPED = "the sensor's stamps jumped by {:.0f} s, so nothing was kept: check its clock, and record it again"
+BEGUN_ANEW = "the sensor restarted during the recording, so nothing was kept: record again"
+JUMPED = "the sensor's time stamps jumped by {:.0f} s, so nothing was kept: check the sensor's clock, and record again"
 
 
 @dataclass(frozen=True)

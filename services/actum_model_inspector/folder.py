@@ -33,7 +33,8 @@ def clear(folder: Path, wanted: Iterable[str]) -> None:
     for file in (folder / name for name in wanted):
         if os.path.lexists(file) and file not in ours:
             raise FileExistsError(
-                f"{file} was edited after an earlier run wrote it: move it away, or give another folder"
+                f"{file} was not written by 'actum inspect', or was changed since: move this file away, or give "
+                "another folder"
             )
     for file in ours:
         file.unlink(missing_ok=True)

@@ -34,8 +34,8 @@ def reliability_picture(segments: Sequence[AnsweredSegment]) -> Figure:
     known = labelled_answers(segments)
     if len(known) < MIN_ANSWERS:
         raise ValueError(
-            f"the reliability diagram needs at least {MIN_ANSWERS} labelled and answered segments, but there are "
-            f"{len(known)}"
+            f"the reliability diagram needs at least {MIN_ANSWERS} segments with both a label and an answer; there are "
+            f"only {len(known)}"
         )
     filled_bins = bins(known)
     figure = figure_with_layout(

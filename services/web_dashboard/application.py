@@ -165,7 +165,10 @@ def _greeting(settings: Settings) -> str:
 def _tell_bug(task: asyncio.Task[None], orders: Orders) -> None:
     """Log what ended a task that has no end, and end the server with it; a session that is closed meanwhile may."""
     if not task.cancelled() and orders.client is not None:
-        log.error("a bug occurred: the page no longer receives the state of the services", exc_info=task.exception())
+        log.error(
+            "the web server of the page stops, because a bug occurred while it sent the services' state to the page",
+            exc_info=task.exception(),
+        )
         task.get_loop().stop()
 
 

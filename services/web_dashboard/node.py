@@ -75,7 +75,7 @@ class WebDashboard:
 
     def _count(self) -> None:
         if not self._server.working:
-            raise RuntimeError("the web server of the page has stopped")
+            raise RuntimeError("the web server of the page stopped unexpectedly: see the messages before this one")
         while self._orders.refused:
             self.counters.reject("refused_browser", self._orders.refused.popleft())
         if self._hub.left_out:

@@ -26,7 +26,9 @@ AT_ONCE = 8
 """Commands that wait for services' answers at the same time, of all browsers."""
 OURS = frozenset({"self", "service", "command", "timeout_s"})
 """Names that `Client.ask` has taken for itself."""
-NO_ROUTER = "the page is not connected to a router: start one with 'actum router', or 'actum up'"
+NO_ROUTER = (
+    "the page is not connected to a router: start a router with 'actum router', or the whole system with 'actum up'"
+)
 
 Chunk = Annotated[str, Field(pattern=f"^{keys.CHUNK.pattern}$")]
 
@@ -43,7 +45,7 @@ class Ask(BaseModel):
     @classmethod
     def _check_names(cls, fields: dict[str, Any]) -> dict[str, Any]:
         if taken := fields.keys() & OURS:
-            raise ValueError(f"a command cannot have the field {', '.join(sorted(taken))}")
+            raise ValueError(f"a command cannot have fields with the reserved names {', '.join(sorted(taken))}")
         return fields
 
 
@@ -67,7 +69,7 @@ class Order(BaseModel):
     @model_validator(mode="after")
     def _check_one(self) -> Self:
         if (self.ask is None) == (self.mark is None):
-            raise ValueError("the message has to have exactly one of `ask` and `mark`")
+            raise ValueError("the message has to have exactly one of the fields `ask` and `mark`")
         return self
 
 
@@ -127,7 +129,7 @@ class Orders:
     def _mark(self, number: int, mark: Mark, browser: object) -> str:
         client = self._connected()
         if mark.kind == "start" and not client.wait_for_subscriber(keys.SEGMENT, CLASSIFIER_S):
-            raise ValueError("no service receives marks: start som_classifier, or 'actum up'")
+            raise ValueError("no service receives marks: start som_classifier, or all services with 'actum up'")
         self._put(client, mark)
         self._open.pop(mark.segment_id, None)
         if mark.kind == "start":

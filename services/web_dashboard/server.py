@@ -31,14 +31,15 @@ def bound_socket(host: str, port: int | None) -> socket.socket:
     Raises:
         SettingsError: it cannot be bound.
     """
-    trouble: OSError | None = None
+    problem: OSError | None = None
     for candidate in PORTS if port is None else (port,):
         try:
             return socket_at(host, candidate)
         except OSError as error:
-            trouble = error
+            problem = error
+    ports = f"port {port}" if port is not None else f"ports {PORTS.start} to {PORTS.stop - 1}"
     raise SettingsError(
-        f"the page cannot be served at {host}, port {port or PORTS.start} ({trouble}): choose another --page-port"
+        f"the web page cannot be served at {host}, {ports} ({problem}): choose another --page-port or --page-host"
     )
 
 

@@ -131,7 +131,7 @@ def test_pictures_without_a_board_are_called_so(finder: BoardFinder) -> None:
     with pytest.raises(UnusablePictureError, match="too dark, too bright or empty"):
         finder.find(np.zeros((480, 640), dtype=np.uint8), "black.png")
     squares = np.kron(np.indices((12, 16)).sum(axis=0) % 2 * 255, np.ones((40, 40))).astype(np.uint8)
-    with pytest.raises(UnusablePictureError, match="no board found"):
+    with pytest.raises(UnusablePictureError, match="no board was found"):
         finder.find(squares, "chess.png")
 
 

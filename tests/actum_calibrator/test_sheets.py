@@ -108,10 +108,10 @@ REFUSED = [
     ("DICT_4X4_51", [1], 80.0, "not a marker family: use one of DICT_4X4_100"),
     ("DICT_4X4_50", [50], 80.0, "no marker 50: use ids from 0 to 49"),
     ("DICT_4X4_50", [], 80.0, "no marker ids"),
-    ("DICT_4X4_50", [1], 170.0, "use 10 to 160 mm"),
-    ("DICT_4X4_50", [1], 5.0, "use 10 to 160 mm"),
-    ("DICT_4X4_50", [1], float("nan"), "use 10 to 160 mm"),
-    ("DICT_4X4_50", [1], float("inf"), "use 10 to 160 mm"),
+    ("DICT_4X4_50", [1], 170.0, "use markers of 10 to 160 mm"),
+    ("DICT_4X4_50", [1], 5.0, "use markers of 10 to 160 mm"),
+    ("DICT_4X4_50", [1], float("nan"), "use markers of 10 to 160 mm"),
+    ("DICT_4X4_50", [1], float("inf"), "use markers of 10 to 160 mm"),
 ]
 
 
@@ -130,7 +130,7 @@ def test_a_board_too_large_for_the_paper_is_refused() -> None:
     ("measures", "reason"),
     [
         ({"columns": 2}, "2x5 squares"),
-        ({"marker_m": 0.04}, "smaller than its square"),
+        ({"marker_m": 0.04}, "smaller than the squares"),
         ({"family": "DICT_5X5"}, "not a marker family"),
         ({"columns": 20, "rows": 20}, "needs 200 markers"),
     ],

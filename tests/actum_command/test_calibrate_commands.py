@@ -79,7 +79,7 @@ def test_a_picture_that_would_be_overwritten_is_named_before_anything_is_looked_
     photograph_file = tmp_path / "cam-coverage.png"
     photograph_file.write_bytes(b"a photograph")
     said = run("calibrate", "intrinsics", folder, photograph_file, "-o", tmp_path / "x" / ".." / "cam.yaml", code=1)
-    assert "cam-coverage.png is one of the pictures and would be overwritten" in said
+    assert "the output would overwrite the input picture" in said
     assert "is not an image" not in said
     assert [file.read_bytes() for file in tmp_path.iterdir()] == [b"a photograph"]
 
@@ -91,7 +91,7 @@ def test_a_calibration_named_as_a_picture_is_refused(folder: Path, tmp_path: Pat
     any_file.write_text("")
     cameras = ["--markers-camera", any_file, "--people-camera", any_file] if command == "extrinsics" else []
     said = run("calibrate", command, *cameras, folder, "-o", tmp_path / name, code=1)
-    assert f"does not end in .yaml or .yml: name it {tmp_path / 'result.yaml'}" in said
+    assert f"does not end in .yaml or .yml: name the file {tmp_path / 'result.yaml'}" in said
     assert not (tmp_path / name).exists()
 
 
@@ -167,7 +167,7 @@ def test_how_a_camera_is_tilted_is_found_in_a_recording(tmp_path: Path) -> None:
     up = json.loads(said.split("ACTUM_UP_IN_CAMERA='")[1].rstrip("'"))
     assert pitch_deg == pytest.approx(12.0, abs=3.0)
     assert up == pytest.approx([0.0, -np.cos(np.radians(pitch_deg)), np.sin(np.radians(pitch_deg))], abs=0.01)
-    assert "nobody stood upright and still for long enough" in run("calibrate", "up", acting, code=1)
+    assert "nobody stood upright and still for two seconds" in run("calibrate", "up", acting, code=1)
     assert "the file is not an MCAP file" in run("calibrate", "up", Path(__file__), code=1)
 
 

@@ -103,7 +103,7 @@ def test_a_file_that_would_be_named_as_another_kind_is_refused_with_the_right_na
 ) -> None:
     said = refusal(*(word.format(tmp_path / name) for word in command.split()))
     assert f"{tmp_path / name} does not end in {Path(right).suffix}" in said
-    assert said.endswith(f"name it {tmp_path / right}")
+    assert said.endswith(f"name the file {tmp_path / right}")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -136,7 +136,7 @@ def test_a_model_alone_is_nothing_to_evaluate() -> None:
     [
         ("simulator", "--source recording"),
         ("none", "--source recording"),
-        ("camera", "a video file in ACTUM_CAMERA"),
+        ("camera", "set ACTUM_CAMERA to this video file"),
     ],
 )
 def test_a_file_is_not_passed_over_by_a_source_that_plays_none(

@@ -103,7 +103,7 @@ def test_the_frames_follow_a_mirrored_segment_that_is_moved(path: Path) -> None:
 
 def test_a_mirrored_segment_does_not_reach_into_a_plain_one(path: Path) -> None:
     by_trainer(path, "mirror", "three")
-    assert "three is mirrored and two is not" in refused(
+    assert "are exchanged only in three" in refused(
         "label", "move", path, "three", "--start", f"-{10 * FRAME_NS / 1e9}"
     )
 

@@ -134,7 +134,7 @@ def test_without_the_authority_that_signed_nothing_is_written(
         assert ended.exit_code == 0
         return
     assert ended.exit_code == 1
-    assert "the authority" in ended.stderr
+    assert "the certificate authority" in ended.stderr
     assert files_of(folder) == before
 
 

@@ -135,7 +135,7 @@ def test_a_latency_that_is_not_told_is_a_dash(latency_ms: dict[str, float], show
 def test_a_classifier_without_a_model_is_a_problem_that_names_the_file() -> None:
     [problem] = examined(state="no model: there is no m.npz yet").problems
     assert problem.startswith(
-        "som_classifier: no model: there is no m.npz yet, so every action is rejected; name a model"
+        "som_classifier: no model: there is no m.npz yet, so every action is rejected; set --model"
     )
 
 
@@ -154,10 +154,10 @@ def test_a_gateway_that_gives_nothing_is_told_with_what_it_reads(state: str) -> 
 def test_a_simulated_scene_that_is_over_is_told_how_it_goes_on_for_ever() -> None:
     scene = System(status("sensor_gateway", state="source ended"), source=DESCRIPTION)
     [problem] = [p for finding in examine(scene).findings for p in finding.problems]  # type: ignore[arg-type]
-    assert problem.endswith("start it again to play once more, or with --repetitions 0 to play without end")
+    assert problem.endswith("to play the source once more, or with --repetitions 0 to repeat the source without end")
     recording = System(status("sensor_gateway", state="source ended"), source="recording a.mcap")
     [problem] = [p for finding in examine(recording).findings for p in finding.problems]  # type: ignore[arg-type]
-    assert problem.endswith("start it again to play once more, or with --loop to play without end")
+    assert problem.endswith("to play the source once more, or with --loop to repeat the source without end")
 
 
 class Sensorless(System):
@@ -188,7 +188,7 @@ def test_two_of_one_identity_are_a_problem_that_names_both(monkeypatch: pytest.M
     system.also = ("pose_preprocessor", second)
     code, output = diagnosed(monkeypatch, system)
     assert code == 1
-    assert "pose_preprocessor runs more than once, so that every segment is answered more than once" in output
+    assert "more than one instance of pose_preprocessor runs, so every action is answered more than once" in output
     assert f"stop all but one of these instances: a on lab, {second} on lab" in output
 
 
@@ -240,8 +240,8 @@ def test_what_was_found_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_marks_that_are_not_used_are_told() -> None:
     (remark,) = examined(counts={"marks_ignored": 4}).remarks
     assert remark == (
-        "som_classifier rejected 4 marks, because it runs with --segments auto: "
-        "use --segments both to accept marks as well"
+        "som_classifier rejected 4 start and end marks of actions, because it runs with --segments auto: "
+        "restart som_classifier with --segments both to accept marks as well"
     )
 
 

@@ -92,7 +92,7 @@ def test_a_users_file_of_a_wanted_name_is_not_overwritten(tmp_path: Path, name: 
     out.mkdir()
     (out / name).write_bytes(b"mine")
     refused = inspect(model, "-o", out)
-    assert refused.exit_code == 1 and f"{name} was edited after an earlier run wrote it" in refused.output
+    assert refused.exit_code == 1 and f"{name} was not written by 'actum inspect'" in refused.output
     assert (out / name).read_bytes() == b"mine" and len(list(out.iterdir())) == 1
 
 

@@ -178,21 +178,21 @@ def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) 
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
-        (("delete", 3), "there is no segment '3' in .*anna.mcap: it has segments 1 to 2"),
+        (("delete", 3), "there is no segment '3' in .*anna.mcap: the recording has segments 1 to 2"),
         (("move", 0, "--start", "1"), "there is no segment '0'"),
         (
             ("move", 1, "--start", "2", "--end", "1.5"),
-            "run from 2.00 to 1.50 s: the end has to be at least",
+            "last from 2.00 to 1.50 s: its end has to be at least",
         ),
-        (("move", 1, "--end", "+3"), r"1.20 to 5.57 s overlaps second \(3.80 to 5.17 s\)"),
-        (("move", 1, "--start", "-9"), "outside the recording's frames"),
-        (("move", 1, "--end", "3600"), "outside the recording's frames"),
-        (("delete", "frst"), "no segment 'frst' in .*anna.mcap: is first meant"),
+        (("move", 1, "--end", "+3"), r"1.20 to 5.57 s and overlap segment second \(3.80 to 5.17 s\)"),
+        (("move", 1, "--start", "-9"), "for which the recording has frames"),
+        (("move", 1, "--end", "3600"), "for which the recording has frames"),
+        (("delete", "frst"), "no segment 'frst' in .*anna.mcap: did you mean first"),
         (("move", 1, "--start", "soon"), "'soon' is not a time"),
         (("move", 1, "--start", "nan"), "'nan' is not a time"),
-        (("add", 2.0, 3.0, "wave"), "overlaps first"),
+        (("add", 2.0, 3.0, "wave"), "overlap segment first"),
         (("relabel", 1, ""), "the label must have 1 to 200 characters"),
-        (("cut", 5, "wave"), "overlaps first"),
+        (("cut", 5, "wave"), "overlap segment first"),
     ],
 )
 def test_what_cannot_be_done_is_refused_and_changes_nothing(

@@ -130,7 +130,8 @@ def test_actions_of_several_sensors_are_listed_with_their_sensor(two_sensors: Pa
 
 
 def test_an_action_that_several_sensors_name_alike_is_changed_at_one_of_them_alone(two_sensors: Path) -> None:
-    assert "2 segments are named 'one': name one by its number, 1 or 2" in refused("delete", two_sensors, "one")
+    said = refused("delete", two_sensors, "one")
+    assert "2 segments have the id 'one': give the number of one of them, 1 or 2" in said
     label("relabel", two_sensors, 2, "pull")
     label("move", two_sensors, 2, "--end", "-0.1")
     of_other = [m for m in of_segment(two_sensors, "one") if m.sensor == "kinect0"]
@@ -150,7 +151,7 @@ def test_a_name_that_is_used_again_after_a_restart_is_several_segments(tmp_path:
             at = first * FRAME_NS, last * FRAME_NS
             for message in (mark("start", at[0], "one", "push"), mark("end", at[1], "one"), action(*at, "one")):
                 recorder.write(message)
-    assert "3 segments are named 'one'" in refused("delete", path, "one")
+    assert "3 segments have the id 'one'" in refused("delete", path, "one")
     label("delete", path, 2)
     assert marks_of(path, "one") == [("start", 0, "push"), ("end", 14, None), ("start", 40, "push"), ("end", 54, None)]
     assert len(of_segment(path, "one")) == 6

@@ -72,7 +72,7 @@ def test_a_file_that_breaks_off_is_not_kept(tmp_path: Path, announced: int | Non
 def test_a_file_with_another_digest_is_not_kept_and_the_old_one_stays(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "pose.task"
     path.write_bytes(b"old")
-    with serving(content) as url, pytest.raises(FetchError, match="is not the published file"):
+    with serving(content) as url, pytest.raises(FetchError, match="is not the published one"):
         fetch(published(url), path, nothing)
     assert path.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [path]
@@ -95,7 +95,7 @@ def test_an_address_that_is_none_is_told(tmp_path: Path) -> None:
 
 
 def test_only_the_web_is_read(tmp_path: Path) -> None:
-    with pytest.raises(FetchError, match="not an http"):
+    with pytest.raises(FetchError, match="does not begin with http"):
         fetch(published(f"file://{tmp_path}"), tmp_path / "pose.task", nothing)
 
 

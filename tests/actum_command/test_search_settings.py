@@ -43,11 +43,11 @@ def test_a_file_that_holds_other_settings_is_left_alone(tmp_path: Path) -> None:
     refuse_other_settings(file)
     file.write_text('model = "m.npz"\nsensor = "left"\nshortest_pause_s = 1.0\n')
     with pytest.raises(
-        OtherSettingsError, match=r"also sets model, sensor, which would be lost: write to another file"
+        OtherSettingsError, match=r"also sets model, sensor, which overwriting the file would delete: write"
     ):
         refuse_other_settings(file)
     file.write_text("no toml")
-    with pytest.raises(OtherSettingsError, match="is not TOML"):
+    with pytest.raises(OtherSettingsError, match="is not a TOML file"):
         refuse_other_settings(file)
 
 

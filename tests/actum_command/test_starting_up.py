@@ -66,7 +66,7 @@ def test_the_advice_about_marks_follows_the_environment_too(
     ("arguments", "reason"),
     [
         (["--source", "camera", "--marked"], "--marked works only with --source simulator"),
-        (["--segments", "auto", "--marked"], "--segments auto ignores marks"),
+        (["--segments", "auto", "--marked"], "--segments auto ignores the marks that --marked publishes"),
     ],
 )
 def test_marks_of_the_scene_that_nobody_could_use_are_refused(

@@ -65,9 +65,9 @@ def test_a_name_tells_action_and_person(name: str, pattern: str, told: tuple[str
     ("pattern", "names", "complaint"),
     [
         ("(", "", "not a regular expression"),
-        (r"(?P<person>.*)", "", "no group"),
-        (DEFAULT_PATTERN, "1", "not a list of names: write it as NUMBER=NAME, such as 1=wave"),
-        (DEFAULT_PATTERN, "1=", "not a list of names: write it as NUMBER=NAME, such as 1=wave"),
+        (r"(?P<person>.*)", "", "does not say which part"),
+        (DEFAULT_PATTERN, "1", "does not have the form NUMBER=NAME,NUMBER=NAME: write for example 1=wave"),
+        (DEFAULT_PATTERN, "1=", "does not have the form NUMBER=NAME,NUMBER=NAME: write for example 1=wave"),
     ],
 )
 def test_options_that_cannot_be_used_are_refused(pattern: str, names: str, complaint: str) -> None:

@@ -113,7 +113,7 @@ def test_a_file_of_another_name_is_an_error(tmp_path: Path, name: str) -> None:
 
 
 def test_a_folder_without_sequences_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match=r"no \*_skeleton3D\.txt"):
+    with pytest.raises(DatasetError, match=r"no file named \*_skeleton3D\.txt"):
         sequence_files(tmp_path)
 
 

@@ -88,14 +88,14 @@ def test_streams_are_listed_by_person_and_name(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_the_set_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match=r"contains no p\*\.npz"):
+    with pytest.raises(DatasetError, match=r"contains no file named p\*\.npz"):
         stream_names(tmp_path)
 
 
 @pytest.mark.parametrize("content", [b"", b"nothing of the kind", b"PK\x03\x04 broken off"])
 def test_a_file_that_holds_no_arrays_is_an_error_that_names_it(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "p01.npz").write_bytes(content)
-    with pytest.raises(DatasetError, match=r"p01\.npz is not a readable file of MSRC-12 streams: download it again"):
+    with pytest.raises(DatasetError, match=r"p01\.npz cannot be read as a file of MSRC-12 streams: download"):
         stream_names(tmp_path)
 
 
@@ -108,7 +108,7 @@ def test_a_damaged_stream_is_an_error_that_names_it(tmp_path: Path, at: float) -
     middle = int(at * content.index(b".t_us"))
     content[middle : middle + 20] = bytes(20)
     path.write_bytes(content)
-    with pytest.raises(DatasetError, match=rf"p01\.npz: {NAME} is incomplete"):
+    with pytest.raises(DatasetError, match=rf"p01\.npz: the stream {NAME} is incomplete"):
         read_stream(path, NAME, "kinect0")
 
 
@@ -129,7 +129,7 @@ def test_a_stream_of_another_name_is_an_error(tmp_path: Path, name: str) -> None
     ],
 )
 def test_a_stream_of_another_form_is_an_error_that_names_it(tmp_path: Path, parts: dict[str, object]) -> None:
-    with pytest.raises(DatasetError, match=f"{NAME} does not hold frames"):
+    with pytest.raises(DatasetError, match=f"{NAME} does not consist of frames"):
         take(tmp_path, **parts)
 
 

@@ -89,7 +89,7 @@ def test_overlaps_are_kept_and_counted(tmp_path: Path, bounds: list[tuple[int, i
 
 def test_the_uncorrected_labels_alone_are_refused(tmp_path: Path) -> None:
     labels(tmp_path, "s01_e01\npush: 2556 3622\n", name="actionLabel.txt")
-    with pytest.raises(DatasetError, match=r"actionLabel\.txt exists, but some of its bounds are wrong"):
+    with pytest.raises(DatasetError, match=r"some starts and ends in actionLabel\.txt are wrong"):
         read_labels(tmp_path)
 
 
@@ -105,7 +105,7 @@ def test_a_label_line_of_another_form_is_an_error(tmp_path: Path, text: str) -> 
 
 
 def test_a_recording_that_the_labels_do_not_name_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match="has no entry named s01_e01"):
+    with pytest.raises(DatasetError, match="has no entry s01_e01 for"):
         read_labelled(recording(tmp_path, [1]), "kinect0", read_labels(labels(tmp_path, "s02_e01\npush: 1 2\n")))
 
 

@@ -100,7 +100,7 @@ def test_a_clock_that_runs_backwards_for_long_loses_the_take(teacher: Teacher, f
     teacher.ask("record", set="kitchen", label="wave")
     back = [each.model_copy(update={"stamp_ns": each.stamp_ns - 3600 * SECOND_NS}) for each in frames[60:70]]
     teacher.see([*frames[:60], *back])
-    assert "restarted during the take" in teacher.tick().recording.doubts[0]
+    assert "restarted during the recording" in teacher.tick().recording.doubts[0]
 
 
 @pytest.mark.parametrize("stamp_ns", WRONG)

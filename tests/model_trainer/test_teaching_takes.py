@@ -210,7 +210,7 @@ def test_a_take_is_lost_where_the_sensor_begins_anew_and_says_so(teacher: Teache
     teacher.see([frames[0].model_copy(update={"session_id": "another", "stamp_ns": 5})])
     told = teacher.tick()
     assert told.recording is not None and told.recording.phase == "done"
-    assert "restarted during the take" in told.recording.doubts[0]
+    assert "restarted during the recording" in told.recording.doubts[0]
     assert teacher.trainer.counters.rejects["lost_take"] == 1
     assert teacher.examples() == [] and not list(teacher.folder.rglob("*.mcap*"))
 

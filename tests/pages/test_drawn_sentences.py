@@ -15,7 +15,7 @@ def test_errors_of_services_of_commands_and_of_doctor_are_among_them(errors: set
         in errors
     )
     assert "{file} is a folder: give the name of a file" in errors
-    assert "{name} does not answer on its info key: restart it if this persists" in errors
+    assert "{name} does not answer queries on its info key: if this persists, restart {name}" in errors
 
 
 def test_helps_of_commands_of_their_options_and_of_settings_are_among_them() -> None:

@@ -67,7 +67,7 @@ def test_ten_thousand_starts_are_answered_or_told_as_lost_in_little_memory(runni
         client.put(Segment(stamp_ns=NOON_NS, sensor="kinect0", kind="end", segment_id="after"))
         assert collect(answers, Message, bool)[-1].segment_id == "after"
         said = running.actum("doctor").stdout
-    assert "som_classifier reached its limits (too_many_segments" in " ".join(said.split())
+    assert "som_classifier received more than its limits allow (too_many_segments" in " ".join(said.split())
 
 
 def test_large_payloads_by_the_thousand_fill_no_memory(running: System) -> None:

@@ -116,4 +116,4 @@ def test_it_is_a_service_that_says_how_it_does(running: System, tmp_path: Path) 
 def test_a_file_is_no_folder(running: System, tmp_path: Path) -> None:
     refused = running.actum("record", str(tmp_path / "a.mcap"), "--events")
     assert refused.returncode == 2
-    assert "looks like a file: give --events a folder" in refused.stderr
+    assert "looks like a file, but --events writes several files: give a folder" in refused.stderr

@@ -72,7 +72,7 @@ def test_a_camera_file_that_is_not_there_is_named_and_that_it_came(running: Syst
     gateway = running.start("sensor_gateway", *marker_camera(tmp_path, missing))
     lost = f"camera lost: it cannot be opened (file {missing} (marker camera))"
     wait_for_line(gateway, lost)
-    assert f"marker_camera: {lost}; it retries by itself" in diagnosed(running)
+    assert f"marker_camera: {lost}; marker_camera keeps trying to open the camera again" in diagnosed(running)
     write_video(tmp_path / "arriving.avi").rename(missing)
     wait_for_line(gateway, "running again")
     wait_for_line(gateway, lost)
@@ -97,7 +97,7 @@ def test_the_end_of_a_recording_is_told_with_its_name(running: System, tmp_path:
     gateway = running.start("sensor_gateway", *recording(tmp_path / "a.mcap", *reaches(3)))
     ended = f"source ended (file {tmp_path / 'a.mcap'} (recording))"
     wait_for_line(gateway, ended)
-    assert f"sensor_gateway: {ended}; start it again to play once more" in diagnosed(running)
+    assert f"sensor_gateway: {ended}; restart sensor_gateway to play the source once more" in diagnosed(running)
     assert STATUS_S > 1.0, "doctor heard two reports meanwhile"
     wait_for_line(gateway, ended)
 

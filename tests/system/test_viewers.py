@@ -158,7 +158,7 @@ def test_a_taken_port_is_told_of(running: System, scene: Path) -> None:
         port = taken.getsockname()[1]
         refused = running.actum("foxglove", "--port", str(port), str(scene))
     assert refused.returncode == 1
-    assert "name another --port" in refused.stderr
+    assert "choose another --port" in refused.stderr
 
 
 @needs_foxglove

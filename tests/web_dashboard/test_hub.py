@@ -92,7 +92,7 @@ def test_a_bug_in_what_tells_pages_how_services_are_ends_the_server(monkeypatch:
     with served(Colleague(lambda *_: {})) as page:
         monkeypatch.setattr(page.node._hub, "silent_s", [].pop)
         wait_until(lambda: not page.node.working, "the server has ended", 5.0)
-        with pytest.raises(RuntimeError, match="the web server of the page has stopped"):
+        with pytest.raises(RuntimeError, match="the web server of the page stopped unexpectedly"):
             page.node.handle(Tick(0))
 
 

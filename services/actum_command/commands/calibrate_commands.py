@@ -77,7 +77,7 @@ def intrinsics(
     picture that shows in which parts of the image the board was seen.
     """
     if live == bool(images):
-        fail("give either pictures of the board, or --live")
+        fail("give either pictures of the board, or --live to take the pictures now")
     files = _files(images or [])
     picture = _coverage_picture_of(output, files)
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
@@ -163,7 +163,7 @@ def _extrinsics(
 def _board(squares: str, square_mm: float, marker_mm: float, family: str) -> Board:
     columns, _, rows = squares.partition("x")
     if not (columns.isdecimal() and rows.isdecimal()):
-        fail(f"--board {squares!r} is not a number of squares: give columns x rows, such as 7x5")
+        fail(f"--board {squares!r} does not name the numbers of squares: give columns x rows, such as 7x5")
     try:
         return Board(int(columns), int(rows), square_mm / 1000, marker_mm / 1000, family)
     except PatternError as error:
@@ -181,7 +181,7 @@ def _coverage_picture_of(output: Path, pictures: Sequence[Path]) -> Path:
     inputs = {file.resolve() for file in pictures}
     for written in (output, picture):
         if written.resolve() in inputs:
-            fail(f"{written} is one of the pictures and would be overwritten: give another output file with -o")
+            fail(f"the output would overwrite the input picture {written}: give another output file with -o")
     return picture
 
 

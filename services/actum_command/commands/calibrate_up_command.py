@@ -46,7 +46,7 @@ def up(
         if recording is None and is_new:
             instruction, instructed_ns = estimator.instruction, frame.stamp_ns
             say(f"  {instruction}")
-    fail(f"nobody stood upright and still for long enough: {estimator.instruction}")
+    fail(f"nobody stood upright and still for two seconds. The last instruction was: {estimator.instruction}")
 
 
 def _report(tilt: UpDirection) -> None:

@@ -45,7 +45,7 @@ def evaluate_continuously(
         fail(str(error))
     tell_unread(recordings)
     if not found.seen:
-        fail("these recordings show no person: give recordings with skeletons")
+        fail("the given recordings contain no skeletons: give recordings of a person")
     scores = scores_of(found)
     console.print(continuous_report(scores, time.monotonic() - began_s))
     if json_file is not None:

@@ -33,14 +33,14 @@ def draw(
     ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION, ACTUM_MIRRORED.
     """
     if not cv2.haveImageWriter(str(output)):
-        fail(f"{output} does not end in the name of a picture format: use .png or .jpg")
+        fail(f"the file name {output} does not end in a known picture format: use .png or .jpg")
     refuse_unwritable(output)
     try:
         settings = Settings(people=people)
         chosen, frames = joint_pictures(video, settings, optics_of(settings), count)
         output.parent.mkdir(parents=True, exist_ok=True)
         if not cv2.imwrite(str(output), sheet(chosen, COLUMNS)):
-            fail(f"{output} cannot be written")
+            fail(f"the picture {output} cannot be written: give another file")
     except (ValueError, OSError, cv2.error) as error:
         fail(str(error))
     say(f"{len(chosen)} of {frames} pictures written to {output}; the actor's left side is blue")

@@ -58,7 +58,7 @@ def inspect(
     if output.suffix.lower() in FILES:
         fail(f"{output} looks like a file: give a folder for the pictures and index.html")
     if output.exists() and not output.is_dir():
-        fail(f"{output} is not a folder: give a folder for the pictures")
+        fail(f"{output} is not a folder: give a folder for the pictures and index.html")
     if find_spec("matplotlib") is None:
         fail(f"matplotlib, which draws the pictures, is not installed: {adding('model-inspector')}")
     try:

@@ -230,7 +230,7 @@ def _opened(file: Path) -> Take:
     except RecordingError as error:
         fail(str(error))
     if take.first_ns == take.last_ns and not take.segments:
-        fail(f"{file} contains neither skeletons nor marks: give a recording of a person")
+        fail(f"{file} contains no skeletons and no marked actions: give a recording of a person")
     return take
 
 
@@ -242,10 +242,11 @@ def _found(file: Path, name: str) -> tuple[Take, MarkedSegment]:
     chosen_one = named.get(name) or next(iter(named.values()), None)
     if chosen_one is None:
         near = get_close_matches(name, [each.segment_id for each in take.segments], n=1)
-        there = f"is {near[0]} meant?" if near else f"it has segments 1 to {len(numbers)}" if numbers else "it has none"
-        fail(f"there is no segment {name!r} in {file}: {there}")
+        all_there = f"the recording has segments 1 to {len(numbers)}" if numbers else "the recording has no segments"
+        hint = f"did you mean {near[0]}?" if near else all_there
+        fail(f"there is no segment {name!r} in {file}: {hint}")
     if name not in named and len(named) > 1:
-        fail(f"{len(named)} segments are named {name!r}: name one by its number, {' or '.join(named)}")
+        fail(f"{len(named)} segments have the id {name!r}: give the number of one of them, {' or '.join(named)}")
     return take, chosen_one
 
 
@@ -267,5 +268,8 @@ def _moved_to(text: str | None, now_ns: int | None, first_ns: int) -> int:
     try:
         offset_ns = round(float(text) * SECOND_NS)
     except (ValueError, OverflowError):
-        fail(f"{text!r} is not a time: give seconds such as 12.3, or a shift such as +0.2 or -0.1")
+        fail(
+            f"{text!r} is not a time: give seconds from the start of the recording, such as 12.3, or how far to shift "
+            "the current time, such as +0.2 or -0.1"
+        )
     return ((now_ns or 0) if text[:1] in "+-" else first_ns) + offset_ns

@@ -59,8 +59,12 @@ def _numbers(text: str) -> list[int]:
         try:
             span = range(int(first), int(last or first) + 1)
         except ValueError:
-            raise PatternError(f"--ids contains {part!r}: use numbers such as 1,2,3 or 0-9") from None
-        if not span or len(numbers) + len(span) > MOST_IDS:
-            raise PatternError(f"--ids contains {part!r}: use at most {MOST_IDS} rising numbers such as 1,2,3 or 0-9")
+            raise PatternError(
+                f"--ids contains {part!r}, which is neither a number nor a range: write ids such as 1,2,3 or 0-9"
+            ) from None
+        if not span:
+            raise PatternError(f"--ids contains the range {part!r}: write its smaller number first, such as 0-9")
+        if len(numbers) + len(span) > MOST_IDS:
+            raise PatternError(f"--ids names more than {MOST_IDS} ids: use fewer")
         numbers += span
     return numbers

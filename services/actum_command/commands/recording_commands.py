@@ -120,7 +120,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         return
     refuse_output(output)
     if times is not None and label is None:
-        fail("--times needs the name of the repeated action: add --label")
+        fail("--times needs the name of the repeated action: add --label NAME")
     stop = stop_on_signals()
     deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
     topics = STREAMS | IMAGES if images else STREAMS
@@ -152,7 +152,7 @@ def _finish(output: Path) -> None:
     try:
         count = finished(output)
     except FileNotFoundError:
-        fail(f"there is no unfinished recording {unfinished(output)}")
+        fail(f"there is no unfinished recording {unfinished(output)}: give the name of a recording that broke off")
     except RecordingError as error:
         fail(
             f"{error.path} cannot be turned into a recording ({error.problem}) and was not changed: move or delete "
@@ -242,7 +242,7 @@ def play(
     stop = stop_on_signals()
     with connect() as client:
         if not client.wait_for_subscriber(keys.SKELETON, WAIT_S):
-            fail(f"no service reads {keys.key(keys.SKELETON, client.sensor)}: start pose_preprocessor")
+            fail(f"no service receives skeletons on {keys.key(keys.SKELETON, client.sensor)}: start pose_preprocessor")
         try:
             count = put_all(client, recordings, speed, stop)
         except RecordingError as error:

@@ -43,7 +43,10 @@ def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[R
     except RecordingError as error:
         fail(str(error))
     if not recordings:
-        fail(f"there are no recordings of person {person or '(any)'} in {', '.join(map(str, files)) or 'nothing'}")
+        of_person = f" of person {person}" if person else ""
+        hint = "" if with_excluded else ", or add --all to use recordings marked as excluded"
+        places = ", ".join(map(str, files))
+        fail(f"there are no recordings{of_person} in {places}: give other *.mcap files or folders{hint}")
     return recordings
 
 
@@ -84,4 +87,4 @@ def in_ns(seconds: float) -> int:
     try:
         return round(seconds * SECOND_NS)
     except (ValueError, OverflowError):
-        fail(f"{seconds:g} is not a time: give seconds such as 12.3")
+        fail(f"{seconds:g} is not a time: give a number of seconds such as 12.3")

@@ -130,8 +130,8 @@ def _mark(
 def _put(client: Client, mark: Segment) -> None:
     if not client.wait_for_subscriber(keys.SEGMENT, WAIT_S):
         fail(
-            f"no service received the mark on {keys.key_of(mark)} within {WAIT_S:g} s: check with 'actum doctor' "
-            "that the classifier runs"
+            f"no service received the {mark.kind} mark on {keys.key_of(mark)} within {WAIT_S:g} s: check with 'actum "
+            "doctor' that som_classifier runs"
         )
     client.put(mark)
     say(f"{mark.kind} {mark.segment_id}")

@@ -132,7 +132,7 @@ def up(
     """
     here = settings()
     if here.credentials is not None:
-        fail("'actum up' runs everything on this machine, without credentials: unset ACTUM_CREDENTIALS")
+        fail("'actum up' starts its own router and services, which use no credentials: unset ACTUM_CREDENTIALS")
     try:
         source = chosen_source(source, given, path)
         segments = segments_of(given)

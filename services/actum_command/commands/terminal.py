@@ -61,8 +61,8 @@ def connect(wait_s: float = 5.0) -> Client:
     try:
         return Client(here, wait_s)
     except RouterUnreachableError as error:
-        found = obstacle(here)
-        fail(f"no router answers at {here.connect}: {found}" if found else str(error))
+        reason = obstacle(here)
+        fail(f"no router answers at {here.connect}: {reason}" if reason else str(error))
     except SettingsError as error:
         fail(str(error))
 
@@ -83,7 +83,8 @@ def refuse_ending(file: Path, *endings: str) -> None:
     """Fail where the name of a file to write has none of these endings."""
     if file.suffix.lower() not in endings:
         name = file.name.removesuffix(file.suffix) + endings[0]
-        fail(f"{file} does not end in {' or '.join(endings)}: name it {file.with_name(name) if file.name else name}")
+        better = file.with_name(name) if file.name else name
+        fail(f"{file} does not end in {' or '.join(endings)}: name the file {better}")
 
 
 def write_text(file: Path, text: str) -> None:

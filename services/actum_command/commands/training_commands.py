@@ -191,8 +191,8 @@ def _preset(name: str, settings: list[str] | None) -> Preset:
 def _show(result: Evaluation, seconds: float) -> None:
     if result.n == 0:
         fail(
-            "these recordings contain no labelled segment: record with 'actum record --label', or label them with "
-            "'actum label'"
+            "the given recordings contain no labelled action: record with 'actum record --label', or label the "
+            "recordings with 'actum label'"
         )
     console.print(report(result, seconds))
 

@@ -58,7 +58,7 @@ def tune(
     """
     began_s = time.monotonic()
     if false_alarms_per_min is not None and not 0 < false_alarms_per_min < float("inf"):
-        fail(f"--false-alarms-per-min {false_alarms_per_min:g} is not a usable rate: give a number above 0")
+        fail(f"--false-alarms-per-min is {false_alarms_per_min:g}; it has to be a number above 0")
     if output is not None:
         _refuse(output)
     try:

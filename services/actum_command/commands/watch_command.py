@@ -49,7 +49,7 @@ def watch(
     """
     named = {name: WATCHABLE.get(name) or WATCHABLE.get(name.removesuffix("s")) for name in topics or []}
     for name in (name for name, topic in named.items() if topic is None):
-        fail(f"{name!r} is not a topic: use any of {', '.join(WATCHABLE)}")
+        fail(f"{name!r} is not a topic: use one or more of {', '.join(WATCHABLE)}")
     wanted = [topic for topic in named.values() if topic is not None] or BY_DEFAULT
     if recorded:
         _show_recorded(recorded, wanted, as_json)
@@ -78,7 +78,7 @@ def _show_recorded(named: list[Path], wanted: list[keys.Topic], as_json: bool) -
     for remark in found.remarks:
         _remark(remark)
     if not found.paths:
-        fail(f"there are no recordings in {', '.join(map(str, named))}: name files or folders of *.mcap")
+        fail(f"there are no recordings in {', '.join(map(str, named))}: give *.mcap files, or their folders")
     try:
         for recording in map(Recording, found.paths):
             for message in recording.messages(wanted):

@@ -70,7 +70,7 @@ class Client:
             wanted = {_number(each["id"]): _number(each["channelId"]) for each in request["subscriptions"]}
             with self._lock:
                 if len({*self._channels, *wanted}) > MOST_SUBSCRIPTIONS:
-                    raise ValueError("the client has too many subscriptions")
+                    raise ValueError(f"the client requests more than {MOST_SUBSCRIPTIONS} subscriptions")
                 self._channels.update(wanted)
             return True
         if request["op"] == "unsubscribe":
@@ -189,5 +189,5 @@ def _number(value: object) -> int:
         ValueError: it is none.
     """
     if not isinstance(value, int) or not 0 <= value < 2**32:
-        raise ValueError(f"{value!r} is not a number")
+        raise ValueError(f"{value!r} is not a whole number of 32 bits")
     return value

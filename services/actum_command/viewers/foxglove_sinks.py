@@ -96,12 +96,14 @@ def served(
     try:
         listening = socket_at(host, port)
     except OSError as error:
-        raise ServerError(f"cannot listen on {host}:{port} ({error}): name another --port or --host") from None
+        raise ServerError(
+            f"the Foxglove server cannot listen on {host}:{port} ({error}): choose another --port or --host"
+        ) from None
     serving = PageServer(server.application(Rule(host, origins=origins, advice=ADVICE), refused), listening, host)
     with serving.serving():
         yield stream, serving.address.replace("http://", "ws://").rstrip("/")
     if server.left_out:
-        log.warning("%d messages were dropped, because clients were too slow to receive them", server.left_out)
+        log.warning("%d messages were dropped, because Foxglove clients were too slow to receive them", server.left_out)
 
 
 @contextmanager

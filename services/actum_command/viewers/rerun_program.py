@@ -98,7 +98,8 @@ def _running(address: str, port: int, web_port: int | None) -> Iterator["subproc
     for needed in ports:
         if _is_listened_on(address, needed):
             raise ViewerError(
-                f"port {needed} is already in use: stop the program that listens there, or name another port"
+                f"port {needed} is already in use: stop the program that listens on this port, or choose another "
+                "--port or --web-port"
             )
     process = subprocess.Popen(
         [_program(), "--bind", address, "--port", str(port), "--expect-data-soon", *page_options],
@@ -149,8 +150,9 @@ def _wait_until_listening(process: "subprocess.Popen[bytes]", address: str, port
     deadline_s = time.monotonic() + START_S
     while not all(_is_listened_on(address, port) for port in ports):
         if process.poll() is not None:
-            why = "if this machine has no screen, use --web"
-            raise ViewerError(f"the Rerun viewer ended at once (code {process.returncode}): {why}")
+            raise ViewerError(
+                f"the Rerun viewer ended at once (code {process.returncode}): if this machine has no screen, use --web"
+            )
         if time.monotonic() > deadline_s:
             raise ViewerError(
                 f"the Rerun viewer did not listen on {', '.join(map(str, ports))} within {START_S:g} s: try again"
