@@ -232,3 +232,38 @@ def test_messages_of_other_kinds_are_nothing_to_it() -> None:
     start = Segment(sensor="kinect0", kind="start", segment_id="a")
     assert start.stamp_ns is None
     assert put(start) == {}
+
+
+CARRIED = {
+    "stamp_ns": {"header"},
+    "sensor": {"header"},
+    "start_ns": {"start"},
+    "end_ns": {"end"},
+    "object": {"object_id", "object_name", "position_known", "orientation_known", "object_pose"},
+    "held": {"held_id"},
+    "motion": {"displacement_known", "displacement"},
+    **{
+        name: {name}
+        for name in (
+            *("segment_id", "valid", "reason", "agent", "hand", "action", "confidence", "unknown"),
+            *("outcome", "sentence"),
+        )
+    },
+}
+"""The fields of ActionEvent.msg in which each field of an event is carried."""
+ONLY_IN_JSON = {
+    *("seq", "session_id", "frames", "missed", "missing_joints"),
+    *("activations", "objects_present", "distances_m", "candidates"),
+    *("pointing", "result", "agrees", "why"),
+}
+"""The fields of an event that only `event_json` carries: how it travelled, what was weighed, and other words."""
+
+
+def test_every_field_of_an_event_is_carried_or_left_to_the_json() -> None:
+    assert {*CARRIED} | ONLY_IN_JSON == {*Event.model_fields}
+    assert not {*CARRIED} & ONLY_IN_JSON
+
+
+def test_every_field_of_the_message_carries_one_of_an_event() -> None:
+    fields = {name for name in vars(types.made(types.ACTION_EVENT)) if not name.startswith("_")}
+    assert set.union(*CARRIED.values()) == fields
