@@ -183,7 +183,9 @@ def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
     assert runner.invoke(app, ["simulate", str(tmp_path / "a.mcap"), "--repetitions", "2"]).exit_code == 0
     trained = runner.invoke(app, ["train", str(tmp_path / "a.mcap"), "-o", str(tmp_path / "m.npz")])
     assert "10 samples of 5 actions" in " ".join(trained.output.split())
-    assert "Few examples: " in trained.output and "less than a minute of background" in trained.output
+    assert "Few examples: " in trained.output and "There are only 14 s of background" in " ".join(
+        trained.output.split()
+    )
     report = tmp_path / "report.json"
     command = ["evaluate", str(tmp_path / "m.npz"), str(tmp_path / "a.mcap"), "--json", str(report)]
     assert "accuracy" in runner.invoke(app, command).output

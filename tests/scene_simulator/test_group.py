@@ -58,5 +58,5 @@ def test_each_persons_actions_have_their_own_truths(frames: list[list[Message]])
 
 @pytest.mark.parametrize("count", [0, 5])
 def test_nobody_and_more_people_than_fit_are_refused(count: int) -> None:
-    with pytest.raises(ValueError, match="do not fit"):
+    with pytest.raises(ValueError, match="cannot show"):
         Group([PROGRAMMES[0]] * count)
