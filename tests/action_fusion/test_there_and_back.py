@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from action_fusion.turns import turn
+from action_fusion.tracks.object_tracks import turn
 from actum.messages import Event
 from fused import event_in
 from scenes import REST_RIGHT, Path, Place, Scene, action, at, moving, still

@@ -5,11 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from action_fusion.comotion import comotion
-from action_fusion.hand_tracks import HandTrack
-from action_fusion.object_tracks import SETTLED_NS, ObjectTrack
 from action_fusion.settings import Settings
-from action_fusion.stops import RESTING_M_PER_S, SAME_PLACE_M, stops
+from action_fusion.tracks.comotion import comotion
+from action_fusion.tracks.hand_tracks import RESTING_M_PER_S, SAME_PLACE_M, HandTrack, stops
+from action_fusion.tracks.object_tracks import SETTLED_NS, ObjectTrack
 from actum.arrays import Array
 from actum.node import SECOND_NS
 

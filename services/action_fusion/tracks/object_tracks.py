@@ -1,12 +1,16 @@
-"""Tracks of the objects in a segment: positions interpolated between the images with a sighting or image tracking."""
+"""Tracks of the objects in a segment: positions interpolated between the images with a sighting or image tracking.
+
+An object may go there and back within a segment, as one that is lifted and set down again: it turns where it is
+furthest from its start.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
-from action_fusion.stream_samples import ObjectsSample
-from action_fusion.turns import SETTLED_SAMPLES, turn
+from action_fusion.intake.stream_samples import ObjectsSample
 from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
 
@@ -16,8 +20,20 @@ SETTLED_NS = SECOND_NS // 4
 RESTING_M = 0.05
 """Largest distance from its last position at which a held object is at rest: twice a joint's noise and more."""
 
+SETTLED_SAMPLES = 3
+"""Number of positions whose median is an object's position: one outlier does no harm."""
 
-@dataclass(frozen=True)
+TURN_TO_NOISE = 5.0
+"""Least ratio of the way to the turn to the noise's standard deviation: the furthest of many positions may be noise."""
+
+FEWEST_POSITIONS = 10
+"""Fewest positions from which the noise can be estimated."""
+
+MAD_TO_STD = 0.6745
+"""Median absolute deviation of a Gaussian, in standard deviations."""
+
+
+@dataclass(frozen=True, eq=False)
 class ObjectTrack:
     """An object's n positions: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera frame.
 
@@ -36,11 +52,6 @@ class ObjectTrack:
     def label(self) -> str:
         """The object's name in sentences, e.g. `object 3 "cup"`."""
         return f'object {self.id} "{self.name}"'
-
-    @property
-    def is_occluded(self) -> bool:
-        """Whether the object is occluded at some positions."""
-        return not bool(self.seen.all())
 
     def keeping(self, kept: Mask) -> "ObjectTrack":
         """Drop the positions that are not `kept` (n,)."""
@@ -96,15 +107,50 @@ def _median(positions_m: Array) -> Array:
 
 def object_tracks(frames: Sequence[ObjectsSample], start_ns: int) -> list[ObjectTrack]:
     """Collect the positions of each object, by id; stamps count from `start_ns`."""
-    ids = sorted({number for frame in frames for number in frame.positions_m})
-    return [_track(number, [frame for frame in frames if number in frame.positions_m], start_ns) for number in ids]
+    tracks = []
+    for number in sorted({number for frame in frames for number in frame.positions_m}):
+        own = [frame for frame in frames if number in frame.positions_m]
+        track = ObjectTrack(
+            number,
+            own[-1].names[number],
+            np.array([frame.stamp_ns - start_ns for frame in own], dtype=np.float64),
+            np.stack([frame.positions_m[number] for frame in own]),
+            np.array([number not in frame.image_tracked for frame in own]),
+        )
+        tracks.append(track)
+    return tracks
 
 
-def _track(number: int, frames: Sequence[ObjectsSample], start_ns: int) -> ObjectTrack:
-    return ObjectTrack(
-        number,
-        frames[-1].names[number],
-        np.array([frame.stamp_ns - start_ns for frame in frames], dtype=np.float64),
-        np.stack([frame.positions_m[number] for frame in frames]),
-        np.array([number not in frame.image_tracked for frame in frames]),
-    )
+def turn(positions_m: Array, start_m: Array, end_m: Array, moved_m: float) -> int | None:
+    """Find the turn of an object that came back: the position furthest from the start.
+
+    The object came back if it ends nearer to the start than to that position.
+
+    Args:
+        positions_m: (n, 3), in the segment.
+        start_m: (3,), its place at the segment's start.
+        end_m: (3,), its place at the segment's end.
+        moved_m: least distance of a turn from the start.
+
+    Returns:
+        the index of the turn; None where the object stayed where it was brought, or did not move.
+    """
+    if len(positions_m) < SETTLED_SAMPLES:
+        return None
+    settled_m = np.median(sliding_window_view(positions_m, SETTLED_SAMPLES, axis=0), axis=-1)
+    away_m = np.linalg.norm(settled_m - start_m, axis=1)
+    furthest = int(np.argmax(away_m))
+    came_back = np.linalg.norm(end_m - start_m) < np.linalg.norm(end_m - settled_m[furthest])
+    clear = away_m[furthest] >= max(moved_m, TURN_TO_NOISE * noise_m(positions_m))
+    return furthest + SETTLED_SAMPLES // 2 if came_back and clear else None
+
+
+def noise_m(positions_m: Array) -> float:
+    """Estimate the noise of positions (n, 3) in metres (one standard deviation); infinite where they are too few.
+
+    From second differences, whose standard deviation is sqrt(6) times as large.
+    """
+    if len(positions_m) < FEWEST_POSITIONS:
+        return float(np.inf)
+    deviations_m = np.median(np.abs(np.diff(positions_m, 2, axis=0)), axis=0)
+    return float(np.linalg.norm(deviations_m) / (MAD_TO_STD * np.sqrt(6)))

@@ -4,6 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from action_fusion.choice.evidence import Evidence
+from action_fusion.tracks.object_tracks import ObjectTrack
 from actum.arrays import Array
 from actum.messages import Motion
 
@@ -24,34 +26,36 @@ STEEPEST_SURFACE = 0.25
 """Largest rise along a surface, as a share of the path: a table seen by a tilted camera is flatter."""
 
 
-def described(
-    displacement_m: Array, moved_m: float, has_front: bool, expected: str | None, turn_ns: int | None = None
-) -> dict[str, Any]:
-    """Return an event's fields `motion`, `result`, `outcome` and `agrees` (with the expected outcome).
+def described(track: ObjectTrack | None, evidence: Evidence) -> dict[str, Any]:
+    """Return an event's fields `motion`, `result`, `outcome` and `agrees` (with the expected outcome) for an object.
 
-    The result tells the direction in which the object was displaced most, e.g. "0.21 m away", or "unmoved".
-
-    Args:
-        displacement_m: (3,), right, up, forward of the actor.
-        moved_m: a shorter displacement counts as unmoved.
-        has_front: whether forward is the actor's facing direction; if not, horizontal directions are "sideways".
-        expected: the outcome expected of the action; None where none is.
-        turn_ns: the stamp up to which the displacement is measured; None if up to the segment's end.
+    They are measured in the actor's level frame at the segment's start, up to the turn of an object that came back. The
+    result tells the direction in which the object was displaced most, e.g. "0.21 m away", or "unmoved".
     """
+    level_from_camera = None if track is None else evidence.actor.level_from_camera()
+    if track is None or level_from_camera is None:
+        return {"motion": None, "result": None, "outcome": None, "agrees": None}
+    action, moved_m, has_front = evidence.action, evidence.settings.moved_m, evidence.actor.bodies[0].has_front
+    displacement_m = level_from_camera @ track.displacement_m(moved_m)
+    turn = track.turn(moved_m)
+    turn_ns = None if turn is None else action.start_ns + int(track.stamps_ns[turn])
     name = outcome(displacement_m, moved_m, has_front)
     direction = _direction(displacement_m, moved_m, has_front)
     return {
         "motion": Motion(displacement_m=displacement_m.tolist(), direction=direction, turn_ns=turn_ns),
         "result": UNMOVED if direction is None else f"{float(np.abs(displacement_m).max()):.2f} m {direction}",
         "outcome": name,
-        "agrees": _agrees(name, expected),
+        "agrees": _agrees(name, evidence.settings.expected_outcomes.get(str(action.action))),
     }
 
 
 def outcome(displacement_m: Array, moved_m: float, has_front: bool = True) -> str:
     """Name the outcome for the object: lifted, put down, pushed, pulled, moved or unmoved.
 
-    The arguments are those of `described`.
+    Args:
+        displacement_m: (3,), right, up, forward of the actor.
+        moved_m: a shorter displacement counts as unmoved.
+        has_front: whether forward is the actor's facing direction; if not, horizontal directions are "sideways".
     """
     length = float(np.linalg.norm(displacement_m))
     if length < moved_m:
