@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from action_fusion.choice.cues import choose
-from action_fusion.choice.evidence import NO_HAND, NO_OBJECT, Choice, Evidence
+from action_fusion.choice.evidence import NO_HAND, NO_OBJECT, Choice, gather
 from action_fusion.intake.buffers import LOOK_BACK_NS
 from action_fusion.intake.stream_samples import ObjectsSample, PostureSample
 from action_fusion.outcome.acted_object import acted_object
@@ -47,7 +47,7 @@ def fuse(
     acting = [sample for sample in postures if sample.stamp_ns >= start_ns]
     hands = hand_tracks(actor_of(postures, start_ns), [actor_of(other, start_ns) for other in others])
     actor = actor_of(acting, start_ns)
-    evidence = Evidence(action, actor, hands, _tracks(action, frames, hands, actor, settings), settings)
+    evidence = gather(action, actor, hands, _tracks(action, frames, hands, actor, settings), settings)
     choice = choose(evidence)
     likely = [acted_object(track, choice, evidence, frames) for track in choice.likely]
     described_outcome = described(choice.track, evidence)
@@ -59,7 +59,7 @@ def fuse(
         held=None if choice.held is None else HeldObject(id=choice.held.id, name=choice.held.name),
         hand=hands_named[0] if len(hands_named) == 1 else None,
         objects_present=[track.id for track in evidence.tracks],
-        distances_m={str(number): distance_m for number, distance_m in evidence.distances_m.items()},
+        distances_m={str(one.track.id): one.distance_m for one in evidence.near},
         candidates=likely if choice.rivals else [],
         pointing=choice.pointing,
         why=choice.why,
@@ -90,12 +90,12 @@ def _tracks(
     action: Action, frames: Sequence[ObjectsSample], hands: HandTracks, actor: Actor, settings: Settings
 ) -> list[ObjectTrack]:
     """Track the objects present in the segment and fill occlusions; the paper's measure uses sightings only."""
+    assert action.end_ns is not None
     present = [t for t in object_tracks(frames, action.start_ns) if t.stamps_ns[-1] >= -LOOK_BACK_NS]
     depth_std_m = float(np.median([body.depth_std_m for body in actor.bodies])) if actor.bodies else 0.0
     tracks = aligned_in_depth(present, hands.own.values(), depth_std_m, settings)
-    if settings.measure == "proximity" or action.end_ns is None:
-        return [track.keeping(track.seen) for track in tracks if track.seen.any()]
-    return fill_occlusions(tracks, hands.everyones, action.end_ns - action.start_ns, settings)
+    occluding = [] if settings.measure == "proximity" else hands.everyones
+    return fill_occlusions(tracks, occluding, action.end_ns - action.start_ns, settings)
 
 
 def _common(action: Action) -> dict[str, Any]:
@@ -110,17 +110,11 @@ def _sentence(action: Action, choice: Choice, result: str | None) -> str:
     The reason why no object was chosen takes the result's place, if an object was in sight and a hand known.
     """
     what = f"unknown, most like {action.action}" if action.unknown else str(action.action)
+    objects = " or ".join(track.label for track in choice.likely)
+    tool = "" if choice.held is None or choice.held is choice.track else f"with {choice.held.label}"
+    done = " ".join(part for part in (what, objects, tool) if part)
     why = None if choice.why in (NO_HAND, NO_OBJECT) else choice.why
-    clauses = [what + _objects(choice), result or why, f"{action.confidence:.2f}"]
-    return ", ".join(clause for clause in clauses if clause)
-
-
-def _objects(choice: Choice) -> str:
-    if choice.track is None:
-        return ""
-    named = " or ".join(track.label for track in choice.likely)
-    tool = None if choice.held is None or choice.held.id == choice.track.id else choice.held
-    return f" {named}" if tool is None else f" {named} with {tool.label}"
+    return ", ".join(clause for clause in (done, result or why, f"{action.confidence:.2f}") if clause)
 
 
 def _lost(postures: Sequence[PostureSample]) -> int:

@@ -19,12 +19,12 @@ def nearest(evidence: Evidence) -> Choice | None:
 
     This is the paper's measure (section 2.2).
     """
-    settings, reached = evidence.settings, []
+    settings, in_reach = evidence.settings, []
     for one in evidence.near:
         displaced = one.track.is_displaced(settings.moved_m)
         if one.distance_m <= (settings.reach_with_tool_m if displaced else settings.reach_m):
-            reached.append(one)
-    best = min(reached, key=lambda one: one.distance_m, default=None)
+            in_reach.append(one)
+    best = min(in_reach, key=lambda one: one.distance_m, default=None)
     return None if best is None else Choice(best.track, (best.hand,))
 
 

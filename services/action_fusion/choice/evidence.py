@@ -2,14 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from action_fusion.settings import Settings
 from action_fusion.tracks.actors import Actor
 from action_fusion.tracks.comotion import Comotion, comotion, transporting
-from action_fusion.tracks.hand_tracks import BOTH_HANDS, HandTrack, HandTracks
+from action_fusion.tracks.hand_tracks import BOTH_HANDS, HandTracks
 from action_fusion.tracks.object_tracks import ObjectTrack
 from actum.arrays import Array
 from actum.messages import Action, Hand, Pointing
@@ -50,7 +49,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Proximity:
-    """The smallest distance of a hand to an object, infinite where no hand is known, and the hand that came nearest."""
+    """The smallest distance of a hand to an object, and the hand that came nearest."""
 
     track: ObjectTrack
     distance_m: float
@@ -63,74 +62,47 @@ class Evidence:
 
     Attributes:
         action: the recognised action.
+        sides: the actor's hands that may have acted.
         actor: the actor's postures in the segment itself.
         hands: the tracks of all hands, from some time before the segment to its end.
         tracks: those of the objects, over the same time.
+        near: the objects with the hand that came nearest to each; none where no hand is known.
+        transporting: the pairs of anybody's hand and an object that this hand transports.
+        own: the pairs of the hands that may have acted: those of one hand, then those of the other.
+        free: the same without the objects that only other hands transport.
         settings: thresholds and labels.
     """
 
     action: Action
+    sides: tuple[Hand, ...]
     actor: Actor
     hands: HandTracks
     tracks: Sequence[ObjectTrack]
+    near: Sequence[Proximity]
+    transporting: frozenset[Comotion]
+    own: Sequence[Comotion]
+    free: Sequence[Comotion]
     settings: Settings
 
-    @cached_property
-    def sides(self) -> tuple[Hand, ...]:
-        """The hands that may have acted: the one that the mark names, else that of the moving arm, else both."""
-        side = self.action.hand or PART_HANDS.get(self.action.part)
-        return BOTH_HANDS if side is None else (side,)
 
-    @cached_property
-    def near(self) -> list[Proximity]:
-        """The objects with the hand that came nearest to each; none where no hand is known."""
-        near = []
-        for track in self.tracks:
-            object_ego = self.actor.to_ego(track.at(self.actor.stamps_ns))
-            distances_m = {side: smallest_distance(object_ego, self.actor.hand_m(side)) for side in self.sides}
-            nearer = min(self.sides, key=distances_m.__getitem__)
-            near.append(Proximity(track, distances_m[nearer], nearer))
-        return [one for one in near if np.isfinite(one.distance_m)]
+def gather(
+    action: Action, actor: Actor, hands: HandTracks, tracks: Sequence[ObjectTrack], settings: Settings
+) -> Evidence:
+    """Gather the evidence; the hand that may have acted is the marked one, else that of the moving arm, else either."""
+    side = action.hand or PART_HANDS.get(action.part)
+    sides = BOTH_HANDS if side is None else (side,)
+    near = _proximities(actor, tracks, sides)
+    pairs = pairs_of(_concerned([one.track for one in near], hands, settings), hands, settings)
+    by_hand = transporting(pairs, settings.moved_m)
+    transported = {pair.track.id for pair in by_hand}
+    own = [pair for side in sides for pair in pairs if pair.hand is hands.own.get(side)]
+    free = [pair for pair in own if pair in by_hand or pair.track.id not in transported]
+    return Evidence(action, sides, actor, hands, tracks, near, by_hand, own, free, settings)
 
-    @property
-    def distances_m(self) -> dict[int, float]:
-        """The smallest distance of a hand to each object, by its id; empty where no hand is known."""
-        return {one.track.id: one.distance_m for one in self.near}
 
-    @cached_property
-    def pairs(self) -> list[Comotion]:
-        """Each hand with each object that it may concern: displaced, or within reach of a tool in the actor's hands."""
-        own, settings = list(self.hands.own.values()), self.settings
-        distances_m = [min(_smallest_gap_m(one.track, hand) for hand in own) for one in self.near]
-        nearest = sorted(zip(distances_m, self.near, strict=True), key=lambda near: near[0])[:MOST_OBJECTS]
-        concerned = [
-            one.track
-            for distance_m, one in nearest
-            if distance_m <= settings.reach_with_tool_m or one.track.is_displaced(settings.moved_m)
-        ]
-        return self.pairs_with(concerned)
-
-    def pairs_with(self, tracks: Sequence[ObjectTrack]) -> list[Comotion]:
-        """Pair everyone's hands with objects."""
-        reach_m, moved_m = self.settings.reach_m, self.settings.moved_m
-        return [comotion(hand, track, reach_m, moved_m) for hand in self.hands.everyones for track in tracks]
-
-    @cached_property
-    def transporting(self) -> frozenset[Comotion]:
-        """The pairs in which the hand, anybody's, transports the object."""
-        return transporting(self.pairs, self.settings.moved_m)
-
-    @cached_property
-    def own(self) -> list[Comotion]:
-        """The pairs of the hands that may have acted: those of one hand, then those of the other."""
-        acting = [self.hands.own[side] for side in self.sides if side in self.hands.own]
-        return [pair for hand in acting for pair in self.pairs if pair.hand is hand]
-
-    @cached_property
-    def free(self) -> list[Comotion]:
-        """The pairs in `own` without those whose object only other hands transport."""
-        transported = {pair.track.id for pair in self.transporting}
-        return [pair for pair in self.own if pair.track.id not in transported or pair in self.transporting]
+def pairs_of(tracks: Sequence[ObjectTrack], hands: HandTracks, settings: Settings) -> list[Comotion]:
+    """Pair everyone's hands with objects."""
+    return [comotion(hand, track, settings.reach_m, settings.moved_m) for hand in hands.everyones for track in tracks]
 
 
 def smallest_distance(object_ego: Array, hand_ego: Array) -> float:
@@ -142,5 +114,27 @@ def smallest_distance(object_ego: Array, hand_ego: Array) -> float:
     return float(np.nanmin(distances)) if np.isfinite(distances).any() else np.inf
 
 
-def _smallest_gap_m(track: ObjectTrack, hand: HandTrack) -> float:
-    return float(np.linalg.norm(track.at(hand.stamps_ns) - hand.positions_m, axis=1).min())
+def _proximities(actor: Actor, tracks: Sequence[ObjectTrack], sides: Sequence[Hand]) -> list[Proximity]:
+    """Measure the smallest distance of a hand to each object, where one is known."""
+    near = []
+    for track in tracks:
+        object_ego = actor.to_ego(track.at(actor.stamps_ns))
+        distances_m = {side: smallest_distance(object_ego, actor.hand_m(side)) for side in sides}
+        nearer = min(sides, key=distances_m.__getitem__)
+        near.append(Proximity(track, distances_m[nearer], nearer))
+    return [one for one in near if np.isfinite(one.distance_m)]
+
+
+def _concerned(tracks: Sequence[ObjectTrack], hands: HandTracks, settings: Settings) -> list[ObjectTrack]:
+    """Drop objects that stayed in place beyond the reach of a held tool; keep at most the nearest `MOST_OBJECTS`."""
+    own = hands.own.values()
+    distances_m = [
+        min(float(np.linalg.norm(track.at(hand.stamps_ns) - hand.positions_m, axis=1).min()) for hand in own)
+        for track in tracks
+    ]
+    nearest = sorted(zip(distances_m, tracks, strict=True), key=lambda near: near[0])[:MOST_OBJECTS]
+    return [
+        track
+        for distance_m, track in nearest
+        if distance_m <= settings.reach_with_tool_m or track.is_displaced(settings.moved_m)
+    ]

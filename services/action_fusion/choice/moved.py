@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from action_fusion.choice.evidence import Choice, Evidence
+from action_fusion.choice.evidence import Choice, Evidence, pairs_of
 from action_fusion.settings import Settings
 from action_fusion.tracks.comotion import STEADY_M, Comotion, comotion, transporting
 from action_fusion.tracks.object_tracks import ObjectTrack
@@ -65,7 +65,7 @@ def displaced_by_others(evidence: Evidence) -> list[ObjectTrack]:
     """List the displaced objects that neither were in the actor's hands, nor moved near them in nobody's hand."""
     moved_m = evidence.settings.moved_m
     displaced = [one.track for one in evidence.near if one.track.is_displaced(moved_m)]
-    pairs = evidence.pairs_with(displaced)
+    pairs = pairs_of(displaced, evidence.hands, evidence.settings)
     in_hand = transporting(pairs, moved_m)
     transported = {pair.track.id for pair in in_hand}
     own = [pair for pair in pairs if pair.hand in evidence.hands.own.values()]

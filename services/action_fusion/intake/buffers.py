@@ -105,14 +105,12 @@ class KnownObjects:
         """Return the message with the objects that are known already or that there is room for."""
         now_ns = message.stamp_ns
         self._newest_ns = {number: ns for number, ns in self._newest_ns.items() if abs(now_ns - ns) <= KEPT_NS}
-        kept = [each for each in message.objects if self._has_room_for(each.id, now_ns)]
+        kept = []
+        for each in message.objects:
+            if each.id in self._newest_ns or len(self._newest_ns) < MOST_OBJECTS:
+                self._newest_ns[each.id] = now_ns
+                kept.append(each)
         if len(kept) == len(message.objects):
             return message
         self._counters.reject("too_many_objects", f"more than {MOST_OBJECTS} in a minute, at {now_ns}")
         return message.model_copy(update={"objects": kept})
-
-    def _has_room_for(self, number: int, now_ns: int) -> bool:
-        if number not in self._newest_ns and len(self._newest_ns) >= MOST_OBJECTS:
-            return False
-        self._newest_ns[number] = now_ns
-        return True

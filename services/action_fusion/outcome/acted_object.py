@@ -26,7 +26,7 @@ def acted_object(
     return ActedObject(
         id=track.id,
         name=track.name,
-        distance_m=evidence.distances_m[track.id],
+        distance_m=next(one.distance_m for one in evidence.near if one.track is track),
         carried=not track.seen.all(),
         taken_along=any(taken_along for taken_along, _ in in_hands),
         in_hand_at_end=any(in_hand_at_end for _, in_hand_at_end in in_hands),

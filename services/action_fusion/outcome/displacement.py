@@ -5,9 +5,11 @@ from typing import Any
 import numpy as np
 
 from action_fusion.choice.evidence import Evidence
+from action_fusion.tracks.actors import Actor
 from action_fusion.tracks.object_tracks import ObjectTrack
 from actum.arrays import Array
 from actum.messages import Motion
+from actum.node import SECOND_NS
 
 DIRECTIONS = (("right", "left"), ("up", "down"), ("away", "towards"))
 """Words for a positive and a negative displacement along right, up and forward."""
@@ -25,6 +27,12 @@ PULLED = "pulled"
 STEEPEST_SURFACE = 0.25
 """Largest rise along a surface, as a share of the path: a table seen by a tilted camera is flatter."""
 
+FACING_NS = 2 * SECOND_NS
+"""Nanoseconds from the start over which the facing direction is averaged: in one posture it is degrees off."""
+
+SMALLEST_FORWARD = 1e-3
+"""Least horizontal length of a unit vector: one with less points up or down within 0.06 degrees."""
+
 
 def described(track: ObjectTrack | None, evidence: Evidence) -> dict[str, Any]:
     """Return an event's fields `motion`, `result`, `outcome` and `agrees` (with the expected outcome) for an object.
@@ -32,7 +40,7 @@ def described(track: ObjectTrack | None, evidence: Evidence) -> dict[str, Any]:
     They are measured in the actor's level frame at the segment's start, up to the turn of an object that came back. The
     result tells the direction in which the object was displaced most, e.g. "0.21 m away", or "unmoved".
     """
-    level_from_camera = None if track is None else evidence.actor.level_from_camera()
+    level_from_camera = None if track is None else _level_from_camera(evidence.actor)
     if track is None or level_from_camera is None:
         return {"motion": None, "result": None, "outcome": None, "agrees": None}
     action, moved_m, has_front = evidence.action, evidence.settings.moved_m, evidence.actor.bodies[0].has_front
@@ -66,6 +74,24 @@ def outcome(displacement_m: Array, moved_m: float, has_front: bool = True) -> st
     if _direction(displacement_m, moved_m, has_front) in DIRECTIONS[2]:
         return PUSHED if forward > 0 else PULLED
     return MOVED
+
+
+def _level_from_camera(actor: Actor) -> Array | None:
+    """Build the actor's level frame as a rotation (3, 3): rows right, up, forward in the camera frame.
+
+    Up is against gravity at the first posture; forward is the facing direction, averaged over `FACING_NS` and
+    projected onto the horizontal; right = forward x up. None where the actor faces straight up or down.
+    """
+    up_in_camera = np.array(actor.bodies[0].up_in_camera)
+    up = up_in_camera / np.linalg.norm(up_in_camera)
+    early = actor.stamps_ns <= actor.stamps_ns[0] + FACING_NS
+    facing = np.mean(actor.ego_from_camera[early, 2, :3], axis=0)
+    horizontal = facing - (facing @ up) * up
+    length = float(np.linalg.norm(horizontal))
+    if length < SMALLEST_FORWARD:
+        return None
+    forward = horizontal / length
+    return np.stack([np.cross(forward, up), up, forward])
 
 
 def _direction(displacement_m: Array, moved_m: float, has_front: bool) -> str | None:

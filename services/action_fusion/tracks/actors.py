@@ -8,14 +8,7 @@ import numpy as np
 from action_fusion.intake.stream_samples import Body, PostureSample
 from actum.arrays import Array
 from actum.messages import Hand
-from actum.node import SECOND_NS
 from actum.skeletons import INDEX
-
-FACING_NS = 2 * SECOND_NS
-"""Nanoseconds from the start over which the facing direction is averaged: in one posture it is degrees off."""
-
-SMALLEST_FORWARD = 1e-3
-"""Least horizontal length of a unit vector: one with less points up or down within 0.06 degrees."""
 
 
 @dataclass(frozen=True)
@@ -44,23 +37,6 @@ class Actor:
         rotations, translations = self.ego_from_camera[:, :3, :3], self.ego_from_camera[:, :3, 3]
         in_ego_m: Array = np.einsum("pij,pj->pi", rotations, positions_m) + translations
         return in_ego_m
-
-    def level_from_camera(self) -> Array | None:
-        """Build the actor's level frame as a rotation (3, 3): rows right, up, forward in the camera frame.
-
-        Up is against gravity at the first posture; forward is the facing direction, averaged over `FACING_NS` and
-        projected onto the horizontal; right = forward x up. None where the actor faces straight up or down.
-        """
-        up_in_camera = np.array(self.bodies[0].up_in_camera)
-        up = up_in_camera / np.linalg.norm(up_in_camera)
-        early = self.stamps_ns <= self.stamps_ns[0] + FACING_NS
-        facing = np.mean(self.ego_from_camera[early, 2, :3], axis=0)
-        horizontal = facing - (facing @ up) * up
-        length = float(np.linalg.norm(horizontal))
-        if length < SMALLEST_FORWARD:
-            return None
-        forward = horizontal / length
-        return np.stack([np.cross(forward, up), up, forward])
 
 
 def actor_of(postures: Sequence[PostureSample], start_ns: int) -> Actor:

@@ -1,11 +1,7 @@
-"""Tracks of the objects in a segment: positions interpolated between the images with a sighting or image tracking.
-
-An object may go there and back within a segment, as one that is lifted and set down again: it turns where it is
-furthest from its start.
-"""
+"""Tracks of the objects in a segment: positions interpolated between the images with a sighting or image tracking."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -53,20 +49,26 @@ class ObjectTrack:
         """The object's name in sentences, e.g. `object 3 "cup"`."""
         return f'object {self.id} "{self.name}"'
 
-    def keeping(self, kept: Mask) -> "ObjectTrack":
-        """Drop the positions that are not `kept` (n,)."""
-        return replace(self, stamps_ns=self.stamps_ns[kept], positions_m=self.positions_m[kept], seen=self.seen[kept])
-
     def at(self, stamps_ns: Array) -> Array:
         """Interpolate positions (p, 3) at stamps (p,) linearly, constant beyond both ends."""
         axes = [np.interp(stamps_ns, self.stamps_ns, axis) for axis in self.positions_m.T]
         return np.stack(axes, axis=1)
 
     def turn(self, moved_m: float) -> int | None:
-        """Find the index of the position at which the object turned back in the segment; None where it did not."""
+        """Find the index of the turn of an object that came back: its position in the segment furthest from the start.
+
+        None where the object did not get `moved_m` away, or does not end nearer to the start than to that position.
+        """
         inside = np.flatnonzero(self.stamps_ns >= 0)
-        index = turn(self.positions_m[inside], self._start_m(), self.end_m(), moved_m)
-        return None if index is None else int(inside[index])
+        if len(inside) < SETTLED_SAMPLES:
+            return None
+        start_m, end_m, positions_m = self._start_m(), self.end_m(), self.positions_m[inside]
+        settled_m = np.median(sliding_window_view(positions_m, SETTLED_SAMPLES, axis=0), axis=-1)
+        away_m = np.linalg.norm(settled_m - start_m, axis=1)
+        furthest = int(np.argmax(away_m))
+        came_back = np.linalg.norm(end_m - start_m) < np.linalg.norm(end_m - settled_m[furthest])
+        clear = away_m[furthest] >= max(moved_m, TURN_TO_NOISE * noise_m(positions_m))
+        return int(inside[furthest + SETTLED_SAMPLES // 2]) if came_back and clear else None
 
     def displacement_m(self, moved_m: float) -> Array:
         """Measure the displacement (3,) from the segment's start to the turn or, without one, the end; camera frame."""
@@ -119,30 +121,6 @@ def object_tracks(frames: Sequence[ObjectsSample], start_ns: int) -> list[Object
         )
         tracks.append(track)
     return tracks
-
-
-def turn(positions_m: Array, start_m: Array, end_m: Array, moved_m: float) -> int | None:
-    """Find the turn of an object that came back: the position furthest from the start.
-
-    The object came back if it ends nearer to the start than to that position.
-
-    Args:
-        positions_m: (n, 3), in the segment.
-        start_m: (3,), its place at the segment's start.
-        end_m: (3,), its place at the segment's end.
-        moved_m: least distance of a turn from the start.
-
-    Returns:
-        the index of the turn; None where the object stayed where it was brought, or did not move.
-    """
-    if len(positions_m) < SETTLED_SAMPLES:
-        return None
-    settled_m = np.median(sliding_window_view(positions_m, SETTLED_SAMPLES, axis=0), axis=-1)
-    away_m = np.linalg.norm(settled_m - start_m, axis=1)
-    furthest = int(np.argmax(away_m))
-    came_back = np.linalg.norm(end_m - start_m) < np.linalg.norm(end_m - settled_m[furthest])
-    clear = away_m[furthest] >= max(moved_m, TURN_TO_NOISE * noise_m(positions_m))
-    return furthest + SETTLED_SAMPLES // 2 if came_back and clear else None
 
 
 def noise_m(positions_m: Array) -> float:

@@ -69,7 +69,7 @@ def _keep_grasped(track: ObjectTrack, hands: Sequence[HandTrack], settings: Sett
         if not track.seen[run[0]]:
             first, last = max(int(run[0]) - 1, 0), int(run[-1])
             kept[run] = any(_holds(hand, track, first, last, settings) for hand in hands)
-    return track.keeping(kept)
+    return replace(track, stamps_ns=track.stamps_ns[kept], positions_m=track.positions_m[kept], seen=track.seen[kept])
 
 
 def _holds(hand: HandTrack, track: ObjectTrack, first: int, last: int, settings: Settings) -> bool:
