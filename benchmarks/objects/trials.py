@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from action_fusion.displacement import UNMOVED
+from action_fusion.outcome.displacement import UNMOVED
 from actum.messages import Event, Truth
 from actum_model_trainer.evaluation import wilson_interval
 from scene_simulator.programme import NO_OBJECT

@@ -6,21 +6,25 @@ from typing import Any
 
 import numpy as np
 
-from action_fusion.acted_object import acted_object
-from action_fusion.actors import Actor, acting_sides, actor_of
-from action_fusion.buffers import LOOK_BACK_NS
-from action_fusion.choice import Choice
-from action_fusion.choosing import choose
-from action_fusion.depth_alignment import aligned_in_depth
-from action_fusion.displacement import described
-from action_fusion.hand_tracks import HandTracks, hand_tracks
-from action_fusion.object_tracks import ObjectTrack, object_tracks
-from action_fusion.occlusion import fill_occlusions
-from action_fusion.proximity import proximities
-from action_fusion.sentence import sentence
+from action_fusion.choice.cues import choose
+from action_fusion.choice.evidence import NO_HAND, NO_OBJECT, Choice, gather
+from action_fusion.intake.buffers import LOOK_BACK_NS
+from action_fusion.intake.stream_samples import ObjectsSample, PostureSample
+from action_fusion.outcome.acted_object import acted_object
+from action_fusion.outcome.displacement import described
 from action_fusion.settings import Settings
-from action_fusion.stream_samples import ObjectsSample, PostureSample
+from action_fusion.tracks.actors import Actor, actor_of
+from action_fusion.tracks.depth_alignment import aligned_in_depth
+from action_fusion.tracks.hand_tracks import HandTracks, hand_tracks
+from action_fusion.tracks.object_tracks import ObjectTrack, object_tracks
+from action_fusion.tracks.occlusion import fill_occlusions
 from actum.messages import Action, Event, HeldObject
+
+COPIED = (
+    "stamp_ns", "sensor", "agent", "segment_id", "start_ns", "action", "confidence", "unknown", "missing_joints",
+    "activations", "frames", "session_id",
+)  # fmt: skip
+"""The fields that an event copies from its action."""
 
 
 def fuse(
@@ -39,29 +43,28 @@ def fuse(
         frames: the samples of objects, over the same time.
         settings: thresholds and labels.
     """
-    start_ns, sides = action.start_ns, acting_sides(action)
-    actor = actor_of(postures, start_ns)
-    acting = actor.in_segment()
-    hands = hand_tracks(actor, [actor_of(other, start_ns) for other in others])
-    tracks = _tracks(action, frames, hands, acting.median_depth_std_m(), settings)
-    measured = proximities(acting, tracks, sides)
-    choice = choose(action, measured, acting, hands, sides, settings)
-    distances_m = {one.track.id: one.distance_m for one in measured if np.isfinite(one.distance_m)}
-    likely = [acted_object(t, distances_m[t.id], choice, hands.own, frames, start_ns, settings) for t in choice.likely]
-    outcome = _outcome(action, choice, acting, settings)
+    start_ns = action.start_ns
+    acting = [sample for sample in postures if sample.stamp_ns >= start_ns]
+    hands = hand_tracks(actor_of(postures, start_ns), [actor_of(other, start_ns) for other in others])
+    actor = actor_of(acting, start_ns)
+    evidence = gather(action, actor, hands, _tracks(action, frames, hands, actor, settings), settings)
+    choice = choose(evidence)
+    likely = [acted_object(track, choice, evidence, frames) for track in choice.likely]
+    described_outcome = described(choice.track, evidence)
+    hands_named = evidence.sides if len(evidence.sides) == 1 else choice.hands
     return Event(
         **_common(action),
-        **outcome,
+        **described_outcome,
         object=likely[0] if likely else None,
         held=None if choice.held is None else HeldObject(id=choice.held.id, name=choice.held.name),
-        hand=sides[0] if len(sides) == 1 else choice.hand,
-        objects_present=[track.id for track in tracks],
-        distances_m={str(number): distance_m for number, distance_m in distances_m.items()},
+        hand=hands_named[0] if len(hands_named) == 1 else None,
+        objects_present=[track.id for track in evidence.tracks],
+        distances_m={str(one.track.id): one.distance_m for one in evidence.near},
         candidates=likely if choice.rivals else [],
         pointing=choice.pointing,
         why=choice.why,
-        sentence=sentence(action, choice, outcome["result"]),
-        missed=action.missed + _lost([sample for sample in postures if sample.stamp_ns >= start_ns]),
+        sentence=_sentence(action, choice, described_outcome["result"]),
+        missed=action.missed + _lost(acting),
     )
 
 
@@ -83,49 +86,35 @@ def rejected(action: Action, reason: str) -> Event:
     )
 
 
-def _common(action: Action) -> dict[str, Any]:
-    """Return the fields that an event copies from its action."""
-    return {
-        "stamp_ns": action.stamp_ns,
-        "sensor": action.sensor,
-        "agent": action.agent,
-        "segment_id": action.segment_id,
-        "start_ns": action.start_ns,
-        "end_ns": action.start_ns if action.end_ns is None else action.end_ns,
-        "action": action.action,
-        "confidence": action.confidence,
-        "unknown": action.unknown,
-        "missing_joints": action.missing_joints,
-        "activations": action.activations,
-        "frames": action.frames,
-        "session_id": action.session_id,
-    }
-
-
 def _tracks(
-    action: Action, frames: Sequence[ObjectsSample], hands: HandTracks, depth_std_m: float, settings: Settings
+    action: Action, frames: Sequence[ObjectsSample], hands: HandTracks, actor: Actor, settings: Settings
 ) -> list[ObjectTrack]:
     """Track the objects present in the segment and fill occlusions; the paper's measure uses sightings only."""
+    assert action.end_ns is not None
     present = [t for t in object_tracks(frames, action.start_ns) if t.stamps_ns[-1] >= -LOOK_BACK_NS]
+    depth_std_m = float(np.median([body.depth_std_m for body in actor.bodies])) if actor.bodies else 0.0
     tracks = aligned_in_depth(present, hands.own.values(), depth_std_m, settings)
-    if settings.measure == "proximity" or action.end_ns is None:
-        return [track.keeping(track.seen) for track in tracks if track.seen.any()]
-    return fill_occlusions(tracks, hands.everyones, action.end_ns - action.start_ns, settings)
+    occluding = [] if settings.measure == "proximity" else hands.everyones
+    return fill_occlusions(tracks, occluding, action.end_ns - action.start_ns, settings)
 
 
-def _outcome(action: Action, choice: Choice, actor: Actor, settings: Settings) -> dict[str, Any]:
-    """Return the event's fields of motion and outcome, in the actor's level frame at the segment's start.
+def _common(action: Action) -> dict[str, Any]:
+    """Return the fields `COPIED` and the end, which is the start for an action without one."""
+    copied = {name: getattr(action, name) for name in COPIED}
+    return copied | {"end_ns": action.start_ns if action.end_ns is None else action.end_ns}
 
-    They are those of the object's turn where it came back within the segment.
+
+def _sentence(action: Action, choice: Choice, result: str | None) -> str:
+    """Compose the sentence of an event, e.g. `push object 3 "cup", 0.21 m away, 0.94`.
+
+    The reason why no object was chosen takes the result's place, if an object was in sight and a hand known.
     """
-    level_from_camera = None if choice.track is None else actor.level_from_camera()
-    if choice.track is None or level_from_camera is None:
-        return {"motion": None, "result": None, "outcome": None, "agrees": None}
-    displacement_m = level_from_camera @ choice.track.displacement_m(settings.moved_m)
-    turn = choice.track.turn(settings.moved_m)
-    turn_ns = None if turn is None else action.start_ns + int(choice.track.stamps_ns[turn])
-    expected = settings.expected_outcomes.get(str(action.action))
-    return described(displacement_m, settings.moved_m, bool(actor.has_front[0]), expected, turn_ns)
+    what = f"unknown, most like {action.action}" if action.unknown else str(action.action)
+    objects = " or ".join(track.label for track in choice.likely)
+    tool = "" if choice.held is None or choice.held is choice.track else f"with {choice.held.label}"
+    done = " ".join(part for part in (what, objects, tool) if part)
+    why = None if choice.why in (NO_HAND, NO_OBJECT) else choice.why
+    return ", ".join(clause for clause in (done, result or why, f"{action.confidence:.2f}") if clause)
 
 
 def _lost(postures: Sequence[PostureSample]) -> int:

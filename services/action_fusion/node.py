@@ -7,13 +7,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from action_fusion.before import Before
-from action_fusion.buffers import LATEST_ACTION_NS, Buffer, S
 from action_fusion.fusion import fuse, rejected
-from action_fusion.known_objects import KnownObjects
-from action_fusion.losses import why_objects_lost, why_postures_lost
+from action_fusion.intake.buffers import LATEST_ACTION_NS, Buffer, KnownObjects, S
+from action_fusion.intake.losses import Before
+from action_fusion.intake.stream_samples import ObjectsSample, PostureSample, objects_sample, posture_sample
 from action_fusion.settings import Settings
-from action_fusion.stream_samples import ObjectsSample, PostureSample, objects_sample, posture_sample
 from actum import keys
 from actum.commands import Command
 from actum.flow import Flow
@@ -113,7 +111,10 @@ class ActionFusion:
         if order is Order.RESTART:
             events = [self._answer(pending) for pending in list(self._pending) if pending.is_before(sample.stamp_ns)]
             buffer.clear()
-            self._clear_streams_beyond(sample.stamp_ns + MAX_SKEW_NS)
+            streams: list[Buffer[Any]] = [self._objects, *self._postures.values()]
+            for stream in streams:
+                if stream.newest_ns > sample.stamp_ns + MAX_SKEW_NS:
+                    stream.clear()
             self._answered.clear()
         if buffer.is_too_late(sample.stamp_ns):
             self.counters.reject("late", f"{what} at {sample.stamp_ns}, after its segment was answered")
@@ -130,14 +131,6 @@ class ActionFusion:
         if sum(map(len, self._postures.values())) > MOST_FRAMES:
             max(self._postures.values(), key=len).let_go()
             self.counters.reject("too_many_frames", f"more than {MOST_FRAMES} postures in a minute")
-
-    def _clear_streams_beyond(self, stamp_ns: int) -> None:
-        """Clear the streams with samples after `stamp_ns`: they lie before a restart of the sensor's clock."""
-        if self._objects.newest_ns > stamp_ns:
-            self._objects.clear()
-        for postures in self._postures.values():
-            if postures.newest_ns > stamp_ns:
-                postures.clear()
 
     def _action(self, action: Action) -> list[Event]:
         if self._before.answered(action):
@@ -159,14 +152,11 @@ class ActionFusion:
             return [rejected(action, "final action without a label or an end")]
         bare = action.model_copy(update={"maps": None, "trace": None})
         self._pending.append(Pending(bare, action.end_ns))
-        return self._complete() + self._overdue()
-
-    def _overdue(self) -> list[Event]:
-        """Return the event of the action that has waited longest where too many wait."""
-        if len(self._pending) <= MOST_PENDING:
-            return []
-        self.counters.reject("too_many_actions", f"more than {MOST_PENDING} wait: the oldest is answered now")
-        return [self._answer(self._pending[0])]
+        events = self._complete()
+        if len(self._pending) > MOST_PENDING:
+            self.counters.reject("too_many_actions", f"more than {MOST_PENDING} wait: the oldest is answered now")
+            events.append(self._answer(self._pending[0]))
+        return events
 
     def _tick(self, tick: Tick) -> list[Event]:
         """Return the events of actions that have waited long enough, from the samples received so far."""
@@ -219,7 +209,9 @@ class ActionFusion:
         others = [buffer for buffer, _ in self._others(action.agent, postures) if buffer is not None]
         for buffer in (self._buffer(action.agent), self._objects):
             buffer.mark_answered(start_ns, end_ns)
-        if (reason := self._why_incomplete(start_ns, end_ns)) is not None:
+        postures_ns = sorted({ns for buffer in self._postures.values() for ns in buffer.stamps_since(start_ns)})
+        objects_ns = self._objects.stamps_since(start_ns)
+        if (reason := self._before.why_incomplete(postures_ns, objects_ns, start_ns, end_ns)) is not None:
             self.counters.reject("incomplete_segment", f"{action.segment_id}: {reason}")
             return rejected(action, reason)
         return fuse(
@@ -229,14 +221,6 @@ class ActionFusion:
             self._objects.of_segment(start_ns, end_ns),
             self._settings,
         )
-
-    def _why_incomplete(self, start_ns: int, end_ns: int) -> str | None:
-        """Return the reason for which no object can be chosen as samples are lost; None where they have come."""
-        postures_ns = sorted({ns for buffer in self._postures.values() for ns in buffer.stamps_since(start_ns)})
-        objects_ns = self._objects.stamps_since(start_ns)
-        why = self._before.why_missing(bool(postures_ns), bool(objects_ns))
-        why = why or (why_postures_lost(postures_ns, start_ns, end_ns, self._before.resumed) if postures_ns else None)
-        return why or (why_objects_lost(objects_ns, start_ns, end_ns) if objects_ns else None)
 
     def _buffer(self, agent: int) -> Buffer[PostureSample]:
         """Return an agent's stream; where there are too many, an empty one or the one used least recently goes."""

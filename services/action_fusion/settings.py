@@ -1,12 +1,65 @@
 """Settings of the fusion."""
 
+import re
+from pathlib import Path
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field
 
-from action_fusion.fixed_frame import as_text, from_text
+from actum import geometry
 from actum.arrays import Array
 from actum.settings import ServiceSettings
+
+REMEDY = (
+    "give the 16 numbers of a 4x4 matrix, row by row, in metres, or the name of a file that contains only these numbers"
+)
+MOST_CHARACTERS = 10_000
+"""Characters read of a file: 16 numbers take 400 at most."""
+
+FURTHEST_M = 1e6
+"""Largest translation in metres: more is a mistake in the unit."""
+
+SEPARATORS = re.compile(r"[\s,;\[\]]+")
+"""Separators between numbers, in lists as NumPy, JSON and MATLAB write them."""
+
+
+def _transform_as_text(value: object) -> str | None:
+    """Write a rigid transform as its 16 numbers; the value is a list of them, text that lists them, or a file's name.
+
+    Raises:
+        ValueError: the value is no rigid transform, or the file cannot be read.
+    """
+    if value is None:
+        return None
+    text = value if isinstance(value, str) else str(value)
+    numbers = _numbers(text)
+    if numbers is None:
+        numbers = _numbers(_content(text))
+    if numbers is None or len(numbers) != 16:
+        raise ValueError(f"{text!r} is not a rigid transform: {REMEDY}")
+    if not geometry.is_rigid(np.array(numbers).reshape(4, 4), FURTHEST_M):
+        raise ValueError(
+            f"{text!r} is not a rigid transform: the 4x4 matrix must consist of a rotation without scaling or "
+            "mirroring, a position in metres, and 0 0 0 1 as the last row"
+        )
+    return " ".join(map(repr, numbers))
+
+
+def _numbers(text: str) -> list[float] | None:
+    """Read the numbers that a text lists; None where it lists anything else."""
+    try:
+        return [float(word) for word in SEPARATORS.split(text) if word]
+    except ValueError:
+        return None
+
+
+def _content(name: str) -> str:
+    try:
+        with Path(name).open(encoding="utf-8") as file:
+            return file.read(MOST_CHARACTERS)
+    except (OSError, ValueError) as error:
+        raise ValueError(f"{name!r} is neither a list of numbers nor a readable file ({error}): {REMEDY}") from None
 
 
 class Settings(ServiceSettings):
@@ -77,7 +130,7 @@ class Settings(ServiceSettings):
             "held during one of these actions counts as the object of the action, not as a tool"
         ),
     )
-    world_from_camera: Annotated[str | None, BeforeValidator(as_text)] = Field(
+    world_from_camera: Annotated[str | None, BeforeValidator(_transform_as_text)] = Field(
         None,
         description=(
             "transform from the coordinates of the camera to those of a room or robot: the 16 numbers of a 4 x 4 "
@@ -95,7 +148,9 @@ class Settings(ServiceSettings):
     @property
     def fixed_from_camera(self) -> Array | None:
         """`world_from_camera` as an array (4, 4); None where it is not set."""
-        return None if self.world_from_camera is None else from_text(self.world_from_camera)
+        if self.world_from_camera is None:
+            return None
+        return geometry.from_flat([float(number) for number in self.world_from_camera.split()])
 
     @property
     def reach_with_tool_m(self) -> float:

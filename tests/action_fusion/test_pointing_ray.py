@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from action_fusion.actors import Actor
-from action_fusion.pointing_ray import fingertip_m, pointing_angle, pointing_side
+from action_fusion.choice.pointing import fingertip_m, pointing_angle, pointing_side
+from action_fusion.tracks.actors import Actor
 from actum.skeletons import INDEX
 
 
@@ -12,10 +12,7 @@ def still_actor(frames: int, **joints: tuple[float, float, float]) -> Actor:
     postures = np.full((frames, 15, 3), np.nan)
     for name, place in joints.items():
         postures[:, INDEX[name]] = place
-    ego_from_camera, up = np.tile(np.eye(4), (frames, 1, 1)), np.tile([0.0, -1.0, 0.0], (frames, 1))
-    return Actor(
-        np.arange(frames, dtype=float), ego_from_camera, postures, np.zeros(frames), up, np.ones(frames, dtype=bool)
-    )
+    return Actor(np.arange(frames, dtype=float), np.tile(np.eye(4), (frames, 1, 1)), postures, bodies=[])
 
 
 def test_the_fingertip_is_a_decimetre_beyond_the_hand_along_the_forearm() -> None:

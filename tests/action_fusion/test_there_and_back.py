@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from action_fusion.turns import turn
+from action_fusion.tracks.object_tracks import ObjectTrack
 from actum.messages import Event
 from fused import event_in
 from scenes import REST_RIGHT, Path, Place, Scene, action, at, moving, still
@@ -149,7 +149,8 @@ def test_a_covered_cup_that_a_hand_fetches_comes_home_with_it() -> None:
     assert (event.object.taken_along, event.object.in_hand_at_end) == (True, True)
 
 
-def test_too_few_positions_have_no_turn() -> None:
-    start_m, end_m = np.zeros(3), np.zeros(3)
-    assert turn(np.empty((0, 3)), start_m, end_m, 0.03) is None
-    assert turn(np.array([start_m, [0.0, 0.2, 0.0], end_m]), start_m, end_m, 0.03) is None
+@pytest.mark.parametrize("positions_m", [[CUP], [CUP, LIFTED, CUP]])
+def test_too_few_positions_have_no_turn(positions_m: list[Place]) -> None:
+    stamps_ns = np.arange(len(positions_m), dtype=float)
+    track = ObjectTrack(1, "cup", stamps_ns, np.array(positions_m), np.ones(len(positions_m), dtype=bool))
+    assert track.turn(0.03) is None

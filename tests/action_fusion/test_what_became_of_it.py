@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fused
-from action_fusion.displacement import outcome
+from action_fusion.outcome.displacement import outcome
 from actum.messages import Event
 from scenes import Place, Scene, Stance, acting_on, action, moving, still
 

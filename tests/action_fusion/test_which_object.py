@@ -6,6 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import fused
+from action_fusion.choice import cues
+from action_fusion.choice.evidence import Choice, Evidence
 from actum.messages import Event, Hand
 from fused import event_in
 from scenes import REST_LEFT, REST_RIGHT, Path, Place, Scene, acting_on, action, moving, still
@@ -195,13 +197,28 @@ def test_both_hands_acted_on_what_one_gave_to_the_other(hand, covered) -> None:
     assert (names(event), event.hand) == (("cup", "cup"), hand)
 
 
+BOTH_LIFT = Scene(
+    left_hand=moving((0.0, REST_LEFT), (0.6, (0.0, 0.02, 0.45)), (1.6, (0.0, 0.26, 0.45))),
+    right_hand=moving((0.0, REST_RIGHT), (0.6, (0.2, 0.02, 0.45)), (1.6, (0.2, 0.27, 0.45))),
+    objects={1: moving((0.6, CUP), (1.6, (0.1, 0.25, 0.45)))},
+)
+
+
 @pytest.mark.parametrize("hand", ["left", "right"])
 def test_what_both_hands_lift_is_lifted_by_either(hand) -> None:
-    right = moving((0.0, REST_RIGHT), (0.6, (0.2, 0.02, 0.45)), (1.6, (0.2, 0.27, 0.45)))
-    left = moving((0.0, REST_LEFT), (0.6, (0.0, 0.02, 0.45)), (1.6, (0.0, 0.26, 0.45)))
-    scene = Scene(left_hand=left, right_hand=right, objects={1: moving((0.6, CUP), (1.6, (0.1, 0.25, 0.45)))})
-    event = event_of(scene, "lift", marked=hand)
+    event = event_of(BOTH_LIFT, "lift", marked=hand)
     assert (names(event), event.hand, event.outcome) == (("cup", "cup"), hand, "lifted")
+
+
+def test_a_cue_listed_first_decides_and_may_name_both_hands(monkeypatch) -> None:
+    def between_both(evidence: Evidence) -> Choice:
+        lifting = [pair for pair in evidence.own if pair in evidence.transporting]
+        return Choice(lifting[0].track, tuple(pair.hand.side for pair in lifting), lifting[0].track)
+
+    monkeypatch.setattr(cues, "CUES", {"joint": (between_both, *cues.CUES["joint"])})
+    event = event_in(BOTH_LIFT, action("lift", part=None))
+    assert event.object is not None
+    assert (names(event), event.hand, event.object.in_hand_at_end) == (("cup", "cup"), None, True)
 
 
 def test_a_reach_that_ends_at_a_large_things_rim_is_for_it() -> None:

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from action_fusion.hand_tracks import FURTHEST_SHARE, instants_furthest_away
+from action_fusion.tracks.comotion import FURTHEST_SHARE, instants_furthest_away
 
 
 @given(st.data(), st.integers(1, 20), st.floats(0.1, 5.0))
@@ -16,7 +16,3 @@ def test_it_is_the_last_instant_about_furthest_away_within_the_time_asked_for(da
         recent = [k for k in range(i + 1) if stamps[k] >= stamps[i] - within]
         away = {k: float(np.linalg.norm(positions[k] - positions[i])) for k in recent}
         assert last == max(k for k in recent if away[k] >= FURTHEST_SHARE * max(away.values()))
-
-
-def test_an_empty_track_has_no_such_instants() -> None:
-    assert len(instants_furthest_away(np.empty((0, 3)), np.empty(0), 1.0)) == 0

@@ -1,12 +1,12 @@
 """Tracks of the objects in a segment: positions interpolated between the images with a sighting or image tracking."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
-from action_fusion.stream_samples import ObjectsSample
-from action_fusion.turns import SETTLED_SAMPLES, turn
+from action_fusion.intake.stream_samples import ObjectsSample
 from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
 
@@ -16,8 +16,20 @@ SETTLED_NS = SECOND_NS // 4
 RESTING_M = 0.05
 """Largest distance from its last position at which a held object is at rest: twice a joint's noise and more."""
 
+SETTLED_SAMPLES = 3
+"""Number of positions whose median is an object's position: one outlier does no harm."""
 
-@dataclass(frozen=True)
+TURN_TO_NOISE = 5.0
+"""Least ratio of the way to the turn to the noise's standard deviation: the furthest of many positions may be noise."""
+
+FEWEST_POSITIONS = 10
+"""Fewest positions from which the noise can be estimated."""
+
+MAD_TO_STD = 0.6745
+"""Median absolute deviation of a Gaussian, in standard deviations."""
+
+
+@dataclass(frozen=True, eq=False)
 class ObjectTrack:
     """An object's n positions: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera frame.
 
@@ -37,25 +49,26 @@ class ObjectTrack:
         """The object's name in sentences, e.g. `object 3 "cup"`."""
         return f'object {self.id} "{self.name}"'
 
-    @property
-    def is_occluded(self) -> bool:
-        """Whether the object is occluded at some positions."""
-        return not bool(self.seen.all())
-
-    def keeping(self, kept: Mask) -> "ObjectTrack":
-        """Drop the positions that are not `kept` (n,)."""
-        return replace(self, stamps_ns=self.stamps_ns[kept], positions_m=self.positions_m[kept], seen=self.seen[kept])
-
     def at(self, stamps_ns: Array) -> Array:
         """Interpolate positions (p, 3) at stamps (p,) linearly, constant beyond both ends."""
         axes = [np.interp(stamps_ns, self.stamps_ns, axis) for axis in self.positions_m.T]
         return np.stack(axes, axis=1)
 
     def turn(self, moved_m: float) -> int | None:
-        """Find the index of the position at which the object turned back in the segment; None where it did not."""
+        """Find the index of the turn of an object that came back: its position in the segment furthest from the start.
+
+        None where the object did not get `moved_m` away, or does not end nearer to the start than to that position.
+        """
         inside = np.flatnonzero(self.stamps_ns >= 0)
-        index = turn(self.positions_m[inside], self._start_m(), self.end_m(), moved_m)
-        return None if index is None else int(inside[index])
+        if len(inside) < SETTLED_SAMPLES:
+            return None
+        start_m, end_m, positions_m = self._start_m(), self.end_m(), self.positions_m[inside]
+        settled_m = np.median(sliding_window_view(positions_m, SETTLED_SAMPLES, axis=0), axis=-1)
+        away_m = np.linalg.norm(settled_m - start_m, axis=1)
+        furthest = int(np.argmax(away_m))
+        came_back = np.linalg.norm(end_m - start_m) < np.linalg.norm(end_m - settled_m[furthest])
+        clear = away_m[furthest] >= max(moved_m, TURN_TO_NOISE * noise_m(positions_m))
+        return int(inside[furthest + SETTLED_SAMPLES // 2]) if came_back and clear else None
 
     def displacement_m(self, moved_m: float) -> Array:
         """Measure the displacement (3,) from the segment's start to the turn or, without one, the end; camera frame."""
@@ -96,15 +109,26 @@ def _median(positions_m: Array) -> Array:
 
 def object_tracks(frames: Sequence[ObjectsSample], start_ns: int) -> list[ObjectTrack]:
     """Collect the positions of each object, by id; stamps count from `start_ns`."""
-    ids = sorted({number for frame in frames for number in frame.positions_m})
-    return [_track(number, [frame for frame in frames if number in frame.positions_m], start_ns) for number in ids]
+    tracks = []
+    for number in sorted({number for frame in frames for number in frame.positions_m}):
+        own = [frame for frame in frames if number in frame.positions_m]
+        track = ObjectTrack(
+            number,
+            own[-1].names[number],
+            np.array([frame.stamp_ns - start_ns for frame in own], dtype=np.float64),
+            np.stack([frame.positions_m[number] for frame in own]),
+            np.array([number not in frame.image_tracked for frame in own]),
+        )
+        tracks.append(track)
+    return tracks
 
 
-def _track(number: int, frames: Sequence[ObjectsSample], start_ns: int) -> ObjectTrack:
-    return ObjectTrack(
-        number,
-        frames[-1].names[number],
-        np.array([frame.stamp_ns - start_ns for frame in frames], dtype=np.float64),
-        np.stack([frame.positions_m[number] for frame in frames]),
-        np.array([number not in frame.image_tracked for frame in frames]),
-    )
+def noise_m(positions_m: Array) -> float:
+    """Estimate the noise of positions (n, 3) in metres (one standard deviation); infinite where they are too few.
+
+    From second differences, whose standard deviation is sqrt(6) times as large.
+    """
+    if len(positions_m) < FEWEST_POSITIONS:
+        return float(np.inf)
+    deviations_m = np.median(np.abs(np.diff(positions_m, 2, axis=0)), axis=0)
+    return float(np.linalg.norm(deviations_m) / (MAD_TO_STD * np.sqrt(6)))

@@ -1,12 +1,13 @@
-"""The recent past of one stream, long enough for the longest segment and the latest action."""
+"""The recent past of the streams, long enough for the longest segment and the latest action."""
 
 from collections import deque
 from itertools import pairwise
 from typing import Generic, TypeVar
 
-from action_fusion.stream_samples import Sample
+from action_fusion.intake.stream_samples import Sample
 from actum.limits import MAX_SEGMENT_NS
-from actum.node import SECOND_NS
+from actum.messages import MOST_OBJECTS, Objects
+from actum.node import SECOND_NS, Counters
 from actum.stamps import Order, StampGuard
 
 LOOK_BACK_NS = 9 * SECOND_NS // 10
@@ -91,3 +92,25 @@ class Buffer(Generic[S]):
             if before_ns < start_ns and min(then_ns, start_ns) - before_ns >= LOOK_BACK_NS
         ]
         return listed[after_gap[-1] if after_gap else 0 :]
+
+
+class KnownObjects:
+    """Leaves further objects out once `MOST_OBJECTS` others count: what an event costs grows with their number."""
+
+    def __init__(self, counters: Counters) -> None:
+        self._counters = counters
+        self._newest_ns: dict[int, int] = {}
+
+    def known(self, message: Objects) -> Objects:
+        """Return the message with the objects that are known already or that there is room for."""
+        now_ns = message.stamp_ns
+        self._newest_ns = {number: ns for number, ns in self._newest_ns.items() if abs(now_ns - ns) <= KEPT_NS}
+        kept = []
+        for each in message.objects:
+            if each.id in self._newest_ns or len(self._newest_ns) < MOST_OBJECTS:
+                self._newest_ns[each.id] = now_ns
+                kept.append(each)
+        if len(kept) == len(message.objects):
+            return message
+        self._counters.reject("too_many_objects", f"more than {MOST_OBJECTS} in a minute, at {now_ns}")
+        return message.model_copy(update={"objects": kept})

@@ -5,11 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from action_fusion.comotion import comotion
-from action_fusion.hand_tracks import HandTrack
-from action_fusion.object_tracks import SETTLED_NS, ObjectTrack
 from action_fusion.settings import Settings
-from action_fusion.stops import RESTING_M_PER_S, SAME_PLACE_M, stops
+from action_fusion.tracks.comotion import comotion
+from action_fusion.tracks.hand_tracks import RESTING_M_PER_S, SAME_PLACE_M, HandTrack, stops
+from action_fusion.tracks.object_tracks import SETTLED_NS, ObjectTrack
 from actum.arrays import Array
 from actum.node import SECOND_NS
 
@@ -70,7 +69,7 @@ def _keep_grasped(track: ObjectTrack, hands: Sequence[HandTrack], settings: Sett
         if not track.seen[run[0]]:
             first, last = max(int(run[0]) - 1, 0), int(run[-1])
             kept[run] = any(_holds(hand, track, first, last, settings) for hand in hands)
-    return track.keeping(kept)
+    return replace(track, stamps_ns=track.stamps_ns[kept], positions_m=track.positions_m[kept], seen=track.seen[kept])
 
 
 def _holds(hand: HandTrack, track: ObjectTrack, first: int, last: int, settings: Settings) -> bool:

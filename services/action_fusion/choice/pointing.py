@@ -5,11 +5,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from action_fusion.actors import Actor
-from action_fusion.choice import NO_HAND, OFF_THE_LINE, Choice
-from action_fusion.hand_tracks import FURTHEST_SHARE
-from action_fusion.object_tracks import ObjectTrack
-from action_fusion.settings import Settings
+from action_fusion.choice.evidence import NO_HAND, OFF_THE_LINE, Choice, Evidence
+from action_fusion.tracks.actors import Actor
+from action_fusion.tracks.comotion import FURTHEST_SHARE
+from action_fusion.tracks.object_tracks import ObjectTrack
 from actum.arrays import Array
 from actum.messages import Hand, Pointing
 
@@ -29,10 +28,10 @@ SMALLEST_M = 1e-9
 """Least divisor: shorter vectors have no direction."""
 
 
-def pointed_at(tracks: Sequence[ObjectTrack], actor: Actor, sides: Sequence[Hand], settings: Settings) -> Choice:
+def pointed_at(evidence: Evidence) -> Choice:
     """Choose the object at the smallest angle to the pointing ray; objects at nearly the same angle are rivals."""
-    side = pointing_side(actor, sides)
-    by_angle = zip(_angles(tracks, actor, side), tracks, strict=True)
+    settings, side = evidence.settings, pointing_side(evidence.actor, evidence.sides)
+    by_angle = zip(_angles(evidence.tracks, evidence.actor, side), evidence.tracks, strict=True)
     ranked = sorted((one for one in by_angle if math.isfinite(one[0])), key=lambda one: one[0])
     if not ranked:
         return Choice(why=NO_HAND)
@@ -42,7 +41,7 @@ def pointed_at(tracks: Sequence[ObjectTrack], actor: Actor, sides: Sequence[Hand
     limit = min(angles[0] + settings.pointing_uncertainty_deg, settings.pointing_limit_deg)
     rivals = tuple(track for angle, (_, track) in zip(angles[1:], ranked[1:], strict=True) if angle <= limit)
     margin = angles[1] - angles[0] if len(angles) > 1 else None
-    return Choice(ranked[0][1], side, None, rivals, Pointing(angle_deg=angles[0], margin_deg=margin))
+    return Choice(ranked[0][1], (side,), None, rivals, Pointing(angle_deg=angles[0], margin_deg=margin))
 
 
 def pointing_side(actor: Actor, sides: Sequence[Hand]) -> Hand:

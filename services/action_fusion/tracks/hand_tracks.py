@@ -1,4 +1,4 @@
-"""Tracks of the hands in the camera frame, in which an object that nobody moves has a constant position.
+"""Tracks and stops of the hands in the camera frame, in which an object that nobody moves has a constant position.
 
 Distances are the same as in the egocentric frame, because the two frames differ by a rigid transform at every instant.
 """
@@ -9,10 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from action_fusion.actors import BOTH_HANDS, Actor
+from action_fusion.tracks.actors import Actor
 from actum.arrays import Array, Indices, Mask
 from actum.messages import Hand
 from actum.node import SECOND_NS
+
+BOTH_HANDS: tuple[Hand, Hand] = ("right", "left")
 
 MOST_INSTANTS = 600
 """Most instants of a track, to bound the computing time: 20 s at 30 Hz. Longer tracks are subsampled."""
@@ -23,13 +25,23 @@ SMOOTHING_NS = SECOND_NS // 10
 SPEED_NS = SECOND_NS // 10
 """Nanoseconds on either side of an instant over which speed is measured: a centimetre of noise is then 7 cm/s."""
 
-FURTHEST_SHARE = 0.8
-"""Share of the greatest distance from which a position counts as furthest: the rest may be noise."""
+RESTING_M_PER_S = 0.15
+"""Largest speed of a resting hand: a reach is at least twice as fast (0.3 m/s and more)."""
+
+SLOWEST_SHARE = 0.2
+"""Share of the instants, the slowest ones, that count as rest if the hand never rests."""
+
+SAME_PLACE_M = 0.07
+"""Largest distance between two stops in the same place: three times a joint's noise."""
+
+HESITATION_M = 0.10
+"""Largest distance from the last stop of a stop that is a mere hesitation; one further away is an action of its own."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class HandTrack:
-    """A hand's n known instants: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera frame."""
+    """A hand's n known instants, one or more: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera
+    frame."""
 
     side: Hand
     stamps_ns: Array
@@ -42,16 +54,12 @@ class HandTrack:
         return inside
 
     def at(self, stamps_ns: Array) -> Array:
-        """Interpolate positions (p, 3) at stamps (p,) linearly, constant beyond both ends; NaN if there are none."""
-        if not len(self.stamps_ns):
-            return np.full((len(stamps_ns), 3), np.nan)
+        """Interpolate positions (p, 3) at stamps (p,) linearly, constant beyond both ends."""
         return np.stack([np.interp(stamps_ns, self.stamps_ns, axis) for axis in self.positions_m.T], axis=1)
 
     def speeds_m_per_s(self) -> Array:
         """Measure the speed (n,) over a fifth of a second around each instant."""
         before, after = self.stamps_ns - SPEED_NS, self.stamps_ns + SPEED_NS
-        if not len(self.stamps_ns):
-            return np.empty(0)
         first, last = self.stamps_ns[0], self.stamps_ns[-1]
         elapsed_s = (np.minimum(after, last) - np.maximum(before, first)) / SECOND_NS
         distances: Array = np.linalg.norm(self.at(after) - self.at(before), axis=1)
@@ -72,6 +80,19 @@ class HandTracks:
         return [*self.own.values(), *self.others]
 
 
+@dataclass(frozen=True)
+class Stops:
+    """The stops of a hand: `last` (n,) marks the instants at which it rests in the place of its last stop.
+
+    `acted_before` is whether it had stopped elsewhere before, apart from its place at the segment's start; `returned`
+    is whether it rests in that place again afterwards.
+    """
+
+    last: Mask
+    acted_before: bool
+    returned: bool = False
+
+
 def hand_tracks(actor: Actor, others: Sequence[Actor]) -> HandTracks:
     """Track the hands of the actor and of other people; a hand whose joint is always missing has no track."""
     return HandTracks(_tracks_of(actor), [track for other in others for track in _tracks_of(other).values()])
@@ -83,7 +104,8 @@ def _tracks_of(actor: Actor) -> dict[Hand, HandTrack]:
 
 
 def _hand_track(actor: Actor, side: Hand) -> HandTrack:
-    positions_m = actor.hand_in_camera_m(side)
+    rotations, translations = actor.ego_from_camera[:, :3, :3], actor.ego_from_camera[:, :3, 3]
+    positions_m = np.einsum("pji,pj->pi", rotations, actor.hand_m(side) - translations)
     known = np.flatnonzero(np.isfinite(positions_m).all(axis=1))
     stamps_ns, smooth_m = actor.stamps_ns[known], _smoothed(positions_m[known], actor.stamps_ns[known])
     stride = max(1, math.ceil(len(known) / MOST_INSTANTS))
@@ -92,8 +114,6 @@ def _hand_track(actor: Actor, side: Hand) -> HandTrack:
 
 def _smoothed(positions_m: Array, stamps_ns: Array) -> Array:
     """Average positions (n, 3) over a fifth of a second around each, over less time near both ends."""
-    if not len(positions_m):
-        return positions_m
     here = np.arange(len(stamps_ns))
     before = here - np.searchsorted(stamps_ns, stamps_ns - SMOOTHING_NS)
     after = np.searchsorted(stamps_ns, stamps_ns + SMOOTHING_NS, side="right") - 1 - here
@@ -103,35 +123,33 @@ def _smoothed(positions_m: Array, stamps_ns: Array) -> Array:
     return mean
 
 
-def last_instants_away(positions_m: Array, step_m: float) -> Indices:
-    """Find, for each of n positions (n, 3), the last earlier one that is `step_m` or more away.
+def stops(hand: HandTrack) -> Stops:
+    """Find a hand's last stop away from its place at the segment's start, to which it may have returned."""
+    resting = _resting(hand)
+    stopped = np.flatnonzero(resting)
+    if not len(stopped):
+        return Stops(resting, acted_before=False)
+    home_m = hand.positions_m[np.flatnonzero(hand.in_segment)[0]]
+    away = stopped[_distances_m(hand, stopped, home_m) > SAME_PLACE_M]
+    if not len(away):
+        return Stops(resting, acted_before=False)
+    last_m = hand.positions_m[away[-1]]
+    last = np.zeros_like(resting)
+    last[stopped[_distances_m(hand, stopped, last_m) <= SAME_PLACE_M]] = True
+    acted_before = bool((_distances_m(hand, away, last_m) > HESITATION_M).any())
+    return Stops(last, acted_before, returned=bool(stopped[-1] > away[-1]))
 
-    Returns:
-        indices (n,), -1 where there is none.
-    """
-    last = np.full(len(positions_m), -1, dtype=np.int64)
-    for i, position_m in enumerate(positions_m):
-        away = np.flatnonzero(np.linalg.norm(positions_m[:i] - position_m, axis=1) >= step_m)
-        if len(away):
-            last[i] = away[-1]
-    return last
+
+def _distances_m(hand: HandTrack, instants: Indices, position_m: Array) -> Array:
+    distances_m: Array = np.linalg.norm(hand.positions_m[instants] - position_m, axis=1)
+    return distances_m
 
 
-def instants_furthest_away(positions_m: Array, stamps_ns: Array, within_ns: float) -> Indices:
-    """Find, for each of n positions (n, 3) at stamps (n,), the earlier instant at which it was furthest away.
-
-    That is the last instant within `within_ns` with at least four fifths of the greatest distance, so that time at
-    rest before a motion does not count.
-
-    Returns:
-        indices (n,), each at most the position's own index.
-    """
-    if not len(positions_m):
-        return np.empty(0, dtype=np.int64)
-    here = np.arange(len(positions_m))
-    earliest = np.searchsorted(stamps_ns, stamps_ns - within_ns)
-    window = earliest[:, None] + np.arange((here - earliest).max() + 1)
-    away = np.linalg.norm(positions_m[np.minimum(window, here[:, None])] - positions_m[:, None], axis=2)
-    far = (away >= FURTHEST_SHARE * away.max(axis=1, keepdims=True)) & (window <= here[:, None])
-    last: Indices = window[here, far.shape[1] - 1 - np.argmax(far[:, ::-1], axis=1)]
-    return last
+def _resting(hand: HandTrack) -> Mask:
+    """Mask (n,) of the segment's instants at which the hand rests or, if it never does, is slowest."""
+    inside = hand.in_segment
+    if not inside.any():
+        return inside
+    speeds = hand.speeds_m_per_s()
+    slowest = float(np.quantile(speeds[inside], SLOWEST_SHARE))
+    return inside & (speeds <= (RESTING_M_PER_S if speeds[inside].min() <= RESTING_M_PER_S else slowest))

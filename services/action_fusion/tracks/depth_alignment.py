@@ -10,9 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from action_fusion.hand_tracks import HandTrack
-from action_fusion.object_tracks import ObjectTrack
 from action_fusion.settings import Settings
+from action_fusion.tracks.hand_tracks import HandTrack
+from action_fusion.tracks.object_tracks import ObjectTrack
 from actum.arrays import Array
 
 ACROSS_STD_M = 0.05

@@ -1,14 +1,14 @@
 """Co-motion of a hand and an object: an object that moves near a hand and as the hand does is in that hand."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from action_fusion.buffers import LOOK_BACK_NS
-from action_fusion.hand_tracks import HandTrack, instants_furthest_away
-from action_fusion.object_tracks import ObjectTrack
-from actum.arrays import Array, Mask
+from action_fusion.intake.buffers import LOOK_BACK_NS
+from action_fusion.tracks.hand_tracks import HandTrack
+from action_fusion.tracks.object_tracks import ObjectTrack
+from actum.arrays import Array, Indices, Mask
 from actum.node import SECOND_NS
 
 STEP_NS = 1 * SECOND_NS
@@ -20,11 +20,11 @@ STEADY_M = 0.05
 EXPLAINED = 0.5
 """Least share of the object's squared displacement that the hand's displacement explains."""
 
-TransportingHands = Mapping[int, Sequence[HandTrack]]
-"""The hands that transport each object, by the object's id."""
+FURTHEST_SHARE = 0.8
+"""Share of the greatest distance from which a position counts as furthest: the rest may be noise."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Comotion:
     """The motion of an object relative to a hand, at the n instants of the hand's track.
 
@@ -106,20 +106,35 @@ def comotion(hand: HandTrack, track: ObjectTrack, reach_m: float, moved_m: float
     return Comotion(hand, track, object_m, hand_to_object_m, path_m, near, in_motion, in_motion & explained & near)
 
 
-def transporting_hands(pairs: Sequence[Comotion], moved_m: float) -> TransportingHands:
-    """List the hands that transport each object, together or one after another, by the object's id."""
-    hands: dict[int, list[HandTrack]] = {}
-    for pair in pairs:
-        others = [other for other in pairs if other.track is pair.track and other is not pair]
-        if pair.is_transported(moved_m) or _without(pair, others).is_transported(moved_m):
-            hands.setdefault(pair.track.id, []).append(pair.hand)
-    return hands
+def transporting(pairs: Sequence[Comotion], moved_m: float) -> frozenset[Comotion]:
+    """Return the pairs in which the hand transports the object, together with other hands or one after another."""
+    return frozenset(
+        pair for pair in pairs if pair.is_transported(moved_m) or _without_others(pair, pairs).is_transported(moved_m)
+    )
 
 
-def _without(pair: Comotion, others: Sequence[Comotion]) -> Comotion:
+def _without_others(pair: Comotion, pairs: Sequence[Comotion]) -> Comotion:
     """Clear `in_motion` and `with_hand` at the instants at which another hand moved the object."""
     alone = np.ones_like(pair.with_hand)
-    for other in others:
-        if len(other.hand.stamps_ns):
+    for other in pairs:
+        if other.track is pair.track and other is not pair:
             alone &= np.interp(pair.hand.stamps_ns, other.hand.stamps_ns, other.with_hand) < 0.5
     return replace(pair, in_motion=pair.in_motion & alone, with_hand=pair.with_hand & alone)
+
+
+def instants_furthest_away(positions_m: Array, stamps_ns: Array, within_ns: float) -> Indices:
+    """Find, for each of n positions (n, 3) at stamps (n,), the earlier instant at which it was furthest away.
+
+    That is the last instant within `within_ns` with at least four fifths of the greatest distance, so that time at
+    rest before a motion does not count.
+
+    Returns:
+        indices (n,), each at most the position's own index.
+    """
+    here = np.arange(len(positions_m))
+    earliest = np.searchsorted(stamps_ns, stamps_ns - within_ns)
+    window = earliest[:, None] + np.arange((here - earliest).max() + 1)
+    away = np.linalg.norm(positions_m[np.minimum(window, here[:, None])] - positions_m[:, None], axis=2)
+    far = (away >= FURTHEST_SHARE * away.max(axis=1, keepdims=True)) & (window <= here[:, None])
+    last: Indices = window[here, far.shape[1] - 1 - np.argmax(far[:, ::-1], axis=1)]
+    return last

@@ -1,0 +1,1 @@
+"""Which object an action is applied to: cues, tried in order."""

@@ -1,0 +1,140 @@
+"""What cues judge, the evidence of a segment, and what they answer: a choice."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from action_fusion.settings import Settings
+from action_fusion.tracks.actors import Actor
+from action_fusion.tracks.comotion import Comotion, comotion, transporting
+from action_fusion.tracks.hand_tracks import BOTH_HANDS, HandTracks
+from action_fusion.tracks.object_tracks import ObjectTrack
+from actum.arrays import Array
+from actum.messages import Action, Hand, Pointing
+
+PART_HANDS: Mapping[str | None, Hand] = {"right_arm": "right", "left_arm": "left"}
+"""Hand of each arm, by the name of the body part that moved most."""
+
+NO_HAND = "the hand is not known"
+NO_OBJECT = "no object in sight"
+OUT_OF_REACH = "no object within reach"
+LEFT_ALONE = "no object within reach was acted on"
+OFF_THE_LINE = "no object along the arm"
+
+MOST_OBJECTS = 32
+"""Most objects that are compared with each hand, the nearest ones: bounds the computing time."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The object acted on (`track`), or `why` there is none.
+
+    `hands` are the hands that acted, one or both; `held` is the object in them. `rivals` are objects about as likely
+    as `track`. `pointing` tells how well the arm points at `track`.
+    """
+
+    track: ObjectTrack | None = None
+    hands: tuple[Hand, ...] = ()
+    held: ObjectTrack | None = None
+    rivals: tuple[ObjectTrack, ...] = ()
+    pointing: Pointing | None = None
+    why: str | None = None
+
+    @property
+    def likely(self) -> tuple[ObjectTrack, ...]:
+        """The object and its rivals, the likeliest first."""
+        return () if self.track is None else (self.track, *self.rivals)
+
+
+@dataclass(frozen=True)
+class Proximity:
+    """The smallest distance of a hand to an object, and the hand that came nearest."""
+
+    track: ObjectTrack
+    distance_m: float
+    hand: Hand
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """All that is known of an action's segment, and how hands and objects moved relative to each other in it.
+
+    Attributes:
+        action: the recognised action.
+        sides: the actor's hands that may have acted.
+        actor: the actor's postures in the segment itself.
+        hands: the tracks of all hands, from some time before the segment to its end.
+        tracks: those of the objects, over the same time.
+        near: the objects with the hand that came nearest to each; none where no hand is known.
+        transporting: the pairs of anybody's hand and an object that this hand transports.
+        own: the pairs of the hands that may have acted: those of one hand, then those of the other.
+        free: the same without the objects that only other hands transport.
+        settings: thresholds and labels.
+    """
+
+    action: Action
+    sides: tuple[Hand, ...]
+    actor: Actor
+    hands: HandTracks
+    tracks: Sequence[ObjectTrack]
+    near: Sequence[Proximity]
+    transporting: frozenset[Comotion]
+    own: Sequence[Comotion]
+    free: Sequence[Comotion]
+    settings: Settings
+
+
+def gather(
+    action: Action, actor: Actor, hands: HandTracks, tracks: Sequence[ObjectTrack], settings: Settings
+) -> Evidence:
+    """Gather the evidence; the hand that may have acted is the marked one, else that of the moving arm, else either."""
+    side = action.hand or PART_HANDS.get(action.part)
+    sides = BOTH_HANDS if side is None else (side,)
+    near = _proximities(actor, tracks, sides)
+    pairs = pairs_of(_concerned([one.track for one in near], hands, settings), hands, settings)
+    by_hand = transporting(pairs, settings.moved_m)
+    transported = {pair.track.id for pair in by_hand}
+    own = [pair for side in sides for pair in pairs if pair.hand is hands.own.get(side)]
+    free = [pair for pair in own if pair in by_hand or pair.track.id not in transported]
+    return Evidence(action, sides, actor, hands, tracks, near, by_hand, own, free, settings)
+
+
+def pairs_of(tracks: Sequence[ObjectTrack], hands: HandTracks, settings: Settings) -> list[Comotion]:
+    """Pair everyone's hands with objects."""
+    return [comotion(hand, track, settings.reach_m, settings.moved_m) for hand in hands.everyones for track in tracks]
+
+
+def smallest_distance(object_ego: Array, hand_ego: Array) -> float:
+    """Compute min over the segment of PM = ||O - hand||_2 in metres; infinite where the hand is never known.
+
+    Both arguments are (p, 3) in metres in the actor's egocentric frame, NaN where unknown (paper, section 2.2).
+    """
+    distances = np.linalg.norm(object_ego - hand_ego, axis=1)
+    return float(np.nanmin(distances)) if np.isfinite(distances).any() else np.inf
+
+
+def _proximities(actor: Actor, tracks: Sequence[ObjectTrack], sides: Sequence[Hand]) -> list[Proximity]:
+    """Measure the smallest distance of a hand to each object, where one is known."""
+    near = []
+    for track in tracks:
+        object_ego = actor.to_ego(track.at(actor.stamps_ns))
+        distances_m = {side: smallest_distance(object_ego, actor.hand_m(side)) for side in sides}
+        nearer = min(sides, key=distances_m.__getitem__)
+        near.append(Proximity(track, distances_m[nearer], nearer))
+    return [one for one in near if np.isfinite(one.distance_m)]
+
+
+def _concerned(tracks: Sequence[ObjectTrack], hands: HandTracks, settings: Settings) -> list[ObjectTrack]:
+    """Drop objects that stayed in place beyond the reach of a held tool; keep at most the nearest `MOST_OBJECTS`."""
+    own = hands.own.values()
+    distances_m = [
+        min(float(np.linalg.norm(track.at(hand.stamps_ns) - hand.positions_m, axis=1).min()) for hand in own)
+        for track in tracks
+    ]
+    nearest = sorted(zip(distances_m, tracks, strict=True), key=lambda near: near[0])[:MOST_OBJECTS]
+    return [
+        track
+        for distance_m, track in nearest
+        if distance_m <= settings.reach_with_tool_m or track.is_displaced(settings.moved_m)
+    ]

@@ -1,0 +1,1 @@
+"""What became of the object that an action was applied to."""
