@@ -52,7 +52,7 @@ class Trial:
     """The random parameters of one repetition.
 
     Attributes:
-        target: the object's index; None in a pantomime.
+        target: the object's index.
         hand_m: (3,), the palm's position at the end of the reach.
         bulge_m: (3,), deviation of the reach from a straight line.
         displacement_m: (3,), displacement of the object by the effect.
@@ -63,7 +63,7 @@ class Trial:
     task: Task
     timing: Timing
     layout: Layout
-    target: int | None
+    target: int
     hand_m: Array
     bulge_m: Array
     displacement_m: Array
@@ -104,7 +104,7 @@ def draw_timing(parameters: TrialParameters, actor: Actor, action: str, rng: np.
 def draw_layout(
     parameters: Parameters, actor: Actor, action: str, places: Array, target: int | None, rng: np.random.Generator
 ) -> Layout:
-    """Draw the layout; the target, None in a pantomime, may stand on a riser; `places` (3,) are the objects' x in m."""
+    """Draw the layout; the target, if there is one, may stand on a riser; `places` (3,) are the objects' x in m."""
     objects, items = parameters.objects, parameters.objects.items
     risers = np.zeros(len(items))
     if rng.random() < RISER_PROBABILITY.get(action, parameters.trial.riser_probability) and target is not None:
