@@ -14,7 +14,7 @@ from scene_simulator.programme import ACTIONS, Task, object_ids
 from scene_simulator.random_streams import random_stream
 from scene_simulator.settings import Settings
 from scene_simulator.simulated_scene import Scene
-from scene_simulator.simulator import Simulator
+from scene_simulator.simulator import Simulator, session_of
 from scene_simulator.timeline import Episode, resetting, still
 from scene_simulator.trial import Trial, draw_bulge, draw_timing
 
@@ -131,7 +131,7 @@ class DrivenSimulator(Simulator):
             sensor=settings.sensor,
             image_hz=settings.image_hz,
             start_ns=start_ns,
-            session_id=f"simulator-{start_ns}",
+            session_id=session_of(start_ns),
         )
         self._waiting: deque[Perform] = deque()
         self.scene: DrivenScene = DrivenScene(settings, self._waiting)

@@ -149,7 +149,7 @@ class Scene:
 
     def _acting(self, trial: Trial, number: int) -> Episode:
         """Return the episode of one repetition, done with the actor's preferred hand."""
-        return acting(self.parameters, trial, number, 0 if self.actor.hand == "left" else 1)
+        return acting(self.parameters, trial, number, self.actor.column)
 
     def pause(self, done: Episode, following: Layout, seconds: float, return_s: float) -> Iterator[Episode]:
         """Yield the pause after an action: hands and objects move to the layout of what follows."""

@@ -151,6 +151,11 @@ class Simulator:
         )
 
 
+def session_of(start_ns: int) -> str:
+    """Return the session of a service that starts at a stamp: the same scene, started anew, is another session."""
+    return f"simulator-{start_ns}"
+
+
 def labelled_stream(simulator: Source) -> Iterator[Message]:
     """Yield a simulated scene's messages with a labelled mark after each truth, as in a training recording."""
     for messages in simulator.frames():

@@ -76,13 +76,13 @@ def draw_trial(parameters: Parameters, actor: Actor, task: Task, places: Array, 
     items = parameters.objects.items
     target = [item.id for item in items].index(task.object_id)
     layout = draw_layout(parameters, actor, task.action, places, target, rng)
-    hand = {True: _draw_aim, False: _draw_grasp}[task.action == "point"]
+    draw_hand = _draw_aim if task.action == "point" else _draw_grasp
     return Trial(
         task=task,
         timing=draw_timing(parameters.trial, actor, task.action, rng),
         layout=layout,
         target=target,
-        hand_m=hand(parameters, actor, layout, target, rng),
+        hand_m=draw_hand(parameters, actor, layout, target, rng),
         bulge_m=draw_bulge(parameters.trial, actor, rng),
         displacement_m=draw_displacement(parameters, task.action, layout, items[target], rng),
         finger_overlap_m=draw_uniform(rng, parameters.trial.finger_overlap_range_m),
