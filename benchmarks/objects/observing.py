@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from benchmarks.rig.hard_scenes.conditions import Conditions
+from benchmarks.rig.hard_scenes.hard_simulator import HardSimulator
 
 from action_fusion.settings import Settings
 from actum.messages import Action, Event, Image, Message, Objects, Skeleton, Truth
@@ -14,9 +16,7 @@ from marker_tracker.settings import Settings as TrackerSettings
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from scene_simulator.actor import EYE
-from scene_simulator.conditions import Conditions
 from scene_simulator.programme import Task
-from scene_simulator.simulator import Simulator
 
 from .trials import OURS, Trial
 from .unmarked import Unmarked, events_of, told_unmarked
@@ -39,13 +39,8 @@ class Scene:
 
     def trials(self) -> list[Trial]:
         """Draw the scene once; each measure judges the same sightings, and the joint one also where nobody marks."""
-        simulator = Simulator(
-            self.programme,
-            self.person,
-            self.person,
-            image_hz=self.image_hz,
-            tail_s=TAIL_S,
-            conditions=self.conditions,
+        simulator = HardSimulator(
+            self.programme, self.person, self.person, self.conditions, image_hz=self.image_hz, tail_s=TAIL_S
         )
         stream = list(observed(simulator))
         events = {name: events_of(stream, settings) for name, settings in MEASURES.items()}
@@ -55,7 +50,7 @@ class Scene:
 
 
 def _trial(
-    simulator: Simulator,
+    simulator: HardSimulator,
     stream: Sequence[Message],
     number: int,
     end: Truth,
@@ -72,7 +67,7 @@ def _trial(
     )
 
 
-def observed(simulator: Simulator) -> Iterator[Message]:
+def observed(simulator: HardSimulator) -> Iterator[Message]:
     """Yield postures, objects and truth, and at each end the action as if it were recognised."""
     tracker, started = MarkerTracker(_tracker_settings(simulator)), {}
     preprocessor = PosePreprocessor(PoseSettings.defaults())
@@ -89,7 +84,7 @@ def observed(simulator: Simulator) -> Iterator[Message]:
                     yield _recognised(message, started[message.segment_id])
 
 
-def _tracker_settings(simulator: Simulator) -> TrackerSettings:
+def _tracker_settings(simulator: HardSimulator) -> TrackerSettings:
     objects = simulator.scene.parameters.objects
     specs = {item.id: ObjectSpec(name=item.name, size_m=objects.marker_size_m) for item in objects.items}
     return TrackerSettings(objects=specs)
@@ -113,7 +108,7 @@ def _recognised(end: Truth, start_ns: int) -> Action:
     )
 
 
-def own_displacement(simulator: Simulator, number: int, end: Truth) -> np.ndarray | None:
+def own_displacement(simulator: HardSimulator, number: int, end: Truth) -> np.ndarray | None:
     """Turn the true displacement into the person's own directions."""
     if end.displacement_m is None:
         return None
@@ -121,12 +116,12 @@ def own_displacement(simulator: Simulator, number: int, end: Truth) -> np.ndarra
     return np.stack([np.cross(forward, up), up, forward]) @ end.displacement_m
 
 
-def _forward(simulator: Simulator, number: int) -> np.ndarray:
+def _forward(simulator: HardSimulator, number: int) -> np.ndarray:
     heading = simulator.scene.trials[number].layout.heading_rad
     return np.array([-np.sin(heading), 0.0, -np.cos(heading)])
 
 
-def _line_right(simulator: Simulator, number: int) -> bool:
+def _line_right(simulator: HardSimulator, number: int) -> bool:
     """Tell whether the true line from eye to fingertip passes its object nearer than the others."""
     for state in simulator.scene.states(TAIL_S):
         if state.mark == "end" and state.segment == number:
@@ -137,7 +132,7 @@ def _line_right(simulator: Simulator, number: int) -> bool:
     return False
 
 
-def seen_left(simulator: Simulator, stream: Sequence[Message], number: int, end: Truth) -> bool:
+def seen_left(simulator: HardSimulator, stream: Sequence[Message], number: int, end: Truth) -> bool:
     """Tell whether the object is seen in the segment where it is left, or held to its end."""
     states = [state for state in simulator.scene.states(TAIL_S) if state.segment == number]
     target = states[-1].target

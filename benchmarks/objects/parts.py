@@ -6,10 +6,11 @@ from functools import cache
 from itertools import chain, count
 
 import numpy as np
+from benchmarks.rig.hard_scenes.conditions import Conditions, load_conditions
+from benchmarks.rig.hard_scenes.pantomime import Pantomime
 
 from actum.node import SECOND_NS
-from scene_simulator.conditions import Conditions, load_conditions
-from scene_simulator.programme import NO_OBJECT, Task
+from scene_simulator.programme import Task
 
 from .observing import MEASURES, Scene
 from .rest_to_rest import WAYS, Way, trials_from_rest_to_rest
@@ -189,7 +190,7 @@ def _pointings(distance_m: float) -> list[Trial]:
 
 @cache
 def _pantomimes(empty_m: float) -> list[Trial]:
-    programme = [Task(action, NO_OBJECT) for action in CONTACT]
+    programme = [Pantomime(action) for action in CONTACT]
     people = count(FIRST_PERSON + round(1e5 * empty_m))
     return _trials(
         Scene(programme, next(people), _empty(name, spacing_m, empty_m), IMAGE_HZ)

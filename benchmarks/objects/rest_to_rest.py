@@ -5,13 +5,13 @@ from dataclasses import replace
 from typing import Literal, get_args
 
 import numpy as np
+from benchmarks.rig.hard_scenes.conditions import Conditions
+from benchmarks.rig.hard_scenes.hard_scene import HardScene
+from benchmarks.rig.hard_scenes.hard_simulator import HardSimulator
 
 from actum.messages import Action, Message, Truth
 from actum.node import SECOND_NS
-from scene_simulator.conditions import Conditions
 from scene_simulator.programme import Task
-from scene_simulator.simulated_scene import Scene
-from scene_simulator.simulator import Simulator
 from scene_simulator.timeline import Episode, resetting, still
 from scene_simulator.trial import Layout
 
@@ -32,7 +32,7 @@ ARRANGE_S = 1.0
 IMAGE_HZ = 15
 
 
-class ReturningScene(Scene):
+class ReturningScene(HardScene):
     """A scene in which the hand comes to rest after each action before the objects are arranged for the next one."""
 
     way: Way = "left there"
@@ -70,12 +70,12 @@ def _backwards(done: Episode) -> Episode:
     )
 
 
-class ReturningSimulator(Simulator):
+class ReturningSimulator(HardSimulator):
     """A source of such a scene."""
 
     def __init__(self, programme: Sequence[Task], person: int, conditions: Conditions, way: Way) -> None:
-        super().__init__(programme, person, person, image_hz=IMAGE_HZ, tail_s=ARRANGE_S, conditions=conditions)
-        self.scene: ReturningScene = ReturningScene(programme, person, person, None, conditions)
+        super().__init__(programme, person, person, conditions, image_hz=IMAGE_HZ, tail_s=ARRANGE_S)
+        self.scene: ReturningScene = ReturningScene(programme, person, person, conditions)
         self.scene.way = way
 
 

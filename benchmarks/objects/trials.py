@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from benchmarks.rig.hard_scenes.pantomime import NO_OBJECT
 
 from action_fusion.outcome.displacement import UNMOVED
 from actum.messages import Event, Truth
 from actum_model_trainer.evaluation import wilson_interval
-from scene_simulator.programme import NO_OBJECT
 
 from .unmarked import Unmarked
 

@@ -7,6 +7,9 @@ from functools import cache
 from itertools import accumulate
 from pathlib import Path
 
+from benchmarks.rig.hard_scenes.conditions import PLAIN, Conditions
+from benchmarks.rig.hard_scenes.hard_simulator import HardSimulator
+
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
 from actum.messages import Action, Event, Message, Posture
@@ -15,10 +18,9 @@ from actum.recorder import Recorder
 from actum.recording import Recording
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train_to_spot
-from scene_simulator.conditions import PLAIN, Conditions
 from scene_simulator.everyday import FAMILIAR, Everyday
 from scene_simulator.programme import Task, balanced_programme, object_ids
-from scene_simulator.simulator import Simulator, labelled_stream
+from scene_simulator.simulator import labelled_stream
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.presets import DEFAULT
@@ -140,9 +142,7 @@ def _scenes(teacher: int) -> Iterator[tuple[str, int, Sequence[Task], Conditions
 
 
 def _recorded(what: str, teacher: int, programme: Sequence[Task], conditions: Conditions, folder: Path) -> Recording:
-    simulator = Simulator(
-        programme, teacher, teacher, image_hz=0, conditions=conditions, everyday=Everyday(FAMILIAR)
-    )  # fmt: skip
+    simulator = HardSimulator(programme, teacher, teacher, conditions, image_hz=0, everyday=Everyday(FAMILIAR))
     path = folder / f"{what}-{teacher}.mcap"
     with Recorder(path, person=str(teacher), source="simulator") as recorder:
         for message in labelled_stream(simulator):

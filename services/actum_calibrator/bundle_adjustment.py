@@ -34,47 +34,31 @@ class CameraModel:
         """Build the model of a calibration."""
         return cls(calibration.matrix, np.array(calibration.distortion, dtype=np.float64))
 
-    def reprojection_errors_px(self, view: View, camera_from_board: Array) -> Array:
-        """Return projected minus detected corners (n, 2), with the board at a pose (6)."""
-        projected, _ = self._project(view, camera_from_board)
-        errors: Array = projected - view.corners_px
-        return errors
-
     def linearised(self, view: View, camera_from_board: Array) -> tuple[Array, Array]:
-        """Return the reprojection errors (2n,) in px, and their Jacobian (2n, 6) with respect to the pose."""
-        projected, jacobian = self._project(view, camera_from_board)
-        return (projected - view.corners_px).ravel(), jacobian[:, :6]
+        """Return projected minus detected corners (2n,) in px, and their Jacobian (2n, 6) by the board's pose (6)."""
+        rotation, position = camera_from_board[:3], camera_from_board[3:]
+        projected, jacobian = cv2.projectPoints(view.corners_m, rotation, position, self.matrix, self.distortion)
+        errors = np.asarray(projected, dtype=np.float64).ravel() - view.corners_px.ravel()
+        return errors, np.asarray(jacobian, dtype=np.float64)[:, :6]
 
     def pose_candidates(self, view: View) -> list[Array]:
         """Return the one or two refined poses (6) that fit a view of a plane, by IPPE (Collins and Bartoli 2014)."""
         _, rotations, positions, _ = cv2.solvePnPGeneric(
             view.corners_m, view.corners_px, self.matrix, self.distortion, flags=cv2.SOLVEPNP_IPPE
         )
-        poses = [
-            self._refined(view, np.asarray(rotation), np.asarray(position))
-            for rotation, position in zip(rotations, positions, strict=True)
+        refined = [
+            cv2.solvePnPRefineLM(view.corners_m, view.corners_px, self.matrix, self.distortion, *pose)
+            for pose in zip(rotations, positions, strict=True)
         ]
+        poses = [np.concatenate([np.ravel(part) for part in pose]) for pose in refined]
         return [pose for pose in poses if np.isfinite(pose).all()]
-
-    def _refined(self, view: View, rotation: Array, position: Array) -> Array:
-        refined = cv2.solvePnPRefineLM(
-            view.corners_m, view.corners_px, self.matrix, self.distortion, rotation, position
-        )
-        return np.concatenate([np.ravel(part) for part in refined])
-
-    def _project(self, view: View, camera_from_board: Array) -> tuple[Array, Array]:
-        """Return projected corners (n, 2) and OpenCV's Jacobian: columns of the pose, then of the camera parameters."""
-        rotation, position = camera_from_board[:3], camera_from_board[3:]
-        projected, jacobian = cv2.projectPoints(view.corners_m, rotation, position, self.matrix, self.distortion)
-        return np.asarray(projected, dtype=np.float64).reshape(-1, 2), np.asarray(jacobian, dtype=np.float64)
 
 
 @dataclass(frozen=True)
 class BundleAdjustment:
-    """The result: poses (6), each pair's RMS reprojection error, and the covariance (6, 6) of the transform."""
+    """The result: the transform (6), each pair's RMS reprojection error, and the covariance (6, 6) of the transform."""
 
     people_from_markers: Array
-    markers_from_boards: list[Array]
     rms_px: list[float]
     covariance: Array
 
@@ -106,17 +90,20 @@ class BundleAdjuster:
                 break
         return self._outcome(parameters)
 
+    def rms_px(self, people_from_markers: Array, markers_from_board: Array, pair: Pair) -> float:
+        """Return the RMS reprojection error of a pair in both images, at poses (6) of the transform and the board."""
+        return rms_px(self._linearised(people_from_markers, markers_from_board, pair)[0])
+
     def _outcome(self, parameters: Array) -> BundleAdjustment:
         normal, _ = self._normal_equations(parameters)
-        rms = [math.sqrt(_mean_square(errors)) for errors in self._errors(parameters)]
-        count = 2 * sum(len(pair.markers.ids) + len(pair.people.ids) for pair in self._pairs)
-        weighted = zip(self._weights(parameters), self._errors(parameters), strict=True)
-        variance = sum(weight * errors.dot(errors) for weight, errors in weighted) / max(1, count - len(parameters))
+        errors_px = self._errors(parameters)
+        freedom = max(1, sum(map(len, errors_px)) - len(parameters))
+        variance = sum(self._weight(errors) * errors.dot(errors) for errors in errors_px) / freedom
         covariance = np.linalg.inv(normal)[:6, :6] * variance
-        return BundleAdjustment(parameters[:6], list(parameters[6:].reshape(-1, 6)), rms, covariance)
+        return BundleAdjustment(parameters[:6], [rms_px(errors) for errors in errors_px], covariance)
 
-    def _weights(self, parameters: Array) -> list[float]:
-        return [1 / (1 + _mean_square(errors) / self._scale_px**2) for errors in self._errors(parameters)]
+    def _weight(self, errors: Array) -> float:
+        return 1 / (1 + _mean_square(errors) / self._scale_px**2)
 
     def _cost(self, parameters: Array) -> float:
         """Return Cauchy's loss: the sum of n s^2 log(1 + rms^2 / s^2) over the pairs."""
@@ -127,23 +114,16 @@ class BundleAdjuster:
 
     def _errors(self, parameters: Array) -> list[Array]:
         """Return each pair's reprojection errors (2n,) in both images, n corners together."""
-        people_from_markers, boards = parameters[:6], parameters[6:].reshape(-1, 6)
-        return [
-            np.concatenate(
-                [
-                    self._markers.reprojection_errors_px(pair.markers, board),
-                    self._people.reprojection_errors_px(pair.people, compose(people_from_markers, board)),
-                ]
-            ).ravel()
-            for pair, board in zip(self._pairs, boards, strict=True)
-        ]
+        boards = zip(parameters[6:].reshape(-1, 6), self._pairs, strict=True)
+        return [self._linearised(parameters[:6], board, pair)[0] for board, pair in boards]
 
     def _normal_equations(self, parameters: Array) -> tuple[Array, Array]:
         """Return the weighted J^T J (p, p) and J^T e (p,) of all p parameters; a pair involves only its own board."""
         normal, gradient = np.zeros((len(parameters), len(parameters))), np.zeros(len(parameters))
-        for i, weight in enumerate(self._weights(parameters)):
+        for i, pair in enumerate(self._pairs):
             involved = np.r_[0:6, 6 + 6 * i : 12 + 6 * i]
-            errors, jacobian = self._linearised(parameters[:6], parameters[involved[6:]], self._pairs[i])
+            errors, jacobian = self._linearised(parameters[:6], parameters[involved[6:]], pair)
+            weight = self._weight(errors)
             normal[np.ix_(involved, involved)] += weight * jacobian.T @ jacobian
             gradient[involved] += weight * jacobian.T @ errors
         return normal, gradient
@@ -182,10 +162,10 @@ def invert(pose: Array) -> Array:
 
 
 def rms_px(errors_px: Array) -> float:
-    """Return the root mean square length of errors (n, 2)."""
-    return math.sqrt(_mean_square(errors_px.ravel()))
+    """Return the root mean square length of flat errors (2n,)."""
+    return math.sqrt(_mean_square(errors_px))
 
 
 def _mean_square(errors: Array) -> float:
-    """Return the mean squared length of flat errors (2n)."""
+    """Return the mean squared length of flat errors (2n,)."""
     return float(errors.dot(errors)) / (len(errors) / 2)

@@ -45,14 +45,8 @@ def estimate_extrinsics(pairs: Sequence[Pair], markers: Calibration, people: Cal
         CalibrationError: the size of a picture differs from that of its camera's calibration.
     """
     if len(pairs) < FEWEST_PAIRS:
-        raise PoorSetError(
-            [
-                (
-                    f"too few pairs: {len(pairs)} are usable, at least {FEWEST_PAIRS} are needed, 6 to 10 are good; "
-                    "take more"
-                )
-            ]
-        )
+        few = f"{len(pairs)} are usable, at least {FEWEST_PAIRS} are needed, 6 to 10 are good; take more"
+        raise PoorSetError([f"too few pairs: {few}"])
     for pair in pairs:
         markers.check_size(*pair.markers.size, pair.markers.name)
         people.check_size(*pair.people.size, pair.people.name)
@@ -72,7 +66,7 @@ def estimate_extrinsics(pairs: Sequence[Pair], markers: Calibration, people: Cal
 def _noise_px(view: View, camera: CameraModel) -> float:
     """Return the RMS reprojection error of one camera's view alone, at the best pose of the board."""
     candidates = camera.pose_candidates(view)
-    return min((rms_px(camera.reprojection_errors_px(view, pose)) for pose in candidates), default=math.inf)
+    return min((rms_px(camera.linearised(view, pose)[0]) for pose in candidates), default=math.inf)
 
 
 def _mismatch(what: str, noise_px: Sequence[float], calibration: Calibration) -> list[str]:
@@ -99,29 +93,18 @@ def _adjusted(pairs: Sequence[Pair], markers: CameraModel, people: CameraModel, 
         for markers_pose in markers_poses
         for people_pose in people_poses
     ]
+    adjuster = BundleAdjuster(markers, people, pairs, ROBUST_SCALE_OF_NOISE * noise_px)
 
     def likeliest_board(people_from_markers: Array, i: int) -> tuple[float, Array]:
         """Return (error in px, pose in the marker camera) of the best candidate pose of pair i's board."""
         from_people = [compose(invert(people_from_markers), pose) for pose in in_people[i]]
-        rated = [
-            (_error_px(people_from_markers, pose, pairs[i], markers, people), pose)
-            for pose in [*in_markers[i], *from_people]
-        ]
+        candidates = [*in_markers[i], *from_people]
+        rated = [(adjuster.rms_px(people_from_markers, pose, pairs[i]), pose) for pose in candidates]
         return min(rated, key=lambda one: one[0])
 
     errors_px = [np.median([likeliest_board(proposal, i)[0] for i in range(len(pairs))]) for proposal in proposals]
     start = proposals[int(np.argmin(errors_px))]
-    adjuster = BundleAdjuster(markers, people, pairs, ROBUST_SCALE_OF_NOISE * noise_px)
     return adjuster.adjust(start, [likeliest_board(start, i)[1] for i in range(len(pairs))])
-
-
-def _error_px(
-    people_from_markers: Array, markers_from_board: Array, pair: Pair, markers: CameraModel, people: CameraModel
-) -> float:
-    """Return the RMS reprojection error of a pair in both images."""
-    in_markers = markers.reprojection_errors_px(pair.markers, markers_from_board)
-    in_people = people.reprojection_errors_px(pair.people, compose(people_from_markers, markers_from_board))
-    return rms_px(np.vstack([in_markers, in_people]))
 
 
 def _contradictions(adjustment: BundleAdjustment, pairs: Sequence[Pair], noise_px: Sequence[float]) -> list[str]:

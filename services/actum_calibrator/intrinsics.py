@@ -62,12 +62,7 @@ class Intrinsics:
 
     def rms_of_views_px(self) -> list[float]:
         """Return each view's root mean square reprojection error."""
-        return [rms(residuals) for residuals in self.residuals_px]
-
-
-def rms(residuals_px: Array) -> float:
-    """Return the root mean square length of residuals (n, 2)."""
-    return math.sqrt(float((residuals_px**2).sum(axis=1).mean()))
+        return [math.sqrt(float((residuals**2).sum(axis=1).mean())) for residuals in self.residuals_px]
 
 
 def estimate_intrinsics(views: Sequence[View]) -> Intrinsics:

@@ -54,6 +54,11 @@ class Actor:
         return 1 if self.hand == "left" else -1
 
     @property
+    def column(self) -> int:
+        """Column of the acting hand in arrays of both hands: 0 is the left one, 1 the right one."""
+        return 0 if self.hand == "left" else 1
+
+    @property
     def arm_m(self) -> float:
         """Length of the stretched arm from shoulder to palm."""
         return (UPPER_ARM + FOREARM) * self.height_m

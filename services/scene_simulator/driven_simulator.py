@@ -14,8 +14,8 @@ from scene_simulator.programme import ACTIONS, Task, object_ids
 from scene_simulator.random_streams import random_stream
 from scene_simulator.settings import Settings
 from scene_simulator.simulated_scene import Scene
-from scene_simulator.simulator import Simulator
-from scene_simulator.timeline import Episode, acting, resetting, still
+from scene_simulator.simulator import Simulator, session_of
+from scene_simulator.timeline import Episode, resetting, still
 from scene_simulator.trial import Trial, draw_bulge, draw_timing
 
 MOST_WAITING = 20
@@ -105,7 +105,7 @@ class DrivenScene(Scene):
             self._layout = trial.layout
         if person is not None:
             yield from person.pause(number, trial.layout)
-        done = acting(self.parameters, trial, number, 0 if self.actor.hand == "left" else 1)
+        done = self._acting(trial, number)
         yield done
         self._newest = resetting(
             self.parameters, done, trial.layout, pause_s, min(trial.pause_s, RETURN_SHARE * pause_s)
@@ -131,7 +131,7 @@ class DrivenSimulator(Simulator):
             sensor=settings.sensor,
             image_hz=settings.image_hz,
             start_ns=start_ns,
-            session_id=f"simulator-{start_ns}",
+            session_id=session_of(start_ns),
         )
         self._waiting: deque[Perform] = deque()
         self.scene: DrivenScene = DrivenScene(settings, self._waiting)

@@ -10,7 +10,7 @@ from scene_simulator.group import Group
 from scene_simulator.parameters import load_parameters
 from scene_simulator.programme import balanced_programme
 from scene_simulator.settings import Settings
-from scene_simulator.simulator import GATEWAY, Simulator
+from scene_simulator.simulator import GATEWAY, Simulator, session_of
 
 REPETITIONS = 4
 """Repetitions of each action in one scene of an endless sequence; the next scene has another seed."""
@@ -25,7 +25,7 @@ def simulator_of(settings: Settings, start_ns: int) -> Source:
     elif settings.repetitions == 0:
         source = EndlessSimulator(settings, start_ns)
     else:
-        source = _simulator(settings, start_ns, _session_of(start_ns))
+        source = _simulator(settings, start_ns, session_of(start_ns))
     source.counters.details["source"] = DESCRIPTION
     source.counters.details["rate_hz"] = f"{load_parameters().camera.frame_rate_hz:g}"
     return source
@@ -47,15 +47,10 @@ class EndlessSimulator:
         start_ns, seed = self._start_ns, self._settings.seed
         while True:
             settings = self._settings.model_copy(update={"repetitions": REPETITIONS, "seed": seed})
-            for messages in _simulator(settings, start_ns, _session_of(self._start_ns)).frames():
+            for messages in _simulator(settings, start_ns, session_of(self._start_ns)).frames():
                 yield messages
                 newest_ns = messages[0].stamp_ns
             start_ns, seed = newest_ns + SECOND_NS, seed + 1
-
-
-def _session_of(start_ns: int) -> str:
-    """Return the session of a service that is started then: the same scene, started anew, is another one."""
-    return f"simulator-{start_ns}"
 
 
 def _simulator(settings: Settings, start_ns: int, session_id: str) -> Source:

@@ -80,14 +80,6 @@ class Figure:
             for ends in ((knuckle, bend), (bend, bend + state.grip * down)):
                 limb(canvas, camera, np.stack(ends), FINGER_RADII_M, self._skin)
 
-    def draw_palm_over(self, canvas: Canvas, camera: Pinhole, middle_m: Array, radius_m: float) -> None:
-        """Draw the hand laid flat over an area around `middle_m` (3,), with its fingers side by side."""
-        ends = np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]) * radius_m
-        limb(canvas, camera, middle_m + ends, (radius_m, radius_m), self._skin)
-        for side in FINGER_SIDES_M:
-            finger = np.array([[side, -0.5 * radius_m, 0.0], [side, 0.9 * radius_m, 0.0]])
-            limb(canvas, camera, middle_m + finger, FINGER_RADII_M, self._skin)
-
     def _arm_strokes(self, camera: Pinhole, state: SceneState, side: str) -> Iterator[Stroke]:
         shoulder, elbow, hand = (state.joints_m[INDEX[f"{side}_{part}"]] for part in ("shoulder", "elbow", "hand"))
         wrist = elbow + 0.8 * (hand - elbow)

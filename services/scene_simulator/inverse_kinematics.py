@@ -70,7 +70,7 @@ def pose(actor: Actor, stance: Stance, hands_m: Array) -> Array:
     The trunk turns and leans towards the acting hand; the elbows point down. A hand beyond the arm's reach is moved
     back along the arm into reach.
     """
-    trunk = _Trunk(actor, stance, hands_m[:, 0 if actor.hand == "left" else 1])
+    trunk = _Trunk(actor, stance, hands_m[:, actor.column])
     joints = np.empty((len(hands_m), len(JOINTS), 3))
     joints[:, INDEX["neck"]] = trunk.along(TRUNK)
     joints[:, INDEX["torso"]] = trunk.along(SPINE)

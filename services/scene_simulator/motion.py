@@ -122,7 +122,7 @@ class Motion:
 
     def one_hand(self) -> int:
         """Draw the column of a hand, more often that of the acting one."""
-        acting = LEFT if self.actor.hand == "left" else RIGHT
+        acting = self.actor.column
         return acting if self.rng.random() < PREFERENCE else 1 - acting
 
     def uniform(self, low: float, high: float) -> float:

@@ -111,15 +111,6 @@ class TrialParameters(Section):
     pointing_sd_deg: float
 
 
-class PantomimeParameters(Section):
-    """The region in which pantomimes are done, relative to the person and the table."""
-
-    clear_range_m: Pair
-    aside_range_m: Pair
-    above_range_m: Pair
-    ahead_range_m: Pair
-
-
 class PauseParameters(Section):
     """The pause between two repetitions."""
 
@@ -179,7 +170,6 @@ class Parameters(Section):
     objects: ObjectParameters
     actor: ActorParameters
     trial: TrialParameters
-    pantomime: PantomimeParameters
     pause: PauseParameters
     everyday: EverydayParameters
     sway: SwayParameters

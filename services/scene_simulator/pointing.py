@@ -22,8 +22,7 @@ def pointing_palm(
     `stand_off_m` before the target, or where the arm is stretched. Trunk and eye move with the hand, so the position
     is found by fixed-point iteration.
     """
-    column = 0 if actor.hand == "left" else 1
-    hands = hands_m.copy()
+    hands, column = hands_m.copy(), actor.column
     hands[0, column] = (hands[0, column] + target_m) / 2
     for _ in range(ITERATIONS):
         joints = pose(actor, stance, hands)

@@ -9,16 +9,13 @@ from scene_simulator.random_streams import random_stream
 
 ACTIONS: tuple[str, ...] = ("push", "pull", "put", "lift", "point")
 
-NO_OBJECT = -1
-"""Object id of a pantomime, which is done in empty space as if an object were there."""
-
 
 @dataclass(frozen=True)
 class Task:
-    """The task of one repetition: an action of `ACTIONS` on the object with that id, or a pantomime (`NO_OBJECT`).
+    """The task of one repetition: an action of `ACTIONS` on the object with that id.
 
     Raises:
-        ValueError: there is no such action or object, or pointing is to be pantomimed.
+        ValueError: there is no such action or object.
     """
 
     action: str
@@ -29,15 +26,8 @@ class Task:
             raise ValueError(
                 f"{self.action!r} is not an action of the simulated person: use one of {', '.join(ACTIONS)}"
             )
-        if self.is_pantomime and self.action == "point":
-            raise ValueError("the action 'point' has no pantomime (a form without an object): choose another action")
-        if self.object_id not in (*object_ids(), NO_OBJECT):
+        if self.object_id not in object_ids():
             raise ValueError(f"{self.object_id} is not the id of an object: use one of {object_ids()}")
-
-    @property
-    def is_pantomime(self) -> bool:
-        """Whether the action is done without an object."""
-        return self.object_id == NO_OBJECT
 
 
 def object_ids() -> tuple[int, ...]:

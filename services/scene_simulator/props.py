@@ -26,8 +26,6 @@ FACES = (
 """Corners of a cuboid's visible faces, and the brightness of each face."""
 RISER_COLOUR: Colour = (150, 160, 170)
 """Colour of risers, unlike the table's and the objects'."""
-GLARE: Colour = (250, 250, 250)
-"""Colour of a card that reflects a light, as bright as its white."""
 TURN = np.linspace(0, 2 * np.pi, 32, endpoint=False)
 """Angles (32,; rad) at which round outlines are sampled."""
 
@@ -43,18 +41,9 @@ class MarkerCard:
         half = marker_size_m * (0.5 + QUIET_CELLS / MARKER_CELLS)
         self._corners_m = np.array([[-half, half, 0], [half, half, 0], [half, -half, 0], [-half, -half, 0]])
 
-    @property
-    def reach_m(self) -> float:
-        """The distance (m) from the middle to a corner."""
-        return float(np.linalg.norm(self._corners_m[0]))
-
-    def draw_with_glare(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
-        """Draw the card at a pose (4, 4) with glare that hides the marker."""
-        polygon(canvas, camera.project(_transformed(camera_from_object, self._corners_m)), GLARE)
-
     def draw(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
         """Draw the card through the homography of its face at a pose (4, 4), oversampled and averaged."""
-        corners = camera.project(_transformed(camera_from_object, self._corners_m))
+        corners = self._corners_px(camera, camera_from_object)
         low = np.maximum(np.floor(corners.min(axis=0)).astype(int) - 1, 0)
         high = np.minimum(np.ceil(corners.max(axis=0)).astype(int) + 2, (camera.width, camera.height))
         width, height = (high - low).tolist()
@@ -63,6 +52,10 @@ class MarkerCard:
         card, cover = self._warped((corners - low + 0.5) * OVERSAMPLING - 0.5, width, height)
         patch = canvas[low[1] : high[1], low[0] : high[0]]
         patch[:] = np.round(card + (1 - cover) * patch)
+
+    def _corners_px(self, camera: Pinhole, camera_from_object: Array) -> Array:
+        """Return the card's corners (4, 2) in the image, at a pose (4, 4)."""
+        return camera.project(_transformed(camera_from_object, self._corners_m))
 
     def _warped(self, corners_px: Array, width: int, height: int) -> tuple[Array, Array]:
         """Return the card's brightness and its coverage of each pixel (0 to 1), each (height, width, 1)."""
@@ -87,16 +80,6 @@ class Prop:
         """Draw body and card at a pose (4, 4)."""
         self._draw_body(canvas, camera, camera_from_object)
         self._card.draw(canvas, camera, camera_from_object)
-
-    def draw_with_glare(self, canvas: Canvas, camera: Pinhole, camera_from_object: Array) -> None:
-        """Draw body and card at a pose (4, 4), with glare on the card."""
-        self._draw_body(canvas, camera, camera_from_object)
-        self._card.draw_with_glare(canvas, camera, camera_from_object)
-
-    @property
-    def card_reach_m(self) -> float:
-        """The distance (m) from the card's middle to its corners."""
-        return self._card.reach_m
 
     def draw_shadow(self, canvas: Canvas, camera: Pinhole, position_m: Array, ground_y_m: float) -> None:
         """Darken the ground under the object at `position_m` (3,); the higher it hangs, the smaller the shadow."""

@@ -2,17 +2,13 @@
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from actum.arrays import Array
-from scene_simulator.background import WALL_Z_M, draw_room, draw_table
-from scene_simulator.clutter import draw_clutter
+from scene_simulator.background import draw_room, draw_table
 from scene_simulator.drawing_primitives import Canvas, Pinhole
-from scene_simulator.exposure import mean_image, states_while_open
 from scene_simulator.figure import Figure, Stroke
 from scene_simulator.props import Prop
-from scene_simulator.random_streams import random_stream
-from scene_simulator.simulated_scene import CLOSED, Scene, SceneState
+from scene_simulator.simulated_scene import Scene, SceneState
 
 SLACK_PX = 64
 """Pixels by which the noise pattern is larger than the image: a random offset makes it differ from image to image."""
@@ -27,32 +23,26 @@ class Renderer:
         parameters = scene.parameters
         self.camera = Pinhole.of(parameters.camera)
         self._table_y_m = parameters.table_y_m
-        self._items, self._seeds, self._conditions = scene.items, scene.seeds, scene.conditions
+        self._items = scene.items
         self._props = [Prop(item, parameters.objects.marker_size_m) for item in scene.items]
         self._figure = Figure(scene.actor)
         self._room = draw_room(self.camera, parameters.camera.height_m)
         names = [item.name for item in scene.items]
         self._table, self._table_mask = draw_table(self.camera, parameters, names, scene.places_x_m)
-        if self._conditions.clutter:
-            self._draw_clutter(scene)
         self._blur_sd_px, self._jpeg_quality = parameters.image.blur_sd_px, parameters.image.jpeg_quality
         self._rng = rng
         size = (self.camera.height + SLACK_PX, self.camera.width + SLACK_PX, 3)
         self._grain = np.round(rng.normal(0, parameters.image.grey_noise_sd, size)).astype(np.int16)
 
-    def jpeg(self, before: SceneState, state: SceneState, share: float) -> bytes:
-        """Render the image exposed over the last `share` (0 to 1) of the interval between two frames, as JPEG."""
-        image = self.image(*states_while_open(before, state, share))
-        done, data = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, self._jpeg_quality])
+    def jpeg(self, state: SceneState) -> bytes:
+        """Render one image as JPEG, with blur and noise."""
+        done, data = cv2.imencode(".jpg", self.image(state), [cv2.IMWRITE_JPEG_QUALITY, self._jpeg_quality])
         assert done
         return data.tobytes()
 
-    def image(self, *states: SceneState) -> Canvas:
-        """Render one image (height, width, 3; BGR) with blur and noise, from the states during the exposure."""
-        exposed = mean_image([self.clean_image(state) for state in states])
-        if self._conditions.defocus_sd_px:
-            exposed = np.asarray(cv2.GaussianBlur(exposed, (0, 0), self._conditions.defocus_sd_px), dtype=np.uint8)
-        blurred = cv2.GaussianBlur(exposed, (3, 3), self._blur_sd_px)
+    def image(self, state: SceneState) -> Canvas:
+        """Render one image (height, width, 3; BGR) with blur and noise."""
+        blurred = cv2.GaussianBlur(self.clean_image(state), (3, 3), self._blur_sd_px)
         x, y = self._rng.integers(SLACK_PX, size=2)
         grain = self._grain[y : y + self.camera.height, x : x + self.camera.width]
         return np.asarray(cv2.add(blurred, grain, dtype=cv2.CV_8U), dtype=np.uint8)
@@ -70,8 +60,7 @@ class Renderer:
         return canvas
 
     def _prop_strokes(self, state: SceneState) -> list[Stroke]:
-        glare = self._has_glare(state.frame)
-        strokes = [self._object_stroke(state, row, bool(glare[row])) for row in range(len(self._props))]
+        strokes = [self._object_stroke(state, row) for row in range(len(self._props))]
         strokes += [
             self._riser_stroke(row, state.riser_tops_m[row])
             for row in range(len(self._props))
@@ -79,21 +68,11 @@ class Renderer:
         ]
         if state.grip > 0 and state.target is not None:
             strokes.append(self._finger_stroke(state, state.target))
-        if state.grip > CLOSED and state.target is not None and self._conditions.covers_marker:
-            strokes.append(self._palm_stroke(state, state.target))
         return strokes
 
-    def _has_glare(self, frame: int) -> NDArray[np.bool_]:
-        """Draw a mask (n,) of the objects whose cards have glare in a frame, with probability `unread_share`."""
-        share, count = self._conditions.unread_share, len(self._props)
-        return (
-            random_stream("unread", *self._seeds, frame).random(count) < share if share else np.zeros(count, dtype=bool)
-        )
-
-    def _object_stroke(self, state: SceneState, row: int, glare: bool) -> Stroke:
+    def _object_stroke(self, state: SceneState, row: int) -> Stroke:
         pose, prop = state.camera_from_object(row), self._props[row]
-        draw = prop.draw_with_glare if glare else prop.draw
-        return float(state.positions_m[row, 2]), lambda canvas: draw(canvas, self.camera, pose)
+        return float(state.positions_m[row, 2]), lambda canvas: prop.draw(canvas, self.camera, pose)
 
     def _riser_stroke(self, row: int, top_m: Array) -> Stroke:
         prop = self._props[row]
@@ -106,19 +85,3 @@ class Renderer:
         down = np.array([0.0, max(state.finger_overlap_m, 0.0), 0.0])
         depth = float(position[2]) - 0.01
         return depth, lambda canvas: self._figure.draw_fingers(canvas, self.camera, state, (edge, down))
-
-    def _palm_stroke(self, state: SceneState, target: int) -> Stroke:
-        """Return the drawing of the hand over the marker card of the held object."""
-        middle, radius_m = state.positions_m[target] - (0.0, 0.0, 0.02), self._props[target].card_reach_m
-        return float(middle[2]), lambda canvas: self._figure.draw_palm_over(canvas, self.camera, middle, radius_m)
-
-    def _draw_clutter(self, scene: Scene) -> None:
-        """Scatter clutter over the wall and the table."""
-        wall_seed, table_seed = random_stream("clutter", *self._seeds).integers(2**31, size=2).tolist()
-        half, top = np.array([2.2, 1.6]), scene.parameters.table
-        wall = np.array([[2 * half[0], 0.0, 0.0], [0.0, 2 * half[1], 0.0]])
-        corner = np.array([-half[0], -half[1], WALL_Z_M])
-        draw_clutter(self._room, self.camera, corner, wall, self._conditions.clutter, wall_seed)
-        corner = np.array([-top.width_m / 2, self._table_y_m, top.near_z_m])
-        sides = np.array([[top.width_m, 0.0, 0.0], [0.0, 0.0, top.far_z_m - top.near_z_m]])
-        draw_clutter(self._table, self.camera, corner, sides, self._conditions.clutter, table_seed)

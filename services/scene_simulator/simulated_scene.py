@@ -9,11 +9,9 @@ import numpy as np
 
 from actum.arrays import Array
 from scene_simulator.actor import draw_actor
-from scene_simulator.conditions import PLAIN, Conditions
 from scene_simulator.everyday import Everyday, EverydayPerson
 from scene_simulator.inverse_kinematics import Stance, fingertip, pose
 from scene_simulator.noise import Sway
-from scene_simulator.pantomime import draw_pantomime
 from scene_simulator.parameters import Parameters, load_parameters
 from scene_simulator.programme import Task
 from scene_simulator.random_streams import random_stream
@@ -31,14 +29,13 @@ class SceneState:
 
     Attributes:
         joints_m: (15, 3).
-        joints_m: (15, 3).
         fingertip_m: (3,), tip of the acting hand's index finger.
         positions_m: (n, 3), the centres of the markers.
         yaw_rad: (n,), rotations of the objects about the vertical.
         riser_tops_m: (n, 3), the top of the riser under each object.
         grip: closure of the acting hand, 0 (open) to 1.
         pointing: extension of the index finger, 0 to 1.
-        target: index of the object acted on; None in a pantomime and in everyday doings.
+        target: index of the object acted on; None in everyday doings.
         segment: number of the current repetition; None in a pause.
         mark: whether the repetition starts or ends with this frame.
         doing: the everyday doing, one of `doings.KINDS`; None in repetitions and pauses.
@@ -90,15 +87,13 @@ class Scene:
         actor_seed: int,
         seed: int,
         parameters: Parameters | None = None,
-        conditions: Conditions = PLAIN,
         everyday: Everyday | None = None,
         place_m: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         if not programme and everyday is None:
             raise ValueError("the programme is empty: give at least one task, or everyday activities")
         self.programme: Sequence[Task] = tuple(programme)
-        self.conditions = conditions
-        self.parameters = conditions.arranged(parameters or load_parameters()).moved(*place_m)
+        self.parameters = (parameters or load_parameters()).moved(*place_m)
         self.items = self.parameters.objects.items
         actor = draw_actor(self.parameters.actor, actor_seed)
         self.actor = replace(actor, stand_x_m=actor.stand_x_m + place_m[0])
@@ -118,8 +113,7 @@ class Scene:
 
     def _trial(self, number: int, task: Task) -> Trial:
         rng = random_stream("trial", *self.seeds, number)
-        draw = draw_pantomime if task.is_pantomime else draw_trial
-        return draw(self.parameters, self.actor, task, self.places_x_m, rng)
+        return draw_trial(self.parameters, self.actor, task, self.places_x_m, rng)
 
     def _layouts(self) -> list[Layout]:
         """Return the layout of each task; without tasks, one for the whole scene."""
@@ -146,13 +140,16 @@ class Scene:
         yield still(self.parameters, layouts[0], pause.lead_in_s)
         following = [*layouts[1:], layouts[-1]]
         pauses = [*(trial.pause_s for trial in self.trials[:-1]), tail_s]
-        column = 0 if self.actor.hand == "left" else 1
         for number, trial in enumerate(self.trials):
             yield from self._doings(number, trial.layout)
-            done = acting(self.parameters, trial, number, column)
+            done = self._acting(trial, number)
             yield done
             return_s = pause.return_share * trial.pause_s
             yield from self.pause(done, following[number], pauses[number], return_s)
+
+    def _acting(self, trial: Trial, number: int) -> Episode:
+        """Return the episode of one repetition, done with the actor's preferred hand."""
+        return acting(self.parameters, trial, number, self.actor.column)
 
     def pause(self, done: Episode, following: Layout, seconds: float, return_s: float) -> Iterator[Episode]:
         """Yield the pause after an action: hands and objects move to the layout of what follows."""

@@ -7,7 +7,6 @@ import numpy as np
 
 from actum.messages import SIMULATOR, Agent, Image, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS, Counters, Source
-from scene_simulator.conditions import PLAIN, Conditions
 from scene_simulator.everyday import Everyday
 from scene_simulator.noise import SkeletonNoise
 from scene_simulator.programme import Task
@@ -27,13 +26,11 @@ class Simulator:
     """A source of skeletons, images and truth; the same arguments give the same messages, bit for bit.
 
     `image_hz` must divide the frame rate; 0 means no images. The first and the last frame of each action have a
-    `Truth`; the last one tells the object's displacement in the camera frame. The truth of a pantomime has the object
-    id `NO_OBJECT`, an empty name and no displacement. `everyday` doings have no truth; while the person is out of view
-    the skeletons have no agent. The glass and the phone of everyday doings are not drawn.
+    `Truth`; the last one tells the object's displacement in the camera frame. `everyday` doings have no truth; while
+    the person is out of view the skeletons have no agent. The glass and the phone of everyday doings are not drawn.
 
     Raises:
-        ValueError: the programme is empty without `everyday`, `image_hz` does not divide the frame rate, or there is no
-            room for a pantomime.
+        ValueError: the programme is empty without `everyday`, or `image_hz` does not divide the frame rate.
     """
 
     name = GATEWAY
@@ -50,14 +47,12 @@ class Simulator:
         start_ns: int = 0,
         session_id: str | None = None,
         tail_s: float = 3.0,
-        conditions: Conditions = PLAIN,
         everyday: Everyday | None = None,
         agent: int = AGENT,
         place_m: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         self.counters = Counters()
-        self.programme = tuple(programme)
-        self.scene = Scene(programme, actor_seed, seed, None, conditions, everyday, place_m)
+        self.scene = self._make_scene(programme, actor_seed, seed, everyday, place_m)
         self._rate_hz = self.scene.parameters.camera.frame_rate_hz
         if image_hz and (image_hz < 0 or self._rate_hz % image_hz):
             raise ValueError(
@@ -65,7 +60,6 @@ class Simulator:
                 "of the frame rate"
             )
         self._frames_per_image = self._rate_hz // image_hz if image_hz else 0
-        self._open_share = min(conditions.exposure_s * self._rate_hz, 1.0)
         self._seeds = (actor_seed, seed)
         self._agent = agent
         self._sensor, self._start_ns, self._tail_s = sensor, start_ns, tail_s
@@ -80,7 +74,7 @@ class Simulator:
             self._rate_hz,
         )
         renderer = self._renderer() if self._frames_per_image else None
-        start = before = None
+        start = None
         for state in self.scene.states(self._tail_s):
             messages: list[Message] = [self._skeleton(state, noise)]
             if state.mark == "start":
@@ -88,10 +82,8 @@ class Simulator:
             if state.mark is not None and start is not None:
                 messages.insert(0, self._truth(state, start))
             if renderer is not None and state.frame % self._frames_per_image == 0:
-                jpeg = renderer.jpeg(before or state, state, self._open_share)
-                messages.append(self._image(state, jpeg, renderer))
+                messages.append(self._image(state, renderer))
             yield messages
-            before = state
 
     def stamp_ns(self, frame: int) -> int:
         """Return a frame's capture time: exact to the nanosecond, without drift."""
@@ -101,6 +93,16 @@ class Simulator:
         """Return the segment id of a repetition by its number; the id does not tell the action."""
         actor_seed, seed = self._seeds
         return f"s{actor_seed}-{seed}-{number:03d}"
+
+    def _make_scene(
+        self,
+        programme: Sequence[Task],
+        actor_seed: int,
+        seed: int,
+        everyday: Everyday | None,
+        place_m: tuple[float, float],
+    ) -> Scene:
+        return Scene(programme, actor_seed, seed, None, everyday, place_m)
 
     def _renderer(self) -> "Renderer":
         from scene_simulator.render import Renderer  # only images need OpenCV
@@ -118,9 +120,9 @@ class Simulator:
         )
 
     def _truth(self, state: SceneState, start: SceneState) -> Truth:
-        assert state.segment is not None and state.mark is not None
-        task, target = self.scene.programme[state.segment], state.target
-        moved = None if target is None else (state.positions_m[target] - start.positions_m[target]).tolist()
+        assert state.segment is not None and state.mark is not None and state.target is not None
+        task = self.scene.programme[state.segment]
+        moved = state.positions_m[state.target] - start.positions_m[state.target]
         return Truth(
             stamp_ns=self.stamp_ns(state.frame),
             sensor=self._sensor,
@@ -130,11 +132,11 @@ class Simulator:
             hand=self.scene.actor.hand,
             action=task.action,
             object_id=task.object_id,
-            object_name="" if target is None else self.scene.items[target].name,
-            displacement_m=moved if state.mark == "end" else None,
+            object_name=self.scene.items[state.target].name,
+            displacement_m=moved.tolist() if state.mark == "end" else None,
         )
 
-    def _image(self, state: SceneState, jpeg: bytes, renderer: "Renderer") -> Image:
+    def _image(self, state: SceneState, renderer: "Renderer") -> Image:
         camera = renderer.camera
         return Image(
             stamp_ns=self.stamp_ns(state.frame),
@@ -142,12 +144,17 @@ class Simulator:
             format="jpeg",
             width=camera.width,
             height=camera.height,
-            data=jpeg,
+            data=renderer.jpeg(state),
             K=camera.matrix.ravel().tolist(),
             distortion=[0.0] * 5,
             skeleton_from_image=np.eye(4).ravel().tolist(),
             session_id=self._session_id,
         )
+
+
+def session_of(start_ns: int) -> str:
+    """Return the session of a service that starts at a stamp: the same scene, started anew, is another session."""
+    return f"simulator-{start_ns}"
 
 
 def labelled_stream(simulator: Source) -> Iterator[Message]:

@@ -86,8 +86,7 @@ def acting(parameters: Parameters, trial: Trial, segment: int, column: int) -> E
     moved = _moved(trial, time)
     hands, positions = base.hands_m.copy(), base.positions_m.copy()
     hands[:, column] = moved + bent_path(trial.layout.rest_m[column], trial.hand_m, trial.bulge_m, share)
-    if trial.target is not None:
-        positions[:, trial.target] += moved
+    positions[:, trial.target] += moved
     pointing = minimum_jerk(share) * (trial.task.action == "point")
     return replace(
         base,

@@ -52,7 +52,7 @@ class Trial:
     """The random parameters of one repetition.
 
     Attributes:
-        target: the object's index; None in a pantomime.
+        target: the object's index.
         hand_m: (3,), the palm's position at the end of the reach.
         bulge_m: (3,), deviation of the reach from a straight line.
         displacement_m: (3,), displacement of the object by the effect.
@@ -63,7 +63,7 @@ class Trial:
     task: Task
     timing: Timing
     layout: Layout
-    target: int | None
+    target: int
     hand_m: Array
     bulge_m: Array
     displacement_m: Array
@@ -76,13 +76,13 @@ def draw_trial(parameters: Parameters, actor: Actor, task: Task, places: Array, 
     items = parameters.objects.items
     target = [item.id for item in items].index(task.object_id)
     layout = draw_layout(parameters, actor, task.action, places, target, rng)
-    hand = {True: _draw_aim, False: _draw_grasp}[task.action == "point"]
+    draw_hand = _draw_aim if task.action == "point" else _draw_grasp
     return Trial(
         task=task,
         timing=draw_timing(parameters.trial, actor, task.action, rng),
         layout=layout,
         target=target,
-        hand_m=hand(parameters, actor, layout, target, rng),
+        hand_m=draw_hand(parameters, actor, layout, target, rng),
         bulge_m=draw_bulge(parameters.trial, actor, rng),
         displacement_m=draw_displacement(parameters, task.action, layout, items[target], rng),
         finger_overlap_m=draw_uniform(rng, parameters.trial.finger_overlap_range_m),
@@ -104,7 +104,7 @@ def draw_timing(parameters: TrialParameters, actor: Actor, action: str, rng: np.
 def draw_layout(
     parameters: Parameters, actor: Actor, action: str, places: Array, target: int | None, rng: np.random.Generator
 ) -> Layout:
-    """Draw the layout; the target, None in a pantomime, may stand on a riser; `places` (3,) are the objects' x in m."""
+    """Draw the layout; the target, if there is one, may stand on a riser; `places` (3,) are the objects' x in m."""
     objects, items = parameters.objects, parameters.objects.items
     risers = np.zeros(len(items))
     if rng.random() < RISER_PROBABILITY.get(action, parameters.trial.riser_probability) and target is not None:

@@ -33,7 +33,7 @@ def test_the_order_comes_from_the_seed() -> None:
     assert balanced_programme(4, 7) != balanced_programme(4, 8)
 
 
-@pytest.mark.parametrize(("action", "object_id"), [("throw", 1), ("push", 4), ("push", 0)])
+@pytest.mark.parametrize(("action", "object_id"), [("throw", 1), ("push", 4), ("push", 0), ("push", -1)])
 def test_an_action_or_object_that_does_not_exist_is_named(action: str, object_id: int) -> None:
-    with pytest.raises(ValueError, match=r"'throw' is not an action|[04] is not the id"):
+    with pytest.raises(ValueError, match=r"'throw' is not an action|(4|0|-1) is not the id"):
         Task(action, object_id)

@@ -3,7 +3,7 @@
 import tomllib
 from collections.abc import Mapping
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import Annotated
 
 from pydantic import Field
@@ -17,8 +17,6 @@ ROW_BEHIND_EDGE_M = 0.05
 """Distance from the table's near edge to a row of objects."""
 ROW_DEPTH_M = 0.02
 """Range of depths of the objects in a row."""
-PANTOMIME_RANGE_M = 0.05
-"""Range of distances above `pantomime_m` between a pantomime and the nearest object."""
 
 Length = Annotated[float, Field(gt=0, le=5)]
 
@@ -29,7 +27,7 @@ class Conditions(Section):
     Attributes:
         spacing_m: distance between the middles of neighbouring objects, which then stand in a row.
         distance_m: distance of the person from the row of objects, which then is at the table's near edge.
-        pantomime_m: distance of a pantomime's path from the nearest object's middle; up to 5 cm more.
+        pantomime_m: distance of a pantomime's path from the nearest object's middle; up to 5 cm more; None: far away.
         clutter: number of shapes, edges and false markers on the wall, and the same number on the table.
         defocus_sd_px: standard deviation of the camera's blur.
         exposure_s: exposure time, at most a frame interval; causes motion blur.
@@ -47,15 +45,10 @@ class Conditions(Section):
     covers_marker: bool = False
 
     def arranged(self, parameters: Parameters) -> Parameters:
-        """Return the parameters with objects, person and pantomime placed by the conditions."""
+        """Return the parameters with objects and person placed by the conditions."""
         objects = parameters.objects if self.spacing_m is None else _in_a_row(parameters.objects, self.spacing_m)
-        pantomime = parameters.pantomime
-        if self.pantomime_m is not None:
-            near = {"clear_range_m": (self.pantomime_m, self.pantomime_m + PANTOMIME_RANGE_M)}
-            pantomime = pantomime.model_copy(update=near)
-        parameters = parameters.model_copy(update={"objects": objects, "pantomime": pantomime})
         if self.distance_m is None:
-            return parameters
+            return parameters.model_copy(update={"objects": objects})
         row_z_m = parameters.table.near_z_m + ROW_BEHIND_EDGE_M
         far_z_m = row_z_m + self.distance_m - parameters.actor.stand_off_mean_sd_m[0]
         return parameters.model_copy(
@@ -71,8 +64,8 @@ PLAIN = Conditions()
 
 @cache
 def load_conditions() -> Mapping[str, Conditions]:
-    """Read the package's named conditions from `conditions.toml`."""
-    text = files(__package__).joinpath("conditions.toml").read_text(encoding="utf-8")
+    """Read the named conditions from `conditions.toml` beside this file."""
+    text = Path(__file__).with_name("conditions.toml").read_text(encoding="utf-8")
     return {name: Conditions.model_validate(section) for name, section in tomllib.loads(text).items()}
 
 

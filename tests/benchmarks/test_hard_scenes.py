@@ -1,32 +1,35 @@
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, islice, pairwise
 
 import cv2
 import numpy as np
 import pytest
+from benchmarks.rig.hard_scenes.conditions import Conditions, load_conditions
+from benchmarks.rig.hard_scenes.exposure import mean_image, states_while_open
+from benchmarks.rig.hard_scenes.hard_renderer import HardRenderer
+from benchmarks.rig.hard_scenes.hard_scene import HardScene
+from benchmarks.rig.hard_scenes.hard_simulator import HardSimulator
+from benchmarks.rig.hard_scenes.pantomime import NO_OBJECT, Pantomime
 from pydantic import ValidationError
 
 from actum.messages import Message, Truth
 from actum.skeletons import INDEX
-from scene_simulator.conditions import Conditions, load_conditions
-from scene_simulator.exposure import mean_image, states_while_open
-from scene_simulator.programme import NO_OBJECT, Task
+from scene_simulator.programme import Task
 from scene_simulator.random_streams import random_stream
-from scene_simulator.render import Renderer
-from scene_simulator.simulated_scene import CLOSED, Scene, SceneState
+from scene_simulator.simulated_scene import CLOSED, SceneState
 from scene_simulator.simulator import Simulator
 
 PROGRAMME = [Task("push", 1), Task("lift", 2), Task("put", 3)]
 CONTACT = ("push", "pull", "put", "lift")
 
 
-def scene(programme: list[Task] = PROGRAMME, **conditions: float) -> Scene:
-    return Scene(programme, 42, 7, conditions=Conditions.model_validate(conditions))
+def scene(programme: Sequence[Task] = PROGRAMME, **conditions: float) -> HardScene:
+    return HardScene(programme, 42, 7, Conditions.model_validate(conditions))
 
 
-def renderer(of: Scene) -> Renderer:
-    return Renderer(of, random_stream("test"))
+def renderer(of: HardScene) -> HardRenderer:
+    return HardRenderer(of, random_stream("test"))
 
 
 def detected(image: np.ndarray) -> set[int]:
@@ -35,7 +38,7 @@ def detected(image: np.ndarray) -> set[int]:
     return set() if ids is None else set(ids.ravel().tolist())
 
 
-def shares(of: Scene, states: list[SceneState]) -> Mapping[int, float]:
+def shares(of: HardScene, states: list[SceneState]) -> Mapping[int, float]:
     """In which share of images each marker is found."""
     drawing = renderer(of)
     found = [detected(drawing.image(state)) for state in states]
@@ -43,7 +46,7 @@ def shares(of: Scene, states: list[SceneState]) -> Mapping[int, float]:
     return {marker: sum(marker in ids for ids in found) / len(found) for marker in (1, 2, 3)}
 
 
-def free(of: Scene, every: int = 9) -> list[SceneState]:
+def free(of: HardScene, every: int = 9) -> list[SceneState]:
     """States in which no hand closes on anything."""
     return [state for state in of.states() if state.grip == 0][::every]
 
@@ -58,7 +61,7 @@ def truths(messages: list[Message]) -> list[Truth]:
 
 
 def test_no_conditions_change_nothing() -> None:
-    plain, named = (Simulator(PROGRAMME, 2, 5), Simulator(PROGRAMME, 2, 5, conditions=load_conditions()["plain"]))
+    plain, named = (Simulator(PROGRAMME, 2, 5), HardSimulator(PROGRAMME, 2, 5, load_conditions()["plain"]))
     assert list(islice(plain.frames(), 60)) == list(islice(named.frames(), 60))
 
 
@@ -148,7 +151,7 @@ def test_an_open_shutter_takes_in_the_way_since_and_smears_only_what_moves() -> 
 
 @pytest.mark.parametrize("spacing_m", [0.10, 0.20, 0.30])
 def test_a_pantomime_is_done_far_from_every_object_and_moves_none(spacing_m: float) -> None:
-    programme = [Task(action, NO_OBJECT) for action in CONTACT] * 3
+    programme = [Pantomime(action) for action in CONTACT] * 3
     made = scene(programme, spacing_m=spacing_m)
     hand = INDEX[f"{made.actor.hand}_hand"]
     for state in made.states():
@@ -164,7 +167,7 @@ def test_a_pantomime_is_done_far_from_every_object_and_moves_none(spacing_m: flo
 
 @pytest.mark.parametrize("near_m", [0.12, 0.2])
 def test_a_pantomime_comes_as_near_to_an_object_as_asked(near_m: float) -> None:
-    made = scene([Task(action, NO_OBJECT) for action in CONTACT], spacing_m=0.2, pantomime_m=near_m)
+    made = scene([Pantomime(action) for action in CONTACT], spacing_m=0.2, pantomime_m=near_m)
     hand = INDEX[f"{made.actor.hand}_hand"]
     for number in range(len(CONTACT)):
         held = [state for state in made.states() if state.segment == number and state.grip > CLOSED]
@@ -173,7 +176,7 @@ def test_a_pantomime_comes_as_near_to_an_object_as_asked(near_m: float) -> None:
 
 
 def test_pantomimes_differ_as_the_actions_do() -> None:
-    moved = {action: scene([Task(action, NO_OBJECT)]).trials[0].displacement_m for action in CONTACT}
+    moved = {action: scene([Pantomime(action)]).trials[0].displacement_m for action in CONTACT}
     assert moved["push"][2] < -0.08
     assert moved["pull"][2] > 0.08
     assert moved["lift"][1] < -0.09
@@ -181,7 +184,7 @@ def test_pantomimes_differ_as_the_actions_do() -> None:
 
 
 def test_the_truth_of_a_pantomime_names_no_object() -> None:
-    simulator = Simulator([Task("push", NO_OBJECT)], image_hz=0)
+    simulator = HardSimulator([Pantomime("push")], 0, 0, load_conditions()["plain"], image_hz=0)
     start, end = truths([message for messages in simulator.frames() for message in messages])
 
     assert (start.action, end.action) == ("push", "push")
@@ -190,12 +193,12 @@ def test_the_truth_of_a_pantomime_names_no_object() -> None:
 
 def test_pointing_has_no_pantomime() -> None:
     with pytest.raises(ValueError, match="has no pantomime"):
-        Task("point", NO_OBJECT)
+        Pantomime("point")
 
 
 def test_a_pantomime_without_room_is_refused() -> None:
     with pytest.raises(ValueError, match="no empty space"):
-        scene([Task("push", NO_OBJECT)], pantomime_m=3.0)
+        scene([Pantomime("push")], pantomime_m=3.0)
 
 
 def test_the_named_conditions_are_all_different() -> None:

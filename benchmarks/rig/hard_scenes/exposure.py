@@ -1,7 +1,7 @@
 """Motion blur: the mean of images drawn at several instants of an exposure."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -12,6 +12,13 @@ from scene_simulator.simulated_scene import SceneState
 INSTANTS = 3
 """Instants of one exposure: enough for visible blur; each costs the drawing of an image."""
 MOVING = ("joints_m", "fingertip_m", "positions_m", "yaw_rad", "riser_tops_m", "grip", "pointing")
+
+
+@dataclass(frozen=True)
+class ExposedState(SceneState):
+    """The ground truth of one frame that knows the frame before it; None in the first frame."""
+
+    before: SceneState | None = None
 
 
 def states_while_open(before: SceneState, state: SceneState, share: float) -> list[SceneState]:

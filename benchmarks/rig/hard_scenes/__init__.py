@@ -1,0 +1,1 @@
+"""Simulated scenes under conditions that are harder than those of the demo: for benchmarks, and their tests."""
