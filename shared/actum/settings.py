@@ -146,8 +146,9 @@ class ServiceSettings(BaseSettings):
     state: Path | None = Field(
         None,
         description=(
-            "a folder in which the service stores its last answers, to publish them again after a restart; only "
-            "som_classifier and action_fusion use this folder. Default: no answers are stored"
+            "a folder in which the service stores the last actions or events that it published, to publish them again "
+            "after a restart. Default: they are not stored. Only som_classifier and action_fusion do this; the other "
+            "services ignore the option"
         ),
     )
     health_file: Path | None = Field(

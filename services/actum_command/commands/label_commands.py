@@ -199,8 +199,8 @@ def picture(
         Path | None,
         typer.Option(
             help=(
-                "a model file: draw what this model recognises in the marked segments, and the actions that it finds "
-                "by itself. Default: draw the answers that are stored in the recording"
+                "a model file: draw which action this model recognises in each labelled segment, and which actions it "
+                "finds without using the labels. Default: draw the actions that were recognised during the recording"
             )
         ),
     ] = None,

@@ -28,7 +28,11 @@ RecordingFile = Annotated[
 AllOption = Annotated[
     bool,
     typer.Option(
-        "--all", help="also use recordings marked as excluded, such as those in which 'actum record --times' miscounted"
+        "--all",
+        help=(
+            "also use recordings marked as excluded, such as those in which 'actum record --times N' did not find N "
+            "repetitions"
+        ),
     ),
 ]
 

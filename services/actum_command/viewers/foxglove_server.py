@@ -189,5 +189,5 @@ def _number(value: object) -> int:
         ValueError: it is none.
     """
     if not isinstance(value, int) or not 0 <= value < 2**32:
-        raise ValueError(f"{value!r} is not a whole number of 32 bits")
+        raise ValueError(f"{value!r} is not a whole number from 0 to 4294967295")
     return value
