@@ -3,8 +3,9 @@
 import pytest
 
 from actum.messages import Action, Agent, Event, Skeleton, Status, Truth
-from actum.node import SECOND_NS, SOURCE_ENDED
+from actum.node import SECOND_NS
 from actum.skeletons import INDEX
+from actum.states import State
 from actum_command.demo.performance import Doing, Performance
 from actum_command.demo.unmarked import PersonWitness, summary, table
 from scene_simulator.simulator import GATEWAY
@@ -70,7 +71,7 @@ def heard(*segments: tuple[float, float, str, int | None], done: list = DONE) ->
         messages.append((end_s, truth("end", end_s, str(number), action, object_id)))
     messages += [(segment[1] + 0.25, message) for segment in segments for message in told(*segment)]
     in_order = [message for _, message in sorted(messages, key=lambda each: each[0])]
-    return [line for message in [*in_order, status(SOURCE_ENDED)] for line in witness.take(message)], performance
+    return [line for message in [*in_order, status(State.SOURCE_ENDED)] for line in witness.take(message)], performance
 
 
 def plain(line: str) -> str:
@@ -132,12 +133,12 @@ def test_the_table_counts_every_action_that_was_done() -> None:
 def test_a_scene_is_over_once_its_source_has_ended_and_each_final_action_is_an_event() -> None:
     performance = Performance("person 1", actions=1)
     final, event = told(2.0, 4.0, "push", 1)
-    performance.take(status(SOURCE_ENDED))
+    performance.take(status(State.SOURCE_ENDED))
     performance.take(truth("start", 2.0, "0", "push", 1))
     performance.take(truth("end", 4.0, "0", "push", 1))
     assert not performance.over, "it was the scene before that had ended"
     performance.take(final)
-    performance.take(status(SOURCE_ENDED))
+    performance.take(status(State.SOURCE_ENDED))
     assert not performance.over, "the event has not come"
     performance.take(event)
     assert performance.over
