@@ -14,9 +14,9 @@ class State(StrEnum):
     NOTHING_TO_DO = "nothing to do"
     UNKNOWN_ACTIONS = "settings name actions that the model does not know"
 
-    def because(self, reason: str) -> str:
-        """Return the text of this state with its reason."""
-        return f"{self}: {reason}"
+    def because(self, detail: str) -> str:
+        """Return the text of this state with what it is due to."""
+        return f"{self}: {detail}"
 
     def noting(self, remark: str) -> str:
         """Return the text of this state with a remark on what is no problem."""
