@@ -95,14 +95,14 @@ def _of_pyramid_maps(maps: PyramidMaps, section: str) -> Iterator[Picture]:
     yield Picture(
         section, "movement-map",
         "The first layer's second map. Every unit stands for a way of moving, drawn as arrows at the joints.",
-        partial(velocity_map, maps.model.first.velocities),
+        partial(velocity_map, maps.model.first.maps["velocities"]),
     )  # fmt: skip
     yield Picture(
         section, "arm-map",
         "The first layer's third map. Every unit stands for where the right arm is, seen from its shoulder, and "
         "where it is going."
         + (" Who acts with the left arm is read in a mirror." if mirrors else " Left arms are not seen by it."),
-        partial(arm_map, maps.model.first.arms, mirrors),
+        partial(arm_map, maps.model.first.maps["arms"], mirrors),
     )  # fmt: skip
 
 

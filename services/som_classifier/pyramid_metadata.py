@@ -51,6 +51,11 @@ class PyramidMetadata(ModelMetadata):
     least_movement_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
     spotting: SpottingMetadata | None = None
 
+    @property
+    def contrasts(self) -> dict[str, float]:
+        """The contrast of each map of the first layer, by the map's name."""
+        return {"postures": self.posture_contrast, "velocities": self.velocity_contrast, "arms": self.arm_contrast}
+
     def problem(self) -> str | None:
         """Return the first inconsistency within it, None where there is none."""
         actions = len(self.labels)

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from actum.arrays import Array, Floats, Indices
 from actum.node import SECOND_NS
-from actum.skeletons import JOINTS
 from actum.som import Som
-from som_classifier.first_layer import ARM_INPUTS, CHANNELS, FirstMaps
+from som_classifier.first_layer import CHANNELS, INPUT_SIZES, MAP_INPUTS, Channel, FirstMaps
 from som_classifier.frame_activity import (
     FrameActivity,
     FrameEncoder,
@@ -67,9 +66,7 @@ class PyramidModel(Model):
     def arrays(self) -> Arrays:
         """All weights by the names they are stored under, maps as component planes (rows, cols, dim)."""
         weights: dict[str, NDArray[Any]] = {
-            "postures": self.first.postures.planes,
-            "velocities": self.first.velocities.planes,
-            "arms": self.first.arms.planes,
+            **{name: self.first.maps[name].planes for name in MAP_INPUTS},
             "axes": self.stages.axes,
             "offsets": self.stages.offsets,
             "concepts": self.action_map.som.planes,
@@ -89,14 +86,13 @@ class PyramidModel(Model):
         """
         stored = PyramidMetadata.model_validate_json(metadata)
         action_som = Som.of_planes(arrays["concepts"])
-        postures, velocities, arms = (Som.of_planes(arrays[name]) for name in ("postures", "velocities", "arms"))
-        contrasts = stored.posture_contrast, stored.velocity_contrast, stored.arm_contrast
+        maps = {name: Som.of_planes(arrays[name]) for name in MAP_INPUTS}
         durations = stored.log_duration_mean, stored.log_duration_sd
         heads = None
         if stored.spotting is not None:
             heads = CompletenessHeads(arrays["completeness_axes"], arrays["completeness_offsets"])
         return cls(
-            FirstMaps(postures, velocities, arms, contrasts, (stored.arm_shares[0], stored.arm_shares[1])),
+            FirstMaps(maps, stored.contrasts, (stored.arm_shares[0], stored.arm_shares[1])),
             StageDiscriminants(arrays["axes"], arrays["offsets"], tuple(stored.fractions), *durations),
             ActionMap(action_som, stored.concept_contrast, arrays["concept_mean"]),
             SupervisedLayer(arrays["layer3"]),
@@ -179,12 +175,11 @@ class PyramidModel(Model):
         activities: list[FrameActivity] = [frame.activity for frame in frames]
         scores = self.scores(activities, self.stages.weights(0.0, complete=True))
         segment = self.prefix_sums(activities)
-        sums = segment.since_start([len(segment)]).reshape(len(CHANNELS), -1)[: len(self.first.maps)]
-        relative = sums / sums.max(axis=1, keepdims=True)
-        first = {
-            name: activity.reshape(som.rows, som.cols)
-            for name, som, activity in zip(("postures", "velocities", "arms"), self.first.maps, relative, strict=True)
-        }
+        sums = segment.since_start([len(segment)]).reshape(len(CHANNELS), -1)
+        first = {}
+        for name, som in self.first.maps.items():
+            activity = sums[CHANNELS.index(Channel(name))].reshape(som.rows, som.cols)
+            first[name] = activity / activity.max()
         action_som = self.action_map.som
         active = soft_activity(action_som.excess2(scores), self.action_map.contrast)
         return first | {"actions": active.reshape(action_som.rows, action_som.cols)}
@@ -213,7 +208,7 @@ class PyramidModel(Model):
 
     def _number_problem(self) -> str | None:
         """Return the first array whose numbers are not of the kind they have to be, None where there is none."""
-        if len({som.dtype for som in self.first.maps}) > 1:
+        if len({som.dtype for som in self.first.maps.values()}) > 1:
             return "its maps are not of the same precision"
         outside_maps = [self.stages.axes, self.stages.offsets, self.action_map.mean]
         outside_maps += [] if self.heads is None else [self.heads.axes, self.heads.offsets]
@@ -226,10 +221,11 @@ class PyramidModel(Model):
         first, units = self.first, len(self.action_map.som.weights)
         actions, stages = len(self.metadata.labels), len(self.metadata.fractions)
         shapes = {
-            "maps of the first layer": ({len(som.weights) for som in first.maps}, {len(first.postures.weights)}),
-            "map of postures": (first.postures.weights.shape[1:], (3 * len(JOINTS),)),
-            "map of velocities": (first.velocities.weights.shape[1:], (3 * len(JOINTS),)),
-            "map of arms": (first.arms.weights.shape[1:], (ARM_INPUTS,)),
+            "maps of the first layer": (
+                {len(som.weights) for som in first.maps.values()},
+                {len(first.postures.weights)},
+            ),
+            **{f"map of {name}": (first.maps[name].weights.shape[1:], (INPUT_SIZES[name],)) for name in MAP_INPUTS},
             "discriminant axes": (self.stages.axes.shape, (stages, self.pyramid.cells * first.units, actions)),
             "offsets of them": (self.stages.offsets.shape, (stages, actions)),
             "map of actions": (self.action_map.som.weights.shape[1:], (actions,)),
