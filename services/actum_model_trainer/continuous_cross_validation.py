@@ -6,7 +6,7 @@ from dataclasses import replace
 from actum.recording import Recording
 from actum_model_trainer.continuous.detections import Detection, Found, point_fractions
 from actum_model_trainer.continuous.watching import found_by
-from actum_model_trainer.progress import Progress, silent
+from actum_model_trainer.progress import Progress, prefixed, silent
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import TrainingError, train_to_spot
 from som_classifier.model import Model
@@ -59,9 +59,9 @@ def found_without_each(
         )
     found: dict[str, Found] = {}
     for person in people:
-        model = model_without(person, _prefixed(f"without {person or 'unnamed'}: ", progress))
+        model = model_without(person, prefixed(f"without {person or 'unnamed'}: ", progress))
         own = [recording for recording in recordings if recording.person == person]
-        found[person] = found_by(model, own, _prefixed(f"on {person or 'unnamed'}: ", progress), segmentation)
+        found[person] = found_by(model, own, prefixed(f"on {person or 'unnamed'}: ", progress), segmentation)
     return sum((_with_points(person, found) for person in people), Found())
 
 
@@ -77,7 +77,3 @@ def _with_points(person: str, found: Mapping[str, Found]) -> Found:
     fractions = point_fractions(truth for other, own in found.items() if other != person for truth in own.truths)
     own = found[person]
     return replace(own, detections=with_points(own.detections, fractions)) if fractions else own
-
-
-def _prefixed(prefix: str, progress: Progress) -> Progress:
-    return lambda stage, done, total: progress(prefix + stage, done, total)

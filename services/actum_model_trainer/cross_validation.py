@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from actum.recording import Recording
 from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.evaluation import Evaluation, Prediction, prediction, segment_labels
-from actum_model_trainer.progress import Progress, silent
+from actum_model_trainer.progress import Progress, prefixed, silent
 from actum_model_trainer.recorded_segments import sensors
 from actum_model_trainer.samples import SegmentSample, Unusable, samples_from
 from actum_model_trainer.training import TrainingError, train
@@ -42,9 +42,9 @@ def leave_one_person_out(
     predictions: list[Prediction] = []
     for person in people:
         others = [sample for sample in samples.usable if sample.person != person]
-        model = train(others, preset, seed, _prefixed(f"without {person or 'unnamed'}: ", progress))
+        model = train(others, preset, seed, prefixed(f"without {person or 'unnamed'}: ", progress))
         tests = [recording for recording in recordings if recording.person == person]
-        predictions += _predictions(model, tests, segments, _prefixed(f"on {person or 'unnamed'}: ", progress))
+        predictions += _predictions(model, tests, segments, prefixed(f"on {person or 'unnamed'}: ", progress))
     return Evaluation(tuple(predictions))
 
 
@@ -59,7 +59,3 @@ def _predictions(
                 answered = answer(model, encoded(model, segment)) if isinstance(segment, SegmentSample) else None
                 yield prediction(recording, segment_id, label, answered.label if answered else None, answered)
     progress("evaluating", len(recordings), len(recordings))
-
-
-def _prefixed(prefix: str, progress: Progress) -> Progress:
-    return lambda stage, done, total: progress(prefix + stage, done, total)

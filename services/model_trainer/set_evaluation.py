@@ -10,7 +10,7 @@ from actum_model_trainer.continuous.detections import Found
 from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
 from actum_model_trainer.continuous.watching import found_by
 from actum_model_trainer.evaluation import Evaluation, Prediction
-from actum_model_trainer.progress import Progress, silent
+from actum_model_trainer.progress import Progress, prefixed, silent
 from actum_model_trainer.provenance import actions_of
 from actum_model_trainer.samples import SegmentSample, samples_from
 from actum_model_trainer.training import train_to_spot
@@ -64,7 +64,7 @@ def evaluate_set(
     predictions: list[Prediction] = []
     found, finds = Found(), True
     for fold in folds:
-        within = _prefixed(f"{fold.name}: ", progress)
+        within = prefixed(f"{fold.name}: ", progress)
         rest = [sample for sample in samples.usable if not fold.holds_sample(sample)]
         streams = [stream for stream in map(fold.without, samples.streams) if len(stream.stamps_ns)]
         model = train_to_spot(rest, streams, preset, seed, within)
@@ -85,7 +85,3 @@ def _prediction(model: Model, sample: SegmentSample) -> Prediction:
     answered = answer(model, encoded(model, sample))
     unknown = None if answered.familiarity is None else answered.unknown
     return Prediction(sample.file, sample.segment_id, sample.label, answered.label, answered.confidence, unknown)
-
-
-def _prefixed(prefix: str, progress: Progress) -> Progress:
-    return lambda stage, done, total: progress(prefix + stage, done, total)

@@ -32,9 +32,9 @@ from som_classifier.pyramid_metadata import PyramidMetadata
 from som_classifier.recognition import Recognition
 from som_classifier.second_layer import ActionMap
 from som_classifier.spotting.completeness import CompletenessHeads
-from som_classifier.spotting.pyramid_spotter import PyramidSpotter
-from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.spotting.spotting_model import SpottingModel
+from som_classifier.spotting.pyramid_spotter import PoolingOnce, PyramidSpotter
+from som_classifier.spotting.spotted import Spotter, SpottingOptions
+from som_classifier.spotting.spotting_model import PyramidSpottingMetadata, SpottingModel
 from som_classifier.stage_discriminants import StageDiscriminants, familiarity_of
 from som_classifier.supervised import SupervisedLayer
 
@@ -135,15 +135,16 @@ class PyramidModel(Model):
         return self._doubted_if_still(recognition, frames) if complete else recognition
 
     @property
-    def background_s(self) -> float | None:
-        """How long (s) people did none of the actions in the training data; None without a search."""
-        return None if self.metadata.spotting is None else self.metadata.spotting.background_s
+    def spotting(self) -> PyramidSpottingMetadata | None:
+        """What the model knows of its search for actions; None where the model was not trained for that."""
+        return self.metadata.spotting
 
-    def spotter(self, options: SpottingOptions) -> PyramidSpotter | None:
-        """Return a search for actions in one person's stream; None where the model was not trained for that."""
+    def spotters(self, asked: Sequence[SpottingOptions]) -> list[Spotter]:
+        """Return a search of one person's stream for each of these options, which pool each window once."""
         if self.heads is None or self.metadata.spotting is None:
-            return None
-        return PyramidSpotter(self, SpottingModel(self.heads, self.metadata.spotting), options)
+            return []
+        pool, learned = PoolingOnce(self.pooled), SpottingModel(self.heads, self.metadata.spotting)
+        return [PyramidSpotter(pool, self.labels, learned, options) for options in asked]
 
     def pooled(self, frames: Sequence[Frame]) -> NDArray[np.float32]:
         """Return the pyramid vector of valid frames, each with the activity that its encoder gave, (inputs,)."""
