@@ -16,6 +16,22 @@ SegmentsById = Mapping[tuple[str, str, str], SegmentSample | Unusable]
 """The first segment of each file, sensor and segment id."""
 
 
+def people_of(recordings: Sequence[Recording]) -> list[str]:
+    """List the people whom recordings name, sorted.
+
+    Raises:
+        TrainingError: fewer than two.
+    """
+    people = sorted({recording.person for recording in recordings})
+    if len(people) < 2:
+        raise TrainingError(
+            "recordings of at least two people are needed, because each person is tested with a model trained on the "
+            f"others; the given recordings name {f'only {people[0]}' if any(people) else 'nobody'}: record another "
+            "person, with --person NAME"
+        )
+    return people
+
+
 def leave_one_person_out(
     recordings: Sequence[Recording], preset: Preset, seed: int = 0, progress: Progress = silent
 ) -> Evaluation:
@@ -28,13 +44,7 @@ def leave_one_person_out(
         TrainingError: fewer than two persons, or the others' samples make no model.
         RecordingError: a file is damaged.
     """
-    people = sorted({recording.person for recording in recordings})
-    if len(people) < 2:
-        raise TrainingError(
-            "recordings of at least two people are needed, because each person is tested with a model trained on the "
-            f"others; the given recordings name {f'only {people[0]}' if any(people) else 'nobody'}: record another "
-            "person, with --person NAME"
-        )
+    people = people_of(recordings)
     samples = samples_from(recordings, progress)
     segments: dict[tuple[str, str, str], SegmentSample | Unusable] = {}
     for segment in samples.segments:
@@ -55,7 +65,8 @@ def _predictions(
         progress("evaluating", done, len(recordings))
         for sensor in sensors(recording):
             for segment_id, label in segment_labels(recording, sensor).items():
-                segment = segments.get((str(recording.path), sensor, segment_id))
+                file = str(recording.path)
+                segment = segments.get((file, sensor, segment_id))
                 answered = answer(model, encoded(model, segment)) if isinstance(segment, SegmentSample) else None
-                yield prediction(recording, segment_id, label, answered.label if answered else None, answered)
+                yield prediction(file, segment_id, label, answered.label if answered else None, answered)
     progress("evaluating", len(recordings), len(recordings))

@@ -53,12 +53,7 @@ def arm_inputs(rows: Floats) -> Floats:
 
 
 class Channel(NamedTuple):
-    """A block of a frame's activity.
-
-    Attributes:
-        map: the name of the map that answers.
-        mirrored: whether the map is shown the actor's mirror image.
-    """
+    """A block of a frame's activity: the name of the map that answers, and whether it is shown the mirror image."""
 
     map: str
     mirrored: bool = False

@@ -62,10 +62,8 @@ def load_model(path: Path) -> Model:
         raise
     except FileNotFoundError:
         raise ModelError(path, "the file does not exist") from None
-    except ValidationError as error:
-        raise ModelError(path, f"the file is not a model of actum ({_problem(error)})") from None
     except (*UNREADABLE, AttributeError) as error:
-        raise ModelError(path, f"the file is not a model of actum, or it is damaged ({error})") from None
+        raise ModelError(path, f"the file is not a model of actum, or it is damaged ({_problem(error)})") from None
 
 
 def _restored(path: Path, metadata: str, arrays: Arrays) -> Model:
