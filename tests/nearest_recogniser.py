@@ -5,7 +5,7 @@ As a program it is a classifier that knows this kind of model: `python tests/nea
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +47,7 @@ Paths = NDArray[np.float64]
 class NearestPreset(Preset):
     """Points of a way, the likeness (0 to 1) from which a window is an action, and how many durations windows have."""
 
-    kind = "nearest"
+    kind: ClassVar[str] = "nearest"
     points: int
     alike: float
     windows: int

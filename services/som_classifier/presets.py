@@ -98,7 +98,7 @@ class PaperPreset(Preset):
         epochs: how often the third layer is shown every training vector.
     """
 
-    kind = "paper"
+    kind: ClassVar[str] = "paper"
     choices = CHOICES
     posture: PostureInput
     layer1: MapTraining
@@ -149,7 +149,7 @@ class PyramidPreset(Preset):
         spotting: of the search for actions without marks.
     """
 
-    kind = "pyramid"
+    kind: ClassVar[str] = "pyramid"
     units: tuple[int, int]
     unit_epochs: int
     unit_radius: tuple[float, float]
