@@ -6,9 +6,10 @@ from dataclasses import replace
 from actum.recording import Recording
 from actum_model_trainer.continuous.detections import Detection, Found, point_fractions
 from actum_model_trainer.continuous.watching import found_by
-from actum_model_trainer.progress import Progress, silent
+from actum_model_trainer.cross_validation import people_of
+from actum_model_trainer.progress import Progress, prefixed, silent
 from actum_model_trainer.samples import samples_from
-from actum_model_trainer.training import TrainingError, train_to_spot
+from actum_model_trainer.training import train_to_spot
 from som_classifier.model import Model
 from som_classifier.presets import Preset
 from som_classifier.segmentation import DEFAULT, Segmentation
@@ -50,19 +51,12 @@ def found_without_each(
         NoSpotterError: a model cannot find actions without marks.
         RecordingError: a file is damaged.
     """
-    people = sorted({recording.person for recording in recordings})
-    if len(people) < 2:
-        raise TrainingError(
-            "recordings of at least two people are needed, because each person is tested with a model trained on the "
-            f"others; the given recordings name {f'only {people[0]}' if any(people) else 'nobody'}: record another "
-            "person, with --person NAME"
-        )
     found: dict[str, Found] = {}
-    for person in people:
-        model = model_without(person, _prefixed(f"without {person or 'unnamed'}: ", progress))
+    for person in people_of(recordings):
+        model = model_without(person, prefixed(f"without {person or 'unnamed'}: ", progress))
         own = [recording for recording in recordings if recording.person == person]
-        found[person] = found_by(model, own, _prefixed(f"on {person or 'unnamed'}: ", progress), segmentation)
-    return sum((_with_points(person, found) for person in people), Found())
+        found[person] = found_by(model, own, prefixed(f"on {person or 'unnamed'}: ", progress), segmentation)
+    return sum((_with_points(person, found) for person in found), Found())
 
 
 def with_points(detections: Iterable[Detection], fractions: Mapping[str, float]) -> list[Detection]:
@@ -77,7 +71,3 @@ def _with_points(person: str, found: Mapping[str, Found]) -> Found:
     fractions = point_fractions(truth for other, own in found.items() if other != person for truth in own.truths)
     own = found[person]
     return replace(own, detections=with_points(own.detections, fractions)) if fractions else own
-
-
-def _prefixed(prefix: str, progress: Progress) -> Progress:
-    return lambda stage, done, total: progress(prefix + stage, done, total)

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from actum.recording import Recording
 from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.evaluation import Evaluation, Prediction, prediction, segment_labels
-from actum_model_trainer.progress import Progress, silent
+from actum_model_trainer.progress import Progress, prefixed, silent
 from actum_model_trainer.recorded_segments import sensors
 from actum_model_trainer.samples import SegmentSample, Unusable, samples_from
 from actum_model_trainer.training import TrainingError, train
@@ -14,6 +14,22 @@ from som_classifier.presets import Preset
 
 SegmentsById = Mapping[tuple[str, str, str], SegmentSample | Unusable]
 """The first segment of each file, sensor and segment id."""
+
+
+def people_of(recordings: Sequence[Recording]) -> list[str]:
+    """List the people whom recordings name, sorted.
+
+    Raises:
+        TrainingError: fewer than two.
+    """
+    people = sorted({recording.person for recording in recordings})
+    if len(people) < 2:
+        raise TrainingError(
+            "recordings of at least two people are needed, because each person is tested with a model trained on the "
+            f"others; the given recordings name {f'only {people[0]}' if any(people) else 'nobody'}: record another "
+            "person, with --person NAME"
+        )
+    return people
 
 
 def leave_one_person_out(
@@ -28,13 +44,7 @@ def leave_one_person_out(
         TrainingError: fewer than two persons, or the others' samples make no model.
         RecordingError: a file is damaged.
     """
-    people = sorted({recording.person for recording in recordings})
-    if len(people) < 2:
-        raise TrainingError(
-            "recordings of at least two people are needed, because each person is tested with a model trained on the "
-            f"others; the given recordings name {f'only {people[0]}' if any(people) else 'nobody'}: record another "
-            "person, with --person NAME"
-        )
+    people = people_of(recordings)
     samples = samples_from(recordings, progress)
     segments: dict[tuple[str, str, str], SegmentSample | Unusable] = {}
     for segment in samples.segments:
@@ -42,9 +52,9 @@ def leave_one_person_out(
     predictions: list[Prediction] = []
     for person in people:
         others = [sample for sample in samples.usable if sample.person != person]
-        model = train(others, preset, seed, _prefixed(f"without {person or 'unnamed'}: ", progress))
+        model = train(others, preset, seed, prefixed(f"without {person or 'unnamed'}: ", progress))
         tests = [recording for recording in recordings if recording.person == person]
-        predictions += _predictions(model, tests, segments, _prefixed(f"on {person or 'unnamed'}: ", progress))
+        predictions += _predictions(model, tests, segments, prefixed(f"on {person or 'unnamed'}: ", progress))
     return Evaluation(tuple(predictions))
 
 
@@ -55,11 +65,8 @@ def _predictions(
         progress("evaluating", done, len(recordings))
         for sensor in sensors(recording):
             for segment_id, label in segment_labels(recording, sensor).items():
-                segment = segments.get((str(recording.path), sensor, segment_id))
+                file = str(recording.path)
+                segment = segments.get((file, sensor, segment_id))
                 answered = answer(model, encoded(model, segment)) if isinstance(segment, SegmentSample) else None
-                yield prediction(recording, segment_id, label, answered.label if answered else None, answered)
+                yield prediction(file, segment_id, label, answered.label if answered else None, answered)
     progress("evaluating", len(recordings), len(recordings))
-
-
-def _prefixed(prefix: str, progress: Progress) -> Progress:
-    return lambda stage, done, total: progress(prefix + stage, done, total)

@@ -178,13 +178,13 @@ def evaluate(model: Model, recordings: Sequence[Recording], progress: Progress =
 
 
 def prediction(
-    recording: Recording, segment_id: str, label: str, predicted: str | None, answer: Action | Recognition | None
+    file: str, segment_id: str, label: str, predicted: str | None, answer: Action | Recognition | None
 ) -> Prediction:
     """Make the prediction of a labelled segment from the answer to it; `predicted` is the action that it names."""
     if predicted is None or answer is None:
-        return Prediction(str(recording.path), segment_id, label, None)
+        return Prediction(file, segment_id, label, None)
     unknown = None if answer.familiarity is None else answer.unknown
-    return Prediction(str(recording.path), segment_id, label, predicted, answer.confidence, unknown)
+    return Prediction(file, segment_id, label, predicted, answer.confidence, unknown)
 
 
 def segment_labels(recording: Recording, sensor: str) -> dict[str, str]:
@@ -205,4 +205,4 @@ def _predictions(model: Model, recording: Recording, sensor: str) -> Iterator[Pr
             answers.setdefault(message.segment_id, message)
     for segment_id, label in segment_labels(recording, sensor).items():
         answer = answers.get(segment_id)
-        yield prediction(recording, segment_id, label, answer.action if answer else None, answer)
+        yield prediction(str(recording.path), segment_id, label, answer.action if answer else None, answer)

@@ -8,3 +8,8 @@ Progress = Callable[[str, int, int], None]
 
 def silent(stage: str, done: int, total: int) -> None:
     """Report nothing."""
+
+
+def prefixed(prefix: str, progress: Progress) -> Progress:
+    """Return a progress that names each stage with a prefix."""
+    return lambda stage, done, total: progress(prefix + stage, done, total)

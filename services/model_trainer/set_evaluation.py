@@ -9,10 +9,10 @@ from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.continuous.detections import Found
 from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
 from actum_model_trainer.continuous.watching import found_by
-from actum_model_trainer.evaluation import Evaluation, Prediction
-from actum_model_trainer.progress import Progress, silent
+from actum_model_trainer.evaluation import Evaluation, Prediction, prediction
+from actum_model_trainer.progress import Progress, prefixed, silent
 from actum_model_trainer.provenance import actions_of
-from actum_model_trainer.samples import SegmentSample, samples_from
+from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train_to_spot
 from model_trainer.folds import Fold, folds_of
 from som_classifier.model import Model
@@ -64,11 +64,13 @@ def evaluate_set(
     predictions: list[Prediction] = []
     found, finds = Found(), True
     for fold in folds:
-        within = _prefixed(f"{fold.name}: ", progress)
+        within = prefixed(f"{fold.name}: ", progress)
         rest = [sample for sample in samples.usable if not fold.holds_sample(sample)]
         streams = [stream for stream in map(fold.without, samples.streams) if len(stream.stamps_ns)]
         model = train_to_spot(rest, streams, preset, seed, within)
-        predictions += [_prediction(model, sample) for sample in samples.usable if fold.holds_sample(sample)]
+        for sample in filter(fold.holds_sample, samples.usable):
+            answered = answer(model, encoded(model, sample))
+            predictions.append(prediction(sample.file, sample.segment_id, sample.label, answered.label, answered))
         finds = finds and model.spotter(SpottingOptions()) is not None
         if finds:
             found += _found(model, recordings, fold, within)
@@ -79,13 +81,3 @@ def _found(model: Model, recordings: Sequence[Recording], fold: Fold, progress: 
     """Return what a model finds in the part that its training left out."""
     held = [recording for recording in recordings if str(recording.path) in fold.spans]
     return fold.within(found_by(model, held, progress))
-
-
-def _prediction(model: Model, sample: SegmentSample) -> Prediction:
-    answered = answer(model, encoded(model, sample))
-    unknown = None if answered.familiarity is None else answered.unknown
-    return Prediction(sample.file, sample.segment_id, sample.label, answered.label, answered.confidence, unknown)
-
-
-def _prefixed(prefix: str, progress: Progress) -> Progress:
-    return lambda stage, done, total: progress(prefix + stage, done, total)
