@@ -1,7 +1,7 @@
 """Samples of the input streams: the checked contents of posture and objects messages that fusion uses."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -29,9 +29,9 @@ class Body:
 
     ego_from_camera: Array
     joints_m: Array
-    has_front: bool = True
-    depth_std_m: float = 0.0
-    up_in_camera: tuple[float, ...] = LEVEL
+    has_front: bool
+    depth_std_m: float
+    up_in_camera: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class PostureSample(Sample):
 
     seq: int | None
     body: Body | None
-    agents: tuple[int, ...] = ()
+    agents: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -61,8 +61,8 @@ class ObjectsSample(Sample):
 
     positions_m: dict[int, Array]
     names: dict[int, str]
-    image_tracked: frozenset[int] = frozenset()
-    quaternions_xyzw: dict[int, Array] = field(default_factory=dict)
+    image_tracked: frozenset[int]
+    quaternions_xyzw: dict[int, Array]
 
 
 def posture_sample(posture: Posture, counters: Counters) -> PostureSample:

@@ -72,7 +72,7 @@ class HandTracks:
     """The tracks of the actor's own hands, and those of the other people in the image."""
 
     own: Mapping[Hand, HandTrack]
-    others: Sequence[HandTrack] = ()
+    others: Sequence[HandTrack]
 
     @property
     def everyones(self) -> list[HandTrack]:
