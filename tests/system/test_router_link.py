@@ -10,7 +10,7 @@ from benchmarks.rig.chain import Chain
 from benchmarks.rig.tcp_proxy import TcpProxy
 
 from actum import keys
-from actum.messages import Event, Image, Message, Posture, Segment, Truth
+from actum.messages import Event, Image, Message, Objects, Posture, Segment, Truth
 from actum.runtime import Client, Listening
 from actum_command.processes import simulated_objects
 from actum_command.scene_marks import mark_of
@@ -66,16 +66,24 @@ def hosts(tmp_path_factory: pytest.TempPathFactory, scene_model: Path) -> Iterat
 
 
 def play(hosts: LinkedSystems, frames: Scene, disturb: Callable[[TcpProxy, threading.Event], None]) -> list[Event]:
-    """Put a scene at the camera, its marks on the other host, each frame when it is due; return what is told there."""
+    """Put a scene at the camera, its marks on the other host, each frame when it is due; return what is told there.
+
+    The tracker, which is at the camera, leaves out an image when the next one is there before it has seen the first: so
+    the next frame also waits for the objects of the image before it.
+    """
     over = threading.Event()
     with hosts.camera.client() as camera, hosts.compute.client() as switch:
         events = switch.listen_back(keys.pattern(keys.EVENT, switch.sensor), 0.1)
+        objects = camera.listen(keys.pattern(keys.OBJECTS, camera.sensor))
         for client, topic in ((camera, keys.SKELETON), (camera, keys.COLOR), (switch, keys.SEGMENT)):
             assert client.wait_for_subscriber(topic, PATIENCE_S)
         disturbing = threading.Thread(target=disturb, args=(hosts.link, over))
         disturbing.start()
         try:
-            put_paced(frames, lambda m: (switch if isinstance(m, Segment) else camera).put(m))
+            for message in paced(frames):
+                (switch if isinstance(message, Segment) else camera).put(message)
+                if isinstance(message, Image):
+                    wait_until_seen(objects, message)
             expected = len(PROGRAMME)
             return collect(events, Event, lambda found: len(found) >= expected, ANSWER_S)
         finally:
@@ -85,13 +93,17 @@ def play(hosts: LinkedSystems, frames: Scene, disturb: Callable[[TcpProxy, threa
             hosts.link.mend()
 
 
-def put_paced(frames: Scene, put: Callable[[Message], None]) -> None:
+def wait_until_seen(objects: Listening, image: Image) -> None:
+    collect(objects, Objects, lambda found: any(each.stamp_ns == image.stamp_ns for each in found))
+
+
+def paced(frames: Scene) -> Iterator[Message]:
+    """Yield each message when it is due."""
     began_s, first_ns = time.monotonic(), frames[0][0].stamp_ns
     for messages in frames:
         due_s = began_s + (messages[0].stamp_ns - first_ns) / 1e9
         threading.Event().wait(max(due_s - time.monotonic(), 0.0))
-        for message in messages:
-            put(message)
+        yield from messages
 
 
 def undisturbed(link: TcpProxy, over: threading.Event) -> None:
@@ -164,7 +176,8 @@ def test_images_cross_the_link_only_where_somebody_there_subscribes(hosts: Linke
 def bytes_crossing(link: TcpProxy, frames: Scene, camera: Client, postures: Listening) -> int:
     """How much crosses the link, in both directions, until the posture of a scene's last frame is on the other side."""
     before = sum(link.carried_bytes)
-    put_paced(frames, camera.put)
+    for message in paced(frames):
+        camera.put(message)
     last_ns = frames[-1][-1].stamp_ns
     collect(postures, Posture, lambda found: any(posture.stamp_ns == last_ns for posture in found))
     return sum(link.carried_bytes) - before
