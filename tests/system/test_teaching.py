@@ -3,17 +3,17 @@
 import subprocess
 import sys
 import threading
+from contextlib import suppress
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from actum.commands import Refusal
-from actum.messages import Message
 from actum.recording import Recording
 from actum.runtime import NotAnsweredError
 from actum_examples.take import read_take
-from live import System
+from live import PATIENCE_S, System, wait_until
 from model_trainer.set_store import MAKING
 from people import reaches
 from teaching import mark
@@ -62,9 +62,11 @@ def test_a_trainer_that_is_killed_at_any_moment_leaves_whole_files(running: Syst
         for attempt in range(KILLS):
             trainer = running.start("model_trainer", "--take-over")
             running.wait_for_services(client, "model_trainer")
-            asking = threading.Thread(target=busy, args=(running, attempt), daemon=True)
+            sent = threading.Semaphore(0)
+            asking = threading.Thread(target=busy, args=(running, attempt, sent), daemon=True)
             asking.start()
-            threading.Event().wait(0.05 + 0.11 * attempt)
+            for _ in range(1 + 3 * attempt):
+                assert sent.acquire(timeout=PATIENCE_S), "the trainer answers"
             trainer.process.kill()
             trainer.process.wait()
             asking.join(timeout=20)
@@ -74,32 +76,33 @@ def test_a_trainer_that_is_killed_at_any_moment_leaves_whole_files(running: Syst
         running.wait_for_services(client, "model_trainer")
         listed = client.ask("model_trainer", "list")
         assert listed["sets"] and not [each for each in listed["sets"] if each["unreadable"]]
-        assert sum(len(each["takes"]) for each in listed["sets"]) > 1
+        assert sum(len(each["takes"]) for each in listed["sets"]) >= KILLS
     assert not list(folder.rglob("*.part")) and not (folder / "sets" / MAKING).exists(), "what was unfinished is gone"
 
 
-def busy(running: System, attempt: int) -> None:
-    """Teach and mend without a pause, until nobody answers any more."""
-    try:
-        with running.client() as client:
-            name = f"set {attempt}"
-            client.ask("model_trainer", "create_set", timeout_s=2, set=name)
-            for number in count():
-                client.ask("model_trainer", "record", timeout_s=2, set=name, label="wave", count=2)
-                for message in marked_wave(number):
-                    client.put(message)
-                client.ask("model_trainer", "stop", timeout_s=2)
-                for example in client.ask("model_trainer", "examples", timeout_s=2, set=name)["examples"]:
-                    names = {"set": name, "example": example["id"]}
-                    client.ask("model_trainer", "relabel", timeout_s=2, label=f"wave {number}", **names)
-                    client.ask("model_trainer", "mirror", timeout_s=2, **names)
-    except (Refusal, NotAnsweredError):
-        return
+def busy(running: System, attempt: int, sent: threading.Semaphore) -> None:
+    """Teach and mend without a pause, until nobody answers any more; release `sent` before each command."""
+    name = f"set {attempt}"
+    with running.client() as client, suppress(NotAnsweredError):
 
+        def ask(command: str, **fields: Any) -> Any:
+            sent.release()
+            return client.ask("model_trainer", command, timeout_s=2, **fields)
 
-def marked_wave(number: int) -> list[Message]:
-    """A second of frames with marks about its middle."""
-    first_ns = (number + 1) * 10**10
-    frames = reaches(30, first_ns)
-    marks = [mark("start", f"s{number}", first_ns + 3 * 10**8), mark("end", f"s{number}", first_ns + 7 * 10**8)]
-    return [*(frame.model_copy(update={"seq": None}) for frame in frames), *marks]
+        def recording() -> Any:
+            return client.ask("model_trainer", "state", timeout_s=2)["recording"]
+
+        ask("create_set", set=name)
+        for number in count():
+            ask("record", set=name, label="wave", count=2)
+            first_ns = (number + 1) * 10**10
+            for frame in reaches(30, first_ns):
+                client.put(frame.model_copy(update={"seq": None}))
+            wait_until(lambda: recording()["seconds"] > 0.7, "the frames have come")
+            client.put(mark("start", f"s{number}", first_ns + 3 * 10**8))
+            client.put(mark("end", f"s{number}", first_ns + 7 * 10**8))
+            wait_until(lambda: recording()["counted"] == 1, "the marks have come")
+            ask("stop")
+            for example in ask("examples", set=name)["examples"]:
+                ask("relabel", set=name, example=example["id"], label=f"wave {number}")
+                ask("mirror", set=name, example=example["id"])
