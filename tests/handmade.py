@@ -3,7 +3,7 @@
 import numpy as np
 
 from actum.som import Som
-from som_classifier.first_layer import FirstMaps
+from som_classifier.first_layer import MAP_INPUTS, FirstMaps
 from som_classifier.model import Model
 from som_classifier.paper_model import PaperMetadata, PaperModel
 from som_classifier.pyramid_metadata import PyramidMetadata
@@ -51,8 +51,7 @@ def pyramid_model(**changes: object) -> PyramidModel:
     rng = np.random.default_rng(0)
     maps = [Som(3, 3, rng.normal(size=(9, dim)).astype(np.float32)) for dim in (45, 45, 12, 2)]
     axes = rng.normal(size=(2, sum(LEVELS) * UNITS, 2)).astype(np.float32)
-    contrasts = metadata.posture_contrast, metadata.velocity_contrast, metadata.arm_contrast
-    first = FirstMaps(maps[0], maps[1], maps[2], contrasts, (0.4, 0.1))
+    first = FirstMaps(dict(zip(MAP_INPUTS, maps, strict=False)), metadata.contrasts, (0.4, 0.1))
     stages = StageDiscriminants(
         axes,
         rng.normal(size=(2, 2)).astype(np.float32),

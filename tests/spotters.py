@@ -1,6 +1,6 @@
 """Spotters that do as they are told, and models that have them, for tests of what becomes of found segments."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 
 from actum.node import SECOND_NS
@@ -24,8 +24,8 @@ class SpottingModel(PyramidModel):
     def background_s(self) -> float | None:
         return self.seen_background_s
 
-    def spotter(self, options: SpottingOptions) -> Spotter | None:
-        return self.search(options)
+    def spotters(self, asked: Sequence[SpottingOptions]) -> list[Spotter]:
+        return [spotter for options in asked if (spotter := self.search(options)) is not None]
 
 
 def spotting(model: Model, search: Callable[[SpottingOptions], Spotter | None], background_s: float = 60.0) -> Model:
@@ -35,7 +35,7 @@ def spotting(model: Model, search: Callable[[SpottingOptions], Spotter | None], 
     return SpottingModel(**parts, search=search, seen_background_s=background_s)
 
 
-class Beats:
+class Beats(Spotter):
     """Finds an action from 0.2 to 0.8 s of every second of the sensor's clock, 0.2 s after its end.
 
     One with a gap in its frames, or begun before the spotter was, is not found.
@@ -69,7 +69,7 @@ def beating(model: Model, **more: object) -> Model:
     return spotting(model, lambda _: Beats(**more))  # type: ignore[arg-type]
 
 
-class Scripted:
+class Scripted(Spotter):
     """Finds given segments, each with the first frame that has passed its end by a lag; before, it goes on."""
 
     def __init__(self, *segments: SpottedSegment, lag_ns: int = LAG_NS) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 from actum.recording import Recording
 from actum_model_trainer.progress import Progress
 from som_classifier.model import Model
+from som_classifier.model_maps import NoMapsError, maps_of
 
 
 class NoSegmentError(ValueError):
@@ -18,6 +19,7 @@ def write_inspection(
     """Write pictures and page, and return how many pictures there are.
 
     Raises:
+        NoMapsError: there are no recordings, and the model has no maps.
         NoSegmentError: there are recordings, but no marked segment in them.
         RecordingError: a recording is damaged.
         OSError: something cannot be written.
@@ -27,10 +29,10 @@ def write_inspection(
     from actum_model_inspector.html_page import page
     from actum_model_inspector.inspection import pictures, write
     from actum_model_trainer.evaluation import evaluate
-    from som_classifier.model_maps import maps_of
 
-    maps = maps_of(model)
-    segments = answered_segments(maps, recordings, progress)
+    if not recordings and maps_of(model) is None:
+        raise NoMapsError(model)
+    segments = answered_segments(model, recordings, progress)
     if recordings and not segments:
         raise NoSegmentError(
             "the given recordings contain no marked action: mark when actions start and end, either while recording "
@@ -38,7 +40,7 @@ def write_inspection(
         )
     labelled = any(segment.label is not None for segment in segments)
     evaluation = evaluate(model, recordings, progress) if labelled else None
-    planned = list(pictures(maps, segments, evaluation))
+    planned = list(pictures(model, segments, evaluation))
     written = write(planned, folder, ending, progress)
     index = folder / PAGE
     index.write_text(page(model, segments, evaluation, planned, written), encoding="utf-8")

@@ -1,14 +1,8 @@
-"""Looks a preset up by name, and changes settings of the paper's preset."""
+"""Looks a preset up by name, and changes its settings."""
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any
 
-from som_classifier.attention import CHOICES
-from som_classifier.presets import PAPER, PRESETS, PaperPreset, Preset
-
-SETTINGS = "; ".join(f"{name}={'|'.join(values)}" for name, values in CHOICES.items())
-"""The settings of the paper's preset and their values, in words."""
+from som_classifier.presets import PAPER, PRESETS, Preset
 
 
 class PresetError(ValueError):
@@ -24,15 +18,14 @@ def preset_named(name: str, settings: Sequence[str] = ()) -> Preset:
     if name not in PRESETS:
         raise PresetError(f"{name!r} is not a preset: use one of {', '.join(PRESETS)}")
     preset = PRESETS[name]
-    changes: dict[str, Any] = dict(setting.partition("=")[::2] for setting in settings)
-    if not changes:
-        return preset
-    if not isinstance(preset, PaperPreset):
+    changes = dict(setting.partition("=")[::2] for setting in settings)
+    if changes and not preset.choices:
         raise PresetError(
             f"preset {name} has no settings: leave out --set, or use --preset {PAPER.name}, which has the settings "
-            f"{', '.join(CHOICES)}"
+            f"{', '.join(PAPER.choices)}"
         )
     for setting, value in changes.items():
-        if value not in CHOICES.get(setting, ()):
-            raise PresetError(f"{setting}={value} is not a setting of preset {name}: use one or more of {SETTINGS}")
-    return replace(preset, posture=replace(preset.posture, **changes))
+        if value not in preset.choices.get(setting, ()):
+            known = "; ".join(f"{each}={'|'.join(values)}" for each, values in preset.choices.items())
+            raise PresetError(f"{setting}={value} is not a setting of preset {name}: use one or more of {known}")
+    return preset.changed(changes) if changes else preset

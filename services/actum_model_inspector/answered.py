@@ -12,7 +12,7 @@ from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.recorded_segments import classifier_input, closed_segments, sensors
 from som_classifier.frames import Frame
 from som_classifier.model import Model
-from som_classifier.model_maps import ModelMaps
+from som_classifier.model_maps import maps_of
 from som_classifier.recognition import Recognition
 from som_classifier.segments import ClosedSegment
 
@@ -28,7 +28,7 @@ class AnsweredSegment:
         label: the action done, None where the recording does not say.
         frames: the valid frames, not encoded.
         recognition: the answer, None where the segment was rejected.
-        action_unit: its winner on the second map, None where it was rejected.
+        action_unit: its winner on the second map, None where it was rejected or the model has no maps.
     """
 
     file: str
@@ -53,7 +53,7 @@ class AnsweredSegment:
 
 
 def answered_segments(
-    maps: ModelMaps, recordings: Sequence[Recording], progress: Progress = silent
+    model: Model, recordings: Sequence[Recording], progress: Progress = silent
 ) -> list[AnsweredSegment]:
     """Cut every segment out of the recordings, labelled or not, and return each with the model's answer.
 
@@ -65,7 +65,7 @@ def answered_segments(
         progress("recognising segments", done, len(recordings))
         for sensor in sensors(recording):
             closed = closed_segments(classifier_input(recording, sensor))
-            answered += [_answered(maps, recording, segment) for segment in closed]
+            answered += [_answered(model, recording, segment) for segment in closed]
     progress("recognising segments", len(recordings), len(recordings))
     return answered
 
@@ -76,14 +76,14 @@ def encoded(model: Model, frames: Sequence[Frame]) -> list[Frame]:
     return [replace(frame, activity=encoder.encode(frame)) for frame in frames]
 
 
-def _answered(maps: ModelMaps, recording: Recording, closed: ClosedSegment) -> AnsweredSegment:
+def _answered(model: Model, recording: Recording, closed: ClosedSegment) -> AnsweredSegment:
     valid = [frame for frame in closed.frames if frame.valid]
     unanswered = AnsweredSegment(str(recording.path), recording.person, closed.segment_id, closed.label, valid)
-    if closed.reason or len(valid) < maps.model.min_frames:
+    if closed.reason or len(valid) < model.min_frames:
         return unanswered
-    frames = encoded(maps.model, valid)
-    recognition = maps.model.recognise(frames, complete=True)
-    return replace(unanswered, recognition=recognition, action_unit=maps.action_unit(frames))
+    frames, maps = encoded(model, valid), maps_of(model)
+    unit = None if maps is None else maps.action_unit(frames)
+    return replace(unanswered, recognition=model.recognise(frames, complete=True), action_unit=unit)
 
 
 def headline(answered: AnsweredSegment) -> str:

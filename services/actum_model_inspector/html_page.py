@@ -11,6 +11,7 @@ from actum_model_inspector.style import missing_glyphs
 from actum_model_inspector.text_layout import shortened
 from actum_model_trainer.evaluation import Evaluation
 from som_classifier.model import Model
+from som_classifier.model_maps import NoMapsError, maps_of
 
 STYLE_SHEET = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 75rem; margin: 2rem auto; padding: 0 1rem; }
@@ -62,12 +63,13 @@ def page(
 
 
 def model_facts(model: Model) -> str:
-    """Return a sentence on the model's kind, preset and training."""
+    """Return sentences on the model's kind, preset and training, and on missing maps."""
     metadata = model.metadata
     people = f" by {len(metadata.persons)} people" if len(metadata.persons) > 1 else ""
     return (
         f"Kind {metadata.kind}, preset {metadata.preset}, seed {metadata.seed}; trained on "
         f"{metadata.samples} samples{people} of {len(metadata.labels)} actions: {', '.join(metadata.labels)}."
+        + ("" if maps_of(model) else f" No maps are drawn: {NoMapsError(model)}.")
     )
 
 

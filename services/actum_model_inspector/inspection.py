@@ -22,7 +22,8 @@ from actum_model_inspector.velocity_map import velocity_map
 from actum_model_trainer.calibration_error import MIN_ANSWERS
 from actum_model_trainer.evaluation import Evaluation
 from actum_model_trainer.progress import Progress, silent
-from som_classifier.model_maps import ModelMaps, PyramidMaps
+from som_classifier.model import Model
+from som_classifier.model_maps import ModelMaps, maps_of
 
 
 @dataclass(frozen=True)
@@ -42,17 +43,19 @@ class Picture:
     make: Callable[[], Figure]
 
 
-def pictures(maps: ModelMaps, segments: Sequence[AnsweredSegment], evaluation: Evaluation | None) -> Iterator[Picture]:
-    """Yield the pictures of a model and, where there are any, of segments, in the order of the page."""
-    yield from _of_maps(maps, segments)
+def pictures(model: Model, segments: Sequence[AnsweredSegment], evaluation: Evaluation | None) -> Iterator[Picture]:
+    """Yield the pictures of a model's maps and of segments, where there are any, in the order of the page."""
+    maps = maps_of(model)
+    if maps is not None:
+        yield from _of_maps(maps, segments)
     if evaluation is not None and evaluation.n:
         yield from _of_answers(segments, evaluation)
     chosen = examples(segments)
     names = file_names(chosen)
     for action, example in chosen.items():
-        yield from _of_segment(maps, f"{action}: an example", names[action], example)
+        yield from _of_segment(model, f"{action}: an example", names[action], example)
     for number, mistake in enumerate(mistakes(segments), start=1):
-        yield from _of_segment(maps, f"Mistake {number}: {headline(mistake)}", mistake_name(number), mistake)
+        yield from _of_segment(model, f"Mistake {number}: {headline(mistake)}", mistake_name(number), mistake)
 
 
 def write(planned: Sequence[Picture], folder: Path, ending: str, progress: Progress = silent) -> Mapping[str, str]:
@@ -79,30 +82,26 @@ def _of_maps(maps: ModelMaps, segments: Sequence[AnsweredSegment]) -> Iterator[P
         "darker ground means that neighbours differ more. An action is a way across this map.",
         partial(posture_map, maps),
     )  # fmt: skip
-    if isinstance(maps, PyramidMaps):
-        yield from _of_pyramid_maps(maps, section)
+    if maps.velocities is not None:
+        yield Picture(
+            section, "movement-map",
+            "The first layer's second map. Every unit stands for a way of moving, drawn as arrows at the joints.",
+            partial(velocity_map, maps.velocities),
+        )  # fmt: skip
+    if maps.arms is not None:
+        left = "Who acts with the left arm is read in a mirror" if maps.mirrors else "Left arms are not seen by it"
+        yield Picture(
+            section, "arm-map",
+            "The first layer's third map. Every unit stands for where the right arm is, seen from its shoulder, and "
+            f"where it is going. {left}.",
+            partial(arm_map, maps.arms, maps.mirrors),
+        )  # fmt: skip
     yield Picture(
         section, "action-map",
         "The second layer. Every place belongs to the action whose neuron answers most to what falls there; like "
         "actions are neighbours, and the paler, the closer the decision."
         + (" Each dot is a segment; a ring marks a wrong answer." if segments else ""),
         partial(action_map, maps, segments),
-    )  # fmt: skip
-
-
-def _of_pyramid_maps(maps: PyramidMaps, section: str) -> Iterator[Picture]:
-    mirrors = maps.model.metadata.mirrors
-    yield Picture(
-        section, "movement-map",
-        "The first layer's second map. Every unit stands for a way of moving, drawn as arrows at the joints.",
-        partial(velocity_map, maps.model.first.velocities),
-    )  # fmt: skip
-    yield Picture(
-        section, "arm-map",
-        "The first layer's third map. Every unit stands for where the right arm is, seen from its shoulder, and "
-        "where it is going."
-        + (" Who acts with the left arm is read in a mirror." if mirrors else " Left arms are not seen by it."),
-        partial(arm_map, maps.model.first.arms, mirrors),
     )  # fmt: skip
 
 
@@ -122,17 +121,18 @@ def _of_answers(segments: Sequence[AnsweredSegment], evaluation: Evaluation) -> 
         )  # fmt: skip
 
 
-def _of_segment(maps: ModelMaps, section: str, name: str, answered: AnsweredSegment) -> Iterator[Picture]:
-    where = f"Segment {answered.segment_id} of {Path(answered.file).name}"
-    yield Picture(
-        section, f"trace-{name}",
-        f"{where}: its way over the posture map, from postures framed dark at the start to light ones at the end.",
-        partial(trace_picture, maps, answered),
-    )  # fmt: skip
+def _of_segment(model: Model, section: str, name: str, answered: AnsweredSegment) -> Iterator[Picture]:
+    maps, where = maps_of(model), f"Segment {answered.segment_id} of {Path(answered.file).name}"
+    if maps is not None:
+        yield Picture(
+            section, f"trace-{name}",
+            f"{where}: its way over the posture map, from postures framed dark at the start to light ones at the end.",
+            partial(trace_picture, maps, answered),
+        )  # fmt: skip
     yield Picture(
         section, f"time-{name}",
         "How the answer came about while it went on: each action's neuron, the decision with its confidence, and the "
         "actor. Where the thick line is above all others for good, the action was recognised. Until the end more may "
         "come; the last bar and the last points are the answer to the complete action, and may jump.",
-        partial(timeline_picture, maps.model, answered),
+        partial(timeline_picture, model, answered),
     )  # fmt: skip

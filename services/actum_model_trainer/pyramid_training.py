@@ -25,7 +25,7 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import actions_of, provenance
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.upper_layers import UpperLayers, train_upper
-from som_classifier.first_layer import FirstMaps, arm_inputs, frame_inputs
+from som_classifier.first_layer import MAP_INPUTS, FirstMaps, frame_inputs
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid import Pyramid
 from som_classifier.pyramid_metadata import PyramidMetadata
@@ -68,27 +68,27 @@ def _first_maps(
     augmented: Sequence[Variant], preset: PyramidPreset, rng: np.random.Generator, progress: Progress
 ) -> FirstMaps:
     postures = np.concatenate([variant.postures for variant in augmented])
-    velocities = np.concatenate([variant.velocities for variant in augmented])
-    arms = arm_inputs(frame_inputs(postures, velocities))
-    soms, contrasts = [], []
-    for name, inputs in (("map of postures", postures), ("map of velocities", velocities), ("map of arms", arms)):
-        rows = _training_rows(inputs, rng)
+    frames = frame_inputs(postures, np.concatenate([variant.velocities for variant in augmented]))
+    maps, contrasts = {}, {}
+    for name, inputs_of in MAP_INPUTS.items():
+        rows = _training_rows(inputs_of(frames), rng)
         untrained = Som.linear(*preset.units, rows)
-        som = untrained.train_batch(rows, preset.unit_epochs, preset.unit_radius, partial(progress, name))
-        soms.append(som)
-        contrasts.append(preset.relative_contrast * median_quantization_error2(som, rows))
-    return FirstMaps(soms[0], soms[1], soms[2], (contrasts[0], contrasts[1], contrasts[2]), preset.arm_shares)
+        maps[name] = untrained.train_batch(
+            rows, preset.unit_epochs, preset.unit_radius, partial(progress, f"map of {name}")
+        )
+        contrasts[name] = preset.relative_contrast * median_quantization_error2(maps[name], rows)
+    return FirstMaps(maps, contrasts, preset.arm_shares)
 
 
 def _training_rows(inputs: Floats, rng: np.random.Generator) -> NDArray[np.float32]:
-    """Return inputs (n, …) as rows of float32 without those that are wholly missing, at most `MAX_ROWS` drawn evenly.
+    """Return inputs (n, dim) as rows of float32 without those that are wholly missing, at most `MAX_ROWS` drawn evenly.
 
     A component that is missing everywhere becomes 0: it is then the same for all units and decides nothing.
     """
-    flat = inputs.reshape(len(inputs), -1).astype(np.float32)
+    flat = inputs.astype(np.float32)
     flat = flat[~np.isnan(flat).all(axis=1)]
     if not len(flat):
-        return np.zeros((1, inputs[0].size), np.float32)
+        return np.zeros((1, inputs.shape[1]), np.float32)
     flat = np.where(np.isnan(flat).all(axis=0), np.float32(0), flat)
     return flat if len(flat) <= MAX_ROWS else flat[rng.choice(len(flat), MAX_ROWS, replace=False)]
 
@@ -127,9 +127,9 @@ def _layer_parameters(
 ) -> dict[str, Any]:
     """Return the metadata that the layers need beside their weights."""
     return {
-        "posture_contrast": first.contrasts[0],
-        "velocity_contrast": first.contrasts[1],
-        "arm_contrast": first.contrasts[2],
+        "posture_contrast": first.contrasts["postures"],
+        "velocity_contrast": first.contrasts["velocities"],
+        "arm_contrast": first.contrasts["arms"],
         "arm_shares": list(first.arm_shares),
         "levels": list(preset.levels),
         "overlap": preset.overlap,

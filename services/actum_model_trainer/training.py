@@ -1,6 +1,7 @@
 """Training of a model of the kind that the preset belongs to."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from threadpoolctl import threadpool_limits
 
@@ -10,10 +11,18 @@ from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from actum_model_trainer.spotting.spotting_training import with_spotting
 from som_classifier.model import Model
-from som_classifier.presets import PaperPreset, Preset
-from som_classifier.pyramid_model import PyramidModel
+from som_classifier.presets import Preset
 
-__all__ = ["TrainingError", "train", "train_to_spot"]
+__all__ = ["SEARCHES", "TRAININGS", "TrainingError", "train", "train_to_spot"]
+
+
+TRAININGS: dict[str, Callable[[Sequence[SegmentSample], Any, int, Progress], Model]] = {
+    "paper": paper_training.train,
+    "pyramid": pyramid_training.train,
+}
+"""The training of each kind of model, with a preset of that kind and a seed."""
+SEARCHES: dict[str, Callable[[Any, Sequence[LabelledStream], Any, int, Progress], Model]] = {"pyramid": with_spotting}
+"""For each kind of model that finds actions without marks: adds the search to a trained model."""
 
 
 def train(samples: Sequence[SegmentSample], preset: Preset, seed: int = 0, progress: Progress = silent) -> Model:
@@ -23,9 +32,7 @@ def train(samples: Sequence[SegmentSample], preset: Preset, seed: int = 0, progr
         TrainingError: fewer than two actions among the samples.
     """
     with threadpool_limits(1, user_api="blas"):  # two threads of BLAS round differently from one
-        if isinstance(preset, PaperPreset):
-            return paper_training.train(samples, preset, seed, progress)
-        return pyramid_training.train(samples, preset, seed, progress)
+        return TRAININGS[preset.kind](samples, preset, seed, progress)
 
 
 def train_to_spot(
@@ -35,13 +42,13 @@ def train_to_spot(
     seed: int = 0,
     progress: Progress = silent,
 ) -> Model:
-    """Train a model that also finds actions without marks, where its preset can.
+    """Train a model that also finds actions without marks, where its kind can.
 
     Raises:
         TrainingError: fewer than two actions among the samples.
     """
-    model = train(samples, preset, seed, progress)
-    if not isinstance(model, PyramidModel) or isinstance(preset, PaperPreset):
+    model, search = train(samples, preset, seed, progress), SEARCHES.get(preset.kind)
+    if search is None:
         return model
     with threadpool_limits(1, user_api="blas"):
-        return with_spotting(model, streams, preset, seed, progress)
+        return search(model, streams, preset, seed, progress)

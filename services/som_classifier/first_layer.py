@@ -1,9 +1,10 @@
 """The first layer of the default recogniser: maps of postures, velocities and arms, each with a soft activity."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +16,6 @@ from som_classifier.handedness import ACROSS, OPPOSITE
 
 VELOCITY_WEIGHT = 3.0
 """Weight of velocities against positions in the arm map's input: both then have about the same variance."""
-ARM_INPUTS = 12
-"""Positions and velocities of elbow and hand, three coordinates each."""
-CHANNELS = ("postures", "velocities", "acting arm", "other arm")
-"""The blocks of a frame's activity, in this order; the arm map is looked up for both arms."""
 SMALLEST_ERROR2 = 6e-5
 """Smaller squared quantization errors (m²) count as this, 2 mm a joint on average: the logarithm of 0 is infinite."""
 
@@ -55,33 +52,49 @@ def arm_inputs(rows: Floats) -> Floats:
     return inputs
 
 
+class Channel(NamedTuple):
+    """A block of a frame's activity: the name of the map that answers, and whether it is shown the mirror image."""
+
+    map: str
+    mirrored: bool = False
+
+
+MAP_INPUTS: Mapping[str, Callable[[Floats], Floats]] = {
+    "postures": lambda rows: rows[:, :_SIZE],
+    "velocities": lambda rows: rows[:, _SIZE:],
+    "arms": arm_inputs,
+}
+"""The maps by name, in the order in which they are trained: what each is shown (n, dim) of `frame_inputs` (n, 90)."""
+INPUT_SIZES = {name: inputs_of(np.zeros((1, 2 * _SIZE))).shape[1] for name, inputs_of in MAP_INPUTS.items()}
+"""The dimension of each map, by its name."""
+ACTING_ARM, OTHER_ARM = Channel("arms"), Channel("arms", mirrored=True)
+CHANNELS = (Channel("postures"), Channel("velocities"), ACTING_ARM, OTHER_ARM)
+"""The blocks of a frame's activity, in this order; the arm map answers for both arms."""
+
+
 @dataclass(frozen=True, eq=False)
 class FirstMaps:
-    """The first layer: a map of postures, one of velocities, one of arms, each with a soft activity.
+    """The first layer: the maps of `MAP_INPUTS`, each with a soft activity.
 
     Attributes:
-        postures: of dimension 45.
-        velocities: of dimension 45, with as many units.
-        arms: of dimension 12, with as many units.
-        contrasts: of each map's soft activity, in the unit of its squared distances.
+        maps: by name; all have the same number of units.
+        contrasts: of each map's soft activity, by the map's name, in the unit of its squared distances.
         arm_shares: the sum of the arm map's activity for the acting arm, and for the other one; for each of the other
             maps the sum is 1.
     """
 
-    postures: Som
-    velocities: Som
-    arms: Som
-    contrasts: tuple[float, float, float]
+    maps: Mapping[str, Som]
+    contrasts: Mapping[str, float]
     arm_shares: tuple[float, float]
 
     @property
-    def maps(self) -> tuple[Som, Som, Som]:
-        """The maps of postures, velocities and arms."""
-        return self.postures, self.velocities, self.arms
+    def postures(self) -> Som:
+        """The map of postures."""
+        return self.maps["postures"]
 
     @property
     def units(self) -> int:
-        """The length of a frame's activity vector: the units of all maps, those of the arm map twice."""
+        """The length of a frame's activity vector: as many units as a map has, for each channel."""
         return len(CHANNELS) * len(self.postures.weights)
 
     def activities(self, postures: Floats, velocities: Floats) -> Floats:
@@ -94,8 +107,9 @@ class FirstMaps:
             velocities: (n, 15, 3), of the same joints, as `Kinematics` defines them.
         """
         rows = frame_inputs(postures, velocities)
-        channels = [*zip(self.maps, _inputs_of_maps(rows), strict=True), (self.arms, arm_inputs(mirrored_inputs(rows)))]
-        return self._normalised(np.concatenate([_excess2s(som, inputs) for som, inputs in channels], axis=1))
+        sides = rows, mirrored_inputs(rows)
+        blocks = [_excess2s(self.maps[name], MAP_INPUTS[name](sides[mirrored])) for name, mirrored in CHANNELS]
+        return self._normalised(np.concatenate(blocks, axis=1))
 
     def winners(self, postures: Floats) -> NDArray[np.intp]:
         """Return the map of postures' winner for each of (n, 15, 3), shape (n,); 0 where all joints are missing."""
@@ -131,16 +145,15 @@ class FirstMaps:
         if math.isnan(row.sum()):
             excess2s = self._partly_known(rows)
         else:
-            excess2s = self._together.excess2s(np.concatenate([rows, arm_inputs(rows)], axis=1))
-        other_arm = excess2s[::-1, -1:]
-        return self._normalised(np.concatenate([excess2s, other_arm], axis=1).reshape(2, -1))
+            excess2s = self._together.excess2s(np.concatenate([each(rows) for each in MAP_INPUTS.values()], axis=1))
+        of_map = dict(zip(MAP_INPUTS, excess2s.swapaxes(0, 1), strict=True))
+        blocks = [of_map[name][::-1] if mirrored else of_map[name] for name, mirrored in CHANNELS]
+        return self._normalised(np.concatenate(blocks, axis=1))
 
     def _partly_known(self, rows: Floats) -> Floats:
         """Return d² − d²_min of each map for rows (2, 90) with missing components, shape (2, maps, units)."""
-        inputs = _inputs_of_maps(rows)
-        pairs = list(zip(self.maps, inputs, strict=True))
-        excess2s = [_excess2(som, map_rows[side]) for side in (0, 1) for som, map_rows in pairs]
-        return np.concatenate(excess2s).reshape(2, len(self.maps), -1)
+        inputs = [(self.maps[name], inputs_of(rows)) for name, inputs_of in MAP_INPUTS.items()]
+        return np.array([[_excess2(som, map_rows[side]) for som, map_rows in inputs] for side in (0, 1)])
 
     def _normalised(self, excess2s: Floats) -> Floats:
         """Return the activities for d² − d²_min (n, units), same shape; overwrites its argument."""
@@ -152,20 +165,16 @@ class FirstMaps:
 
     @cached_property
     def _together(self) -> Together:
-        return Together(self.maps)
+        return Together([self.maps[name] for name in MAP_INPUTS])
 
     @cached_property
     def _slopes(self) -> NDArray[np.float32]:
-        return (-1 / np.array([*self.contrasts, self.contrasts[-1]]))[:, None].astype(np.float32)
+        return (-1 / np.array([self.contrasts[name] for name, _ in CHANNELS]))[:, None].astype(np.float32)
 
     @cached_property
     def _shares(self) -> NDArray[np.float32]:
-        return np.array([1.0, 1.0, *self.arm_shares], np.float32)[:, None]
-
-
-def _inputs_of_maps(rows: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return the inputs of each map, (n, 45), (n, 45) and (n, 12), for rows (n, 90)."""
-    return rows[:, :_SIZE], rows[:, _SIZE:], arm_inputs(rows)
+        shares = dict(zip((ACTING_ARM, OTHER_ARM), self.arm_shares, strict=True))
+        return np.array([shares.get(channel, 1.0) for channel in CHANNELS], np.float32)[:, None]
 
 
 def _excess2(som: Som, x: Floats) -> Floats:

@@ -3,7 +3,7 @@
 from pydantic import BaseModel
 
 from som_classifier.model import Model
-from som_classifier.model_maps import maps_of
+from som_classifier.model_maps import NoMapsError, maps_of
 
 DIGITS = 3
 """Of a joint's coordinates: millimetres."""
@@ -53,6 +53,8 @@ def map_description(model: Model | None) -> MapDescription:
     if model is None:
         return MapDescription(model=None)
     maps = maps_of(model)
+    if maps is None:
+        raise NoMapsError(model)
     postures, actions = maps.postures, maps.actions
     bodies = maps.unit_joints().round(DIGITS).tolist() if maps.shows_bodies else None
     labels = [model.labels[index] for index in maps.unit_cosines().argmax(axis=1)]

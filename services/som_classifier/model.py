@@ -17,7 +17,7 @@ from actum.messages import MOST_ACTIONS, Name
 from actum.skeletons import JOINTS
 from som_classifier.frames import Frame
 from som_classifier.recognition import Recognition
-from som_classifier.spotting.spotted import Spotter, SpottingOptions
+from som_classifier.spotting.spotted import Spotter, SpottingMetadata, SpottingOptions
 
 Arrays = Mapping[str, NDArray[Any]]
 MOST_SAMPLES = 1_000_000
@@ -79,7 +79,7 @@ class Encoder(Protocol):
 
 
 class Model(ABC):
-    """A trained recogniser.
+    """A trained recogniser. One without maps or without a search inherits the methods that return none.
 
     Attributes:
         metadata: what the file holds beside the weights.
@@ -119,22 +119,34 @@ class Model(ABC):
             ValueError: there is no frame.
         """
 
-    @abstractmethod
     def trace(self, frames: Sequence[Frame]) -> NDArray[np.float64]:
         """Return the trajectory over the first map: row and column of winners or centres of activity, shape (n, 2)."""
+        return np.zeros((0, 2))
 
-    @abstractmethod
     def maps(self, frames: Sequence[Frame]) -> Arrays:
         """Return the activity of each map over a whole segment, by name, each (rows, cols) within [0, 1]."""
+        return {}
+
+    @property
+    def spotting(self) -> SpottingMetadata | None:
+        """What the model knows of its search for actions; None where the model was not trained for that."""
+        return None
+
+    def spotters(self, asked: Sequence[SpottingOptions]) -> list[Spotter]:
+        """Return a search of one person's stream for each of these options; none where `spotting` is None.
+
+        The searches are given the same frames, and may share what they compute of a frame.
+        """
+        return []
 
     def spotter(self, options: SpottingOptions) -> Spotter | None:
         """Return a search for actions in one person's stream; None where the model was not trained for that."""
-        return None
+        return next(iter(self.spotters([options])), None)
 
     @property
     def background_s(self) -> float | None:
-        """How long (s) people did none of the actions in the training data; None where that is not known."""
-        return None
+        """How long (s) people did none of the actions in the training data; None without a search."""
+        return None if self.spotting is None else self.spotting.background_s
 
     @property
     def labels(self) -> list[str]:

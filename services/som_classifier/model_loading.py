@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import tokenize
 import zipfile
 import zlib
@@ -12,6 +13,7 @@ from typing import IO, Any
 import numpy as np
 from pydantic import ValidationError
 
+from actum import __version__
 from som_classifier.model import Arrays, Model
 from som_classifier.paper_model import PaperModel
 from som_classifier.pyramid_model import PyramidModel
@@ -33,40 +35,58 @@ NPY: Any = np.lib.format
 """NumPy's file format, which has types in some of its versions only."""
 HEADERS = {(1, 0): NPY.read_array_header_1_0, (2, 0): NPY.read_array_header_2_0}
 """NumPy's readers of an array's header, by the version of its format; later ones are for named columns."""
+VERSION = re.compile(r"[0-9][0-9A-Za-z.+-]{0,40}")
+"""What the version in a file may look like if a message is to name it."""
 
 
 class ModelError(ValueError):
     """A file that no model can be loaded from; the text names the file, the problem and what to do."""
 
-    def __init__(self, path: Path, problem: str) -> None:
-        super().__init__(f"{path}: {problem}; train a model with 'actum train REC… -o MODEL'")
+    def __init__(self, path: Path, problem: str, advice: str = "train a model") -> None:
+        super().__init__(f"{path}: {problem}; {advice} with 'actum train REC… -o MODEL'")
 
 
 def load_model(path: Path) -> Model:
     """Load the model from a file that `Model.save` wrote.
 
     Raises:
-        ModelError: the file is missing, foreign, damaged, or made for another joint order.
+        ModelError: the file is missing, foreign, damaged, or of another version of actum that made it otherwise.
     """
     try:
         if path.exists() and not path.is_file():
             raise ModelError(path, "the path names a folder or a device, not a file")
         with path.open("rb") as stored:
             metadata, arrays = _parts(path, stored)
-        kind = json.loads(metadata).get("kind")
-        if kind not in KINDS:
-            raise ModelError(path, f"the model is of kind {kind!r}, which this version of actum does not know")
-        return KINDS[kind].restored(metadata, arrays)
+        return _restored(path, metadata, arrays)
     except ModelError:
         raise
     except FileNotFoundError:
         raise ModelError(path, "the file does not exist") from None
-    except ValidationError as error:
-        first = error.errors(include_input=False, include_url=False)[0]
-        field = ".".join(str(part) for part in first["loc"])
-        raise ModelError(path, f"the file is not a model of actum (metadata {field}: {first['msg']})") from None
     except (*UNREADABLE, AttributeError) as error:
-        raise ModelError(path, f"the file is not a model of actum, or it is damaged ({error})") from None
+        raise ModelError(path, f"the file is not a model of actum, or it is damaged ({_problem(error)})") from None
+
+
+def _restored(path: Path, metadata: str, arrays: Arrays) -> Model:
+    """Build the model of a file's parts; an error of a model that another version made names that version."""
+    about = json.loads(metadata)
+    kind, made_by = about.get("kind"), str(about.get("actum_version"))
+    if kind not in KINDS:
+        raise ModelError(path, f"the model is of kind {kind!r}, which this version of actum does not know")
+    try:
+        return KINDS[kind].restored(metadata, arrays)
+    except UNREADABLE as error:
+        if made_by == __version__ or not VERSION.fullmatch(made_by):
+            raise
+        problem = f"actum {made_by} made the model, and actum {__version__} cannot use it ({_problem(error)})"
+        raise ModelError(path, problem, "train it anew") from None
+
+
+def _problem(error: Exception) -> str:
+    """Return what is wrong, of metadata only the first field that is."""
+    if not isinstance(error, ValidationError):
+        return str(error)
+    first = error.errors(include_input=False, include_url=False)[0]
+    return f"metadata {'.'.join(str(part) for part in first['loc'])}: {first['msg']}"
 
 
 def _parts(path: Path, stored: IO[bytes]) -> tuple[str, Arrays]:

@@ -1,7 +1,8 @@
 """The maps of every kind of model behind one interface: map of postures, map of actions, and segments' winners."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -19,8 +20,11 @@ TORSO_FROM_HIPS_M = np.array([0.0, 0.24, 0.0])
 """The torso relative to the hips' middle of somebody who stands, (3,): metres to the left, up and forward."""
 
 
-class NoMapsError(TypeError):
+class NoMapsError(ValueError):
     """A model of a kind without maps."""
+
+    def __init__(self, model: Model) -> None:
+        super().__init__(f"the model has no maps: models of kind {model.metadata.kind!r} contain none")
 
 
 class ModelMaps(ABC):
@@ -31,12 +35,18 @@ class ModelMaps(ABC):
         postures: the first map.
         actions: the second map.
         shows_bodies: whether a unit of the first map stands for all joints; else it does for those of one limb.
+        velocities: the map of velocities, None where the model has none.
+        arms: the map of arms, None where the model has none.
+        mirrors: whether an action of the left arm is read as its mirror image.
     """
 
     model: Model
     postures: Som
     actions: Som
     shows_bodies: bool
+    velocities: Som | None = None
+    arms: Som | None = None
+    mirrors = False
 
     @abstractmethod
     def unit_joints(self) -> Floats:
@@ -67,6 +77,8 @@ class PyramidMaps(ModelMaps):
     def __init__(self, model: PyramidModel) -> None:
         self.model: PyramidModel = model
         self.postures, self.actions = model.first.postures, model.action_map.som
+        self.velocities, self.arms = model.first.maps["velocities"], model.first.maps["arms"]
+        self.mirrors = model.metadata.mirrors
 
     def unit_joints(self) -> Floats:
         """Return the joints that each unit of the first map stands for, metres from the torso, (units, 15, 3)."""
@@ -123,16 +135,11 @@ class PaperMaps(ModelMaps):
         return np.stack([self.model.layer3.cosines(activity) for activity in activities])
 
 
-def maps_of(model: Model) -> ModelMaps:
-    """Return a model's maps.
+MAPS: dict[str, Callable[[Any], ModelMaps]] = {"paper": PaperMaps, "pyramid": PyramidMaps}
+"""The maps of each kind of model that has any, see `som_classifier.model_loading.KINDS`."""
 
-    Raises:
-        NoMapsError: it is of a kind without maps.
-    """
-    match model:
-        case PyramidModel():
-            return PyramidMaps(model)
-        case PaperModel():
-            return PaperMaps(model)
-        case _:
-            raise NoMapsError(f"the model has no maps: models of kind {model.metadata.kind!r} contain none")
+
+def maps_of(model: Model) -> ModelMaps | None:
+    """Return a model's maps, None where its kind has none."""
+    make = MAPS.get(model.metadata.kind)
+    return None if make is None else make(model)

@@ -1,11 +1,11 @@
 """The parameters of training, in named sets. Names of fields are stored with each model and do not change."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from types import MappingProxyType
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
 
 from actum.som import Schedule
-from som_classifier.attention import MOVING, PostureInput
+from som_classifier.attention import CHOICES, MOVING, PostureInput
 from som_classifier.spotting.spotting_preset import SpottingPreset
 
 
@@ -64,11 +64,29 @@ class Prior:
 
 
 @dataclass(frozen=True)
-class PaperPreset:
-    """Everything that a training of the paper's recogniser depends on beside its samples and its seed.
+class Preset:
+    """Everything that a training depends on beside its samples and its seed.
 
     Attributes:
+        kind: of the models that are trained: a key of the tables of models and of trainings.
+        choices: the values of each setting that a user may change, by its name.
         name: that it is chosen by.
+    """
+
+    kind: ClassVar[str]
+    choices: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    name: str
+
+    def changed(self, settings: Mapping[str, Any]) -> Self:
+        """Return the preset with other settings, each one of `choices`."""
+        return replace(self, **settings)
+
+
+@dataclass(frozen=True)
+class PaperPreset(Preset):
+    """The preset of the paper's recogniser.
+
+    Attributes:
         posture: the first map's input.
         layer1: the first map.
         layer2: the second map.
@@ -80,7 +98,8 @@ class PaperPreset:
         epochs: how often the third layer is shown every training vector.
     """
 
-    name: str
+    kind: ClassVar[str] = "paper"
+    choices = CHOICES
     posture: PostureInput
     layer1: MapTraining
     layer2: MapTraining
@@ -89,13 +108,16 @@ class PaperPreset:
     beta: float
     epochs: int
 
+    def changed(self, settings: Mapping[str, Any]) -> Self:
+        """Return the preset with another input of the first map."""
+        return replace(self, posture=replace(self.posture, **settings))
+
 
 @dataclass(frozen=True)
-class PyramidPreset:
-    """Everything that a training of the default recogniser depends on beside its samples and its seed.
+class PyramidPreset(Preset):
+    """The preset of the default recogniser.
 
     Attributes:
-        name: that it is chosen by.
         units: rows and columns of each map of the first layer.
         unit_epochs: epochs of its batch training.
         unit_radius: the first and the last neighbourhood radius of that training, grid units.
@@ -127,7 +149,7 @@ class PyramidPreset:
         spotting: of the search for actions without marks.
     """
 
-    name: str
+    kind: ClassVar[str] = "pyramid"
     units: tuple[int, int]
     unit_epochs: int
     unit_radius: tuple[float, float]
@@ -155,8 +177,6 @@ class PyramidPreset:
     prior: Prior
     spotting: SpottingPreset
 
-
-Preset = PaperPreset | PyramidPreset
 
 PAPER = PaperPreset(
     name="paper",
@@ -220,4 +240,4 @@ PYRAMID = PyramidPreset(
 
 DEFAULT = PYRAMID
 
-PRESETS: Mapping[str, Preset] = MappingProxyType({preset.name: preset for preset in (PYRAMID, PAPER)})
+PRESETS: dict[str, Preset] = {preset.name: preset for preset in (PYRAMID, PAPER)}

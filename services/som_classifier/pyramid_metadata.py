@@ -6,7 +6,8 @@ from pydantic import Field
 
 from actum.skeletons import JOINTS
 from som_classifier.model import ModelMetadata
-from som_classifier.spotting.spotting_model import Finite, Positive, SpottingMetadata
+from som_classifier.spotting.spotted import Finite
+from som_classifier.spotting.spotting_model import Positive, PyramidSpottingMetadata
 
 
 class PyramidMetadata(ModelMetadata):
@@ -49,7 +50,12 @@ class PyramidMetadata(ModelMetadata):
     familiar: Finite
     usual_log_errors: list[Finite]
     least_movement_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
-    spotting: SpottingMetadata | None = None
+    spotting: PyramidSpottingMetadata | None = None
+
+    @property
+    def contrasts(self) -> dict[str, float]:
+        """The contrast of each map of the first layer, by the map's name."""
+        return {"postures": self.posture_contrast, "velocities": self.velocity_contrast, "arms": self.arm_contrast}
 
     def problem(self) -> str | None:
         """Return the first inconsistency within it, None where there is none."""

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from actum.arrays import Array, Floats, Indices
 from actum.node import SECOND_NS
-from actum.skeletons import JOINTS
 from actum.som import Som
-from som_classifier.first_layer import ARM_INPUTS, CHANNELS, FirstMaps
+from som_classifier.first_layer import CHANNELS, INPUT_SIZES, MAP_INPUTS, Channel, FirstMaps
 from som_classifier.frame_activity import (
     FrameActivity,
     FrameEncoder,
@@ -33,9 +32,9 @@ from som_classifier.pyramid_metadata import PyramidMetadata
 from som_classifier.recognition import Recognition
 from som_classifier.second_layer import ActionMap
 from som_classifier.spotting.completeness import CompletenessHeads
-from som_classifier.spotting.pyramid_spotter import PyramidSpotter
-from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.spotting.spotting_model import SpottingModel
+from som_classifier.spotting.pyramid_spotter import PoolingOnce, PyramidSpotter
+from som_classifier.spotting.spotted import Spotter, SpottingOptions
+from som_classifier.spotting.spotting_model import PyramidSpottingMetadata, SpottingModel
 from som_classifier.stage_discriminants import StageDiscriminants, familiarity_of
 from som_classifier.supervised import SupervisedLayer
 
@@ -67,9 +66,7 @@ class PyramidModel(Model):
     def arrays(self) -> Arrays:
         """All weights by the names they are stored under, maps as component planes (rows, cols, dim)."""
         weights: dict[str, NDArray[Any]] = {
-            "postures": self.first.postures.planes,
-            "velocities": self.first.velocities.planes,
-            "arms": self.first.arms.planes,
+            **{name: self.first.maps[name].planes for name in MAP_INPUTS},
             "axes": self.stages.axes,
             "offsets": self.stages.offsets,
             "concepts": self.action_map.som.planes,
@@ -89,14 +86,13 @@ class PyramidModel(Model):
         """
         stored = PyramidMetadata.model_validate_json(metadata)
         action_som = Som.of_planes(arrays["concepts"])
-        postures, velocities, arms = (Som.of_planes(arrays[name]) for name in ("postures", "velocities", "arms"))
-        contrasts = stored.posture_contrast, stored.velocity_contrast, stored.arm_contrast
+        maps = {name: Som.of_planes(arrays[name]) for name in MAP_INPUTS}
         durations = stored.log_duration_mean, stored.log_duration_sd
         heads = None
         if stored.spotting is not None:
             heads = CompletenessHeads(arrays["completeness_axes"], arrays["completeness_offsets"])
         return cls(
-            FirstMaps(postures, velocities, arms, contrasts, (stored.arm_shares[0], stored.arm_shares[1])),
+            FirstMaps(maps, stored.contrasts, (stored.arm_shares[0], stored.arm_shares[1])),
             StageDiscriminants(arrays["axes"], arrays["offsets"], tuple(stored.fractions), *durations),
             ActionMap(action_som, stored.concept_contrast, arrays["concept_mean"]),
             SupervisedLayer(arrays["layer3"]),
@@ -139,15 +135,16 @@ class PyramidModel(Model):
         return self._doubted_if_still(recognition, frames) if complete else recognition
 
     @property
-    def background_s(self) -> float | None:
-        """How long (s) people did none of the actions in the training data; None without a search."""
-        return None if self.metadata.spotting is None else self.metadata.spotting.background_s
+    def spotting(self) -> PyramidSpottingMetadata | None:
+        """What the model knows of its search for actions; None where the model was not trained for that."""
+        return self.metadata.spotting
 
-    def spotter(self, options: SpottingOptions) -> PyramidSpotter | None:
-        """Return a search for actions in one person's stream; None where the model was not trained for that."""
+    def spotters(self, asked: Sequence[SpottingOptions]) -> list[Spotter]:
+        """Return a search of one person's stream for each of these options, which pool each window once."""
         if self.heads is None or self.metadata.spotting is None:
-            return None
-        return PyramidSpotter(self, SpottingModel(self.heads, self.metadata.spotting), options)
+            return []
+        pool, learned = PoolingOnce(self.pooled), SpottingModel(self.heads, self.metadata.spotting)
+        return [PyramidSpotter(pool, self.labels, learned, options) for options in asked]
 
     def pooled(self, frames: Sequence[Frame]) -> NDArray[np.float32]:
         """Return the pyramid vector of valid frames, each with the activity that its encoder gave, (inputs,)."""
@@ -179,12 +176,11 @@ class PyramidModel(Model):
         activities: list[FrameActivity] = [frame.activity for frame in frames]
         scores = self.scores(activities, self.stages.weights(0.0, complete=True))
         segment = self.prefix_sums(activities)
-        sums = segment.since_start([len(segment)]).reshape(len(CHANNELS), -1)[: len(self.first.maps)]
-        relative = sums / sums.max(axis=1, keepdims=True)
-        first = {
-            name: activity.reshape(som.rows, som.cols)
-            for name, som, activity in zip(("postures", "velocities", "arms"), self.first.maps, relative, strict=True)
-        }
+        sums = segment.since_start([len(segment)]).reshape(len(CHANNELS), -1)
+        first = {}
+        for name, som in self.first.maps.items():
+            activity = sums[CHANNELS.index(Channel(name))].reshape(som.rows, som.cols)
+            first[name] = activity / activity.max()
         action_som = self.action_map.som
         active = soft_activity(action_som.excess2(scores), self.action_map.contrast)
         return first | {"actions": active.reshape(action_som.rows, action_som.cols)}
@@ -213,7 +209,7 @@ class PyramidModel(Model):
 
     def _number_problem(self) -> str | None:
         """Return the first array whose numbers are not of the kind they have to be, None where there is none."""
-        if len({som.dtype for som in self.first.maps}) > 1:
+        if len({som.dtype for som in self.first.maps.values()}) > 1:
             return "its maps are not of the same precision"
         outside_maps = [self.stages.axes, self.stages.offsets, self.action_map.mean]
         outside_maps += [] if self.heads is None else [self.heads.axes, self.heads.offsets]
@@ -226,10 +222,11 @@ class PyramidModel(Model):
         first, units = self.first, len(self.action_map.som.weights)
         actions, stages = len(self.metadata.labels), len(self.metadata.fractions)
         shapes = {
-            "maps of the first layer": ({len(som.weights) for som in first.maps}, {len(first.postures.weights)}),
-            "map of postures": (first.postures.weights.shape[1:], (3 * len(JOINTS),)),
-            "map of velocities": (first.velocities.weights.shape[1:], (3 * len(JOINTS),)),
-            "map of arms": (first.arms.weights.shape[1:], (ARM_INPUTS,)),
+            "maps of the first layer": (
+                {len(som.weights) for som in first.maps.values()},
+                {len(first.postures.weights)},
+            ),
+            **{f"map of {name}": (first.maps[name].weights.shape[1:], (INPUT_SIZES[name],)) for name in MAP_INPUTS},
             "discriminant axes": (self.stages.axes.shape, (stages, self.pyramid.cells * first.units, actions)),
             "offsets of them": (self.stages.offsets.shape, (stages, actions)),
             "map of actions": (self.action_map.som.weights.shape[1:], (actions,)),

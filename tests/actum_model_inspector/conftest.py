@@ -33,7 +33,9 @@ def record(tmp_path: Path) -> Record:
 
 @pytest.fixture(params=TINY_OF_EACH_KIND, ids=lambda preset: preset.name)
 def maps(request: pytest.FixtureRequest) -> ModelMaps:
-    return maps_of(tiny_model(request.param))
+    maps = maps_of(tiny_model(request.param))
+    assert maps is not None
+    return maps
 
 
 @pytest.fixture
@@ -51,4 +53,4 @@ def recording(record: Record) -> Recording:
 
 @pytest.fixture
 def segments(maps: ModelMaps, recording: Recording) -> list[AnsweredSegment]:
-    return answered_segments(maps, [recording])
+    return answered_segments(maps.model, [recording])

@@ -11,7 +11,7 @@ from actum.recording import Recording
 from actum_model_inspector.answer_timeline import timeline_picture
 from actum_model_inspector.answered import AnsweredSegment, answered_segments
 from actum_model_inspector.style import action_colours
-from som_classifier.model_maps import ModelMaps, PyramidMaps
+from som_classifier.model_maps import ModelMaps
 from som_classifier.pyramid_model import PyramidModel
 
 
@@ -23,7 +23,7 @@ def surprised(pyramid: PyramidModel) -> PyramidModel:
 
 
 def test_the_last_bar_and_the_last_points_are_the_printed_answer(surprised: PyramidModel, recording: Recording) -> None:
-    for segment in answered_segments(PyramidMaps(surprised), [recording]):
+    for segment in answered_segments(surprised, [recording]):
         recognition = segment.recognition
         assert recognition is not None
         lines, decision = timeline_picture(surprised, segment).axes[:2]

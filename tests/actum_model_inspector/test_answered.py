@@ -19,14 +19,14 @@ Record = Callable[..., Recording]
 
 def test_the_answers_are_those_of_the_live_classifier(maps: ModelMaps, recording: Recording) -> None:
     live = {each.segment_id: each.predicted for each in evaluate(maps.model, [recording]).predictions}
-    answered = answered_segments(maps, [recording])
+    answered = answered_segments(maps.model, [recording])
     assert {each.segment_id: each.recognition and each.recognition.label for each in answered} == live
 
 
 def test_a_segment_without_a_label_is_answered_too(maps: ModelMaps, record: Record) -> None:
     skeletons, _ = performance(["push"])
     recording = record(skeletons, [mark("start", 0, "a"), mark("end", 19 * FRAME_NS, "a")])
-    (answered,) = answered_segments(maps, [recording])
+    (answered,) = answered_segments(maps.model, [recording])
     assert answered.label is None
     assert answered.recognition is not None
 
@@ -34,7 +34,7 @@ def test_a_segment_without_a_label_is_answered_too(maps: ModelMaps, record: Reco
 def test_a_segment_that_cannot_be_answered_is_kept_without_an_answer(maps: ModelMaps, record: Record) -> None:
     skeletons, _ = performance(["push"])
     recording = record(skeletons, [mark("start", 0, "a", "push"), mark("end", FRAME_NS, "a")])
-    (answered,) = answered_segments(maps, [recording])
+    (answered,) = answered_segments(maps.model, [recording])
     assert (answered.label, answered.recognition, answered.action_unit) == ("push", None, None)
     assert not answered.correct
 

@@ -14,7 +14,7 @@ from som_classifier.model_maps import ModelMaps
 
 def shown(maps: ModelMaps, segments: list[AnsweredSegment], recording: Recording) -> tuple[str, list[Picture]]:
     evaluation = evaluate(maps.model, [recording])
-    planned = list(pictures(maps, segments, evaluation))
+    planned = list(pictures(maps.model, segments, evaluation))
     files = {picture.name: f"{picture.name}.png" for picture in planned}
     return page(maps.model, segments, evaluation, planned, files), planned
 

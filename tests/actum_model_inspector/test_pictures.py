@@ -54,7 +54,7 @@ def drawn(planned: list[Picture], folder: Path, ending: str = "png") -> list[Pat
 def test_every_picture_of_a_model_and_a_recording_is_a_sound_png(
     maps: ModelMaps, recording: Recording, segments: list[AnsweredSegment], tmp_path: Path
 ) -> None:
-    planned = list(pictures(maps, segments, evaluate(maps.model, [recording])))
+    planned = list(pictures(maps.model, segments, evaluate(maps.model, [recording])))
     names = {picture.name for picture in planned}
     assert {"posture-map", "action-map", "confusion", "trace-push", "time-lift"} <= names
     assert ({"movement-map", "arm-map"} <= names) == isinstance(maps, PyramidMaps)
@@ -64,12 +64,12 @@ def test_every_picture_of_a_model_and_a_recording_is_a_sound_png(
 
 
 def test_pictures_of_a_model_alone_are_its_maps(maps: ModelMaps) -> None:
-    names = [picture.name for picture in pictures(maps, [], None)]
+    names = [picture.name for picture in pictures(maps.model, [], None)]
     assert names == ["posture-map", *["movement-map", "arm-map"] * isinstance(maps, PyramidMaps), "action-map"]
 
 
 def test_svg_files_parse_and_the_same_picture_makes_the_same_file(maps: ModelMaps, tmp_path: Path) -> None:
-    planned = [picture for picture in pictures(maps, [], None) if picture.name == "action-map"]
+    planned = [picture for picture in pictures(maps.model, [], None) if picture.name == "action-map"]
     (file,) = drawn(planned, tmp_path, "svg")
     first = file.read_bytes()
     assert ElementTree.fromstring(first).tag.endswith("svg")
@@ -79,7 +79,7 @@ def test_svg_files_parse_and_the_same_picture_makes_the_same_file(maps: ModelMap
 
 def test_pictures_leave_other_people_s_parameters_alone(maps: ModelMaps, tmp_path: Path) -> None:
     before = dict(mpl.rcParams)
-    drawn(list(pictures(maps, [], None))[-1:], tmp_path)
+    drawn(list(pictures(maps.model, [], None))[-1:], tmp_path)
     assert dict(mpl.rcParams) == before
 
 
@@ -117,8 +117,8 @@ def test_many_long_and_odd_names_are_drawn(labels: list[str], record: Record, tm
     maps = many_actions(labels)
     skeletons, marks = performance(["push"])
     recording = record(skeletons, [marks[0].model_copy(update={"label": labels[0]}), marks[1]])
-    segments = answered_segments(maps, [recording])
-    planned = list(pictures(maps, segments, evaluate(maps.model, [recording])))
+    segments = answered_segments(maps.model, [recording])
+    planned = list(pictures(maps.model, segments, evaluate(maps.model, [recording])))
     chosen = [picture for picture in planned if not picture.name.startswith(("posture", "trace"))]
     assert all(imread(file).size for file in drawn(chosen, tmp_path))
 
@@ -130,7 +130,7 @@ def test_no_name_leaves_the_page(label: str, record: Record) -> None:
     maps = many_actions([label, f"{label} again"])
     skeletons, marks = performance(["push"])
     recording = record(skeletons, [marks[0].model_copy(update={"label": label}), marks[1]])
-    (answered,) = answered_segments(maps, [recording])
+    (answered,) = answered_segments(maps.model, [recording])
     confusion = confusion_picture(evaluate(maps.model, [recording]))
     for figure in (timeline_picture(maps.model, answered), action_map(maps), confusion):
         assert beyond_the_page(figure) == []
@@ -159,7 +159,7 @@ def test_the_names_of_mistakes_cover_no_other_name() -> None:
 def test_the_one_instant_of_the_shortest_segment_is_a_dot(maps: ModelMaps, record: Record) -> None:
     skeletons, _ = performance(["push"])
     recording = record(skeletons, still(maps.model.min_frames))
-    (answered,) = answered_segments(maps, [recording])
+    (answered,) = answered_segments(maps.model, [recording])
     axes = timeline_picture(maps.model, answered).axes[0]
     assert {line.get_marker() for line in axes.lines} == {"o"}
 
@@ -167,7 +167,7 @@ def test_the_one_instant_of_the_shortest_segment_is_a_dot(maps: ModelMaps, recor
 def test_segments_without_labels_get_pictures_but_no_confusion(maps: ModelMaps, record: Record, tmp_path: Path) -> None:
     skeletons, _ = performance(["push"])
     recording = record(skeletons, [mark("start", 0, "a"), mark("end", 19 * FRAME_NS, "a")])
-    planned = list(pictures(maps, answered_segments(maps, [recording]), None))
+    planned = list(pictures(maps.model, answered_segments(maps.model, [recording]), None))
     assert not any(picture.name == "confusion" for picture in planned)
     assert len(drawn([picture for picture in planned if picture.name.startswith(("time", "action"))], tmp_path)) == 2
 
@@ -184,9 +184,9 @@ def test_a_still_actor_with_joints_missing_is_drawn(
     skeletons = [
         skeleton(number * FRAME_NS, lacking(STANDING + moved, *missing)) for number, moved in enumerate(trembling_m)
     ]
-    segments = answered_segments(maps, [record(skeletons, still(20))])
+    segments = answered_segments(maps.model, [record(skeletons, still(20))])
     assert segments[0].recognition is not None
-    planned = [picture for picture in pictures(maps, segments, None) if picture.section.startswith("push")]
+    planned = [picture for picture in pictures(maps.model, segments, None) if picture.section.startswith("push")]
     assert len(drawn(planned, tmp_path)) == 2
 
 

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
 
 from actum.node import SECOND_NS
 from actum.som import Som
@@ -16,6 +17,12 @@ from som_classifier.model_maps import maps_of
 ABOVE, BELOW = -1, 1
 BONES_OF_A_SIDE = ["elbow", "hand", "knee", "foot"]
 """By their farther end, in the order in which they are drawn."""
+
+
+def picture_of(answered: AnsweredSegment) -> Figure:
+    maps = maps_of(tiny_model())
+    assert maps is not None
+    return trace_picture(maps, answered)
 
 
 @pytest.mark.parametrize(
@@ -50,7 +57,7 @@ def test_the_way_of_a_left_hander_is_that_of_the_mirror_image_and_says_so(
 ) -> None:
     model = tiny_model()
     answered = AnsweredSegment("file", "1", "a", sample.label, encoded(model, sample))
-    title = trace_picture(maps_of(model), answered).axes[0].get_title(loc="left")
+    title = picture_of(answered).axes[0].get_title(loc="left")
     assert title.startswith(f"{len(model.trace(encoded(model, sample)))} stays")
     assert ("read in a mirror" in title) == left_handed
 
@@ -59,7 +66,7 @@ def test_the_way_of_a_left_hander_is_that_of_the_mirror_image_and_says_so(
 def test_the_framed_figures_move_the_arm_that_the_actor_moved(sample: SegmentSample, moving: str) -> None:
     model = tiny_model()
     answered = AnsweredSegment("file", "1", "a", sample.label, encoded(model, sample))
-    axes = trace_picture(maps_of(model), answered).axes[0]
+    axes = picture_of(answered).axes[0]
     (figures,) = (drawn for drawn in axes.collections if isinstance(drawn, LineCollection) and drawn.get_zorder() == 5)
     spread = {}
     for side in (RIGHT, LEFT):
@@ -77,5 +84,5 @@ def test_stays_are_framed_in_the_colour_of_their_time_whatever_frames_were_lost(
     for frame in frames[-2:]:
         frame.stamp_ns += 100 * SECOND_NS
     answered = AnsweredSegment("file", "1", "a", sample.label, frames)
-    early = {tuple(card.get_edgecolor()) for card in trace_picture(maps_of(model), answered).axes[0].patches}
+    early = {tuple(card.get_edgecolor()) for card in picture_of(answered).axes[0].patches}
     assert {TIME_COLOURS(0.0)} <= early <= {TIME_COLOURS(0.0), TIME_COLOURS(1), TIME_COLOURS(2), TIME_COLOURS(0.88)}

@@ -21,7 +21,7 @@ from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.upper_layers import UpperLayers, train_upper
 from performers import TINY
 from recognisers import tiny_samples
-from som_classifier.first_layer import FirstMaps
+from som_classifier.first_layer import INPUT_SIZES, FirstMaps
 
 ACTIONS, EACH = 3, 30
 TARGETS = np.repeat(np.arange(ACTIONS), EACH)
@@ -108,12 +108,17 @@ def test_without_a_prior_it_is_what_the_known_share_exceeds() -> None:
     assert (scores.max(axis=1) > found).mean() == pytest.approx(0.9, abs=0.02)
 
 
+def still_maps() -> FirstMaps:
+    """A first layer of one unit in each map."""
+    maps = {name: Som(1, 1, np.zeros((1, size), np.float32)) for name, size in INPUT_SIZES.items()}
+    return FirstMaps(maps, dict.fromkeys(maps, 1.0), (0.4, 0.1))
+
+
 def test_expected_log_errors_by_hand() -> None:
     """A map of one unit: three samples of one action are off it by d² = 1 m², one of another by e² m²."""
     off_m = np.zeros((1, 15, 3))
     off_m[0, 7, 1] = 1.0
-    still = [Som(1, 1, np.zeros((1, size), np.float32)) for size in (45, 45, 12)]
-    first = FirstMaps(still[0], still[1], still[2], (1.0, 1.0, 1.0), (0.4, 0.1))
+    first = still_maps()
     found = expected_log_errors(first, [off_m, off_m, np.e * off_m, off_m], np.array([0, 0, 1, 0]), PRIOR)
     mean = (0 + 0 + 2 + 0) / 4
     once_more = [(3 * 0 + mean) / 4, (2 + mean) / 2]
@@ -122,8 +127,7 @@ def test_expected_log_errors_by_hand() -> None:
 
 def test_frames_without_any_joint_do_not_fail() -> None:
     """It counts as no error at all, as it does live."""
-    still = [Som(1, 1, np.zeros((1, size), np.float32)) for size in (45, 45, 12)]
-    first = FirstMaps(still[0], still[1], still[2], (1.0, 1.0, 1.0), (0.4, 0.1))
+    first = still_maps()
     nothing, still_m = np.full((2, 15, 3), np.nan), np.zeros((2, 15, 3))
     assert expected_log_errors(first, [nothing, still_m], np.array([0, 1]), PRIOR) == [PRIOR.log_error] * 2
 

@@ -181,10 +181,10 @@ def test_the_map_of_arms_learns_the_arm_that_acts(samples: list[SegmentSample]) 
         np.concatenate([getattr(sample, name) for sample in acting]) for name in ("postures", "velocities")
     )
     arms = arm_inputs(frame_inputs(postures, velocities))
-    distances2 = [np.square(model.first.arms.weights - row).sum(axis=1).min() for row in arms]
+    distances2 = [np.square(model.first.maps["arms"].weights - row).sum(axis=1).min() for row in arms]
     assert model.metadata.arm_contrast == pytest.approx(0.5 * np.median(distances2), rel=1e-3)
     assert tuple(model.metadata.arm_shares) == model.first.arm_shares == PLAIN.arm_shares
-    assert model.first.arms.weights.mean(axis=0) == pytest.approx(arms.mean(axis=0), abs=0.1)
+    assert model.first.maps["arms"].weights.mean(axis=0) == pytest.approx(arms.mean(axis=0), abs=0.1)
 
 
 def test_where_no_arm_was_ever_seen_from_its_shoulder_its_map_says_nothing(samples: list[SegmentSample]) -> None:

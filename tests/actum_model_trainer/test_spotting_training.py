@@ -1,5 +1,6 @@
 """The search is trained on what it looks at live, and works or says why where recordings show little."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -35,12 +36,12 @@ from som_classifier.segmenter import Segmenter
 from som_classifier.spotting.completeness import CompletenessHeads, completeness_of_iou
 from som_classifier.spotting.pyramid_spotter import PyramidSpotter
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.spotting.spotting_model import SpottingMetadata, SpottingModel
+from som_classifier.spotting.spotting_model import PyramidSpottingMetadata, SpottingModel
 from som_classifier.spotting.windows import FEWEST_FRAMES
 from unmarked import Scene, bounds_ns, postures, recorded, scene, spotting_model, taught
 
 LABELS = ["lift", "push", "swing"]
-METADATA = SpottingMetadata(
+METADATA = PyramidSpottingMetadata(
     interval_s=0.1, lag_s=0.2, overlap=0.0, duration_weight=0.0, window_durations_s=[1.0], log_duration_means=[0.0] * 3,
     log_duration_sds=[0.3] * 3, thresholds=[0.45], false_alarms_per_min=[], recalls=[], threshold=0.45,
     probability=[1.0, 0.0], background_s=0.0,
@@ -106,9 +107,8 @@ class Looking:
 
     def __init__(self, model: PyramidModel) -> None:
         self.model, self.seen = model, [(0, 0)]
-        self.labels, self.min_frames, self.recognise = model.labels, model.min_frames, model.recognise
 
-    def pooled(self, frames: list[Frame]) -> np.ndarray:
+    def pooled(self, frames: Sequence[Frame]) -> np.ndarray:
         self.seen.append((frames[0].stamp_ns, frames[-1].stamp_ns))
         return self.model.pooled(frames)
 
@@ -120,7 +120,7 @@ def test_training_counts_false_alarms_over_the_windows_that_the_live_search_look
     model = spotting_model()
     assert model.heads is not None and model.metadata.spotting is not None
     metadata, looking = model.metadata.spotting, Looking(model)
-    spotter = PyramidSpotter(looking, SpottingModel(model.heads, metadata), SpottingOptions())  # type: ignore[arg-type]
+    spotter = PyramidSpotter(looking.pooled, model.labels, SpottingModel(model.heads, metadata), SpottingOptions())
     for frame in frames:
         spotter.step(frame)
     durations_ns = np.rint(np.array(metadata.window_durations_s) * SECOND_NS).astype(np.int64)

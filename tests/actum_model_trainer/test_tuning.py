@@ -15,7 +15,7 @@ from actum_model_trainer.continuous.watching import NoSpotterError, found_by
 from actum_model_trainer.tuning import tuning
 from actum_model_trainer.tuning.choosing import Choice, chosen, held_out
 from actum_model_trainer.tuning.doubts import rate_bounds
-from actum_model_trainer.tuning.sensitivities import learned_of, plainest, sensitivities
+from actum_model_trainer.tuning.sensitivities import plainest, sensitivities
 from actum_model_trainer.tuning.trials import Trial, tried
 from actum_model_trainer.tuning.tuning import NothingLabelledError, tuned
 from actum_model_trainer.tuning.weighing import Weighed
@@ -43,12 +43,13 @@ def model(recordings: list[Recording]) -> Model:
 
 def test_each_sensitivity_is_one_threshold_of_the_model_and_can_be_asked_for(model: Model) -> None:
     assert sensitivities(model) == [None, 4.0, 2.0, 1.0]
-    assert [learned_of(model).threshold_for(rate) for rate in sensitivities(model)] == [0.02, 0.2, 0.3, 0.8]
+    assert model.spotting is not None
+    assert [model.spotting.threshold_for(rate) for rate in sensitivities(model)] == [0.02, 0.2, 0.3, 0.8]
 
 
 def test_a_model_without_background_has_one_sensitivity(model: Model) -> None:
-    assert isinstance(model, PyramidModel)
-    none = learned_of(model).model_copy(update={"false_alarms_per_min": []})
+    assert isinstance(model, PyramidModel) and model.spotting is not None
+    none = model.spotting.model_copy(update={"false_alarms_per_min": []})
     assert sensitivities(replace(model, metadata=model.metadata.model_copy(update={"spotting": none}))) == [None]
 
 

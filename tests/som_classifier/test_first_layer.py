@@ -10,7 +10,14 @@ from hypothesis import strategies as st
 from actum.skeletons import INDEX
 from actum.som import Som
 from people import STANDING
-from som_classifier.first_layer import SMALLEST_ERROR2, VELOCITY_WEIGHT, FirstMaps, arm_inputs, frame_inputs
+from som_classifier.first_layer import (
+    INPUT_SIZES,
+    SMALLEST_ERROR2,
+    VELOCITY_WEIGHT,
+    FirstMaps,
+    arm_inputs,
+    frame_inputs,
+)
 from som_classifier.handedness import mirrored
 
 SHARES = 0.4, 0.1
@@ -22,8 +29,9 @@ def map_of(rows: int, cols: int, dim: int, seed: int = 0) -> Som:
 
 
 def first_maps(posture_contrast: float = 3.0, velocity_contrast: float = 2.0) -> FirstMaps:
-    contrasts = posture_contrast, velocity_contrast, 1.0
-    return FirstMaps(map_of(5, 4, 45), map_of(5, 4, 45, 1), map_of(5, 4, 12, 2), contrasts, SHARES)
+    contrasts = {"postures": posture_contrast, "velocities": velocity_contrast, "arms": 1.0}
+    maps = {name: map_of(5, 4, size, seed) for seed, (name, size) in enumerate(INPUT_SIZES.items())}
+    return FirstMaps(maps, contrasts, SHARES)
 
 
 def inputs(frames: int = 30, missing: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -78,9 +86,9 @@ def test_activity_by_hand() -> None:
     expected = []
     for som, x, contrast, share in (
         (maps.postures, postures, 3.0, 1.0),
-        (maps.velocities, velocities, 2.0, 1.0),
-        (maps.arms, right, 1.0, SHARES[0]),
-        (maps.arms, left, 1.0, SHARES[1]),
+        (maps.maps["velocities"], velocities, 2.0, 1.0),
+        (maps.maps["arms"], right, 1.0, SHARES[0]),
+        (maps.maps["arms"], left, 1.0, SHARES[1]),
     ):
         y = np.exp(-np.square(som.weights - x.reshape(-1)).sum(axis=1) / contrast)
         expected.append(share * y / y.sum())
@@ -104,7 +112,7 @@ def test_what_a_missing_joint_would_have_said_does_not_matter(joint: int) -> Non
     weights = first_maps().postures.weights.copy()
     weights[1] = weights[0]
     weights[1, 3 * joint : 3 * joint + 3] += 1.0
-    maps = replace(first_maps(), postures=Som(5, 4, weights))
+    maps = replace(first_maps(), maps={**first_maps().maps, "postures": Som(5, 4, weights)})
     postures[0, joint] = np.nan
     activity = maps.activities(postures, velocities)[0]
     assert activity[0] == pytest.approx(activity[1], rel=1e-5)

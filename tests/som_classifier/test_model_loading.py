@@ -10,6 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from actum import __version__
 from actum.som import Som
 from handmade import KINDS, model_of, paper_model, pyramid_model
 from som_classifier.model import Model
@@ -256,6 +257,35 @@ OF_PYRAMID: list[tuple[dict[str, object], str]] = [
 )
 def test_metadata_that_do_not_fit_are_named(tmp_path: Path, kind: str, changes: dict[str, object], named: str) -> None:
     assert named in refused(with_metadata(saved(tmp_path, kind), **changes))
+
+
+@pytest.mark.parametrize(
+    ("kind", "change", "detail"),
+    [
+        ("paper", {"points": 4}, "its maps take vectors of 9 and 6, not of 9 and 8"),
+        ("pyramid", {"levels": [1, 3]}, "its discriminant axes is of shape"),
+        ("pyramid", {"arm_contrast": None}, "metadata arm_contrast"),
+    ],
+)
+def test_a_model_that_another_version_made_otherwise_names_that_version(
+    tmp_path: Path, kind: str, change: dict[str, object], detail: str
+) -> None:
+    told = refused(with_metadata(saved(tmp_path, kind), actum_version="0.0.9", **change))
+    assert f"actum 0.0.9 made the model, and actum {__version__} cannot use it ({detail}" in told
+    assert "train it anew with 'actum train" in told
+    assert "damaged" not in told
+
+
+def test_a_model_that_another_version_made_and_that_lacks_an_array_names_that_version(tmp_path: Path) -> None:
+    assert "actum 0.0.9 made" in refused(
+        altered(with_metadata(saved(tmp_path, "pyramid"), actum_version="0.0.9"), arms=None)
+    )
+
+
+@pytest.mark.parametrize("version", ["", "1\n2", "9" * 42, None, ["0.0.9"]])
+def test_what_is_no_version_is_not_repeated(tmp_path: Path, version: object) -> None:
+    told = refused(with_metadata(saved(tmp_path, "pyramid"), actum_version=version, levels=[1, 3]))
+    assert "made the model" not in told
 
 
 @each_kind

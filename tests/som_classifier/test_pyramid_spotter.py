@@ -1,7 +1,6 @@
 """The search itself, with heads whose answers are written down: what is told when, from where to where."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -12,12 +11,12 @@ from som_classifier.frames import Frame
 from som_classifier.spotting.completeness import CompletenessHeads
 from som_classifier.spotting.pyramid_spotter import PyramidSpotter
 from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSegment, SpottingOptions
-from som_classifier.spotting.spotting_model import SpottingMetadata, SpottingModel
+from som_classifier.spotting.spotting_model import PyramidSpottingMetadata, SpottingModel
 
 MS = SECOND_NS // 1000
 Answers = Mapping[tuple[int, int], float]
 """What the head of `wave` answers to windows, by their first and last stamp (ms); 0 to all others."""
-METADATA = SpottingMetadata(
+METADATA = PyramidSpottingMetadata(
     interval_s=0.1, lag_s=0.2, overlap=0.15, duration_weight=0.0, window_durations_s=[0.5, 1.0],
     log_duration_means=[0.0], log_duration_sds=[0.3], thresholds=[0.5], false_alarms_per_min=[], recalls=[1.0],
     threshold=0.5, probability=[8.0, -4.0], background_s=60.0,
@@ -26,8 +25,6 @@ METADATA = SpottingMetadata(
 
 class Scripted:
     """A model of one action whose pyramid vector is the answer itself."""
-
-    labels: ClassVar[list[str]] = ["wave"]
 
     def __init__(self, answers: Answers) -> None:
         self._answers = answers
@@ -46,7 +43,7 @@ def spotted(
     """What each frame shows; those with stamps among `invalid` hold no posture."""
     heads = CompletenessHeads(np.eye(1, dtype=np.float32), np.zeros(1, np.float32))
     learned = SpottingModel(heads, METADATA.model_copy(update={"window_durations_s": [*durations_s]}))
-    spotter = PyramidSpotter(Scripted(answers), learned, SpottingOptions())
+    spotter = PyramidSpotter(Scripted(answers).pooled, ["wave"], learned, SpottingOptions())
     lost = set(invalid)
     return [
         spotter.step(Frame(ms * MS, None, (1,), 0, 2.0, None if ms in lost else np.zeros((15, 3)), np.zeros(5)))
@@ -142,7 +139,7 @@ def test_how_many_false_alarms_are_accepted_may_be_changed_in_the_middle_of_an_a
         update={"thresholds": [0.5, 0.95], "false_alarms_per_min": [1.0, 0.1], "recalls": [1.0, 0.5]}
     )
     learned = SpottingModel(CompletenessHeads(np.eye(1, dtype=np.float32), np.zeros(1, np.float32)), metadata)
-    spotter = PyramidSpotter(Scripted(WAVE), learned, SpottingOptions())
+    spotter = PyramidSpotter(Scripted(WAVE).pooled, ["wave"], learned, SpottingOptions())
     shown = []
     for ms in TENTHS:
         if ms == 1500:

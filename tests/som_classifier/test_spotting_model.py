@@ -22,10 +22,10 @@ from som_classifier.spotting.completeness import (
     iou_of_completeness,
 )
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.spotting.spotting_model import SpottingMetadata, SpottingModel
+from som_classifier.spotting.spotting_model import PyramidSpottingMetadata, SpottingModel
 from unmarked import spotting_model
 
-METADATA = SpottingMetadata(
+METADATA = PyramidSpottingMetadata(
     interval_s=0.1, lag_s=0.2, overlap=0.15, duration_weight=0.1, window_durations_s=[0.5, 1.0, 2.0],
     log_duration_means=[log(0.5), log(2.0)], log_duration_sds=[0.2, 0.5], thresholds=[0.3, 0.5, 0.7, 0.9],
     false_alarms_per_min=[4.0, 1.5, 1.5, 0.5], recalls=[1.0, 0.9, 0.8, 0.5], threshold=0.7, probability=[6.0, -3.0],

@@ -14,6 +14,7 @@ from actum_command.commands.recording_options import AllOption, PersonOption, ch
 from actum_command.commands.terminal import fail, say
 from actum_command.inspection_page import NoSegmentError, write_inspection
 from som_classifier.model_loading import ModelError, load_model
+from som_classifier.model_maps import NoMapsError
 
 FORMATS = ("png", "svg")
 """Formats that pictures can be written in."""
@@ -70,6 +71,8 @@ def inspect(
     except NoSegmentError as error:
         tell_unread(recordings)
         fail(str(error))
+    except NoMapsError as error:
+        fail(f"{error}: give recordings too, and the command draws how the model recognises the actions in them")
     except (ModelError, RecordingError, OSError) as error:
         fail(str(error))
     tell_unread(recordings)

@@ -14,7 +14,7 @@ from actum_model_trainer.spotting.encoded_stream import EncodedStream
 from actum_model_trainer.spotting.heads_training import FoldedHeads
 from actum_model_trainer.spotting.training_windows import live_windows
 from som_classifier.pyramid_model import PyramidModel
-from som_classifier.spotting.spotting_model import SpottingMetadata
+from som_classifier.spotting.spotting_model import PyramidSpottingMetadata
 
 CHUNK = 256
 """Windows whose vectors are held at once."""
@@ -60,7 +60,7 @@ def scanned(
     streams: Sequence[LabelledStream],
     heads: FoldedHeads,
     folds: Folds,
-    metadata: SpottingMetadata,
+    metadata: PyramidSpottingMetadata,
     progress: Progress,
 ) -> list[ScannedStream]:
     """Answer all live windows of the streams, each by heads that were trained without its fold."""

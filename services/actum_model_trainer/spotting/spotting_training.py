@@ -23,7 +23,7 @@ from actum_model_trainer.spotting.training_windows import training_windows, true
 from actum_model_trainer.spotting.window_vectors import trained_heads
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
-from som_classifier.spotting.spotting_model import SpottingMetadata, SpottingModel
+from som_classifier.spotting.spotting_model import PyramidSpottingMetadata, SpottingModel
 from som_classifier.spotting.spotting_preset import SpottingPreset
 from som_classifier.spotting.windows import FEWEST_FRAMES
 
@@ -77,10 +77,12 @@ def _mixed(answered: Sequence[ScannedStream], share: float) -> list[ScannedStrea
     return [replace(each, completeness=mixed(each.completeness, share)) for each in answered]
 
 
-def _untuned(streams: Sequence[LabelledStream], labels: Sequence[str], search: SpottingPreset) -> SpottingMetadata:
+def _untuned(
+    streams: Sequence[LabelledStream], labels: Sequence[str], search: SpottingPreset
+) -> PyramidSpottingMetadata:
     """Return the metadata before a threshold is chosen."""
     durations_s, log_means, log_sds = _durations(streams, labels, search)
-    return SpottingMetadata(
+    return PyramidSpottingMetadata(
         interval_s=search.interval_s,
         lag_s=search.lag_s,
         overlap=search.overlap,

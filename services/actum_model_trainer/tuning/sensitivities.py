@@ -4,8 +4,6 @@ import math
 
 from actum_model_trainer.continuous.watching import NoSpotterError
 from som_classifier.model import Model
-from som_classifier.pyramid_model import PyramidModel
-from som_classifier.spotting.spotting_model import SpottingMetadata
 
 Sensitivity = float | None
 """False alarms a minute that are asked for; None for what the model was trained for."""
@@ -20,7 +18,9 @@ def sensitivities(model: Model) -> list[Sensitivity]:
     Raises:
         NoSpotterError: the model cannot find actions without marks.
     """
-    learned = learned_of(model)
+    learned = model.spotting
+    if learned is None:
+        raise NoSpotterError(model)
     rates = learned.false_alarms_per_min
     found: list[Sensitivity] = [None]
     for rate, above in zip(rates, [math.inf, *rates], strict=False):
@@ -29,17 +29,6 @@ def sensitivities(model: Model) -> list[Sensitivity]:
             if learned.threshold_for(asked) != learned.threshold:
                 found.append(asked)
     return found
-
-
-def learned_of(model: Model) -> SpottingMetadata:
-    """Return what the model knows of its search.
-
-    Raises:
-        NoSpotterError: it has none.
-    """
-    if not isinstance(model, PyramidModel) or model.metadata.spotting is None:
-        raise NoSpotterError(model)
-    return model.metadata.spotting
 
 
 def plainest(least: float, below: float) -> float:

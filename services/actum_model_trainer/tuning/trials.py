@@ -1,22 +1,18 @@
 """What is found in a recording with each sensitivity, all in one pass through the code that also runs live."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields, replace
-
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import dataclass, replace
 
 from actum import keys
 from actum.messages import Message, Posture
 from actum.node import Counters, Tick
 from actum.recording import Recording
 from actum_model_trainer.continuous.detections import Detection, Found
-from actum_model_trainer.continuous.watching import NoSpotterError, views_of, watched
+from actum_model_trainer.continuous.watching import views_of, watched
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.tuning.sensitivities import Sensitivity, sensitivities
 from som_classifier.frames import Frame
 from som_classifier.model import Model
-from som_classifier.pyramid_model import PyramidModel
 from som_classifier.segmenter import Segmenter
 from som_classifier.segments import OpenSegment
 from som_classifier.spotting.admission import Admission
@@ -85,7 +81,7 @@ class _Searches:
     def __init__(self, model: Model, asked: Sequence[Sensitivity], file: str) -> None:
         self.counters = Counters()
         self.stretches: list[list[list[Detection]]] = []
-        self._model, self._asked, self._file = _pooling_once(model), asked, file
+        self._model, self._asked, self._file = model, asked, file
         self._segmenter = Segmenter(self.counters)
         self._segmenter.use(lambda: model.encoder().encode, SearchPlan(self._next_stretch))
         self._found: list[tuple[list[Detection], SpottedSegment]] = []
@@ -101,9 +97,9 @@ class _Searches:
         return []
 
     def _next_stretch(self) -> Spotter:
-        spotters = [self._model.spotter(SpottingOptions(false_alarms_per_min=rate)) for rate in self._asked]
+        spotters = self._model.spotters([SpottingOptions(false_alarms_per_min=rate) for rate in self._asked])
         self.stretches.append([[] for _ in self._asked])
-        return _Several([each for each in spotters if each is not None], self.stretches[-1], self._found)
+        return _Several(spotters, self.stretches[-1], self._found)
 
     def _answer(self, posture: Posture) -> None:
         """Recognise what the newest frame showed as the classifier does, whatever is to be told of it."""
@@ -118,7 +114,7 @@ class _Searches:
         self._found.clear()
 
 
-class _Several:
+class _Several(Spotter):
     """Several searches in one stream; notes what each finds, and where its answers are to be kept."""
 
     def __init__(
@@ -133,27 +129,3 @@ class _Several:
         for spotter, answers in zip(self._spotters, self._answers, strict=True):
             self._found += [(answers, segment) for segment in spotter.step(frame).segments]
         return NOTHING
-
-
-@dataclass(frozen=True, eq=False)
-class _PoolingOnce(PyramidModel):
-    """A model that pools the windows of a frame once, however many searches look at them."""
-
-    vectors: dict[int, NDArray[np.float32]] = field(default_factory=dict)
-    newest: list[Frame] = field(default_factory=list)
-
-    def pooled(self, frames: Sequence[Frame]) -> NDArray[np.float32]:
-        """Return the pyramid vector of valid frames, (inputs,)."""
-        if not self.newest or self.newest[0] is not frames[-1]:
-            self.newest[:] = [frames[-1]]
-            self.vectors.clear()
-        start_ns = frames[0].stamp_ns
-        if start_ns not in self.vectors:
-            self.vectors[start_ns] = super().pooled(frames)
-        return self.vectors[start_ns]
-
-
-def _pooling_once(model: Model) -> Model:
-    if not isinstance(model, PyramidModel):
-        raise NoSpotterError(model)
-    return _PoolingOnce(**{each.name: getattr(model, each.name) for each in fields(PyramidModel)})

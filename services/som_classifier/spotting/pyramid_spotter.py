@@ -1,7 +1,6 @@
 """The search for actions in one person's stream, by the default recogniser."""
 
-from collections.abc import Sequence
-from typing import Protocol
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +9,7 @@ from actum.node import SECOND_NS
 from som_classifier.frames import Frame
 from som_classifier.spotting.completeness import iou_of_completeness
 from som_classifier.spotting.decoding import Candidate
-from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSegment, SpottingOptions
+from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSegment, Spotter, SpottingOptions
 from som_classifier.spotting.spotting_model import SpottingModel
 from som_classifier.spotting.windows import RecentFrames
 
@@ -18,30 +17,40 @@ LEAST_PROBABILITY = 0.5
 """Probability from which an action is said to be going on: that it is must be likelier than that it is not."""
 
 
-class Pooling(Protocol):
-    """What the search asks of its model."""
-
-    @property
-    def labels(self) -> list[str]:
-        """The actions it tells apart."""
-        ...
-
-    def pooled(self, frames: Sequence[Frame]) -> NDArray[np.float32]:
-        """Return the pyramid vector of valid frames, (inputs,)."""
-        ...
+Pool = Callable[[Sequence[Frame]], NDArray[np.float32]]
+"""Returns the pyramid vector (inputs,) of valid frames, each with the activity that the model's encoder gave."""
 
 
-class PyramidSpotter:
+class PoolingOnce:
+    """Pools each window of a frame once, however many searches of one stream look at it."""
+
+    def __init__(self, pool: Pool) -> None:
+        self._pool = pool
+        self._newest: Frame | None = None
+        self._vectors: dict[int, NDArray[np.float32]] = {}
+
+    def __call__(self, frames: Sequence[Frame]) -> NDArray[np.float32]:
+        """Return the pyramid vector of a window, (inputs,)."""
+        if self._newest is not frames[-1]:
+            self._newest, self._vectors = frames[-1], {}
+        start_ns = frames[0].stamp_ns
+        if start_ns not in self._vectors:
+            self._vectors[start_ns] = self._pool(frames)
+        return self._vectors[start_ns]
+
+
+class PyramidSpotter(Spotter):
     """Looks at all windows that end now, several times a second, and decides which of them were actions.
 
     Args:
-        model: whose pyramid vectors the heads are trained on.
+        pool: gives the vectors that the heads are trained on.
+        labels: the actions, one for each head.
         learned: its heads and durations.
         options: what is asked of the search.
     """
 
-    def __init__(self, model: Pooling, learned: SpottingModel, options: SpottingOptions) -> None:
-        self._model, self._learned = model, learned
+    def __init__(self, pool: Pool, labels: Sequence[str], learned: SpottingModel, options: SpottingOptions) -> None:
+        self._pool, self._labels, self._learned = pool, labels, learned
         metadata = learned.metadata
         self._threshold = metadata.threshold_for(options.false_alarms_per_min)
         self._interval_ns = round(metadata.interval_s * SECOND_NS)
@@ -73,7 +82,7 @@ class PyramidSpotter:
             self._ongoing = None
             return NOTHING
         starts_ns = np.array([window[0].stamp_ns for window in windows])
-        completeness = np.stack([self._learned.heads.completeness(self._model.pooled(window)) for window in windows])
+        completeness = np.stack([self._learned.heads.completeness(self._pool(window)) for window in windows])
         ends_ns = np.full(len(windows), now_ns)
         candidates = self._learned.candidates(starts_ns, ends_ns, completeness, self._threshold)
         decided = self._decoder.step(now_ns, candidates)
@@ -82,7 +91,7 @@ class PyramidSpotter:
 
     def _segment(self, candidate: Candidate) -> SpottedSegment:
         frames = self._recent.between(candidate.start_ns, candidate.end_ns)
-        return SpottedSegment(frames[0].stamp_ns, candidate.end_ns, self._model.labels[candidate.action])
+        return SpottedSegment(frames[0].stamp_ns, candidate.end_ns, self._labels[candidate.action])
 
     def _likeliest(self, starts_ns: Sequence[int], now_ns: int, completeness: NDArray[np.float32]) -> Ongoing | None:
         """Return the action to which a window that ends now belongs most surely, None where none belongs to any."""
@@ -95,4 +104,4 @@ class PyramidSpotter:
         probability = self._learned.probability(answer)
         if probability < LEAST_PROBABILITY:
             return None
-        return Ongoing(starts_ns[window], self._model.labels[action], probability, iou_of_completeness(answer))
+        return Ongoing(starts_ns[window], self._labels[action], probability, iou_of_completeness(answer))

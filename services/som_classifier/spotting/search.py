@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from actum.messages import Posture
 from som_classifier.frames import Frame
 from som_classifier.spotting.admission import Admission
-from som_classifier.spotting.spotted import NOTHING, Adjustable, Spotted, Spotter, SpottingOptions
+from som_classifier.spotting.spotted import NOTHING, Spotted, Spotter, SpottingOptions
 
 SESSION_DIGITS = 6
 """Hexadecimal digits that stand for a session in a segment's id: clocks may begin alike in two sessions."""
@@ -66,8 +66,7 @@ class Search:
             self.use(plan)
             return
         self._plan, self.admission.options = plan, plan.options
-        if isinstance(self._spotter, Adjustable):
-            self._spotter.use(plan.options)
+        self._spotter.use(plan.options)
 
     def restart(self) -> None:
         """Begin anew, since the stream's clock has: nothing before counts but the numbers that are used up."""

@@ -1,11 +1,16 @@
-"""What is found in a stream without marks, and what may be asked of the search."""
+"""What is found in a stream without marks, what may be asked of the search, and what is known of the search itself."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Protocol, runtime_checkable
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
 
 from som_classifier.frames import Frame
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
 @dataclass(frozen=True)
@@ -75,18 +80,42 @@ class SpottingOptions:
     disabled: frozenset[str] = frozenset()
 
 
-class Spotter(Protocol):
+class SpottingMetadata(BaseModel):
+    """What a model file says of the search, whichever recogniser it holds; field names are keys of the stored JSON.
+
+    Attributes:
+        thresholds: what a window's score must exceed, rising: one for each entry of `false_alarms_per_min`.
+        false_alarms_per_min: cross-validated false segments in a minute of background, by threshold; empty where there
+            was no background to count them in.
+        threshold: the one that is used unless a rate of false alarms is asked for.
+        background_s: how long people did none of the actions in training.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="ignore", strict=True)
+
+    thresholds: Annotated[list[Finite], Field(min_length=1)]
+    false_alarms_per_min: list[Finite]
+    threshold: Finite
+    background_s: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+
+    def threshold_for(self, false_alarms_per_min: float | None) -> float:
+        """Return the lowest threshold with no more false alarms a minute than these, the highest where none has so few.
+
+        Args:
+            false_alarms_per_min: as asked for; None for the threshold that was chosen in training.
+        """
+        if false_alarms_per_min is None or not self.false_alarms_per_min:
+            return self.threshold
+        rates = zip(self.thresholds, self.false_alarms_per_min, strict=True)
+        return next((threshold for threshold, rate in rates if rate <= false_alarms_per_min), self.thresholds[-1])
+
+
+class Spotter(ABC):
     """Searches one person's stream."""
 
+    @abstractmethod
     def step(self, frame: Frame) -> Spotted:
         """Take the next frame, valid or not, with the activity that the model's encoder gave it if it is valid."""
-        ...
 
-
-@runtime_checkable
-class Adjustable(Protocol):
-    """A spotter that heeds options, which may be changed while an action goes on."""
-
-    def use(self, options: SpottingOptions) -> None:
+    def use(self, options: SpottingOptions) -> None:  # noqa: B027 - a search may have nothing that options change
         """Go on by other options, with all that was seen so far."""
-        ...

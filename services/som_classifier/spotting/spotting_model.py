@@ -6,7 +6,7 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from actum.arrays import Array, Floats
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
@@ -14,8 +14,8 @@ from actum.node import SECOND_NS
 from som_classifier.kinematics import GAP_NS
 from som_classifier.spotting.completeness import CompletenessHeads
 from som_classifier.spotting.decoding import Candidate, Decoder
+from som_classifier.spotting.spotted import Finite, SpottingMetadata
 
-Finite = Annotated[float, Field(allow_inf_nan=False)]
 Stamps = NDArray[np.int64]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Duration = Annotated[float, Field(gt=0, le=MAX_SEGMENT_NS / SECOND_NS)]
@@ -26,8 +26,8 @@ LARGEST_Z2 = 9.0
 """Squared standard score of a duration from which on it costs no more: a slow action is rare, not impossible."""
 
 
-class SpottingMetadata(BaseModel):
-    """What a model file holds of it beside the weights; field names are keys of the stored JSON.
+class PyramidSpottingMetadata(SpottingMetadata):
+    """What a model file of the default recogniser says of the search beside the weights.
 
     Attributes:
         interval_s: time between two decisions; each looks at all windows that end then.
@@ -37,16 +37,9 @@ class SpottingMetadata(BaseModel):
         window_durations_s: durations of the windows, rising.
         log_duration_means: for each action, the mean of the logarithm of its durations (s).
         log_duration_sds: for each action, the standard deviation of that logarithm.
-        thresholds: completeness that a window must exceed, rising: one for each entry of `false_alarms_per_min`.
-        false_alarms_per_min: cross-validated false segments in a minute of background, by threshold; empty where there
-            was no background to count them in.
         recalls: the cross-validated share of actions that are found, by threshold.
-        threshold: the one that is used unless a rate of false alarms is asked for.
         probability: slope and intercept of the logistic regression that turns a head's answer into a probability.
-        background_s: how long people did none of the actions in training.
     """
-
-    model_config = ConfigDict(frozen=True, extra="ignore", strict=True)
 
     interval_s: Positive
     lag_s: Annotated[float, Field(ge=0, le=MAX_SKEW_NS / SECOND_NS)]
@@ -55,12 +48,8 @@ class SpottingMetadata(BaseModel):
     window_durations_s: Annotated[list[Duration], Field(min_length=1)]
     log_duration_means: list[Finite]
     log_duration_sds: list[Positive]
-    thresholds: Annotated[list[Finite], Field(min_length=1)]
-    false_alarms_per_min: list[Finite]
     recalls: list[Finite]
-    threshold: Finite
     probability: Annotated[list[Finite], Field(min_length=2, max_length=2)]
-    background_s: Annotated[float, Field(ge=0, allow_inf_nan=False)]
 
     def problem(self, actions: int) -> str | None:
         """Return the first inconsistency with itself or with the number of actions, None where there is none."""
@@ -71,17 +60,6 @@ class SpottingMetadata(BaseModel):
         if len(self.false_alarms_per_min) not in (0, len(self.thresholds)):
             return "the false alarms of its search are not those of its thresholds"
         return None
-
-    def threshold_for(self, false_alarms_per_min: float | None) -> float:
-        """Return the lowest threshold with no more false alarms a minute than these, the highest where none has so few.
-
-        Args:
-            false_alarms_per_min: as asked for; None for the threshold that was chosen in training.
-        """
-        if false_alarms_per_min is None or not self.false_alarms_per_min:
-            return self.threshold
-        rates = zip(self.thresholds, self.false_alarms_per_min, strict=True)
-        return next((threshold for threshold, rate in rates if rate <= false_alarms_per_min), self.thresholds[-1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +72,7 @@ class SpottingModel:
     """
 
     heads: CompletenessHeads
-    metadata: SpottingMetadata
+    metadata: PyramidSpottingMetadata
 
     def decoder(self) -> Decoder:
         """Return the decoder of one person's stream.
