@@ -27,9 +27,9 @@ from actum.messages import Status
 from actum.runtime import Client, Listening
 from actum.settings import ServiceSettings
 from actum_command import processes
+from actum_command.demo.marked import train_model
 from actum_command.model_in_use import ModelInUse
 from actum_command.service_settings import Given
-from actum_command.simulated_experiment import train_model
 from actum_command.supervising import Supervisor
 from actum_model_trainer.progress import silent
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from actum.messages import Action, Event, Objects, Skeleton, Truth
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
-from actum_command.demo_score import TABLE_2
+from actum_command.demo.marked import TABLE_2
 from actum_command.scene_marks import mark_of
 from actum_model_trainer.training import train
 from scene_simulator.programme import balanced_programme

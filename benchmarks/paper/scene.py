@@ -8,7 +8,7 @@ from benchmarks.rig.chain import Chain
 
 from action_fusion.settings import Settings as FusionSettings
 from actum.messages import Event, Truth
-from actum_command.demo_score import TABLE_2
+from actum_command.demo.marked import TABLE_2
 from actum_command.scene_marks import mark_of
 from actum_model_trainer.training import train
 from scene_simulator.programme import balanced_programme

@@ -1,7 +1,6 @@
 """Checks before a whole system starts: its source and its endpoint."""
 
 import socket
-import tempfile
 import threading
 import time
 from pathlib import Path
@@ -109,8 +108,3 @@ def wait_for_router(here: ServiceSettings, stop: threading.Event) -> None:
                 return
         except RouterUnreachableError:
             continue
-
-
-def log_file(name: str, here: ServiceSettings) -> Path:
-    """Return the path of the file for the output of background processes."""
-    return Path(tempfile.gettempdir()) / f"actum-{name}-{here.instance}.log"

@@ -6,6 +6,7 @@ from pydantic import BaseModel, ConfigDict
 
 from actum.atomic_file import write_whole
 from actum.codec import encodable
+from actum.states import State
 from model_trainer.small_files import copy, small_file
 from som_classifier.model_loading import ModelError, load_model
 
@@ -47,8 +48,8 @@ class OriginalModel:
     def state(self, has_model: bool) -> str:
         """Describe how far the file is used, where a model is in use or none is."""
         if self._problem and (not has_model or self._refused is not None):
-            return f"{'model not renewed' if has_model else 'no model'}: {self._problem}"
-        return "running"
+            return (State.MODEL_NOT_RENEWED if has_model else State.NO_MODEL).because(self._problem)
+        return State.RUNNING
 
     def copy_changed(self) -> str | None:
         """Copy the file to the model in use where it has changed since it was copied last.

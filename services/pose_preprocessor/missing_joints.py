@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from actum.node import SECOND_NS, Counters
 from actum.skeletons import JOINTS
+from actum.states import State
 
 NAMED_NS = 2 * SECOND_NS
 """How long (ns) a joint is named after it was last missing: long enough to be read."""
@@ -26,4 +27,4 @@ class RecentlyMissing:
             return
         self._last_ns = {name: ns for name, ns in self._last_ns.items() if 0 <= stamp_ns - ns <= NAMED_NS}
         names = ", ".join(name for name in JOINTS if name in self._last_ns)
-        self._counters.state = f"running without {names}" if names else "running"
+        self._counters.state = f"{State.RUNNING} without {names}" if names else State.RUNNING

@@ -9,6 +9,7 @@ from dataclasses import replace
 from actum import steady_clock
 from actum.messages import Message
 from actum.node import SECOND_NS, Counters
+from actum.states import State
 from sensor_gateway.captured_picture import Picture
 from sensor_gateway.devices.capture import CameraLostError, Capture, CaptureEndedError
 from sensor_gateway.devices.watch import BackOff, Watch
@@ -113,7 +114,7 @@ class CameraSource:
         else:
             if self._reported is not None:
                 self._reported = None
-                self.counters.state = "running"
+                self.counters.state = State.RUNNING
             stamp_ns = self._rising(captured.stamp_ns)
             for message in perceiver.messages(replace(captured, stamp_ns=stamp_ns)):
                 yield [message]
@@ -123,7 +124,7 @@ class CameraSource:
         now_ns = self._now_ns()
         if self._reported is None or self._reported[0] != reason:
             self.counters.reject("camera_lost", reason)
-            self.counters.state = f"camera lost: {reason}"
+            self.counters.state = State.CAMERA_LOST.because(reason)
         elif now_ns - self._reported[1] < REMINDER_NS:
             return []
         self._reported = reason, now_ns

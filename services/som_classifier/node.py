@@ -8,6 +8,7 @@ from actum.commands import Command, NoFields, Refusal
 from actum.messages import AUTO, Action, Message, Posture, Segment
 from actum.node import Counters, Tick
 from actum.parameters import LiveParameters
+from actum.states import State
 from som_classifier.answers import final_action, ongoing_action, own_mark, partial_action, tensor
 from som_classifier.frames import Frame
 from som_classifier.map_description import MapDescription, map_description
@@ -59,7 +60,7 @@ class SomClassifier:
         publish_maps: bool = False,
         segmentation: Segmentation = DEFAULT,
     ) -> None:
-        self.counters = Counters(state="running" if model else "no model")
+        self.counters = Counters(state=State.RUNNING if model else State.NO_MODEL)
         self._segmenter = Segmenter(self.counters)
         self._segmentation = segmentation
         self._model: Model | None = None
@@ -79,7 +80,7 @@ class SomClassifier:
         node = cls(None, source, settings.publish_maps, settings.segmentation)
         node._parameters = LiveParameters(settings, LIVE, node._use_settings).commands
         if settings.model is None:
-            node.counters.state = "no model: --model (ACTUM_MODEL) names none"
+            node.counters.state = State.NO_MODEL.because("--model (ACTUM_MODEL) names none")
         node._reload()
         return node
 

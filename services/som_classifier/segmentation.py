@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from actum.states import State
 from som_classifier.model import Model
 from som_classifier.spotting.search import NO_SEARCH, SearchPlan
 from som_classifier.spotting.spotted import SpottingOptions
@@ -40,21 +41,21 @@ class Segmentation:
     def state(self, model: Model) -> str:
         """Describe how far a model does as wanted: `running`, and after a semicolon each thing to know."""
         if self.segments == "marks":
-            return "running"
+            return State.RUNNING
         finds = model.spotter(self.options) is not None
         if self.segments == "auto" and not finds:
-            return f"nothing to do: marks are not wanted (segments auto), and it {CANNOT}"
+            return State.NOTHING_TO_DO.because(f"marks are not wanted (segments auto), and it {CANNOT}")
         if problem := self.misnamed(model):
             return problem
         if not finds:
-            return f"running; {CANNOT}"
-        return f"running; {NO_BACKGROUND}" if model.background_s == 0 else "running"
+            return State.RUNNING.noting(CANNOT)
+        return State.RUNNING.noting(NO_BACKGROUND) if model.background_s == 0 else State.RUNNING
 
     def misnamed(self, model: Model) -> str | None:
         """Say which of the actions that are named the model does not know; None where it knows them all."""
         named = self.options.disabled | self.options.cooldown_s.keys() | self.enabled
         unknown = sorted(named - set(model.labels))
-        return f"settings name actions that the model does not know: {', '.join(unknown)}" if unknown else None
+        return State.UNKNOWN_ACTIONS.because(", ".join(unknown)) if unknown else None
 
 
 DEFAULT = Segmentation()

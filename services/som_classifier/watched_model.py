@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from actum.node import Counters
+from actum.states import State
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 
@@ -24,7 +25,7 @@ class WatchedModel:
             stat = self._path.stat()
         except FileNotFoundError:
             if not self._loaded:
-                counters.state = f"no model: there is no {self._path} yet"
+                counters.state = State.NO_MODEL.because(f"there is no {self._path} yet")
             return None
         except OSError as error:
             self._loaded_version = None
@@ -44,4 +45,4 @@ class WatchedModel:
 
     def _refuse(self, counters: Counters, why: str) -> None:
         counters.reject("bad_model", why)
-        counters.state = f"{'model not renewed' if self._loaded else 'no model'}: {why}"
+        counters.state = (State.MODEL_NOT_RENEWED if self._loaded else State.NO_MODEL).because(why)

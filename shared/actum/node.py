@@ -8,6 +8,7 @@ from typing import Protocol, runtime_checkable
 from actum import keys
 from actum.codec import encodable
 from actum.messages import Message
+from actum.states import State
 
 SECOND_NS = 1_000_000_000
 """Nanoseconds in a second."""
@@ -17,8 +18,6 @@ SETTLE_NS = 70 * SECOND_NS
 """How long ticks go on after a replay (ns): longer than any service waits (a segment of 60 s and 2 s of skew)."""
 MOST_KEYS = 4096
 """Keys whose numbers are remembered: agents come and go with new ones, and the key silent for longest begins anew."""
-SOURCE_ENDED = "source ended"
-"""The state of a source whose files or scene are over."""
 LONGEST_COMPLAINT = 500
 """Characters told of an error or a state: it may quote a megabyte of input, and then nobody could read the status."""
 
@@ -40,7 +39,7 @@ class Counters:
 
     rejects: Counter[str] = field(default_factory=Counter)
     last_error: str | None = None
-    state: str = "running"
+    state: str = State.RUNNING
     counts: Counter[str] = field(default_factory=Counter)
     details: dict[str, str] = field(default_factory=dict)
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 from typing import Annotated, Any
 
 import pytest
@@ -30,6 +31,7 @@ from actum_command.commands import (
     training_commands,
 )
 from actum_command.commands.plain_help import PlainCommand, PlainTyper
+from actum_command.demo import marked, unmarked
 from actum_command.preset_settings import preset_named
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from people import FRAME_NS
@@ -371,15 +373,22 @@ def _handlers() -> Iterator[None]:
 
 @pytest.mark.usefixtures("_handlers")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-@pytest.mark.parametrize(("way", "step"), [([], "learned_from"), (["--marked"], "_train")])
+@pytest.mark.parametrize(
+    ("way", "module", "step"), [([], demo_command, "learned_from"), (["--marked"], marked, "train_model")]
+)
 def test_a_demo_ends_where_it_is_and_leaves_no_files(
-    number: signal.Signals, way: list[str], step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    number: signal.Signals,
+    way: list[str],
+    module: ModuleType,
+    step: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setattr(demo_command, "refuse_taken", lambda _: None)
-    monkeypatch.setattr(demo_command, step, lambda *_: signal.raise_signal(number))
-    for later in ("nearest_neighbour_baseline", "run_unmarked"):
-        monkeypatch.setattr(demo_command, later, lambda *_: pytest.fail("it went on"))
+    monkeypatch.setattr(module, step, lambda *_: signal.raise_signal(number))
+    for of, later in ((marked, "nearest_neighbour_baseline"), (unmarked, "run")):
+        monkeypatch.setattr(of, later, lambda *_: pytest.fail("it went on"))
     interrupted = CliRunner().invoke(app, ["demo", *way])
     assert isinstance(interrupted.exception, SystemExit), interrupted.exception
     assert interrupted.exit_code == 128 + number

@@ -24,7 +24,7 @@ from actum.skeletons import INDEX
 from actum_command.commands import terminal
 from actum_command.commands.doctor_command import table
 from actum_command.describing import describe
-from actum_command.diagnosis import Finding
+from actum_command.doctor.service_checks import Finding
 from actum_command.message_lines import json_line, line
 from empty_messages import action, image, mark, skeleton, status
 from people import reaches

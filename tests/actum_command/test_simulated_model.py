@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from actum_command import simulated_experiment as marked
+from actum_command.demo import marked
+from actum_command.demo.unmarked import FIRST_UNSEEN
 from actum_command.simulated_model import SIMULATED_MODEL, TRAINERS, learned_from, trained
-from actum_command.unmarked_experiment import FIRST_UNSEEN
 from actum_model_trainer.progress import silent
 from scene_simulator.programme import ACTIONS
 from som_classifier.model_loading import load_model

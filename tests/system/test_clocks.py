@@ -16,7 +16,7 @@ from actum.joining import PAUSE_NS
 from actum.messages import Event, Image, Status
 from actum.node import SECOND_NS
 from actum.runtime import Client
-from actum_command.diagnosis import EXPECTED
+from actum_command.doctor.diagnosis import EXPECTED
 from actum_command.processes import simulated_objects
 from live import PATIENCE_S, Running, System, collect, system
 from sensors import marker_camera

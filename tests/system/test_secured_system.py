@@ -8,7 +8,7 @@ from actum import keys
 from actum.messages import Event, Status
 from actum.runtime import Client, Listening
 from actum.runtime.serving import TAKEN
-from actum_command.diagnosis import EXPECTED
+from actum_command.doctor.diagnosis import EXPECTED
 from deployments import Deployed, deployed
 from live import PATIENCE_S, Running, collect, wait_until
 

@@ -6,7 +6,7 @@ import pytest
 
 from actum import keys
 from actum.messages import Skeleton
-from actum_command.diagnosis import STATUS_S
+from actum_command.doctor.heard import STATUS_S
 from camera_videos import write_video
 from live import Running, System, collect, described, wait_until
 from people import reaches

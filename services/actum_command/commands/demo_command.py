@@ -13,21 +13,12 @@ from actum.runtime import RouterUnreachableError, stop_on_signals
 from actum.settings import ServiceSettings, SettingsError
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.terminal import console, fail, settings
-from actum_command.demo_score import summary, table
-from actum_command.live_test import ExperimentError, LiveTest, TerminatedError
-from actum_command.simulated_experiment import (
-    FIRST_TESTED,
-    nearest_neighbour_baseline,
-    run_marked,
-    tested_actors,
-    train_model,
-)
+from actum_command.demo import marked as with_marks
+from actum_command.demo import unmarked as without_marks
+from actum_command.demo.live_test import ExperimentError, LiveTest, TerminatedError, log_file
 from actum_command.simulated_model import SIMULATED_MODEL, learned_from
-from actum_command.startup import log_file, refuse_taken
+from actum_command.startup import refuse_taken
 from actum_command.supervising import UnusableError
-from actum_command.unmarked_experiment import FIRST_UNSEEN, run_unmarked
-from actum_command.unmarked_score import introduction, unmarked_summary, unmarked_table
-from actum_model_trainer.evaluation import Evaluation
 from scene_simulator.programme import ACTIONS
 from som_classifier.model_loading import load_model
 
@@ -76,21 +67,26 @@ def demo(
     except (ExperimentError, RouterUnreachableError, SettingsError, UnusableError) as error:
         fail(str(error))
     if lack is not None:
-        fail(f"{lack}; see {log_file('demo', here)}")
-    log_file("demo", here).unlink(missing_ok=True)
+        fail(f"{lack}; see {log_file(here)}")
+    log_file(here).unlink(missing_ok=True)
 
 
 def _marked(here: ServiceSettings, people: int, repetitions: int) -> str | None:
     """Run the paper's experiment and print its results; return what is missing, None where nothing is."""
-    actors = tested_actors(FIRST_TESTED, people)
+    actors = with_marks.tested_actors(with_marks.FIRST_TESTED, people)
     with tempfile.TemporaryDirectory(prefix="actum-demo-") as name:
         folder = Path(name)
         training, model = folder / "training.mcap", folder / "model.npz"
-        learned = _train(training, model)
-        baseline = nearest_neighbour_baseline(training, folder, actors, repetitions)
-        score = run_marked(_live(here), here, model, actors, repetitions)
-    console.print(table(score))
-    console.print(summary(score, learned, baseline, people), soft_wrap=True)
+        began_s = time.monotonic()
+        with bars() as progress:
+            learned = with_marks.train_model(training, model, progress)
+        console.print(
+            f"trained on {learned.n} simulated samples of {len(ACTIONS)} actions in {time.monotonic() - began_s:.1f} s"
+        )
+        baseline = with_marks.nearest_neighbour_baseline(training, folder, actors, repetitions)
+        score = with_marks.run(_live(here), here, model, actors, repetitions)
+    console.print(with_marks.table(score))
+    console.print(with_marks.summary(score, learned, baseline, people), soft_wrap=True)
     return (
         f"only {len(score.events)} of {score.expected} events arrived" if len(score.events) < score.expected else None
     )
@@ -98,12 +94,12 @@ def _marked(here: ServiceSettings, people: int, repetitions: int) -> str | None:
 
 def _unmarked(here: ServiceSettings, people: int, repetitions: int) -> str | None:
     """Run the experiment without marks and print its results; return what is missing, None where nothing is."""
-    actors = tested_actors(FIRST_UNSEEN, people)
-    console.print(introduction(len(actors)), soft_wrap=True)
+    actors = with_marks.tested_actors(without_marks.FIRST_UNSEEN, people)
+    console.print(without_marks.introduction(len(actors)), soft_wrap=True)
     learned = learned_from(load_model(SIMULATED_MODEL))
-    performances = run_unmarked(_live(here), here, SIMULATED_MODEL, actors, repetitions)
-    console.print(unmarked_table(performances))
-    console.print(unmarked_summary(performances, learned, people), soft_wrap=True)
+    performances = without_marks.run(_live(here), here, SIMULATED_MODEL, actors, repetitions)
+    console.print(without_marks.table(performances))
+    console.print(without_marks.summary(performances, learned, people), soft_wrap=True)
     unfinished = [performance.person for performance in performances if not performance.over]
     if unfinished:
         return f"the scene of {', '.join(unfinished)} did not end in time"
@@ -113,13 +109,3 @@ def _unmarked(here: ServiceSettings, people: int, repetitions: int) -> str | Non
 def _live(here: ServiceSettings) -> LiveTest:
     stop = stop_on_signals()  # not checked while processes start; they end with this one
     return LiveTest(here, stop, lambda text: console.print(text, soft_wrap=True))
-
-
-def _train(training: Path, model_file: Path) -> Evaluation:
-    began_s = time.monotonic()
-    with bars() as progress:
-        learned = train_model(training, model_file, progress)
-    console.print(
-        f"trained on {learned.n} simulated samples of {len(ACTIONS)} actions in {time.monotonic() - began_s:.1f} s"
-    )
-    return learned

@@ -10,7 +10,8 @@ from rich.markup import escape
 from rich.table import Column, Table
 
 from actum_command.commands.terminal import connect, console, say
-from actum_command.diagnosis import Finding, examine
+from actum_command.doctor.diagnosis import examine
+from actum_command.doctor.service_checks import Finding
 from actum_command.misspelt import misspelt
 
 TABLE_WIDTH = 100  # characters that the table needs so that no word is broken

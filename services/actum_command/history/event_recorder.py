@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from actum import keys
 from actum.messages import Action, Event, Message, Segment
 from actum.node import Counters, Tick
+from actum.states import State
 from actum_command.history.event_files import EventFiles
 from actum_examples.unstamped_marks import Placed, UnstampedMarks
 
@@ -86,7 +87,7 @@ class EventRecorder:
     def _write(self, message: Message) -> None:
         try:
             self._files.write(message, self._received_ns(), self._now_ns)
-            self.counters.state = "running"
+            self.counters.state = State.RUNNING
         except OSError as error:
             self._tell(error)
 

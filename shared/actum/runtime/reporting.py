@@ -13,13 +13,12 @@ from actum.runtime.outbox import Outbox
 from actum.runtime.place import Place
 from actum.runtime.session import connected
 from actum.settings import ServiceSettings
+from actum.states import State
 
 log = logging.getLogger("actum")
 
 REPORT_S = 1.0
 """Interval between two reports (s)."""
-WELL = "running"
-"""The prefix of a state in which nothing is wrong."""
 
 
 class StateLog:
@@ -31,7 +30,8 @@ class StateLog:
 
     def log_change(self) -> None:
         """Log the problem if it is new, or that there is none any more."""
-        trouble = None if self._counters.state.startswith(WELL) else self._counters.told_state
+        well = State.of(self._counters.state) is State.RUNNING
+        trouble = None if well else self._counters.told_state
         source = self._counters.details.get("source")
         if trouble is not None and trouble != self._trouble:
             log.warning("%s", f"{trouble} ({source})" if source else trouble)

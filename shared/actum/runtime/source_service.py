@@ -5,11 +5,12 @@ import threading
 import zenoh
 
 from actum import keys
-from actum.node import SOURCE_ENDED, Source
+from actum.node import Source
 from actum.runtime.outbox import Outbox
 from actum.runtime.service import Service
 from actum.runtime.waiting import Pace, wait_for
 from actum.settings import ServiceSettings
+from actum.states import State
 
 
 class SourceService(Service):
@@ -31,6 +32,6 @@ class SourceService(Service):
             if stop.is_set():
                 return
         with self._lock:
-            self._source.counters.state = SOURCE_ENDED
+            self._source.counters.state = State.SOURCE_ENDED
             self._state_log.log_change()
         wait_for(stop)

@@ -1,9 +1,11 @@
 """Simulated people who act one after another before router and services, each a process of its own, and are heard."""
 
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol
 
 from rich.markup import escape
@@ -13,7 +15,6 @@ from actum.messages import Message
 from actum.runtime import Client, Listening
 from actum.settings import ServiceSettings
 from actum_command import processes
-from actum_command.startup import log_file
 from actum_command.supervising import Program, Supervisor
 
 READY_S = 30.0  # enough for all processes to start, also on a slow machine
@@ -31,6 +32,11 @@ class ExperimentError(RuntimeError):
 
 class TerminatedError(Exception):
     """The experiment was asked to stop."""
+
+
+def log_file(here: ServiceSettings) -> Path:
+    """Return the path of the file for the output of the demo's processes."""
+    return Path(tempfile.gettempdir()) / f"actum-demo-{here.instance}.log"
 
 
 class Witness(Protocol):
@@ -71,7 +77,7 @@ class LiveTest:
         self._here = here
         self._stop = stop
         self._tell = tell
-        self._log = log_file("demo", here)
+        self._log = log_file(here)
 
     def run(self, programs: Sequence[Program], listened: keys.Topic, appearances: Iterable[Appearance]) -> None:
         """Start every program, and once somebody listens to a topic let one person after the other act.

@@ -1,23 +1,78 @@
-"""The demo's score where nobody marks: what was done beside what was told, and what was told of nothing."""
+"""The experiment without marks: people act and do everyday things in one continuous scene each, and its score."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
 
 from rich.markup import escape
 from rich.table import Table
 
+from actum import keys
 from actum.messages import Message
 from actum.node import SECOND_NS
-from actum_command.demo_score import TABLE_2, objects_by_majority, paper_table, verdict
+from actum.settings import ServiceSettings
+from actum_command import processes
+from actum_command.demo.live_test import Appearance, LiveTest
+from actum_command.demo.marked import TABLE_2, TEST_SEED, objects_by_majority, paper_table, verdict
+from actum_command.demo.performance import Doing, Performance
 from actum_command.describing import describe_event
-from actum_command.performance import Performance
+from actum_command.simulated_model import PAUSES
 from actum_model_trainer.continuous.detections import Detection, Found, Truth
 from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.evaluation import wilson_interval
+from scene_simulator.everyday import chosen
+from scene_simulator.programme import ACTIONS, balanced_programme
+from scene_simulator.simulated_scene import Scene
 
+FIRST_UNSEEN = 101
+"""The first actor of the test: people that no choice was made on, as how many teach and how often was on 1 to 9."""
 LATEST_NS = 3 * SECOND_NS
 """An action that nothing was told of so long after its end (ns) is not found: deciding and fusion take less."""
+
+
+def run(
+    live: LiveTest, here: ServiceSettings, model: Path, actors: Sequence[int], repetitions: int
+) -> list[Performance]:
+    """Let one actor after the other act and do everyday things, and return what was done and told.
+
+    Raises:
+        ExperimentError: the services do not come up.
+        TerminatedError: the run was asked to stop.
+        RouterUnreachableError, SettingsError, UnusableError: the processes cannot run as they are set.
+    """
+    programs = processes.services(here, model, processes.simulated_objects(), {"segments": ["auto"]})
+    programs = processes.with_page(here, programs)
+    performances: list[Performance] = []
+    live.run(programs, keys.SKELETON, _appearances(performances, actors, repetitions))
+    return performances
+
+
+def _appearances(performances: list[Performance], actors: Sequence[int], repetitions: int) -> Iterator[Appearance]:
+    """Yield each actor's scene, and add what is heard of it to the performances."""
+    actions = repetitions * len(ACTIONS)
+    for before, actor in enumerate(actors):
+        scene = {"--actor": actor, "--seed": TEST_SEED, "--repetitions": repetitions}
+        continuous = {"--everyday": "all", "--minutes": 0, "--pauses": PAUSES}
+        doings, longest_s = _doings(actor, repetitions)
+        performance = Performance(f"person {actor}", actions, doings)
+        performances.append(performance)
+        witness = PersonWitness(performance, before * actions, len(actors) * actions, longest_s)
+        yield Appearance(scene | continuous, witness)
+
+
+def _doings(actor: int, repetitions: int) -> tuple[list[Doing], float]:
+    """Return the everyday doings of the scene that the simulator plays for an actor, and how long it is (s)."""
+    programme = balanced_programme(repetitions, TEST_SEED, actor)
+    scene = Scene(programme, actor, TEST_SEED, everyday=chosen("all", 0, PAUSES))
+    frame_ns = SECOND_NS // scene.parameters.camera.frame_rate_hz
+    doings, frames = [], 0
+    for kind, states in groupby(scene.states(), key=lambda state: state.doing):
+        first, frames = frames, frames + sum(1 for _ in states)
+        if kind is not None:
+            doings.append(Doing(kind, first * frame_ns, frames * frame_ns))
+    return doings, frames * frame_ns / SECOND_NS
 
 
 @dataclass
@@ -92,7 +147,7 @@ def background(performance: Performance, told: Detection) -> str:
     return (performance.doing_at(told) or "at rest").replace("_", " ")
 
 
-def unmarked_table(performances: Sequence[Performance]) -> Table:
+def table(performances: Sequence[Performance]) -> Table:
     """Lay out the paper's table 2 beside this run: how often each action was done, found, and its object named."""
     counted = {action: Counter[str]() for action in TABLE_2}
     for performance in performances:
@@ -105,7 +160,7 @@ def unmarked_table(performances: Sequence[Performance]) -> Table:
     return paper_table({name: (each["tests"], each["actions"], each["objects"]) for name, each in counted.items()})
 
 
-def unmarked_summary(performances: Sequence[Performance], learned: str, people: int) -> str:
+def summary(performances: Sequence[Performance], learned: str, people: int) -> str:
     """Return the summary of the demo's results without marks."""
     scores = scores_of(sum((performance.found for performance in performances), Found()))
     right, done = scores.event.right, scores.event.truths

@@ -3,10 +3,11 @@
 import pytest
 
 from actum.messages import Action, Agent, Event, Skeleton, Status, Truth
-from actum.node import SECOND_NS, SOURCE_ENDED
+from actum.node import SECOND_NS
 from actum.skeletons import INDEX
-from actum_command.performance import Doing, Performance
-from actum_command.unmarked_score import PersonWitness, unmarked_summary, unmarked_table
+from actum.states import State
+from actum_command.demo.performance import Doing, Performance
+from actum_command.demo.unmarked import PersonWitness, summary, table
 from scene_simulator.simulator import GATEWAY
 
 NAMES = {1: "cup", 2: "box"}
@@ -70,7 +71,7 @@ def heard(*segments: tuple[float, float, str, int | None], done: list = DONE) ->
         messages.append((end_s, truth("end", end_s, str(number), action, object_id)))
     messages += [(segment[1] + 0.25, message) for segment in segments for message in told(*segment)]
     in_order = [message for _, message in sorted(messages, key=lambda each: each[0])]
-    return [line for message in [*in_order, status(SOURCE_ENDED)] for line in witness.take(message)], performance
+    return [line for message in [*in_order, status(State.SOURCE_ENDED)] for line in witness.take(message)], performance
 
 
 def plain(line: str) -> str:
@@ -99,7 +100,7 @@ def test_an_action_that_is_told_twice_is_right_once() -> None:
         '1/1 push 1 "cup" action ✓ object ✓ told push',
         "(at rest) false alarm told push",
     ]
-    assert "found by itself: 1 of 1 actions" in unmarked_summary([performance], "nothing", 1)
+    assert "found by itself: 1 of 1 actions" in summary([performance], "nothing", 1)
 
 
 def test_an_action_that_nothing_was_told_of_is_said_in_its_place() -> None:
@@ -112,7 +113,7 @@ def test_the_summary_counts_what_was_found_mistaken_missed_and_told_of_nothing()
     _, performance = heard(
         (2.0, 4.0, "push", 1), (5.0, 7.0, "point", 2), (8.2, 9.5, "lift", 2), (14.0, 15.0, "pull", 1)
     )
-    text = unmarked_summary([performance], "4 minutes of 3 people", 9)
+    text = summary([performance], "4 minutes of 3 people", 9)
     assert "found by itself: 1 of 3 actions" in text
     assert "1 told as another action, 1 not found" in text
     assert "false alarms: 2 in 0.2 minutes of everything else (8.6 a minute): drink 1, walk away 1" in text
@@ -123,7 +124,7 @@ def test_the_summary_counts_what_was_found_mistaken_missed_and_told_of_nothing()
 
 def test_the_table_counts_every_action_that_was_done() -> None:
     _, performance = heard((2.0, 4.0, "push", 1), (5.0, 7.0, "point", 2))
-    columns = {str(column.header): list(column.cells) for column in unmarked_table([performance]).columns[4:]}
+    columns = {str(column.header): list(column.cells) for column in table([performance]).columns[4:]}
     assert columns["here: tests"] == ["1", "0", "1", "1", "0", "3"]
     assert columns["action"][-1] == "1 (33.3%)"
     assert columns["object"][-1] == "2 (66.7%)"
@@ -132,12 +133,12 @@ def test_the_table_counts_every_action_that_was_done() -> None:
 def test_a_scene_is_over_once_its_source_has_ended_and_each_final_action_is_an_event() -> None:
     performance = Performance("person 1", actions=1)
     final, event = told(2.0, 4.0, "push", 1)
-    performance.take(status(SOURCE_ENDED))
+    performance.take(status(State.SOURCE_ENDED))
     performance.take(truth("start", 2.0, "0", "push", 1))
     performance.take(truth("end", 4.0, "0", "push", 1))
     assert not performance.over, "it was the scene before that had ended"
     performance.take(final)
-    performance.take(status(SOURCE_ENDED))
+    performance.take(status(State.SOURCE_ENDED))
     assert not performance.over, "the event has not come"
     performance.take(event)
     assert performance.over

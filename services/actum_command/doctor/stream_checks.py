@@ -1,11 +1,13 @@
 """What is wrong with a sensor's streams, in words: too slow, stopped, repeated, or not reaching who reads them."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 
 from actum import keys
 from actum.keys import Topic
 from actum.messages import Info, Status
-from actum_command.watched_streams import Watched
+from actum.states import State
+from actum_command.doctor.heard import Watched
 
 SENSOR = "sensor_gateway"
 """The service that puts skeletons and images."""
@@ -29,7 +31,8 @@ Statuses = Mapping[str, Sequence[Status]]
 
 def problems(infos: Sequence[Info], statuses: Statuses, streams: Mapping[Topic, Watched]) -> Iterator[str]:
     """Yield what is wrong with the streams of a sensor."""
-    put_hz = {topic: _put_hz(topic, statuses, streams) for topic in (keys.SKELETON, keys.COLOR, *_read())}
+    topics = (keys.SKELETON, keys.COLOR, *chain(*READERS.values()))
+    put_hz = {topic: _put_hz(topic, statuses, streams) for topic in topics}
     yield from _slow_source(infos, put_hz[keys.SKELETON] or streams[keys.COLOR].rate_hz, streams[keys.SKELETON])
     yield from _stopped(statuses)
     yield from _frozen(streams)
@@ -49,10 +52,6 @@ def _handled(status: Status, topic: Topic) -> int:
     """Return how many messages of a topic were handled since the start, of all people together."""
     prefix = keys.pattern(topic, status.sensor).removesuffix("*")
     return sum(count for key, count in status.handled.items() if key.startswith(prefix))
-
-
-def _read() -> list[Topic]:
-    return [topic for topics in READERS.values() for topic in topics]
 
 
 def _put_hz(topic: Topic, statuses: Statuses, streams: Mapping[Topic, Watched]) -> float:
@@ -78,7 +77,7 @@ def _slow_source(infos: Sequence[Info], put_hz: float, skeletons: Watched) -> It
 
 def _stopped(statuses: Statuses) -> Iterator[str]:
     gateway = statuses.get(SENSOR, ())
-    for topic in (keys.SKELETON, keys.COLOR) if gateway and gateway[-1].state.startswith("running") else ():
+    for topic in (keys.SKELETON, keys.COLOR) if gateway and State.of(gateway[-1].state) is State.RUNNING else ():
         if handled_hz(gateway, topic) == 0 and _handled(gateway[-1], topic):
             yield (
                 f"{SENSOR} stopped publishing {topic.leaf} after {_handled(gateway[-1], topic)} messages: restart "

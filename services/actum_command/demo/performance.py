@@ -6,7 +6,7 @@ from functools import partial
 
 from actum.messages import Action, Event, Message, Skeleton, Status
 from actum.messages import Truth as TruthMessage
-from actum.node import SOURCE_ENDED
+from actum.states import State
 from actum_model_trainer.continuous.detections import Detection, Found, Interval, Stretch, Truth
 from actum_model_trainer.continuous.matching import intersection_over_union, matched, overlap_ns
 from actum_model_trainer.continuous.presence import Presence
@@ -60,7 +60,7 @@ class Performance:
             case TruthMessage(kind="end"):
                 self._ends_ns[message.segment_id] = message.stamp_ns
             case Status(service=service, state=state) if service == GATEWAY and len(self._ends_ns) == self.actions:
-                self._source_ended = state == SOURCE_ENDED  # not before: it may be that of the scene before
+                self._source_ended = state == State.SOURCE_ENDED  # not before: it may be that of the scene before
             case Action(final=True):
                 self._found.add(message.segment_id)
             case Event():

@@ -11,11 +11,15 @@ from actum.keys import Topic
 from actum.messages import Info, Message, Status
 from actum.node import SECOND_NS
 from actum.runtime import Answer
-from actum_command import clock_offsets, stream_checks
-from actum_command.clock_offsets import offset, offsets
-from actum_command.denials import everything_denied, partly_denied
-from actum_command.heard import Heard
-from actum_command.watched_streams import Watched
+from actum_command.doctor import stream_checks
+from actum_command.doctor.diagnosis import (
+    clock_offset,
+    clock_offsets,
+    clock_remarks,
+    everything_denied,
+    partly_denied,
+)
+from actum_command.doctor.heard import Heard, Watched
 from empty_messages import image
 from people import STANDING, skeleton
 
@@ -129,7 +133,7 @@ def test_a_clocks_offset_lies_within_its_uncertainty(
     stamp_ns = round((wall_s + there_s + ahead_s) * SECOND_NS)
     answered_ns = round((asked_s + there_s + back_s) * SECOND_NS)
     came_ns = round((wall_s + there_s + back_s) * SECOND_NS)
-    found = offset(Answer(info("a", stamp_ns), round(asked_s * SECOND_NS), answered_ns, came_ns))
+    found = clock_offset(Answer(info("a", stamp_ns), round(asked_s * SECOND_NS), answered_ns, came_ns))
     assert abs(found.ahead_s - ahead_s) <= found.uncertainty_s + 1e-5
 
 
@@ -139,11 +143,11 @@ def answer(host: str, ahead_s: float, took_s: float) -> Answer:
 
 
 def test_the_fastest_answer_counts_and_hosts_that_agree_share_a_line() -> None:
-    found = offsets(
+    found = clock_offsets(
         [answer("far", 5.3, 0.8), answer("far", 5.0, 0.002), answer("beside", 5.01, 0.002), answer("here", 0.01, 0.002)]
     )
     assert found["far"].ahead_s == pytest.approx(5.0) and found["far"].uncertainty_s == pytest.approx(0.001)
-    [line] = clock_offsets.remarks(found)
+    [line] = clock_remarks(found)
     assert line.startswith("the clock of beside, far is 5.0")
     assert "s (± 0.001 s) ahead of the clock of this host. Recognition is not affected" in line
 
@@ -163,10 +167,10 @@ class Router:
 
 def test_where_nothing_is_heard_a_router_that_speaks_says_that_nothing_runs() -> None:
     nothing = Heard({}, [], {}, {})
-    assert everything_denied(nothing, Router(offered=False, tells=True), [GATEWAY, PREPROCESSOR]) is None
-    denied = everything_denied(nothing, Router(offered=False, tells=False), [GATEWAY, PREPROCESSOR])
+    assert everything_denied(nothing, Router(offered=False, tells=True)) is None
+    denied = everything_denied(nothing, Router(offered=False, tells=False))
     assert denied is not None and denied.startswith("the router lets this program connect but answers none")
-    hidden = everything_denied(nothing, Router(offered=True, tells=True), [GATEWAY, PREPROCESSOR])
+    hidden = everything_denied(nothing, Router(offered=True, tells=True))
     assert hidden is not None and hidden.startswith(
         "services run, but the router's access control denies this program permission"
     )

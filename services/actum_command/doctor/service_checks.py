@@ -1,4 +1,4 @@
-"""Checks that every service is there, alive and of one version, and that streams flow; says what to do where not."""
+"""The checks of each service: that it is there, alive and of one version; they say what to do where it is not."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
@@ -7,32 +7,9 @@ from dataclasses import dataclass
 from actum import __version__, keys
 from actum.codec import schema_name
 from actum.messages import MESSAGES, Info, Status
-from actum.node import SOURCE_ENDED
-from actum.runtime import Client
-from actum_command import clock_offsets, stream_checks
-from actum_command.denials import everything_denied, partly_denied
-from actum_command.heard import Heard, hear
-from actum_command.processes import SERVICES
+from actum.states import State
+from actum_command.doctor.heard import STATUS_S, Heard
 from scene_simulator.endless_simulator import DESCRIPTION
-
-EXPECTED = ("sensor_gateway", *SERVICES)
-"""The services of a whole system; the simulated scene replaces the sensor gateway under the same name."""
-
-STATUS_S = 2.5  # a little more than two of the reports that every service sends each second
-
-
-NO_MODEL = "no model"
-"""The prefix of the state of a classifier that has had no model yet."""
-
-AND = "running; "
-"""The prefix of the state of a service that does well, and says in further words what is to be known of it."""
-
-UNUSED = ("nothing to do", "settings name")
-"""The prefixes of states in which a classifier does not do what its settings say."""
-
-OLD_MODEL = "model not renewed"
-"""The prefix of the state of a classifier whose model file was replaced by one that cannot be used."""
-
 
 MARKS_IGNORED = "marks_ignored"
 """What a classifier counts whose settings leave marks out."""
@@ -62,28 +39,8 @@ class Finding:
     remarks: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class Examination:
-    """What was found: each service by itself, problems of the whole, and what is no problem."""
-
-    findings: list[Finding]
-    problems: tuple[str, ...] = ()
-    remarks: tuple[str, ...] = ()
-
-
-def examine(client: Client) -> Examination:
-    """Check every service that is expected or alive, the streams between them, and the hosts' clocks."""
-    heard = hear(client, STATUS_S)
-    hidden = everything_denied(heard, client, EXPECTED)
-    if hidden is not None:
-        return Examination([], (hidden,))
-    names = [*EXPECTED, *sorted({*heard.tokens, *heard.statuses} - set(EXPECTED))]
-    problems = (*partly_denied(heard), *stream_checks.problems(heard.infos, heard.statuses, heard.streams))
-    clocks = clock_offsets.remarks(clock_offsets.offsets(heard.answers))
-    return Examination([_finding(name, heard) for name in names], problems, tuple(clocks))
-
-
-def _finding(name: str, heard: Heard) -> Finding:
+def finding(name: str, heard: Heard) -> Finding:
+    """Check one service by what was heard of it."""
     infos = [info for info in heard.infos if info.service == name]
     said = heard.statuses.get(name, [])
     status = said[-1] if said else None
@@ -159,20 +116,21 @@ def _who(infos: list[Info], instances: list[str]) -> str:
 
 def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
     """Yield the problems that a service's own state names; `source` is the source that it reads, in brackets."""
-    if status.state.startswith("camera lost"):
-        yield f"{name}: {status.state}{source}; {name} keeps trying to open the camera again"
-    elif status.state == SOURCE_ENDED:
-        endless = "--repetitions 0" if DESCRIPTION in source else "--loop"
-        yield (
-            f"{name}: {status.state}{source}; restart {name} to play the source once more, or with {endless} to "
-            "repeat the source without end"
-        )
-    elif status.state.startswith(NO_MODEL):
-        yield f"{name}: {status.state}, so every action is rejected; set --model or ACTUM_MODEL to a model file"
-    elif status.state.startswith(OLD_MODEL):
-        yield f"{name}: {status.state}; the previous model stays in use"
-    elif status.state.startswith(UNUSED):
-        yield f"{name}: {status.state}"
+    match State.of(status.state):
+        case State.CAMERA_LOST:
+            yield f"{name}: {status.state}{source}; {name} keeps trying to open the camera again"
+        case State.SOURCE_ENDED:
+            endless = "--repetitions 0" if DESCRIPTION in source else "--loop"
+            yield (
+                f"{name}: {status.state}{source}; restart {name} to play the source once more, or with {endless} to "
+                "repeat the source without end"
+            )
+        case State.NO_MODEL:
+            yield f"{name}: {status.state}, so every action is rejected; set --model or ACTUM_MODEL to a model file"
+        case State.MODEL_NOT_RENEWED:
+            yield f"{name}: {status.state}; the previous model stays in use"
+        case State.NOTHING_TO_DO | State.UNKNOWN_ACTIONS:
+            yield f"{name}: {status.state}"
 
 
 def _remarks(name: str, status: Status) -> Iterator[str]:
@@ -188,8 +146,7 @@ def _remarks(name: str, status: Status) -> Iterator[str]:
             f"{name} rejected {ignored} start and end marks of actions, because it runs with --segments auto: restart "
             f"{name} with --segments both to accept marks as well"
         )
-    if status.state.startswith(AND):
-        yield from (f"{name}: {remark}" for remark in status.state.removeprefix(AND).split("; "))
+    yield from (f"{name}: {remark}" for remark in State.remarks(status.state))
 
 
 def _versions(info: Info) -> list[str]:

@@ -1,8 +1,7 @@
 """What the demo's numbers say: what was done beside what was told, and what a guess would reach."""
 
 from actum.messages import Event, Truth
-from actum_command.demo_score import Score, summary
-from actum_command.simulated_experiment import PEOPLE, TEST_SEED
+from actum_command.demo.marked import PEOPLE, TEST_SEED, Score, summary
 from actum_model_trainer.evaluation import Evaluation
 from scene_simulator.programme import balanced_programme
 

@@ -10,10 +10,12 @@ from actum import __version__
 from actum.codec import schema_name
 from actum.messages import MESSAGES, Info, Message, Status
 from actum.runtime import Answer, Received
-from actum_command import __main__, diagnosis
+from actum_command import __main__
 from actum_command.commands import doctor_command
 from actum_command.commands.doctor_command import show
-from actum_command.diagnosis import EXPECTED, Finding, examine
+from actum_command.doctor import heard
+from actum_command.doctor.diagnosis import EXPECTED, examine
+from actum_command.doctor.service_checks import Finding
 from recognisers import tiny_model
 from scene_simulator.endless_simulator import DESCRIPTION
 from som_classifier.segmentation import CANNOT, NO_BACKGROUND, Segmentation
@@ -90,7 +92,7 @@ class System:
 
 @pytest.fixture(autouse=True)
 def _brief(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(diagnosis, "STATUS_S", 0.05)
+    monkeypatch.setattr(heard, "STATUS_S", 0.05)
 
 
 def examined(**fields: Any) -> Finding:

@@ -1,0 +1,145 @@
+"""What a program that only listens and asks learns of one sensor's services in some seconds, for `actum doctor`."""
+
+import hashlib
+import socket
+import time
+from collections import defaultdict
+from dataclasses import dataclass, field
+
+from actum import keys
+from actum.keys import Topic
+from actum.messages import Image, Info, Message, Skeleton, Status
+from actum.node import SECOND_NS
+from actum.runtime import Answer, Client
+
+STATUS_S = 2.5  # a little more than two of the reports that every service sends each second
+
+ROUNDS = 5
+"""Questions to each service: the one that was answered fastest counts."""
+POLL_S = 0.02
+"""Interval (s) at which messages are fetched: short beside that of frames."""
+IMAGES_HELD = 64
+"""Images that may wait to be looked at: several seconds of them would fill the memory."""
+FROZEN_NS = SECOND_NS
+"""How long (ns, by arrival) frames may be alike: noise changes every real one."""
+FEWEST = 5
+"""Frames that have to have come before anything is said of a stream."""
+
+
+@dataclass
+class Watched:
+    """One stream while it is listened to.
+
+    Attributes:
+        arrivals_ns: when each message came (ns, monotonic clock).
+        stamps_ns: their stamps.
+        contents: what tells whether one is like the one before; None where there is nobody and nothing in it.
+    """
+
+    arrivals_ns: list[int] = field(default_factory=list)
+    stamps_ns: list[int] = field(default_factory=list)
+    contents: list[bytes | None] = field(default_factory=list)
+
+    def take(self, message: Message, arrival_ns: int) -> None:
+        """Take one message."""
+        self.arrivals_ns.append(arrival_ns)
+        self.stamps_ns.append(message.stamp_ns or 0)
+        self.contents.append(_content(message))
+
+    @property
+    def rate_hz(self) -> float:
+        """How many came in a second."""
+        return _rate_hz(self.arrivals_ns)
+
+    @property
+    def stamped_hz(self) -> float:
+        """How many there are in a second of the sensor's clock."""
+        return _rate_hz(self.stamps_ns)
+
+    @property
+    def stands_still(self) -> bool:
+        """Whether stamps do not rise although messages come."""
+        return self._is_long and self.stamps_ns[-1] <= self.stamps_ns[0]
+
+    @property
+    def repeats(self) -> bool:
+        """Whether every message is like the one before."""
+        return self._is_long and None not in self.contents and len(set(self.contents)) == 1
+
+    @property
+    def _is_long(self) -> bool:
+        return len(self.arrivals_ns) >= FEWEST and self.arrivals_ns[-1] - self.arrivals_ns[0] >= FROZEN_NS
+
+
+@dataclass(frozen=True)
+class Heard:
+    """What was heard of a sensor.
+
+    Attributes:
+        tokens: the instances that are alive, by service.
+        answers: what services answered, several times each.
+        statuses: the statuses of each service, in the order they came.
+        streams: skeletons, postures and objects, and images where the sensor is on this host.
+    """
+
+    tokens: dict[str, list[str]]
+    answers: list[Answer]
+    statuses: dict[str, list[Status]]
+    streams: dict[Topic, Watched]
+
+    @property
+    def infos(self) -> list[Info]:
+        """The description of each instance, from the question that most answered; of two with one name, both."""
+        rounds: defaultdict[int, list[Info]] = defaultdict(list)
+        for answer in self.answers:
+            rounds[answer.asked_ns].append(answer.info)
+        return max(rounds.values(), key=len, default=[])
+
+
+def hear(client: Client) -> Heard:
+    """Ask all services, and listen to them for `STATUS_S`."""
+    answers = [answer for _ in range(ROUNDS) for answer in client.answers()]
+    hosts = {answer.info.host for answer in answers if answer.info.service == "sensor_gateway"}
+    topics = [keys.SKELETON, keys.POSTURE, keys.OBJECTS]
+    if socket.gethostname() in hosts:
+        topics.append(keys.COLOR)  # elsewhere they would cross the network for nothing but this
+    statuses, streams = _listened(client, topics)
+    tokens: defaultdict[str, list[str]] = defaultdict(list)
+    for key in client.alive():
+        service, instance = key.split("/")[-2:]
+        tokens[service].append(instance)
+    return Heard(dict(tokens), answers, statuses, streams)
+
+
+def _listened(client: Client, topics: list[Topic]) -> tuple[dict[str, list[Status]], dict[Topic, Watched]]:
+    """Return the statuses that come within `STATUS_S`, by service, and what comes on some topics."""
+    rings = {topic: {"ring": IMAGES_HELD} if topic is keys.COLOR else {} for topic in (keys.STATUS, *topics)}
+    listening = [client.listen(keys.pattern(topic, client.sensor), **ring) for topic, ring in rings.items()]
+    statuses: defaultdict[str, list[Status]] = defaultdict(list)
+    streams = {topic: Watched() for topic in (*topics, keys.COLOR)}
+    deadline_s = time.monotonic() + STATUS_S
+    while time.monotonic() < deadline_s:
+        for each in listening:
+            while (received := each.take()) is not None:
+                if isinstance(received.message, Status):
+                    statuses[received.message.service].append(received.message)
+                elif received.message is not None:
+                    streams[keys.address_of(received.message).topic].take(received.message, time.monotonic_ns())
+        time.sleep(POLL_S)
+    return dict(statuses), streams
+
+
+def _rate_hz(times_ns: list[int]) -> float:
+    span_ns = times_ns[-1] - times_ns[0] if len(times_ns) >= FEWEST else 0
+    return (len(times_ns) - 1) * SECOND_NS / span_ns if span_ns > 0 else 0.0
+
+
+def _content(message: Message) -> bytes | None:
+    """Return what a camera's noise would change; None for a frame without anybody, and for any other message."""
+    match message:
+        case Image(valid=True, data=data):
+            return hashlib.blake2b(data).digest()
+        case Skeleton(agents=[_, *_]):
+            return repr([agent.joints for agent in message.agents]).encode()
+        case _:
+            return None
