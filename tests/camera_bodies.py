@@ -5,7 +5,8 @@ from numpy.typing import NDArray
 
 from actum.skeletons import INDEX
 from people import STANDING
-from sensor_gateway.people.landmarks import LANDMARKS, Landmarks
+from sensor_gateway.people.landmarks import Landmarks
+from sensor_gateway.people.pose_estimator import LANDMARKS, MEDIAPIPE_WEIGHTS
 
 Array = NDArray[np.float64]
 
@@ -56,7 +57,8 @@ def as_seen(points_m: Array, matrix: Array = K, size: float = 1.0) -> Landmarks:
     right = np.cross([0.0, 1.0, 0.0], sight)
     right /= np.linalg.norm(right)
     looking = np.array([right, np.cross(sight, right), sight])
-    return Landmarks(projected(points_m, matrix), (points_m - hips) @ looking.T / size, np.ones(len(points_m)))
+    world_m = (points_m - hips) @ looking.T / size
+    return Landmarks(projected(points_m, matrix), np.ones(len(points_m)), MEDIAPIPE_WEIGHTS, world_m)
 
 
 def standing_at(x_m: float, z_m: float, size: float = 1.0) -> Array:

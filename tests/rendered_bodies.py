@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sensor_gateway.lens import Lens
-from sensor_gateway.people.landmarks import LANDMARKS, Landmarks
+from sensor_gateway.people.landmarks import Landmarks
 from sensor_gateway.people.placing import rotation_to_ray
+from sensor_gateway.people.pose_estimator import LANDMARKS, MEDIAPIPE_WEIGHTS
 
 Array = NDArray[np.float64]
 Points = dict[str, Array]
@@ -53,6 +54,10 @@ class Person:
     def all_m(self) -> Array:
         return np.array([self.points[name] for name in LANDMARKS])
 
+    @property
+    def joints_m(self) -> Array:
+        return MEDIAPIPE_WEIGHTS @ self.all_m
+
 
 def person(
     at_m: tuple[float, float, float] = (0.0, 0.1, 2.5),
@@ -95,7 +100,8 @@ def landmarks_of(
     centre = (body.points["left_hip"] + body.points["right_hip"]) / 2
     world_m = (camera_m - centre) @ rotation_to_ray(np.average(sights, axis=0, weights=visibility)) / model_size
     world_m[:, 2] += wrong_m
-    return Landmarks(sights @ lens.matrix[:2, :2].T + lens.matrix[:2, 2] + off_px, world_m, visibility)
+    image_px = sights @ lens.matrix[:2, :2].T + lens.matrix[:2, 2] + off_px
+    return Landmarks(image_px, visibility, MEDIAPIPE_WEIGHTS, world_m)
 
 
 def depth_of(body: Person | None, lens: Lens, width: int, height: int, wall_m: float = 4.0) -> NDArray[np.float32]:

@@ -12,7 +12,7 @@ from actum.node import Counters
 from actum_dataset_importer.takes import DatasetError, Take
 from sensor_gateway.devices.video import SUFFIXES, VideoError, pictures_of
 from sensor_gateway.optics import Optics
-from sensor_gateway.people.pose_estimator import Estimator
+from sensor_gateway.people.landmarks import Estimator
 from sensor_gateway.perceiver import Perceiver
 
 DEFAULT_PATTERN = r"(?P<action>[^_]+)_(?P<person>[^_]+)(_.*)?"

@@ -15,7 +15,7 @@ from actum_dataset_importer.msrc12_composed import STREAMS, composed
 from actum_dataset_importer.msrc12_cuts import trimmed
 from actum_dataset_importer.takes import Take
 from sensor_gateway.optics import Optics
-from sensor_gateway.people.pose_estimator import Estimator
+from sensor_gateway.people.landmarks import Estimator
 from sensor_gateway.perceiver import OTHER_SIZE
 
 SENSOR = "kinect0"

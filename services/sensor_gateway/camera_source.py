@@ -14,7 +14,7 @@ from sensor_gateway.captured_picture import Picture
 from sensor_gateway.devices.capture import CameraLostError, Capture, CaptureEndedError
 from sensor_gateway.devices.watch import BackOff, Watch
 from sensor_gateway.optics import Optics
-from sensor_gateway.people.pose_estimator import Estimator
+from sensor_gateway.people.landmarks import Estimator
 from sensor_gateway.perceiver import Perceiver
 
 PATIENCE_S = 0.1

@@ -14,7 +14,8 @@ from sensor_gateway.devices.capture import Capture
 from sensor_gateway.devices.file_capture import FileCapture
 from sensor_gateway.devices.webcam import LiveCapture
 from sensor_gateway.optics import SAME_CAMERA, DepthOptics, Optics
-from sensor_gateway.people.pose_estimator import Nobody, PoseEstimator
+from sensor_gateway.people.landmarks import Nobody
+from sensor_gateway.people.pose_estimator import PoseEstimator
 from sensor_gateway.perceiver import MarkersPerceiver, UsersPerceiver
 from sensor_gateway.settings import Settings
 

@@ -9,8 +9,8 @@ from actum.node import Counters
 from sensor_gateway.captured_picture import Picture, UsersPicture
 from sensor_gateway.lens import Lens
 from sensor_gateway.optics import Optics
+from sensor_gateway.people.landmarks import Estimator
 from sensor_gateway.people.people_tracker import PeopleTracker
-from sensor_gateway.people.pose_estimator import Estimator
 
 JPEG_QUALITY = 90
 """JPEG quality, of 100; much less would blur the corners of markers."""

@@ -1,6 +1,7 @@
 """Two people before one camera pass each other: each stays one agent, and the event names who acted."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -53,10 +54,10 @@ class Crossing:
         return found if self._rng.random() < 0.5 else found[::-1]
 
     def _noisy(self, marks: Landmarks) -> Landmarks:
-        return Landmarks(
-            marks.image_px + self._rng.normal(0, 1.5, (33, 2)),
-            marks.world_m + self._rng.normal(0, 0.01, (33, 3)),
-            marks.visibility,
+        return replace(
+            marks,
+            image_px=marks.image_px + self._rng.normal(0, 1.5, (33, 2)),
+            world_m=marks.world_m + self._rng.normal(0, 0.01, (33, 3)),
         )
 
 

@@ -1,5 +1,7 @@
 """Joints lifted by depth, against bodies of known geometry."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from actum.skeletons import INDEX, JOINTS
 from rendered_bodies import Person, depth_of, landmarks_of, person
 from sensor_gateway.lens import Lens
 from sensor_gateway.people.depth_lifting import lifted
-from sensor_gateway.people.landmarks import Landmarks, joints_of
+from sensor_gateway.people.landmarks import Landmarks
 from sensor_gateway.people.placing import Placed, placed
 
 WIDTH, HEIGHT = 640, 480
@@ -36,7 +38,7 @@ def depth(body: Person, wall_m: float = 4.0) -> NDArray[np.float32]:
 
 
 def missed_cm(body: Person, found: Placed) -> dict[str, float]:
-    apart = np.linalg.norm(found.joints_m - joints_of(body.all_m), axis=1)
+    apart = np.linalg.norm(found.joints_m - body.joints_m, axis=1)
     return dict(zip(JOINTS, 100 * apart, strict=True))
 
 
@@ -112,7 +114,7 @@ def test_a_joint_in_a_hole_keeps_its_place_on_the_body_with_half_the_confidence(
     body = person(**ARM_ASIDE)
     marks = landmarks_of(body, LENS, model_size=1.1)
     whole = depth(body)
-    x, y = np.rint(joints_of(marks.image_px)[INDEX["right_hand"]]).astype(int)
+    x, y = np.rint(marks.joints(marks.image_px)[INDEX["right_hand"]]).astype(int)
     holed = whole.copy()
     holed[y - 25 : y + 25, x - 35 : x + 35] = 0
 
@@ -196,3 +198,9 @@ def test_joints_stay_on_their_lines_of_sight() -> None:
 
 
 PLAIN = depth(person())
+
+
+@pytest.mark.parametrize("body", [person(), person(at_m=(0.5, 0.1, 3.4)), person(size=1.12)])
+def test_depth_places_the_joints_of_a_pose_model_that_gives_no_metres(body: Person) -> None:
+    seen = replace(landmarks_of(body, LENS), world_m=None)
+    assert worst_cm(body, lifted(seen, LENS, depth(body))) < 5

@@ -16,7 +16,6 @@ from sensor_gateway.devices.device_clock import DeviceClock
 from sensor_gateway.devices.silence import OPENING_S, SILENT_S, Silence
 from sensor_gateway.lens import Lens
 from sensor_gateway.optics import DepthOptics
-from sensor_gateway.people.landmarks import joints_of
 from sensor_gateway.perceiver import Perceiver
 
 WIDTH, HEIGHT = 320, 240
@@ -44,7 +43,7 @@ def seen(optics: DepthOptics, one: Picture) -> tuple[list[Image], Skeleton]:
 def test_people_in_a_picture_with_depth_are_lifted_and_the_image_has_the_devices_lens() -> None:
     [image], skeleton = seen(DepthOptics(), picture())
 
-    assert np.linalg.norm(np.array(skeleton.agents[0].joints) - joints_of(BODY.all_m), axis=1).max() < 0.025
+    assert np.linalg.norm(np.array(skeleton.agents[0].joints) - BODY.joints_m, axis=1).max() < 0.025
     assert LENS.matrix.ravel().tolist() == image.K
     assert not image.intrinsics_assumed
 

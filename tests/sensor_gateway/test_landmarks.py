@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from actum.skeletons import INDEX, JOINTS
-from camera_bodies import landmark_points
+from camera_bodies import as_seen, landmark_points, standing_at
 from people import STANDING
-from sensor_gateway.people.landmarks import LANDMARKS, MEDIAPIPE_33, confidence_of, joints_of
+from sensor_gateway.people.pose_estimator import LANDMARKS, MEDIAPIPE_33, MEDIAPIPE_WEIGHTS
 
 
 def test_every_joint_has_landmarks_and_every_name_is_one() -> None:
@@ -23,7 +23,7 @@ def test_a_sides_joints_are_made_of_that_sides_landmarks_only(side: str) -> None
 
 
 def test_joints_are_the_middles_of_their_landmarks() -> None:
-    joints = joints_of(landmark_points(STANDING))
+    joints = MEDIAPIPE_WEIGHTS @ landmark_points(STANDING)
     assert joints[INDEX["left_hand"]] == pytest.approx(STANDING[INDEX["left_hand"]])
     assert joints[INDEX["head"]] == pytest.approx(STANDING[INDEX["head"]])
     shoulders = STANDING[[INDEX["left_shoulder"], INDEX["right_shoulder"]]].mean(axis=0)
@@ -33,8 +33,8 @@ def test_joints_are_the_middles_of_their_landmarks() -> None:
 
 
 def test_a_joint_is_as_sure_as_its_least_visible_landmark() -> None:
-    visibility = np.ones(33)
-    visibility[LANDMARKS.index("left_index")] = 0.25
-    confidence = confidence_of(visibility)
+    seen = as_seen(standing_at(0.0, 2.5))
+    seen.visibility[LANDMARKS.index("left_index")] = 0.25
+    confidence = seen.confidence
     assert confidence[INDEX["left_hand"]] == 0.25
     assert np.delete(confidence, INDEX["left_hand"]).tolist() == [1.0] * 14

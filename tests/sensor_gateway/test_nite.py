@@ -18,7 +18,7 @@ from sensor_gateway.devices.nite import NiteCapture, Users, nite
 from sensor_gateway.devices.openni2 import OpenNi2Capture
 from sensor_gateway.lens import Lens
 from sensor_gateway.optics import DepthOptics
-from sensor_gateway.people.pose_estimator import Nobody
+from sensor_gateway.people.landmarks import Nobody
 from sensor_gateway.perceiver import UsersPerceiver
 
 try:

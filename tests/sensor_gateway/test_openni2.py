@@ -21,7 +21,6 @@ from sensor_gateway.devices.openni2_streams import together
 from sensor_gateway.devices.video import VideoError
 from sensor_gateway.lens import Lens
 from sensor_gateway.optics import DepthOptics
-from sensor_gateway.people.landmarks import joints_of
 
 try:
     OPENNI2 = library()
@@ -58,7 +57,7 @@ def recording(path: Path, mirrored: bool = False, color_late_us: int = 4_000) ->
 
 
 def missed_m(joints_m: np.ndarray) -> float:
-    return float(np.linalg.norm(joints_m - joints_of(BODY.all_m), axis=1).max())
+    return float(np.linalg.norm(joints_m - BODY.joints_m, axis=1).max())
 
 
 @pytest.mark.parametrize("mirrored", [False, True])

@@ -1,5 +1,7 @@
 """A body of known place is put there again from what a pose model tells of it."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -10,15 +12,16 @@ from actum.calibration import Calibration
 from camera_bodies import K, as_seen, landmark_points, projected, standing_at
 from people import reaching, turned
 from sensor_gateway.lens import Lens
-from sensor_gateway.people.landmarks import Landmarks, joints_of
+from sensor_gateway.people.landmarks import Landmarks
 from sensor_gateway.people.placing import MODEL_HEIGHT_M, PlacingError, placed, rotation_to_ray
+from sensor_gateway.people.pose_estimator import MEDIAPIPE_WEIGHTS
 
 MEASURED = Lens(K, np.zeros(5), assumed=False)
 places = {"x_m": st.floats(-0.8, 0.8), "z_m": st.floats(2.0, 3.0)}
 
 
-def errors_m(points_m: np.ndarray, landmarks: Landmarks, lens: Lens = MEASURED, height_m: float | None = None) -> float:
-    return float(np.linalg.norm(placed(landmarks, lens, height_m).joints_m - joints_of(points_m), axis=1).max())
+def errors_m(points_m: np.ndarray, landmarks: Landmarks, lens: Lens = MEASURED) -> float:
+    return float(np.linalg.norm(placed(landmarks, lens).joints_m - MEDIAPIPE_WEIGHTS @ points_m, axis=1).max())
 
 
 @given(phase=st.floats(0, 1), heading=st.floats(-1.5, 1.5), **places)
@@ -37,10 +40,12 @@ def test_pixels_that_are_two_off_and_bones_that_are_two_centimetres_off_cost_lit
     rng = np.random.default_rng(seed)
     body = standing_at(x_m, z_m)
     seen = as_seen(body)
-    noisy = Landmarks(
-        seen.image_px + rng.normal(0, 2, (33, 2)), seen.world_m + rng.normal(0, 0.02, (33, 3)), seen.visibility
+    noisy = replace(
+        seen,
+        image_px=seen.image_px + rng.normal(0, 2, (33, 2)),
+        world_m=seen.world_m + rng.normal(0, 0.02, (33, 3)),
     )
-    offsets = placed(noisy, MEASURED).joints_m - joints_of(body)
+    offsets = placed(noisy, MEASURED).joints_m - MEDIAPIPE_WEIGHTS @ body
     assert np.linalg.norm(offsets.mean(axis=0)[:2]) < 0.025  # five standard deviations
     assert abs(offsets.mean(axis=0)[2]) < 0.10
 
@@ -50,7 +55,7 @@ def test_distortion_is_taken_into_account() -> None:
     body = standing_at(0.7, 2.2)
     seen = as_seen(body)
     distorted = cv2.projectPoints(body, np.zeros(3), np.zeros(3), K, bent.distortion)[0].reshape(-1, 2)
-    as_bent = Landmarks(distorted, seen.world_m, seen.visibility)
+    as_bent = replace(seen, image_px=distorted)
     assert errors_m(body, as_bent, bent) < 0.05
     assert errors_m(body, as_bent, MEASURED) > 0.05
 
@@ -61,23 +66,23 @@ def test_a_hidden_landmark_does_not_move_the_rest() -> None:
     wrong, visibility = seen.image_px.copy(), seen.visibility.copy()
     wrong[15] += 200
     visibility[15] = 0.0
-    assert errors_m(body, Landmarks(wrong, seen.world_m, visibility)) < 0.05
+    assert errors_m(body, replace(seen, image_px=wrong, visibility=visibility)) < 0.05
 
 
 def test_a_smaller_person_of_unknown_size_is_placed_too_far_and_a_known_height_puts_that_right() -> None:
     body = standing_at(0.0, 2.0, size=0.9)
     of_the_models_size = as_seen(body, size=0.9)
     unknown = placed(of_the_models_size, MEASURED)
-    assert (unknown.joints_m - joints_of(body))[:, 2].mean() == pytest.approx(0.22, abs=0.01)
+    assert (unknown.joints_m - MEDIAPIPE_WEIGHTS @ body)[:, 2].mean() == pytest.approx(0.22, abs=0.01)
     assert unknown.depth_std_m == pytest.approx(0.07 * unknown.joints_m[:, 2].mean())
     known = placed(of_the_models_size, MEASURED, person_height_m=0.9 * MODEL_HEIGHT_M)
-    assert np.linalg.norm(known.joints_m - joints_of(body), axis=1).max() < 0.05
+    assert np.linalg.norm(known.joints_m - MEDIAPIPE_WEIGHTS @ body, axis=1).max() < 0.05
     assert known.depth_std_m < unknown.depth_std_m / 2
 
 
 def test_what_lies_behind_the_camera_has_no_place() -> None:
     seen = as_seen(standing_at(0.0, 2.0))
-    upside_down = Landmarks(480 - seen.image_px, seen.world_m, seen.visibility)
+    upside_down = replace(seen, image_px=480 - seen.image_px)
     with pytest.raises(PlacingError):
         placed(upside_down, MEASURED)
 
@@ -109,3 +114,16 @@ def test_a_calibrations_lens_sees_along_the_lines_that_were_measured() -> None:
     lens = Lens.of_calibration(calibration)
     assert not lens.assumed
     assert lens.rays(projected(np.array([[0.0, 0.0, 1.0]])))[0] == pytest.approx([0, 0])
+
+
+def test_a_pose_model_without_metres_places_a_person_who_faces_the_camera() -> None:
+    body = standing_at(0.3, 2.4)
+    found = placed(replace(as_seen(body), world_m=None), MEASURED)
+    apart = np.linalg.norm(found.joints_m - MEDIAPIPE_WEIGHTS @ body, axis=1)
+    assert np.median(apart) < 0.1
+
+
+def test_a_person_whose_trunk_is_a_single_point_of_the_image_has_no_place() -> None:
+    seen = as_seen(standing_at(0.0, 2.0))
+    with pytest.raises(PlacingError):
+        placed(replace(seen, world_m=None, image_px=np.full((33, 2), 200.0)), MEASURED)

@@ -25,7 +25,6 @@ from sensor_gateway.devices.video import VideoError
 from sensor_gateway.lens import Lens
 from sensor_gateway.optics import DepthOptics
 from sensor_gateway.people.depth_lifting import lifted
-from sensor_gateway.people.landmarks import joints_of
 
 try:
     rs = library()
@@ -39,7 +38,7 @@ BAG = Path(__file__).with_name("realsense.bag")
 
 
 def missed_m(joints_m: np.ndarray) -> float:
-    return float(np.linalg.norm(joints_m - joints_of(BODY.all_m), axis=1).max())
+    return float(np.linalg.norm(joints_m - BODY.joints_m, axis=1).max())
 
 
 @pytest.fixture(scope="module")

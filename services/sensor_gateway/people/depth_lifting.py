@@ -17,7 +17,7 @@ from actum.skeletons import INDEX, JOINTS
 from actum.standard_body import BONES
 from sensor_gateway.captured_picture import DepthImage
 from sensor_gateway.lens import Lens
-from sensor_gateway.people.landmarks import Landmarks, confidence_of, joints_of
+from sensor_gateway.people.landmarks import Landmarks
 from sensor_gateway.people.placing import Placed, placed, posed
 
 HALF_THICKNESS_M: Mapping[str, float] = MappingProxyType(
@@ -129,14 +129,14 @@ def lifted(landmarks: Landmarks, lens: Lens, depth_m: DepthImage, person_height_
 
 def _body(landmarks: Landmarks, lens: Lens) -> _Body:
     rays = lens.rays(landmarks.image_px)
-    z_m = posed(landmarks.world_m, rays, landmarks.visibility)[:, 2:]
-    joints_m = joints_of(z_m * np.column_stack([rays, np.ones(len(rays))]))
-    pixels = joints_of(z_m * landmarks.image_px) / joints_of(z_m)
+    z_m = posed(landmarks, rays)[:, 2:]
+    joints_m = landmarks.joints(z_m * np.column_stack([rays, np.ones(len(rays))]))
+    pixels = landmarks.joints(z_m * landmarks.image_px) / landmarks.joints(z_m)
     directions = joints_m / np.linalg.norm(joints_m, axis=1, keepdims=True)
     half_thickness_m = _HALF_THICKNESS_M.copy()
     half_thickness_m[INDEX["torso"]] = _torso_half_thickness_m(joints_m, directions[INDEX["torso"]])
     radius_px = lens.matrix[0, 0] * _RADIUS_M / joints_m[:, 2]
-    return _Body(joints_m, pixels, confidence_of(landmarks.visibility), half_thickness_m * directions[:, 2], radius_px)
+    return _Body(joints_m, pixels, landmarks.confidence, half_thickness_m * directions[:, 2], radius_px)
 
 
 def _torso_half_thickness_m(joints_m: Array, direction: Array) -> float:

@@ -1,86 +1,63 @@
-"""MediaPipe's 33 landmarks of a person, and the table that maps them to the fifteen joints."""
+"""What a pose model finds of a person in an image: its own points, and how they make the fifteen joints."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from actum.arrays import Array
 from actum.skeletons import JOINTS
 
-LANDMARKS: tuple[str, ...] = (
-    "nose",
-    "left_eye_inner", "left_eye", "left_eye_outer", "right_eye_inner", "right_eye", "right_eye_outer",
-    "left_ear", "right_ear",
-    "mouth_left", "mouth_right",
-    "left_shoulder", "right_shoulder",
-    "left_elbow", "right_elbow",
-    "left_wrist", "right_wrist",
-    "left_pinky", "right_pinky", "left_index", "right_index", "left_thumb", "right_thumb",
-    "left_hip", "right_hip",
-    "left_knee", "right_knee",
-    "left_ankle", "right_ankle",
-    "left_heel", "right_heel",
-    "left_foot_index", "right_foot_index",
-)  # fmt: skip
-"""Names of the landmarks in MediaPipe's order; left and right are the actor's own."""
-
-MEDIAPIPE_33: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "head": ("left_ear", "right_ear"),
-        "neck": ("left_shoulder", "right_shoulder"),
-        "torso": ("left_shoulder", "right_shoulder", "left_hip", "right_hip"),
-        "left_shoulder": ("left_shoulder",),
-        "left_elbow": ("left_elbow",),
-        "left_hand": ("left_wrist", "left_pinky", "left_index"),
-        "right_shoulder": ("right_shoulder",),
-        "right_elbow": ("right_elbow",),
-        "right_hand": ("right_wrist", "right_pinky", "right_index"),
-        "left_hip": ("left_hip",),
-        "left_knee": ("left_knee",),
-        "left_foot": ("left_ankle", "left_foot_index"),
-        "right_hip": ("right_hip",),
-        "right_knee": ("right_knee",),
-        "right_foot": ("right_ankle", "right_foot_index"),
-    }
-)
-"""The landmarks whose mean is each joint: as with NiTE, the head's and the palms' joints are their centres."""
-
-
-def _weights() -> Array:
-    weights = np.zeros((len(JOINTS), len(LANDMARKS)))
-    for row, joint in enumerate(JOINTS):
-        names = MEDIAPIPE_33[joint]
-        weights[row, [LANDMARKS.index(name) for name in names]] = 1 / len(names)
-    return weights
-
-
-_WEIGHTS = _weights()
-_PARTS = _WEIGHTS > 0
-
 
 @dataclass(frozen=True)
 class Landmarks:
-    """One person in one image.
+    """One person in one image: the n points of a pose model, in the model's own order.
 
     Attributes:
-        image_px: (33, 2), positions in the image; they may lie outside it.
-        world_m: (33, 3), metric positions of a body of the model's size; origin between the hips, the camera's axes
-            (x right, y down, z forward).
-        visibility: (33,), in [0, 1].
+        image_px: (n, 2), positions in the image; they may lie outside it.
+        visibility: (n,), in [0, 1].
+        joint_weights: (15, n), the share of each point in each joint; every row sums to 1.
+        world_m: (n, 3), metric positions of a body of average size; any origin, the camera's axes (x right, y down,
+            z forward). None if the pose model finds positions in the image only.
     """
 
     image_px: Array
-    world_m: Array
     visibility: Array
+    joint_weights: Array
+    world_m: Array | None
+
+    def joints(self, points: Array) -> Array:
+        """Return the joints (15, d), each the weighted mean of its points, from points (n, d)."""
+        return self.joint_weights @ points
+
+    @property
+    def confidence(self) -> Array:
+        """The confidence of each joint (15,): the least visibility of its points."""
+        return np.asarray(np.where(self.joint_weights > 0, self.visibility, np.inf).min(axis=1))
 
 
-def joints_of(points: Array) -> Array:
-    """Return the joints (15, d), each the mean of its landmarks, from landmarks (33, d)."""
-    return _WEIGHTS @ points
+def joint_weights(names: Sequence[str], points_of_joint: Mapping[str, tuple[str, ...]]) -> Array:
+    """Return weights (15, n) that make each joint the mean of some of a model's n points, whose names are given."""
+    weights = np.zeros((len(JOINTS), len(names)))
+    for row, joint in enumerate(JOINTS):
+        points = points_of_joint[joint]
+        weights[row, [names.index(name) for name in points]] = 1 / len(points)
+    return weights
 
 
-def confidence_of(visibility: Array) -> Array:
-    """Return each joint's confidence (15,): the least visibility of its landmarks, from visibility (33,)."""
-    return np.asarray(np.where(_PARTS, visibility, np.inf).min(axis=1))
+class Estimator(Protocol):
+    """A pose model: detects people in images."""
+
+    def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
+        """Return the landmarks of the people detected in an image (height, width, 3; BGR); stamps rise."""
+        ...
+
+
+class Nobody:
+    """The estimator of sources whose images are not searched for people."""
+
+    def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
+        """Return no detections."""
+        return []

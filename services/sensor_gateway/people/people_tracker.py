@@ -10,9 +10,8 @@ from actum.messages import Agent
 from actum.skeletons import INDEX
 from sensor_gateway.known_joints import known_joints
 from sensor_gateway.people.identities import Identities
-from sensor_gateway.people.landmarks import Landmarks
+from sensor_gateway.people.landmarks import Estimator, Landmarks
 from sensor_gateway.people.placing import Placed, PlacingError
-from sensor_gateway.people.pose_estimator import Estimator
 
 SAME_PERSON = 0.12
 """Largest median distance between two detections' landmarks of one person, in heights of the larger detection."""

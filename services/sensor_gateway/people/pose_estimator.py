@@ -1,11 +1,11 @@
 """Detects people's landmarks in images with MediaPipe's pose landmarker."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Protocol, Self
+from types import MappingProxyType, TracebackType
+from typing import Any, Self
 
 import cv2
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from actum.installing import adding
 from actum.node import SECOND_NS
-from sensor_gateway.people.landmarks import Landmarks
+from sensor_gateway.people.landmarks import Landmarks, joint_weights
 
 MILLISECOND_NS = 1_000_000
 HALF_PX = 0.5
@@ -31,24 +31,50 @@ LIBRARIES = "on Debian and Ubuntu run: apt install libegl1 libgles2"
 FETCH = "download one with 'actum models fetch', or name a file in ACTUM_POSE_MODEL"
 
 
+LANDMARKS: tuple[str, ...] = (
+    "nose",
+    "left_eye_inner", "left_eye", "left_eye_outer", "right_eye_inner", "right_eye", "right_eye_outer",
+    "left_ear", "right_ear",
+    "mouth_left", "mouth_right",
+    "left_shoulder", "right_shoulder",
+    "left_elbow", "right_elbow",
+    "left_wrist", "right_wrist",
+    "left_pinky", "right_pinky", "left_index", "right_index", "left_thumb", "right_thumb",
+    "left_hip", "right_hip",
+    "left_knee", "right_knee",
+    "left_ankle", "right_ankle",
+    "left_heel", "right_heel",
+    "left_foot_index", "right_foot_index",
+)  # fmt: skip
+"""Names of the landmarks in MediaPipe's order; left and right are the actor's own."""
+
+MEDIAPIPE_33: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "head": ("left_ear", "right_ear"),
+        "neck": ("left_shoulder", "right_shoulder"),
+        "torso": ("left_shoulder", "right_shoulder", "left_hip", "right_hip"),
+        "left_shoulder": ("left_shoulder",),
+        "left_elbow": ("left_elbow",),
+        "left_hand": ("left_wrist", "left_pinky", "left_index"),
+        "right_shoulder": ("right_shoulder",),
+        "right_elbow": ("right_elbow",),
+        "right_hand": ("right_wrist", "right_pinky", "right_index"),
+        "left_hip": ("left_hip",),
+        "left_knee": ("left_knee",),
+        "left_foot": ("left_ankle", "left_foot_index"),
+        "right_hip": ("right_hip",),
+        "right_knee": ("right_knee",),
+        "right_foot": ("right_ankle", "right_foot_index"),
+    }
+)
+"""The landmarks whose mean is each joint: as with NiTE, the head's and the palms' joints are their centres."""
+
+MEDIAPIPE_WEIGHTS = joint_weights(LANDMARKS, MEDIAPIPE_33)
+"""The share of each landmark in each joint (15, 33)."""
+
+
 class PoseModelError(ValueError):
     """There is no usable pose model; the message tells what is wrong and what to do."""
-
-
-class Estimator(Protocol):
-    """Detects people in images."""
-
-    def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
-        """Return the landmarks of the people detected in an image (height, width, 3; BGR); stamps rise."""
-        ...
-
-
-class Nobody:
-    """The estimator of sources whose images are not searched for people."""
-
-    def people(self, image_bgr: NDArray[np.uint8], stamp_ns: int) -> list[Landmarks]:
-        """Return no detections."""
-        return []
 
 
 class PoseEstimator:
@@ -184,4 +210,5 @@ def _landmarks(in_image: Any, in_world: Any, width: int, height: int) -> Landmar
         image_px=np.array([(mark.x * width, mark.y * height) for mark in in_image]) - HALF_PX,
         world_m=np.array([(mark.x, mark.y, mark.z) for mark in in_world]),
         visibility=np.array([mark.visibility for mark in in_image]),
+        joint_weights=MEDIAPIPE_WEIGHTS,
     )
