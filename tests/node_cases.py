@@ -39,7 +39,8 @@ class Case:
     """A node, and messages that it answers.
 
     `warm_up` lets every stream begin, `task` is then answered in full; both begin at a given stamp and name their
-    segment as given. `wanted` says which of the answers belong to the task.
+    segment as given. `wanted` says which of the answers belong to the task, and `puts` on which keys they come: a regular
+    expression, empty for a node that puts nothing.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Case:
     warm_up: Callable[[int, str], list[Message]]
     task: Callable[[int, str], list[Message]]
     wanted: Callable[[Message, str], bool]
+    puts: str
 
     def __repr__(self) -> str:
         return self.name
@@ -148,36 +150,43 @@ def _of_segment(message: Message, segment_id: str) -> bool:
     return isinstance(message, Action | Event) and message.segment_id == segment_id
 
 
-CASES = (
-    Case(
-        "pose_preprocessor",
-        lambda: PosePreprocessor(PoseSettings.defaults()),
-        partial(_skeletons, slice(WARM_UP)),
-        partial(_skeletons, slice(WARM_UP, None)),
-        _any,
-    ),
-    Case(
-        "som_classifier",
-        lambda: SomClassifier(tiny_model(), publish_maps=True),
-        partial(_classified, slice(WARM_UP)),
-        _marked,
-        _of_segment,
-    ),
-    Case(
-        "marker_tracker",
-        lambda: MarkerTracker(TrackerSettings()),
-        partial(_photographs, range(WARM_UP)),
-        partial(_photographs, range(WARM_UP, WARM_UP + 3)),
-        _any,
-    ),
-    Case(
-        "action_fusion",
-        lambda: ActionFusion(FusionSettings()),
-        partial(_scene, -1.0, -1.0 + WARM_UP / 30),
-        _acted,
-        _of_segment,
-    ),
+PREPROCESSOR = Case(
+    "pose_preprocessor",
+    lambda: PosePreprocessor(PoseSettings.defaults()),
+    partial(_skeletons, slice(WARM_UP)),
+    partial(_skeletons, slice(WARM_UP, None)),
+    _any,
+    r"actum/kinect0/posture/\d+",
 )
+
+CLASSIFIER = Case(
+    "som_classifier",
+    lambda: SomClassifier(tiny_model(), publish_maps=True),
+    partial(_classified, slice(WARM_UP)),
+    _marked,
+    _of_segment,
+    r"actum/kinect0/action/\d+",
+)
+
+TRACKER = Case(
+    "marker_tracker",
+    lambda: MarkerTracker(TrackerSettings()),
+    partial(_photographs, range(WARM_UP)),
+    partial(_photographs, range(WARM_UP, WARM_UP + 3)),
+    _any,
+    r"actum/kinect0/objects",
+)
+
+FUSION = Case(
+    "action_fusion",
+    lambda: ActionFusion(FusionSettings()),
+    partial(_scene, -1.0, -1.0 + WARM_UP / 30),
+    _acted,
+    _of_segment,
+    r"actum/kinect0/event/\d+",
+)
+
+CASES = (PREPROCESSOR, CLASSIFIER, TRACKER, FUSION)
 
 FINDING = Case(
     "som_classifier that finds segments",
@@ -185,6 +194,7 @@ FINDING = Case(
     partial(_classified, slice(WARM_UP)),
     partial(_classified, slice(WARM_UP, None)),
     _any,
+    r"actum/kinect0/(segment|action/\d+)",
 )
 """A task without marks. Its segments' names tell when the stream began, so a disturbance before it changes them."""
 

@@ -12,10 +12,9 @@ from actum.commands import MAX_REQUEST_BYTES, MSGPACK, Refusal, unpacked
 from actum.limits import MOST_FRAMES, MOST_OPEN_SEGMENTS, MOST_STREAMS
 from actum.messages import MOST_AGENTS, MOST_OBJECTS, Action, Agent, Message, Objects, Posture, Segment, Skeleton
 from actum.node import MOST_KEYS, SECOND_NS, Node, Numbering, Tick
-from node_cases import CASES, NOON_NS, Case, photograph
+from node_cases import CLASSIFIER, FUSION, NOON_NS, PREPROCESSOR, TRACKER, Case, photograph
 from wire import Wire
 
-PREPROCESSOR, CLASSIFIER, TRACKER, FUSION = CASES
 RING_BYTES = 64_000_000
 STARTS = 3000
 

@@ -7,12 +7,11 @@ import pytest
 
 from actum.messages import Action, Agent, Message, Posture, Segment, Skeleton
 from actum.node import SECOND_NS, TICK_NS, Node, Tick
-from node_cases import CASES, FINDING, NOON_NS, Case
+from node_cases import CASES, CLASSIFIER, FINDING, NOON_NS, Case
 
 MINUTE_S = 60
 FILLED_S = 70
 LENGTH_S = 5 * MINUTE_S
-CLASSIFIER = CASES[1]
 RATE_HZ = 3
 
 

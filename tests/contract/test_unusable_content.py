@@ -10,11 +10,10 @@ import pytest
 from actum import geometry
 from actum.messages import Action, Image, Message, Objects, Posture, Segment, Skeleton
 from actum.skeletons import INDEX, JOINTS
-from node_cases import CASES, NOON_NS, Case, every_node, photograph
+from node_cases import CLASSIFIER, FUSION, NOON_NS, PREPROCESSOR, TRACKER, Case, every_node, photograph
 from people import FRAME_NS, STANDING
 from wire import Wire
 
-PREPROCESSOR, CLASSIFIER, TRACKER, FUSION = CASES
 BEFORE_NS = NOON_NS - FRAME_NS
 
 JPEG_OF_30000 = bytes.fromhex(

@@ -13,7 +13,7 @@ with atheris.instrument_imports(include=["actum", "msgpack.fallback", "mcap"]):
     from actum import codec, keys
     from actum.recording import Recording, RecordingError
 
-from node_cases import CASES, photograph
+from node_cases import CASES, CLASSIFIER, photograph
 
 LONGEST = {"codec": 4096, "recording": 16384}
 """Bytes of the longest input: longer ones add nothing but time."""
@@ -79,7 +79,7 @@ def seed_codec(corpus: Path) -> None:
 
 def seed_recordings(corpus: Path) -> None:
     """Write small recordings, compressed and not, with chunks and without."""
-    frames = [codec.encode(m) for m in (CASES[1].messages()[0], CASES[1].messages()[4], photograph(1))]
+    frames = [codec.encode(m) for m in (CLASSIFIER.messages()[0], CLASSIFIER.messages()[4], photograph(1))]
     for compression in CompressionType:
         for chunking in (True, False):
             with (corpus / f"{compression.name}-{chunking}.mcap").open("wb") as file:

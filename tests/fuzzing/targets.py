@@ -17,7 +17,7 @@ from actum.node import Counters, Numbering, Tick
 from dashboards import Colleague
 from fuzzing.mutations import of_bytes, request
 from model_trainer.trainer import ModelTrainer
-from node_cases import CASES, FINDING, NOON_NS, Case
+from node_cases import CASES, FINDING, FUSION, NOON_NS, Case
 from people import reaches
 from ros2_bridge.bridge import Ros2Bridge
 from ros2_bridge.settings import Settings as BridgeSettings
@@ -108,9 +108,8 @@ def _everything(lap: int) -> Sequence[Message]:
 
 
 def _fused(now_ns: int, name: str) -> list[Message]:
-    fusion = CASES[3]
-    node = fusion.build()
-    return [answer for message in fusion.messages(now_ns, name) for answer in node.handle(message)]
+    node = FUSION.build()
+    return [answer for message in FUSION.messages(now_ns, name) for answer in node.handle(message)]
 
 
 def _status(now_ns: int) -> Status:
