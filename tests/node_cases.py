@@ -39,8 +39,8 @@ class Case:
     """A node, and messages that it answers.
 
     `warm_up` lets every stream begin, `task` is then answered in full; both begin at a given stamp and name their
-    segment as given. `wanted` says which of the answers belong to the task, and `puts` on which keys they come: a regular
-    expression, empty for a node that puts nothing.
+    segment as given. `wanted` says which of the answers belong to the task. `puts` is a regular expression of the keys
+    on which they come, empty for a node that puts nothing.
     """
 
     name: str
