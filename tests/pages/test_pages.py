@@ -1,12 +1,14 @@
 """The pages name what there is: modules, files, commands, make targets; and the README stays short."""
 
 import re
+import subprocess
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
+from docs import word_counts
 from docs.word_counts import counted, lines
 from typer.main import get_command
 
@@ -52,8 +54,30 @@ def test_a_page_is_read_in_ten_minutes(page: Path) -> None:
 def test_words_are_counted_with_and_without_what_is_generated() -> None:
     before = {"README.md": "one two", "docs/a.md": "three\n<!-- generated: fields -->\n\nfour\n<!-- end -->\n"}
     _, *rows, total = lines(before, {"docs/a.md": "three"})
-    assert [row.split() for row in rows] == [["README.md", "2", "2", "0", "0"], ["docs/a.md", "9", "1", "1", "1"]]
+    assert [row.split() for row in rows] == [
+        ["README.md", "2", "2", "absent", "absent"],
+        ["docs/a.md", "9", "1", "1", "1"],
+    ]
     assert total.split() == ["sum", "11", "3", "1", "1"]
+
+
+def test_the_words_of_contributing_are_counted_also_beside_a_reference_that_lacks_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(word_counts, "ROOT", tmp_path)
+    git = ["git", "-C", str(tmp_path), "-c", "user.name=a", "-c", "user.email=a@b.c"]
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs" / "a.md").write_text("one")
+    (tmp_path / "README.md").write_text("one two")
+    for arguments in (["init", "--quiet"], ["add", "."], ["commit", "--quiet", "--message", "a"]):
+        subprocess.run([*git, *arguments], check=True)
+    (tmp_path / "CONTRIBUTING.md").write_text("one two three")
+    _, *rows, _ = lines(word_counts.pages_of("HEAD"), word_counts.pages_here())
+    assert [row.split() for row in rows] == [
+        ["CONTRIBUTING.md", "absent", "absent", "3", "3"],
+        ["README.md", "2", "2", "2", "2"],
+        ["docs/a.md", "1", "1", "1", "1"],
+    ]
 
 
 def test_the_readme_leads_to_every_page() -> None:
