@@ -13,7 +13,7 @@ from actum.codec import encode
 from actum.commands import JSON, MAX_REQUEST_BYTES, MSGPACK, Command, Refusal, Request, described, packed, unpacked
 from actum.node import Counters
 from actum.parameters import LiveParameters
-from actum.runtime.meter import Meter
+from actum.runtime.reporting import Meter
 from actum.settings import ServiceSettings
 
 

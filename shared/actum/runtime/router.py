@@ -6,10 +6,10 @@ from pathlib import Path
 
 import zenoh
 
+from actum.health import HealthFile
 from actum.runtime.credentials import CERTIFICATE, USERS, check, login_values, router_values
-from actum.runtime.health_file import HealthFile
 from actum.runtime.session import TRANSPORT, insert
-from actum.runtime.waiting import wait_for
+from actum.runtime.stopping import wait_for
 from actum.settings import DEFAULT_ENDPOINT, SettingsError
 
 log = logging.getLogger("actum")
