@@ -73,7 +73,14 @@ class Client:
     def __init__(self, settings: ServiceSettings, wait_s: float = OPEN_S, session: zenoh.Session | None = None) -> None:
         self.sensor = settings.sensor
         self.run = secrets.token_hex(6)
-        self._session = session or _open(settings, wait_s)
+        deadline_s = time.monotonic() + wait_s
+        while session is None:
+            try:
+                session = zenoh.open(secret_config(settings))
+            except zenoh.ZError:
+                if time.monotonic() > deadline_s:
+                    raise RouterUnreachableError(settings.connect) from None
+        self._session = session
         self._outbox = Outbox(self._session)
         self._listening: list[Listening] = []
         self._threads: list[threading.Thread] = []
@@ -210,13 +217,3 @@ def _matches(declared: zenoh.Publisher | zenoh.Querier, timeout_s: float) -> boo
             return False
         threading.Event().wait(POLL_S)
     return True
-
-
-def _open(settings: ServiceSettings, wait_s: float) -> zenoh.Session:
-    deadline = time.monotonic() + wait_s
-    while True:
-        try:
-            return zenoh.open(secret_config(settings))
-        except zenoh.ZError:
-            if time.monotonic() > deadline:
-                raise RouterUnreachableError(settings.connect) from None

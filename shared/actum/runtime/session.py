@@ -4,7 +4,6 @@ import json
 import logging
 import threading
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import zenoh
@@ -58,7 +57,12 @@ def client_config(settings: ServiceSettings) -> zenoh.Config:
     Raises:
         SettingsError: the configuration file that it extends, or the credentials, cannot be used.
     """
-    config = _base_config(settings.zenoh_config) if settings.zenoh_config else zenoh.Config()
+    try:
+        config = zenoh.Config.from_file(settings.zenoh_config) if settings.zenoh_config else zenoh.Config()
+    except zenoh.ZError as error:
+        raise SettingsError(
+            f"zenoh-config: {settings.zenoh_config} is not a Zenoh configuration: {reason_of(error)}"
+        ) from None
     insert(config, _client_values(settings.connect))
     if settings.credentials is not None:
         if not settings.connect.startswith(ENCRYPTED):
@@ -88,12 +92,9 @@ def secret_config(settings: ServiceSettings) -> zenoh.Config:
     return config
 
 
-def _base_config(file: Path) -> zenoh.Config:
-    try:
-        return zenoh.Config.from_file(file)
-    except zenoh.ZError as error:
-        reason = " ".join(str(error).partition(" at /")[0].split())
-        raise SettingsError(f"zenoh-config: {file} is not a Zenoh configuration: {reason}") from None
+def reason_of(error: zenoh.ZError) -> str:
+    """Return the text of an error in one line, without the place in Zenoh's source that raised the error."""
+    return " ".join(str(error).partition(" at /")[0].split())
 
 
 def _client_values(endpoint: str) -> dict[str, Any]:
