@@ -145,25 +145,23 @@ class Calibration(_Part):
         Raises:
             CalibrationError: it cannot be read, or is no calibration.
         """
-        content = _content(path)
+        try:
+            with path.open("rb") as file:
+                content = yaml.safe_load(file.read(LARGEST_BYTES))
+        except OSError as error:
+            raise CalibrationError(f"{path}: {error.strerror}; {REMEDY}") from None
+        except YAML_ERRORS:
+            raise CalibrationError(f"{path} is not a calibration (the file is not YAML): {REMEDY}") from None
         try:
             return cls.model_validate(content)
         except ValidationError as error:
-            raise CalibrationError(f"{path} is not a calibration ({_first(error)}): {REMEDY}") from None
+            problem = error.errors()[0]
+            place = ".".join(map(str, problem["loc"])) or "the file"
+            raise CalibrationError(f"{path} is not a calibration ({place}: {problem['msg']}): {REMEDY}") from None
 
     def save(self, path: Path) -> None:
         """Write the calibration file, replacing an existing one."""
         write_whole(path.resolve(), (HEADER + _yaml(self.model_dump(exclude_none=True))).encode())
-
-
-def _content(path: Path) -> object:
-    try:
-        with path.open("rb") as file:
-            return yaml.safe_load(file.read(LARGEST_BYTES))
-    except OSError as error:
-        raise CalibrationError(f"{path}: {error.strerror}; {REMEDY}") from None
-    except YAML_ERRORS:
-        raise CalibrationError(f"{path} is not a calibration (the file is not YAML): {REMEDY}") from None
 
 
 class _Dumper(yaml.SafeDumper):
@@ -193,9 +191,3 @@ def _rows(numbers: list[float], columns: int) -> str:
 
 def _dumped(value: object) -> str:
     return str(yaml.dump(value, Dumper=_Dumper, default_flow_style=False, sort_keys=False, width=WIDTH))
-
-
-def _first(error: ValidationError) -> str:
-    problem = error.errors()[0]
-    place = ".".join(map(str, problem["loc"])) or "the file"
-    return f"{place}: {problem['msg']}"

@@ -1,10 +1,12 @@
 """What installs this package works wherever it came from, and fetches nothing by a name that is not ours."""
 
+import json
 import re
 import shlex
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -28,7 +30,12 @@ OF_ITSELF = {"pyproject.toml"}
 @pytest.fixture
 def came_from(monkeypatch: pytest.MonkeyPatch) -> Tell:
     """Let pip have written down where the package came from."""
-    return lambda **told: monkeypatch.setattr(installing, "_told_by_pip", lambda: told)
+
+    def tell(**told: object) -> None:
+        written = SimpleNamespace(read_text=lambda _name: json.dumps(told) if told else None)
+        monkeypatch.setattr(installing, "distribution", lambda _package: written)
+
+    return tell
 
 
 def tracked() -> list[Path]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.som import blas
-from actum.som.inputs import check_rows, is_complete
+from actum.som.inputs import is_complete
 
 Array = NDArray[Any]
 Scores = tuple[slice, Array]
@@ -78,7 +78,8 @@ class Lookup:
         Raises:
             ValueError: the rows have another length, an infinite component, or no known one.
         """
-        check_rows(vectors, self.dim)
+        if vectors.ndim != 2 or vectors.shape[1] != self.dim:
+            raise ValueError(f"the vectors have shape {vectors.shape}; expected (number of vectors, {self.dim})")
         return self._known_scores(vectors) if is_complete(vectors) else self._partial_scores(vectors)
 
     def winners(self, vectors: Array) -> NDArray[np.intp]:

@@ -1,9 +1,5 @@
 """The map as it is looked up: hand-computed cases and invariances, in both precisions."""
 
-import pickle
-from collections.abc import Callable
-from copy import copy, deepcopy
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -149,16 +145,6 @@ def test_lists_and_values_that_are_no_floats_are_looked_up_like_arrays() -> None
     assert (Som.of_planes([[[0.0], [1.0], [10.0]]]).weights == som.weights).all()
     pair = Som(1, 2, np.array([[0.0, 5.0], [5.0, 7.0]]))
     assert pair.bmus([[3.0, None]]).tolist() == pair.bmus([[3.0, np.nan]]).tolist() == [1]
-
-
-@pytest.mark.parametrize("copied", [copy, deepcopy, lambda som: pickle.loads(pickle.dumps(som))])
-def test_copies_are_the_same_map_and_cannot_be_written_either(copied: Callable[[Som], Som]) -> None:
-    som = Som.random(3, 4, 2, rng(), np.float32)
-    som.bmus([[0.5, 0.5]])
-    twin = copied(som)
-    assert (twin.rows, twin.cols, twin.dtype) == (3, 4, np.float32)
-    assert (twin.weights == som.weights).all()
-    assert not twin.weights.flags.writeable
 
 
 def test_where_units_stand_cannot_be_written() -> None:

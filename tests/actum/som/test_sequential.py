@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum.som import Decay, Schedule, SequentialTraining, Som, Steps
+from actum.som import Schedule, SequentialTraining, Som, Steps
 
 CONSTANT = Schedule(alpha=(0.5, 0.5), radius=(1.0, 1.0))
 FALLING = Schedule(alpha=(0.5, 0.02), radius=(5.0, 0.7))
@@ -126,7 +126,7 @@ def test_inputs_that_do_not_fit_are_refused(vectors: np.ndarray) -> None:
         ([0], Steps([0.1], [np.inf]), "radii"),
     ],
 )
-def test_steps_that_make_no_sense_are_refused(order: list[float], decay: Decay, problem: str) -> None:
+def test_steps_that_make_no_sense_are_refused(order: list[float], decay: Schedule | Steps, problem: str) -> None:
     with pytest.raises(ValueError, match=problem):
         SequentialTraining(line_map(), [[1.0], [2.0]], order, decay)
 
