@@ -168,12 +168,10 @@ class _Dumper(yaml.SafeDumper):
     """Writes each list on one line, all other values in block style."""
 
 
-def _in_one_line(dumper: yaml.SafeDumper, value: list[Any] | tuple[Any, ...]) -> yaml.Node:
-    return dumper.represent_sequence("tag:yaml.org,2002:seq", value, flow_style=True)
-
-
-_Dumper.add_representer(list, _in_one_line)
-_Dumper.add_representer(tuple, _in_one_line)
+for _kind in (list, tuple):
+    _Dumper.add_representer(
+        _kind, lambda dumper, value: dumper.represent_sequence("tag:yaml.org,2002:seq", value, flow_style=True)
+    )
 
 
 def _yaml(fields: dict[str, Any]) -> str:

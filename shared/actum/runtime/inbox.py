@@ -86,7 +86,12 @@ class Inbox:
         self._left_out = {
             digest for topic in answered for digest in _kept(session, keys.pattern(topic, sensor), reach.answered_s)
         }
-        self._subscribers = [_subscribed(session, topic, sensor, reach) for topic in topics]
+        self._subscribers: list[Subscriber] = [
+            subscribe_recovering(session, keys.pattern(topic, sensor), topic.ring, reach.history(topic))
+            if topic in (*ANSWERED, *STREAMS)
+            else subscribe(session, keys.pattern(topic, sensor), topic.ring)
+            for topic in topics
+        ]
         self._threads: list[threading.Thread] = []
 
     def start(self, receive: Callable[[zenoh.Sample], None]) -> None:
@@ -155,13 +160,6 @@ class Listening:
     def close(self) -> None:
         """End the subscription."""
         self._subscriber.undeclare()
-
-
-def _subscribed(session: zenoh.Session, topic: keys.Topic, sensor: str, reach: Reach) -> Subscriber:
-    pattern = keys.pattern(topic, sensor)
-    if topic in (*ANSWERED, *STREAMS):
-        return subscribe_recovering(session, pattern, topic.ring, reach.history(topic))
-    return subscribe(session, pattern, topic.ring)
 
 
 def _kept(session: zenoh.Session, pattern: str, older_than_s: float) -> set[int]:

@@ -9,10 +9,9 @@ from contextlib import contextmanager
 import zenoh
 
 from actum import keys
-from actum.bridge import Bridge
 from actum.codec import encode
 from actum.commands import Commanded
-from actum.node import Node, Source
+from actum.node import Servable, Source
 from actum.runtime.commanding import Commander
 from actum.runtime.outbox import Outbox
 from actum.runtime.place import Place
@@ -27,7 +26,7 @@ log = logging.getLogger("actum")
 class Service(ABC):
     """The part common to nodes and sources: start and end, the one instance per sensor, status and description."""
 
-    def __init__(self, what: Node | Source | Bridge, settings: ServiceSettings) -> None:
+    def __init__(self, what: Servable, settings: ServiceSettings) -> None:
         self.name, counters = what.name, what.counters
         self.failed = False
         self._commands = what.commands if isinstance(what, Commanded) else ()
