@@ -60,35 +60,26 @@ def test_no_page_help_script_or_file_has_the_project_fetched_by_its_name() -> No
 
 
 @pytest.mark.parametrize(
-    "line",
+    ("found", "line"),
     [
-        "pip install 'actum[view]'",
-        "pip install --upgrade actum",
-        "needs `actum[camera]`",
-        "sudo /opt/actum/bin/pip install actum==0.1.0",
-        "uv pip install actum",
-        "pipx install actum",
-        "uvx actum up",
-        "docker run --rm actum/som_classifier",
+        (True, "pip install 'actum[view]'"),
+        (True, "pip install --upgrade actum"),
+        (True, "needs `actum[camera]`"),
+        (True, "sudo /opt/actum/bin/pip install actum==0.1.0"),
+        (True, "uv pip install actum"),
+        (True, "pipx install actum"),
+        (True, "uvx actum up"),
+        (True, "docker run --rm actum/som_classifier"),
+        (False, "pip install '.[view]'"),
+        (False, "pip install 'dist/actum-0.1.0-py3-none-any.whl[all]'"),
+        (False, 'f"actum[all] @ {wheel.as_uri()}"'),
+        (False, "pip install eclipse-zenoh msgpack and nothing of actum"),
+        (False, "docker build -t actum/som_classifier ."),
+        (False, "docker run --pull never actum/som_classifier"),
     ],
 )
-def test_the_search_finds(line: str) -> None:
-    assert FROM_AN_INDEX.search(line)
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        "pip install '.[view]'",
-        "pip install 'dist/actum-0.1.0-py3-none-any.whl[all]'",
-        'f"actum[all] @ {wheel.as_uri()}"',
-        "pip install eclipse-zenoh msgpack and nothing of actum",
-        "docker build -t actum/som_classifier .",
-        "docker run --pull never actum/som_classifier",
-    ],
-)
-def test_the_search_leaves(line: str) -> None:
-    assert not FROM_AN_INDEX.search(line)
+def test_what_the_search_finds(found: bool, line: str) -> None:
+    assert bool(FROM_AN_INDEX.search(line)) == found
 
 
 def test_what_came_from_a_wheel_is_completed_from_it(came_from: Tell, tmp_path: Path) -> None:
