@@ -19,8 +19,6 @@ from actum.arrays import Array
 from actum.atomic_file import write_whole
 from actum.messages import Intrinsics, Transform
 
-FORMAT: Literal["actum.calibration/1"] = "actum.calibration/1"
-"""The name of the file's format, by which later formats can be told apart."""
 DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
 """How many coefficients OpenCV's distortion models have."""
 FURTHEST_M = 1e6
@@ -75,7 +73,7 @@ class ExtrinsicsQuality(_Part):
 class Calibration(_Part):
     """One camera's intrinsics, and its pose in the frame of the camera that sees people."""
 
-    format: Literal["actum.calibration/1"] = FORMAT
+    format: Literal["actum.calibration/1"] = "actum.calibration/1"
     image_size: tuple[Pixels, Pixels]
     K: Intrinsics
     distortion: list[FiniteFloat]
