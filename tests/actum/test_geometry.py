@@ -34,11 +34,16 @@ def scaled_ego(joints: np.ndarray) -> np.ndarray:
     return geometry.apply(geometry.ego_from_camera(standard), standard)
 
 
-def test_the_origin_is_the_torsos_projection_on_the_hip_line() -> None:
+def hips_and_torso(torso_m: list[float]) -> np.ndarray:
+    """Hips 0.4 m apart along x, 2 m away."""
     joints = np.zeros((15, 3))
-    joints[INDEX["right_hip"]] = [-0.1, 0.0, 2.0]
-    joints[INDEX["left_hip"]] = [0.3, 0.0, 2.0]
-    joints[INDEX["torso"]] = [0.05, -0.25, 2.0]
+    joints[INDEX["right_hip"]], joints[INDEX["left_hip"]] = [-0.1, 0.0, 2.0], [0.3, 0.0, 2.0]
+    joints[INDEX["torso"]] = torso_m
+    return joints
+
+
+def test_the_origin_is_the_torsos_projection_on_the_hip_line() -> None:
+    joints = hips_and_torso([0.05, -0.25, 2.0])
     ego = geometry.ego_from_camera(joints)
     np.testing.assert_allclose(geometry.apply(ego, np.array([0.05, 0.0, 2.0])), 0, atol=1e-12)
     np.testing.assert_allclose(geometry.apply(ego, joints[INDEX["torso"]]), [0, 0.25, 0], atol=1e-12)
@@ -46,12 +51,8 @@ def test_the_origin_is_the_torsos_projection_on_the_hip_line() -> None:
 
 
 def test_the_axes_lean_with_the_trunk() -> None:
-    """Hips along x, the torso 0.3 m above and 0.4 m nearer to the camera: a trunk of 0.5 m, leaning forward."""
-    joints = np.zeros((15, 3))
-    joints[INDEX["right_hip"]] = [-0.1, 0.0, 2.0]
-    joints[INDEX["left_hip"]] = [0.3, 0.0, 2.0]
-    joints[INDEX["torso"]] = [0.05, -0.3, 1.6]
-    left, up, forward = geometry.ego_from_camera(joints)[:3, :3]
+    """The torso 0.3 m above the hips and 0.4 m nearer to the camera: a trunk of 0.5 m, leaning forward."""
+    left, up, forward = geometry.ego_from_camera(hips_and_torso([0.05, -0.3, 1.6]))[:3, :3]
     np.testing.assert_allclose(left, [1, 0, 0], atol=1e-12)
     np.testing.assert_allclose(up, [0, -0.6, -0.8], atol=1e-12)
     np.testing.assert_allclose(forward, [0, 0.8, -0.6], atol=1e-12)

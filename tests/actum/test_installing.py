@@ -82,19 +82,17 @@ def test_what_the_search_finds(found: bool, line: str) -> None:
     assert bool(FROM_AN_INDEX.search(line)) == found
 
 
-def test_what_came_from_a_wheel_is_completed_from_it(came_from: Tell, tmp_path: Path) -> None:
-    wheel = tmp_path / "a folder" / "actum-0.1.0-py3-none-any.whl"
-    wheel.parent.mkdir()
-    wheel.touch()
-    came_from(url=wheel.as_uri(), archive_info={})
-    assert shlex.split(installing.adding("view")) == ["pip", "install", f"{wheel}[view]"]
-
-
-def test_what_came_from_a_folder_is_completed_from_it(came_from: Tell, tmp_path: Path) -> None:
-    came_from(url=tmp_path.as_uri(), dir_info={"editable": True})
-    assert shlex.split(installing.adding("view")) == ["pip", "install", "-e", f"{tmp_path}[view]"]
-    came_from(url=tmp_path.as_uri(), dir_info={})
-    assert shlex.split(installing.adding("view")) == ["pip", "install", f"{tmp_path}[view]"]
+@pytest.mark.parametrize(
+    ("written_by_pip", "flags"),
+    [({"archive_info": {}}, []), ({"dir_info": {}}, []), ({"dir_info": {"editable": True}}, ["-e"])],
+)
+def test_what_came_from_a_wheel_or_a_folder_is_completed_from_it(
+    came_from: Tell, tmp_path: Path, written_by_pip: dict[str, object], flags: list[str]
+) -> None:
+    origin = tmp_path / "a folder"
+    origin.mkdir()
+    came_from(url=origin.as_uri(), **written_by_pip)
+    assert shlex.split(installing.adding("view")) == ["pip", "install", *flags, f"{origin}[view]"]
 
 
 @pytest.mark.parametrize("told", [{}, {"url": "https://example.org/actum.git"}, {"url": "file:///build"}])
