@@ -61,13 +61,17 @@ def test_a_number_on_a_message_is_kept_and_counted_on_from(tmp_path: Path) -> No
     ]
 
 
-def test_person_source_and_free_fields_are_metadata(tmp_path: Path) -> None:
+def test_person_source_action_points_and_free_fields_are_metadata(tmp_path: Path) -> None:
     with Recorder(tmp_path / "a.mcap", person="3", source="msr-action3d", excluded="true"):
         pass
     recording = Recording(tmp_path / "a.mcap")
     assert (recording.person, recording.source) == ("3", "msr-action3d")
     assert recording.metadata == {"person": "3", "source": "msr-action3d", "excluded": "true"}
+    assert recording.action_points_ns == {}
     assert list(recording.messages()) == []
+    with Recorder(tmp_path / "b.mcap", person="3", source="test", action_points_ns='{"x-01": 5}'):
+        pass
+    assert Recording(tmp_path / "b.mcap").action_points_ns == {"x-01": 5}
 
 
 def test_any_mcap_tool_finds_key_schema_and_times(tmp_path: Path) -> None:
@@ -232,15 +236,6 @@ def test_a_file_that_is_missing_or_no_mcap_is_an_error(tmp_path: Path) -> None:
         (tmp_path / "a.mcap").write_bytes(content)
         with pytest.raises(RecordingError, match=r"a\.mcap: the file is not an MCAP file; give a recording"):
             Recording(tmp_path / "a.mcap")
-
-
-def test_action_points_are_read_from_the_metadata(tmp_path: Path) -> None:
-    with Recorder(tmp_path / "a.mcap", person="1", source="test", action_points_ns='{"x-01": 5}'):
-        pass
-    with Recorder(tmp_path / "b.mcap", person="1", source="test"):
-        pass
-    assert Recording(tmp_path / "a.mcap").action_points_ns == {"x-01": 5}
-    assert Recording(tmp_path / "b.mcap").action_points_ns == {}
 
 
 @pytest.mark.parametrize("points", ["", "[1]", '{"x": "soon"}', '{"x": null}'])
