@@ -11,7 +11,7 @@ import threading
 import zenoh
 
 from actum.runtime.session import open_session
-from actum.runtime.waiting import stop_on_signals, wait_for
+from actum.runtime.stopping import stop_on_signals, wait_for
 from actum.settings import ServiceSettings
 
 

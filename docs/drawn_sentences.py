@@ -20,7 +20,7 @@ from actum_command.service_settings import SETTINGS
 PACKAGES = ("shared/actum", "services")
 REFUSING = ("fail", "warning", "error", "critical", "exception")
 """The functions and the logger's methods that print what went wrong."""
-FINDINGS = ("diagnosis", "service_checks", "stream_checks", "obstacles", "tls_check", "advice")
+FINDINGS = ("diagnosis", "service_checks", "stream_checks", "obstacles", "advice")
 """The modules whose functions yield or return what is wrong."""
 FEWEST_WORDS = 3  # a shorter text frames another one, such as `{path}: {problem}`
 DRAWN = {"errors": 15, "helps": 20, "paragraphs": 10}

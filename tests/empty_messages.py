@@ -15,8 +15,9 @@ def mark(
     segment_id: str = "one",
     label: str | None = None,
     origin: str | None = None,
+    seq: int | None = None,
 ) -> Segment:
-    fields = {"stamp_ns": stamp_ns, "sensor": "kinect0", "kind": kind, "segment_id": segment_id}
+    fields = {"stamp_ns": stamp_ns, "seq": seq, "sensor": "kinect0", "kind": kind, "segment_id": segment_id}
     return Segment.model_validate({**fields, "label": label, "origin": origin})
 
 

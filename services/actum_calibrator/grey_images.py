@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Pixels
-from actum.jpeg import MOST_SCANS, has_too_many_scans
 from actum.messages import Image
+from actum.pictures import MOST_SCANS, has_too_many_scans
 
 LARGEST_PIXELS = 10_000 * 10_000  # 100 MB of grey levels; no camera has more
 

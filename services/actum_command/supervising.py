@@ -12,8 +12,8 @@ from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import IO, Self
 
-from actum.runtime.parent import PARENT
 from actum.runtime.serving import TAKEN, UNUSABLE
+from actum.runtime.stopping import PARENT
 
 STATE = "ACTUM_STATE"
 """The environment variable with the folder in which services keep their last answers."""

@@ -18,7 +18,7 @@ from pydantic import BaseModel
 from actum.commands import Refusal
 from actum.installing import adding
 from actum.recording import Recording, RecordingError
-from actum.runtime.parent import end_with_parent
+from actum.runtime.stopping import end_with_parent
 from actum_examples.take import read_take
 from actum_model_trainer.advice import Contents, advice
 from actum_model_trainer.continuous.watching import NoSpotterError

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from actum.atomic_file import claim
-from actum.runtime.parent import PARENT
+from actum.runtime.stopping import PARENT
 
 END_S = 2.0
 """How long (s) a job may take to end when it is told to, before it is killed."""

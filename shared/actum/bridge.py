@@ -6,7 +6,7 @@ from typing import Protocol
 
 from actum import keys
 from actum.messages import Message
-from actum.node import Counters, Tick
+from actum.node import Servable, Tick
 
 
 @dataclass(frozen=True)
@@ -45,15 +45,8 @@ class ForeignNode:
     subscribes: tuple[ForeignTopic, ...]
 
 
-class Bridge(Protocol):
+class Bridge(Servable, Protocol):
     """The logic of a bridge: like a node, it uses no socket, no clock and no sleep."""
-
-    counters: Counters
-
-    @property
-    def name(self) -> str:
-        """The service's name, as in its keys."""
-        ...
 
     @property
     def inputs(self) -> tuple[keys.Topic, ...]:

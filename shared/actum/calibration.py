@@ -19,8 +19,6 @@ from actum.arrays import Array
 from actum.atomic_file import write_whole
 from actum.messages import Intrinsics, Transform
 
-FORMAT: Literal["actum.calibration/1"] = "actum.calibration/1"
-"""The name of the file's format, by which later formats can be told apart."""
 DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)
 """How many coefficients OpenCV's distortion models have."""
 FURTHEST_M = 1e6
@@ -75,7 +73,7 @@ class ExtrinsicsQuality(_Part):
 class Calibration(_Part):
     """One camera's intrinsics, and its pose in the frame of the camera that sees people."""
 
-    format: Literal["actum.calibration/1"] = FORMAT
+    format: Literal["actum.calibration/1"] = "actum.calibration/1"
     image_size: tuple[Pixels, Pixels]
     K: Intrinsics
     distortion: list[FiniteFloat]
@@ -145,37 +143,33 @@ class Calibration(_Part):
         Raises:
             CalibrationError: it cannot be read, or is no calibration.
         """
-        content = _content(path)
+        try:
+            with path.open("rb") as file:
+                content = yaml.safe_load(file.read(LARGEST_BYTES))
+        except OSError as error:
+            raise CalibrationError(f"{path}: {error.strerror}; {REMEDY}") from None
+        except YAML_ERRORS:
+            raise CalibrationError(f"{path} is not a calibration (the file is not YAML): {REMEDY}") from None
         try:
             return cls.model_validate(content)
         except ValidationError as error:
-            raise CalibrationError(f"{path} is not a calibration ({_first(error)}): {REMEDY}") from None
+            problem = error.errors()[0]
+            place = ".".join(map(str, problem["loc"])) or "the file"
+            raise CalibrationError(f"{path} is not a calibration ({place}: {problem['msg']}): {REMEDY}") from None
 
     def save(self, path: Path) -> None:
         """Write the calibration file, replacing an existing one."""
         write_whole(path.resolve(), (HEADER + _yaml(self.model_dump(exclude_none=True))).encode())
 
 
-def _content(path: Path) -> object:
-    try:
-        with path.open("rb") as file:
-            return yaml.safe_load(file.read(LARGEST_BYTES))
-    except OSError as error:
-        raise CalibrationError(f"{path}: {error.strerror}; {REMEDY}") from None
-    except YAML_ERRORS:
-        raise CalibrationError(f"{path} is not a calibration (the file is not YAML): {REMEDY}") from None
-
-
 class _Dumper(yaml.SafeDumper):
     """Writes each list on one line, all other values in block style."""
 
 
-def _in_one_line(dumper: yaml.SafeDumper, value: list[Any] | tuple[Any, ...]) -> yaml.Node:
-    return dumper.represent_sequence("tag:yaml.org,2002:seq", value, flow_style=True)
-
-
-_Dumper.add_representer(list, _in_one_line)
-_Dumper.add_representer(tuple, _in_one_line)
+for _kind in (list, tuple):
+    _Dumper.add_representer(
+        _kind, lambda dumper, value: dumper.represent_sequence("tag:yaml.org,2002:seq", value, flow_style=True)
+    )
 
 
 def _yaml(fields: dict[str, Any]) -> str:
@@ -193,9 +187,3 @@ def _rows(numbers: list[float], columns: int) -> str:
 
 def _dumped(value: object) -> str:
     return str(yaml.dump(value, Dumper=_Dumper, default_flow_style=False, sort_keys=False, width=WIDTH))
-
-
-def _first(error: ValidationError) -> str:
-    problem = error.errors()[0]
-    place = ".".join(map(str, problem["loc"])) or "the file"
-    return f"{place}: {problem['msg']}"

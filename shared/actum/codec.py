@@ -111,7 +111,8 @@ def _check_encoding(encoding: str, expected: type[Message]) -> None:
 
 def _unpack(key: str, payload: bytes) -> dict[str, Any]:
     try:
-        fields = unpack(payload)
+        # the values of a short payload take little memory, however many there are
+        fields = msgpack.unpackb(payload) if len(payload) <= keys.MOST_BYTES else unpack(payload)
     except UNPACK_ERRORS as error:
         raise DecodeError("not_msgpack", f"{key}: {type(error).__name__} {error}") from None
     if not isinstance(fields, dict):
@@ -119,15 +120,6 @@ def _unpack(key: str, payload: bytes) -> dict[str, Any]:
             "not_a_map", f"{key}: the payload is a {type(fields).__name__}; expected a map of field names to values"
         )
     return fields
-
-
-def unpack(payload: bytes) -> Any:
-    """Unpack msgpack from anywhere; one of many values is refused where they would take much memory.
-
-    Raises:
-        UNPACK_ERRORS: it is no msgpack, is nested too deeply, or has too many values.
-    """
-    return msgpack.unpackb(payload) if len(payload) <= keys.MOST_BYTES else Unpacking().unpack(payload)
 
 
 def with_different_names(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
@@ -142,36 +134,32 @@ def with_different_names(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
     return made
 
 
-class Unpacking:
-    """Unpacks one payload, and refuses it where it has too many values, or a name twice.
+def unpack(payload: bytes) -> Any:
+    """Unpack msgpack, and refuse a payload that has too many values, or a name twice.
 
     One byte can become an empty list of 56 bytes in memory. Only images are large, and their pixels are one value.
+
+    Raises:
+        UNPACK_ERRORS: it is no msgpack, is nested too deeply, has too many values, or a name twice.
     """
+    left = MOST_VALUES
 
-    def __init__(self) -> None:
-        self._left = MOST_VALUES
-
-    def unpack(self, payload: bytes) -> Any:
-        """Unpack it.
-
-        Raises:
-            UNPACK_ERRORS: it is no msgpack, is nested too deeply, has too many values, or a name twice.
-        """
-        return msgpack.unpackb(
-            payload,
-            raw=False,
-            strict_map_key=True,
-            max_array_len=MOST_VALUES,
-            max_map_len=MOST_VALUES,
-            list_hook=self._counted,
-            object_pairs_hook=lambda pairs: with_different_names(self._counted(pairs)),
-        )
-
-    def _counted(self, container: list[Any]) -> list[Any]:
-        self._left -= 1 + len(container)
-        if self._left < 0:
+    def counted(container: list[Any]) -> list[Any]:
+        nonlocal left
+        left -= 1 + len(container)
+        if left < 0:
             raise ValueError(f"the message has more than {MOST_VALUES} values")
         return container
+
+    return msgpack.unpackb(
+        payload,
+        raw=False,
+        strict_map_key=True,
+        max_array_len=MOST_VALUES,
+        max_map_len=MOST_VALUES,
+        list_hook=counted,
+        object_pairs_hook=lambda pairs: with_different_names(counted(pairs)),
+    )
 
 
 def _validated(key: str, address: keys.Address, fields: dict[str, Any]) -> Message:

@@ -45,25 +45,17 @@ def placeholder(field: FieldInfo) -> str:
     """Return the placeholder after a setting's flag; "" for a switch."""
     if NoDecode in field.metadata:
         return PLACEHOLDERS[str]
-    annotation = _without_none(field.annotation)
+    annotation: Any = field.annotation
+    if get_origin(annotation) in (Union, types.UnionType):  # X | None: the placeholder is that of X
+        (annotation,) = (part for part in get_args(annotation) if part is not type(None))
     if get_origin(annotation) is Literal:
         return f"{{{','.join(map(str, get_args(annotation)))}}}"
-    return PLACEHOLDERS[annotation] if annotation in PLACEHOLDERS else _of_several(annotation)
-
-
-def _of_several(annotation: Any) -> str:
-    """Return the placeholder of a list or map."""
-    plain = get_args(annotation)[0] if get_origin(annotation) is Annotated else annotation
-    if get_origin(plain) is not dict:
+    if annotation in PLACEHOLDERS:
+        return PLACEHOLDERS[annotation]
+    container = get_args(annotation)[0] if get_origin(annotation) is Annotated else annotation
+    if get_origin(container) is not dict:
         return LISTED
-    return PAIRED if plain == dict[str, str] else STRUCTURED
-
-
-def _without_none(annotation: Any) -> Any:
-    """Return X for the annotation `X | None`, any other annotation unchanged."""
-    if get_origin(annotation) in (Union, types.UnionType):
-        (annotation,) = (part for part in get_args(annotation) if part is not type(None))
-    return annotation
+    return PAIRED if container == dict[str, str] else STRUCTURED
 
 
 def _worded(default: Any) -> str:

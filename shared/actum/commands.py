@@ -10,7 +10,7 @@ import msgpack
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
-from actum.codec import MOST_VALUES, UNPACK_ERRORS, Unpacking, encodable, with_different_names
+from actum.codec import MOST_VALUES, UNPACK_ERRORS, encodable, unpack, with_different_names
 
 Q = TypeVar("Q", bound="Request")
 A = TypeVar("A", bound=BaseModel)
@@ -139,7 +139,7 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
     if not payload:
         return {}
     try:
-        fields = Unpacking().unpack(payload) if encoding.startswith(MSGPACK) else _from_json(payload)
+        fields = unpack(payload) if encoding.startswith(MSGPACK) else _from_json(payload)
     except UNPACK_ERRORS as error:
         raise Refusal(
             f"the request cannot be decoded ({error}): send a JSON object, or a MessagePack map with the encoding "

@@ -44,16 +44,14 @@ class OneEuro:
         if self._stamp_ns is None or not 0 < stamp_ns - self._stamp_ns <= GAP_NS:
             self._points, self._velocity = points, np.zeros_like(points)
         else:
-            self._update((stamp_ns - self._stamp_ns) / SECOND_NS, points)
+            interval_s = (stamp_ns - self._stamp_ns) / SECOND_NS
+            derivative = (points - self._points) / interval_s
+            self._velocity = self._velocity + _gain(self._speed_cutoff_hz, interval_s) * (derivative - self._velocity)
+            speed = np.linalg.norm(self._velocity, axis=-1, keepdims=True)
+            cutoff_hz = self._min_cutoff_hz + self._beta_per_m * speed
+            self._points = self._points + _gain(cutoff_hz, interval_s) * (points - self._points)
         self._stamp_ns = stamp_ns
         return self._points
-
-    def _update(self, interval_s: float, points: Array) -> None:
-        derivative = (points - self._points) / interval_s
-        self._velocity = self._velocity + _gain(self._speed_cutoff_hz, interval_s) * (derivative - self._velocity)
-        speed = np.linalg.norm(self._velocity, axis=-1, keepdims=True)
-        cutoff_hz = self._min_cutoff_hz + self._beta_per_m * speed
-        self._points = self._points + _gain(cutoff_hz, interval_s) * (points - self._points)
 
 
 @dataclass(frozen=True, eq=False)

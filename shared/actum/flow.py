@@ -35,11 +35,6 @@ class Flow:
                 self._resumed_ns = now_ns
             self._last_ns, self._arrived = now_ns, False
 
-    @property
-    def _stands_still(self) -> bool:
-        """Whether messages have stopped coming, and may come again: they came, and not long ago."""
-        return self._last_ns is not None and STILL_NS < self._now_ns - self._last_ns <= PATIENCE_NS
-
     def ended(self, since_ns: int, patience_ns: int) -> bool:
         """Tell whether what was waited for since a tick (ns) will come no more: the stream went on without it.
 
@@ -48,4 +43,5 @@ class Flow:
         """
         if self._now_ns - since_ns > PATIENCE_NS + patience_ns:
             return True
-        return not self._stands_still and self._now_ns - max(since_ns, self._resumed_ns) >= patience_ns
+        stands_still = self._last_ns is not None and STILL_NS < self._now_ns - self._last_ns <= PATIENCE_NS
+        return not stands_still and self._now_ns - max(since_ns, self._resumed_ns) >= patience_ns

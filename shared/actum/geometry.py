@@ -120,7 +120,8 @@ def ego_from_camera(joints: Array) -> Array:
     origin = right_hip + ((torso - right_hip) * left).sum(axis=-1, keepdims=True) * left
     up = _unit(torso - origin, "the torso lies on the line through both hips")
     ego = np.zeros((*joints.shape[:-2], 4, 4))
-    ego[..., 0, :3], ego[..., 1, :3], ego[..., 2, :3] = left, up, _cross(left, up)
+    forward = left[..., _NEXT] * up[..., _PREVIOUS] - left[..., _PREVIOUS] * up[..., _NEXT]
+    ego[..., 0, :3], ego[..., 1, :3], ego[..., 2, :3] = left, up, forward
     ego[..., :3, 3] = -(ego[..., :3, :3] @ origin[..., None])[..., 0]
     ego[..., 3, 3] = 1.0
     return ego
@@ -179,8 +180,3 @@ def _unit(vectors: Array, problem: str) -> Array:
     if lengths.min() < SMALLEST_M:
         raise DegenerateError(problem)
     return vectors / lengths
-
-
-def _cross(a: Array, b: Array) -> Array:
-    product: Array = a[..., _NEXT] * b[..., _PREVIOUS] - a[..., _PREVIOUS] * b[..., _NEXT]
-    return product

@@ -3,25 +3,47 @@
 The check runs every few seconds beside each service, so it imports nothing that is slow to import.
 """
 
+import logging
 import os
 import sys
 import time
 from pathlib import Path
 
+log = logging.getLogger("actum")
+
 FRESH_S = 5.0
 """How old (s) the health file of a healthy service may be: it is touched once a second."""
 
 
-def write_health(path: Path, healthy: bool) -> None:
-    """Touch the health file of a service that works and has a router; remove that of any other.
+class HealthFile:
+    """The health file of a running service or router, where one is set.
 
-    Its time of modification is the monotonic clock's, which processes of one machine share: the wall clock may be set.
+    That the file cannot be written is logged once, and writing is tried again each time.
     """
-    if healthy:
-        path.open("ab").close()
-        os.utime(path, ns=(time.monotonic_ns(), time.monotonic_ns()))
-    else:
-        path.unlink(missing_ok=True)
+
+    def __init__(self, path: Path | None) -> None:
+        self._path = path
+        self._unwritable = False
+
+    def write(self, healthy: bool) -> None:
+        """Touch the file of a process that works and has a router; remove the file of any other process.
+
+        Its time of modification is the monotonic clock's, which processes of one machine share: the wall clock may be
+        set.
+        """
+        if self._path is None:
+            return
+        try:
+            if healthy:
+                self._path.open("ab").close()
+                os.utime(self._path, ns=(time.monotonic_ns(), time.monotonic_ns()))
+            else:
+                self._path.unlink(missing_ok=True)
+            self._unwritable = False
+        except (OSError, ValueError) as error:  # ValueError: a path that no file can have
+            if not self._unwritable:
+                log.warning("the health file cannot be written: %s", error)
+            self._unwritable = True
 
 
 def is_healthy(path: Path) -> bool:

@@ -29,15 +29,10 @@ def pip_install(extras: str, origin: str = FOLDER, flag: str = "") -> str:
 
 def adding(extras: str) -> str:
     """Return the command that adds extras to this installation, from the folder or the wheel that it came from."""
-    told = _told_by_pip()
-    url = urlsplit(told.get("url", ""))
+    text = distribution("actum").read_text("direct_url.json")
+    written_by_pip: dict[str, Any] = json.loads(text) if text else {}
+    url = urlsplit(written_by_pip.get("url", ""))
     origin = Path(url2pathname(url.path))
     if url.scheme == "file" and origin.exists():
-        return pip_install(extras, str(origin), "-e " if told.get("dir_info", {}).get("editable") else "")
+        return pip_install(extras, str(origin), "-e " if written_by_pip.get("dir_info", {}).get("editable") else "")
     return pip_install(extras) if INDEX_NAME else f"{pip_install(extras)} in the folder of actum's repository"
-
-
-def _told_by_pip() -> dict[str, Any]:
-    """Return what pip wrote down of the place that it took this package from; empty where it wrote nothing."""
-    text = distribution("actum").read_text("direct_url.json")
-    return dict(json.loads(text)) if text else {}

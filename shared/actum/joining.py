@@ -27,16 +27,12 @@ def joined(recordings: Iterable[Iterable[Message]], start_ns: int | None = None)
             if shift_ns is None:
                 shift_ns = 0 if begin_ns is None else begin_ns - message.stamp_ns
             newest_ns = max(newest_ns, message.stamp_ns + shift_ns)
-            yield message.model_copy(update=_stamps(message, shift_ns) | {"seq": numbers.shifted(message)})
+            changes = {"stamp_ns": message.stamp_ns + shift_ns, "seq": numbers.shifted(message)}
+            if isinstance(message, Posture) and message.previous_ns is not None:
+                changes["previous_ns"] = max(message.previous_ns + shift_ns, 0)
+            yield message.model_copy(update=changes)
         if shift_ns is not None:
             begin_ns = newest_ns + PAUSE_NS
-
-
-def _stamps(message: Message, shift_ns: int) -> dict[str, int | None]:
-    """Return a message's shifted stamp, and of a posture the shifted `previous_ns`."""
-    if not isinstance(message, Posture) or message.previous_ns is None:
-        return {"stamp_ns": message.stamp_ns + shift_ns}
-    return {"stamp_ns": message.stamp_ns + shift_ns, "previous_ns": max(message.previous_ns + shift_ns, 0)}
 
 
 class _Numbers:

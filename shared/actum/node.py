@@ -55,8 +55,8 @@ class Counters:
         self.last_error = encodable(complaint[:LONGEST_COMPLAINT])
 
 
-class Node(Protocol):
-    """A service's logic: it keeps state, but uses no socket, no clock and no sleep."""
+class Servable(Protocol):
+    """What the runtime runs as a service."""
 
     counters: Counters
 
@@ -64,6 +64,10 @@ class Node(Protocol):
     def name(self) -> str:
         """The service's name, as in its keys."""
         ...
+
+
+class Node(Servable, Protocol):
+    """A service's logic: it keeps state, but uses no socket, no clock and no sleep."""
 
     @property
     def inputs(self) -> tuple[keys.Topic, ...]:
@@ -87,15 +91,8 @@ class Remembering(Protocol):
         ...
 
 
-class Source(Protocol):
+class Source(Servable, Protocol):
     """A sensor that yields frames in the order of their stamps. The runtime decides when to put each."""
-
-    counters: Counters
-
-    @property
-    def name(self) -> str:
-        """The service's name, as in its keys."""
-        ...
 
     @property
     def paced(self) -> bool:

@@ -93,20 +93,15 @@ class LiveParameters(Generic[S]):
                 f"{', '.join(unknown)} cannot be changed while the service runs: restart the service with the new "
                 f"value. The settings that can be changed are {', '.join(self._names)}"
             )
-        settings = self._changed(request.values)
-        self._apply(settings)
-        self._settings = settings
-        return self.describe(NoFields())
-
-    def _changed(self, values: Mapping[str, Any]) -> S:
-        """Return the settings with new values, each validated as at the start."""
         changed = self._settings.model_copy()
-        for name, value in values.items():
+        for name, value in request.values.items():
             try:
                 type(changed).__pydantic_validator__.validate_assignment(changed, name, value)
             except ValidationError as error:
                 raise Refusal(problems(error)) from None
-        return changed
+        self._apply(changed)
+        self._settings = changed
+        return self.describe(NoFields())
 
 
 def _parameter(name: str, value: Any, schema: Mapping[str, Any]) -> Parameter:

@@ -180,16 +180,14 @@ class Recorder:
 
     def _channel(self, frame: codec.Frame, message: Message) -> int:
         if frame.key not in self._channels:
+            schema = codec.schema_name(message)
+            if schema not in self._schemas:
+                json_text = json_schema(type(message))
+                self._schemas[schema] = self._writer.register_schema(schema, SCHEMA_ENCODING, json_text)
             self._channels[frame.key] = self._writer.register_channel(
-                frame.key, MESSAGE_ENCODING, self._schema(message), {"encoding": frame.encoding}
+                frame.key, MESSAGE_ENCODING, self._schemas[schema], {"encoding": frame.encoding}
             )
         return self._channels[frame.key]
-
-    def _schema(self, message: Message) -> int:
-        name = codec.schema_name(message)
-        if name not in self._schemas:
-            self._schemas[name] = self._writer.register_schema(name, SCHEMA_ENCODING, json_schema(type(message)))
-        return self._schemas[name]
 
     def _finish(self) -> None:
         try:

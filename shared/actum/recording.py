@@ -82,18 +82,6 @@ class Recording:
         """Return the sensors of which it holds at least one message of a topic, sorted."""
         return sorted({address.sensor for address in self._addresses if address.topic is topic})
 
-    def lacks_frames_at(self, sensor: str, stamp_ns: int) -> bool:
-        """Tell whether a mark of that stamp would be skipped: it lies outside of the sensor's frames.
-
-        Raises:
-            RecordingError: the file is damaged.
-        """
-        spans = _Spans()
-        for stored in self._file.stored():
-            if (address := _address(stored.key)) is not None:
-                spans.note(address, stored.publish_ns)
-        return not spans.hold(sensor, stamp_ns)
-
     @cached_property
     def _addresses(self) -> list[keys.Address]:
         found = {stored.key: _address(stored.key) for stored in self._file.stored()}

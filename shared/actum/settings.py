@@ -56,15 +56,11 @@ def complaint(error: ValueError) -> str:
     if not isinstance(error, ValidationError):
         return str(error)
     problems = [
-        ": ".join([*_setting(e["loc"]), e["msg"].removeprefix("Value error, ")])
+        # no setting is named where several do not go together
+        ": ".join(filter(None, [".".join(map(str, e["loc"])), e["msg"].removeprefix("Value error, ")]))
         for e in error.errors(include_url=False)
     ]
     return f"settings: {'; '.join(problems)}"
-
-
-def _setting(place: tuple[int | str, ...]) -> list[str]:
-    """Return the name of the setting that is wrong, none where several do not go together."""
-    return [".".join(map(str, place))] if place else []
 
 
 def _endpoint(text: str) -> str:
@@ -173,17 +169,14 @@ class ServiceSettings(BaseSettings):
         Raises:
             SettingsError: that file does not exist, or is no TOML.
         """
-        return init_settings, env_settings, _file_source(settings_cls, os.environ.get("ACTUM_CONFIG"))
-
-
-def _file_source(settings_cls: type[BaseSettings], name: str | None) -> TomlConfigSettingsSource:
-    if name and not Path(name).is_file():
-        raise SettingsError(
-            f"ACTUM_CONFIG names {name}, which does not exist or is not a file: correct or unset ACTUM_CONFIG"
-        )
-    try:
-        return TomlConfigSettingsSource(settings_cls, toml_file=name or None)
-    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise SettingsError(
-            f"ACTUM_CONFIG names {name}, which is not readable TOML ({error}): correct that file"
-        ) from None
+        name = os.environ.get("ACTUM_CONFIG")
+        if name and not Path(name).is_file():
+            raise SettingsError(
+                f"ACTUM_CONFIG names {name}, which does not exist or is not a file: correct or unset ACTUM_CONFIG"
+            )
+        try:
+            return init_settings, env_settings, TomlConfigSettingsSource(settings_cls, toml_file=name or None)
+        except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise SettingsError(
+                f"ACTUM_CONFIG names {name}, which is not readable TOML ({error}): correct that file"
+            ) from None

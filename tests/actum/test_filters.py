@@ -1,9 +1,15 @@
-"""The Kalman filter of a point at a nearly constant velocity: its closed form, and innovations as modelled."""
+"""The filters of noisy points.
+
+The Kalman filter of a point at a nearly constant velocity: its closed form, and innovations as modelled. The one-euro
+filter: quiet at rest, and in motion never later than one frame.
+"""
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from actum.filters import MotionEstimate
+from actum.filters import MotionEstimate, OneEuro
 
 NOISE_M2 = np.diag([0.01, 0.02, 0.05]) ** 2
 ACCELERATION_STD_MPS2 = np.array([2.0, 1.0, 0.5])
@@ -62,3 +68,36 @@ def test_without_measurements_it_goes_on_and_becomes_less_certain() -> None:
     ahead = estimate.predicted(0.5, ACCELERATION_STD_MPS2)
     assert ahead.position_m == pytest.approx(estimate.position_m + 0.5 * estimate.velocity_mps)
     assert (np.diag(ahead.covariance) > np.diag(estimate.covariance)).all()
+
+
+def low_passed(points: np.ndarray) -> np.ndarray:
+    low_pass = OneEuro()
+    return np.array([low_pass.step(round(i * STEP_S * 1e9), point) for i, point in enumerate(points)])
+
+
+@given(speed_mps=st.floats(0.3, 3.0), heading=st.floats(0, 6.28))
+def test_a_steady_motion_lags_by_less_than_a_frame(speed_mps: float, heading: float) -> None:
+    velocity = speed_mps * np.array([np.cos(heading), np.sin(heading), 0.0])
+    points = np.arange(60)[:, None, None] * STEP_S * velocity
+    lag_s = np.linalg.norm(points[-1] - low_passed(points)[-1]) / speed_mps
+    assert 0 < lag_s <= STEP_S
+
+
+def test_what_rests_stays_and_its_noise_is_halved() -> None:
+    rest = np.full((90, 15, 3), 0.7)
+    assert low_passed(rest) == pytest.approx(rest)
+    noise = np.random.default_rng(0).normal(0, 0.004, rest.shape)
+    assert low_passed(rest + noise)[30:].std() < 0.5 * noise.std()
+
+
+@given(shift=st.floats(-5, 5))
+def test_it_does_not_matter_where_it_happens(shift: float) -> None:
+    points = np.random.default_rng(1).normal(0, 0.1, (20, 15, 3))
+    assert low_passed(points + shift) == pytest.approx(low_passed(points) + shift, abs=1e-9)
+
+
+def test_after_a_gap_it_begins_anew() -> None:
+    low_pass = OneEuro()
+    low_pass.step(0, np.zeros((1, 3)))
+    assert low_pass.step(600_000_000, np.ones((1, 3))).tolist() == [[1.0, 1.0, 1.0]]
+    assert low_pass.step(633_000_000, np.zeros((1, 3)))[0, 0] > 0

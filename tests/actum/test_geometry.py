@@ -34,19 +34,16 @@ def scaled_ego(joints: np.ndarray) -> np.ndarray:
     return geometry.apply(geometry.ego_from_camera(standard), standard)
 
 
-def test_a_person_facing_the_camera() -> None:
-    ego = geometry.ego_from_camera(STANDING)
-    forward, left = ego[2, :3], ego[0, :3]
-    assert forward @ -STANDING[INDEX["torso"]] > 0, "forward points to the camera"
-    assert left @ np.array([1.0, 0.0, 0.0]) > 0.99, "the actor's left is the image's right"
-    assert geometry.apply(ego, STANDING)[INDEX["head"], 1] > 0, "the head is up"
+def hips_and_torso(torso_m: list[float]) -> np.ndarray:
+    """Hips 0.4 m apart along x, 2 m away."""
+    joints = np.zeros((15, 3))
+    joints[INDEX["right_hip"]], joints[INDEX["left_hip"]] = [-0.1, 0.0, 2.0], [0.3, 0.0, 2.0]
+    joints[INDEX["torso"]] = torso_m
+    return joints
 
 
 def test_the_origin_is_the_torsos_projection_on_the_hip_line() -> None:
-    joints = np.zeros((15, 3))
-    joints[INDEX["right_hip"]] = [-0.1, 0.0, 2.0]
-    joints[INDEX["left_hip"]] = [0.3, 0.0, 2.0]
-    joints[INDEX["torso"]] = [0.05, -0.25, 2.0]
+    joints = hips_and_torso([0.05, -0.25, 2.0])
     ego = geometry.ego_from_camera(joints)
     np.testing.assert_allclose(geometry.apply(ego, np.array([0.05, 0.0, 2.0])), 0, atol=1e-12)
     np.testing.assert_allclose(geometry.apply(ego, joints[INDEX["torso"]]), [0, 0.25, 0], atol=1e-12)
@@ -54,42 +51,26 @@ def test_the_origin_is_the_torsos_projection_on_the_hip_line() -> None:
 
 
 def test_the_axes_lean_with_the_trunk() -> None:
-    """Hips along x, the torso 0.3 m above and 0.4 m nearer to the camera: a trunk of 0.5 m, leaning forward."""
-    joints = np.zeros((15, 3))
-    joints[INDEX["right_hip"]] = [-0.1, 0.0, 2.0]
-    joints[INDEX["left_hip"]] = [0.3, 0.0, 2.0]
-    joints[INDEX["torso"]] = [0.05, -0.3, 1.6]
-    left, up, forward = geometry.ego_from_camera(joints)[:3, :3]
+    """The torso 0.3 m above the hips and 0.4 m nearer to the camera: a trunk of 0.5 m, leaning forward."""
+    left, up, forward = geometry.ego_from_camera(hips_and_torso([0.05, -0.3, 1.6]))[:3, :3]
     np.testing.assert_allclose(left, [1, 0, 0], atol=1e-12)
     np.testing.assert_allclose(up, [0, -0.6, -0.8], atol=1e-12)
     np.testing.assert_allclose(forward, [0, 0.8, -0.6], atol=1e-12)
 
 
-@given(PEOPLE, ANGLES, st.tuples(SHIFTS, SHIFTS, SHIFTS))
-def test_the_metric_posture_does_not_know_where_the_actor_stands(
-    person: np.ndarray, heading: float, shift: tuple[float, float, float]
+@given(PEOPLE, ANGLES, st.tuples(SHIFTS, SHIFTS, SHIFTS), SIZES, AXES, ANGLES)
+def test_a_posture_knows_neither_the_actors_place_nor_how_the_camera_is_held_and_a_scaled_one_no_size(
+    person: np.ndarray,
+    heading: float,
+    shift: tuple[float, float, float],
+    size: float,
+    axis: tuple[float, float, float],
+    angle: float,
 ) -> None:
-    here = geometry.apply(geometry.ego_from_camera(person), person)
-    moved = turned(person, heading, shift)
-    there = geometry.apply(geometry.ego_from_camera(moved), moved)
-    np.testing.assert_allclose(there, here, atol=1e-9)
-
-
-@given(PEOPLE, ANGLES, st.tuples(SHIFTS, SHIFTS, SHIFTS), SIZES)
-def test_the_scaled_posture_does_not_know_the_actors_size_either(
-    person: np.ndarray, heading: float, shift: tuple[float, float, float], size: float
-) -> None:
-    np.testing.assert_allclose(scaled_ego(turned(person, heading, shift, size)), scaled_ego(person), atol=1e-9)
-
-
-@given(PEOPLE, AXES, ANGLES)
-def test_neither_knows_how_the_camera_is_held(
-    person: np.ndarray, axis: tuple[float, float, float], angle: float
-) -> None:
-    tilted = rotated(person, axis, angle)
-    metric = [geometry.apply(geometry.ego_from_camera(joints), joints) for joints in (tilted, person)]
-    np.testing.assert_allclose(*metric, atol=1e-9)
-    np.testing.assert_allclose(scaled_ego(tilted), scaled_ego(person), atol=1e-9)
+    seen = rotated(turned(person, heading, shift, size), axis, angle)
+    metric, unmoved = (geometry.apply(geometry.ego_from_camera(joints), joints) for joints in (seen, person))
+    np.testing.assert_allclose(metric, size * unmoved, atol=1e-9)
+    np.testing.assert_allclose(scaled_ego(seen), scaled_ego(person), atol=1e-9)
 
 
 def test_different_postures_stay_different() -> None:

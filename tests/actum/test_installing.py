@@ -1,10 +1,12 @@
 """What installs this package works wherever it came from, and fetches nothing by a name that is not ours."""
 
+import json
 import re
 import shlex
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -28,7 +30,12 @@ OF_ITSELF = {"pyproject.toml"}
 @pytest.fixture
 def came_from(monkeypatch: pytest.MonkeyPatch) -> Tell:
     """Let pip have written down where the package came from."""
-    return lambda **told: monkeypatch.setattr(installing, "_told_by_pip", lambda: told)
+
+    def tell(**told: object) -> None:
+        written = SimpleNamespace(read_text=lambda _name: json.dumps(told) if told else None)
+        monkeypatch.setattr(installing, "distribution", lambda _package: written)
+
+    return tell
 
 
 def tracked() -> list[Path]:
@@ -53,50 +60,39 @@ def test_no_page_help_script_or_file_has_the_project_fetched_by_its_name() -> No
 
 
 @pytest.mark.parametrize(
-    "line",
+    ("found", "line"),
     [
-        "pip install 'actum[view]'",
-        "pip install --upgrade actum",
-        "needs `actum[camera]`",
-        "sudo /opt/actum/bin/pip install actum==0.1.0",
-        "uv pip install actum",
-        "pipx install actum",
-        "uvx actum up",
-        "docker run --rm actum/som_classifier",
+        (True, "pip install 'actum[view]'"),
+        (True, "pip install --upgrade actum"),
+        (True, "needs `actum[camera]`"),
+        (True, "sudo /opt/actum/bin/pip install actum==0.1.0"),
+        (True, "uv pip install actum"),
+        (True, "pipx install actum"),
+        (True, "uvx actum up"),
+        (True, "docker run --rm actum/som_classifier"),
+        (False, "pip install '.[view]'"),
+        (False, "pip install 'dist/actum-0.1.0-py3-none-any.whl[all]'"),
+        (False, 'f"actum[all] @ {wheel.as_uri()}"'),
+        (False, "pip install eclipse-zenoh msgpack and nothing of actum"),
+        (False, "docker build -t actum/som_classifier ."),
+        (False, "docker run --pull never actum/som_classifier"),
     ],
 )
-def test_the_search_finds(line: str) -> None:
-    assert FROM_AN_INDEX.search(line)
+def test_what_the_search_finds(found: bool, line: str) -> None:
+    assert bool(FROM_AN_INDEX.search(line)) == found
 
 
 @pytest.mark.parametrize(
-    "line",
-    [
-        "pip install '.[view]'",
-        "pip install 'dist/actum-0.1.0-py3-none-any.whl[all]'",
-        'f"actum[all] @ {wheel.as_uri()}"',
-        "pip install eclipse-zenoh msgpack and nothing of actum",
-        "docker build -t actum/som_classifier .",
-        "docker run --pull never actum/som_classifier",
-    ],
+    ("written_by_pip", "flags"),
+    [({"archive_info": {}}, []), ({"dir_info": {}}, []), ({"dir_info": {"editable": True}}, ["-e"])],
 )
-def test_the_search_leaves(line: str) -> None:
-    assert not FROM_AN_INDEX.search(line)
-
-
-def test_what_came_from_a_wheel_is_completed_from_it(came_from: Tell, tmp_path: Path) -> None:
-    wheel = tmp_path / "a folder" / "actum-0.1.0-py3-none-any.whl"
-    wheel.parent.mkdir()
-    wheel.touch()
-    came_from(url=wheel.as_uri(), archive_info={})
-    assert shlex.split(installing.adding("view")) == ["pip", "install", f"{wheel}[view]"]
-
-
-def test_what_came_from_a_folder_is_completed_from_it(came_from: Tell, tmp_path: Path) -> None:
-    came_from(url=tmp_path.as_uri(), dir_info={"editable": True})
-    assert shlex.split(installing.adding("view")) == ["pip", "install", "-e", f"{tmp_path}[view]"]
-    came_from(url=tmp_path.as_uri(), dir_info={})
-    assert shlex.split(installing.adding("view")) == ["pip", "install", f"{tmp_path}[view]"]
+def test_what_came_from_a_wheel_or_a_folder_is_completed_from_it(
+    came_from: Tell, tmp_path: Path, written_by_pip: dict[str, object], flags: list[str]
+) -> None:
+    origin = tmp_path / "a folder"
+    origin.mkdir()
+    came_from(url=origin.as_uri(), **written_by_pip)
+    assert shlex.split(installing.adding("view")) == ["pip", "install", *flags, f"{origin}[view]"]
 
 
 @pytest.mark.parametrize("told", [{}, {"url": "https://example.org/actum.git"}, {"url": "file:///build"}])

@@ -14,8 +14,7 @@ from actum import codec, keys
 from actum.messages import Agent, Image, Message, Objects, Segment, Skeleton
 from actum.recorder import CHUNK_BYTES, Recorder
 from actum.recording import Recording, RecordingError
-
-EYE = [1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0]
+from empty_messages import image, mark
 
 
 def skeleton(stamp_ns: int, **fields: object) -> Skeleton:
@@ -23,24 +22,8 @@ def skeleton(stamp_ns: int, **fields: object) -> Skeleton:
     return Skeleton.model_validate({"stamp_ns": stamp_ns, "sensor": "kinect0", "agents": [agent], **fields})
 
 
-def mark(kind: str, stamp_ns: int | None, segment_id: str = "one", **fields: object) -> Segment:
-    return Segment.model_validate(
-        {"stamp_ns": stamp_ns, "sensor": "kinect0", "kind": kind, "segment_id": segment_id, **fields}
-    )
-
-
-def image(stamp_ns: int, image_format: str = "jpeg") -> Image:
-    return Image(
-        stamp_ns=stamp_ns,
-        sensor="kinect0",
-        format=image_format,  # type: ignore[arg-type]
-        width=2,
-        height=1,
-        data=b"\x00\xff" * 3,
-        K=[500.0, 0, 320, 0, 500.0, 240, 0, 0, 1],
-        distortion=[],
-        skeleton_from_image=EYE,
-    )
+def depth(stamp_ns: int) -> Image:
+    return image(stamp_ns).model_copy(update={"format": "depth16_mm"})
 
 
 def written(path: Path, *messages: Message) -> Recording:
@@ -63,7 +46,7 @@ def write_foreign(path: Path, key: str, payload: bytes, publish_ns: int = 5, sch
 
 def test_what_was_written_comes_back_with_its_number(tmp_path: Path) -> None:
     objects = Objects(stamp_ns=3, sensor="kinect0", objects=[])
-    messages = [skeleton(1, session_id="s"), image(2), image(2, "depth16_mm"), objects, mark("start", 4, label="push")]
+    messages = [skeleton(1, session_id="s"), image(2), depth(2), objects, mark("start", 4, label="push")]
     read = list(written(tmp_path / "a.mcap", *messages).messages())
     assert read == [message.model_copy(update={"seq": 0}) for message in messages]
 
@@ -78,13 +61,17 @@ def test_a_number_on_a_message_is_kept_and_counted_on_from(tmp_path: Path) -> No
     ]
 
 
-def test_person_source_and_free_fields_are_metadata(tmp_path: Path) -> None:
+def test_person_source_action_points_and_free_fields_are_metadata(tmp_path: Path) -> None:
     with Recorder(tmp_path / "a.mcap", person="3", source="msr-action3d", excluded="true"):
         pass
     recording = Recording(tmp_path / "a.mcap")
     assert (recording.person, recording.source) == ("3", "msr-action3d")
     assert recording.metadata == {"person": "3", "source": "msr-action3d", "excluded": "true"}
+    assert recording.action_points_ns == {}
     assert list(recording.messages()) == []
+    with Recorder(tmp_path / "b.mcap", person="3", source="test", action_points_ns='{"x-01": 5}'):
+        pass
+    assert Recording(tmp_path / "b.mcap").action_points_ns == {"x-01": 5}
 
 
 def test_any_mcap_tool_finds_key_schema_and_times(tmp_path: Path) -> None:
@@ -121,7 +108,7 @@ def test_messages_come_in_order_of_stamp_whatever_order_they_were_written_in(
 
 
 def test_images_are_merged_into_the_order_of_stamps(tmp_path: Path) -> None:
-    recording = written(tmp_path / "a.mcap", image(1), image(3), image(2, "depth16_mm"), mark("start", 1), skeleton(2))
+    recording = written(tmp_path / "a.mcap", image(1), image(3), depth(2), mark("start", 1), skeleton(2))
     assert [(message.stamp_ns, keys.address_of(message).topic.leaf) for message in recording.messages()] == [
         (1, "segment"),
         (1, "image/color"),
@@ -242,25 +229,13 @@ def test_damage_is_told_or_harmless(intact: Path, data: st.DataObject) -> None:
         assert all(message in messages for message in read)
 
 
-@pytest.mark.parametrize("content", [b"", b"\x89MCAP", b"PK\x03\x04 something else altogether"])
-def test_a_file_that_is_no_mcap_is_an_error(tmp_path: Path, content: bytes) -> None:
-    (tmp_path / "a.mcap").write_bytes(content)
-    with pytest.raises(RecordingError, match=r"a\.mcap: the file is not an MCAP file; give a recording"):
-        Recording(tmp_path / "a.mcap")
-
-
-def test_a_missing_file_is_an_error(tmp_path: Path) -> None:
+def test_a_file_that_is_missing_or_no_mcap_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="No such file"):
         Recording(tmp_path / "a.mcap")
-
-
-def test_action_points_are_read_from_the_metadata(tmp_path: Path) -> None:
-    with Recorder(tmp_path / "a.mcap", person="1", source="test", action_points_ns='{"x-01": 5}'):
-        pass
-    with Recorder(tmp_path / "b.mcap", person="1", source="test"):
-        pass
-    assert Recording(tmp_path / "a.mcap").action_points_ns == {"x-01": 5}
-    assert Recording(tmp_path / "b.mcap").action_points_ns == {}
+    for content in (b"", b"\x89MCAP", b"PK\x03\x04 something else altogether"):
+        (tmp_path / "a.mcap").write_bytes(content)
+        with pytest.raises(RecordingError, match=r"a\.mcap: the file is not an MCAP file; give a recording"):
+            Recording(tmp_path / "a.mcap")
 
 
 @pytest.mark.parametrize("points", ["", "[1]", '{"x": "soon"}', '{"x": null}'])

@@ -2,8 +2,8 @@ import pytest
 
 from actum.codec import encode
 from actum.messages import Message, Segment
-from actum.runtime import repetitions as module
-from actum.runtime.repetitions import Repetitions
+from actum.runtime import step_service
+from actum.runtime.step_service import Repetitions
 from scenes import action
 
 
@@ -34,7 +34,7 @@ def test_others_are_handed_on_each_time(message: Message) -> None:
 
 
 def test_the_last_ones_are_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "REMEMBERED", 2)
+    monkeypatch.setattr(step_service, "REMEMBERED", 2)
     known = Repetitions()
     numbered = [action("push", seq=seq) for seq in range(3)]
     assert [has(known, each) for each in numbered] == [False] * 3

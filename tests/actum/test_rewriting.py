@@ -13,17 +13,13 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 
 from actum.codec import encode
-from actum.mcap_file import RecordingError, StoredMessage
+from actum.mcap_file import RecordingError
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum.rewriting import finish, rewrite
+from actum.rewriting import finish, rewrite, unchanged
 from empty_messages import image, mark, skeleton
 
 SKELETON = "actum/kinect0/skeleton"
-
-
-def same(stored: StoredMessage) -> StoredMessage:
-    return stored
 
 
 def content(path: Path) -> dict[str, Any]:
@@ -68,7 +64,7 @@ def beside(path: Path) -> Iterable[str]:
 
 def test_what_is_not_changed_stays_as_it_is(path: Path) -> None:
     before = content(path)
-    rewrite(path, same)
+    rewrite(path, unchanged)
     assert content(path) == before
     assert Recording(path).metadata == {"person": "anna", "source": "test", "lens": "60"}
     assert beside(path) == []
@@ -84,7 +80,7 @@ def test_what_others_put_into_the_file_stays(tmp_path: Path) -> None:
         writer.add_message(channel, log_time=9, data=b"{}", publish_time=5, sequence=3)
         writer.finish()
     before = content(path)
-    rewrite(path, same)
+    rewrite(path, unchanged)
     assert content(path) == before
 
 
@@ -98,7 +94,7 @@ def test_a_damaged_recording_is_left_as_it_is(path: Path) -> None:
     damaged[damaged.index(b"zstd") + 40] ^= 0xFF
     path.write_bytes(damaged)
     with pytest.raises(RecordingError, match="damaged"):
-        rewrite(path, same)
+        rewrite(path, unchanged)
     assert path.read_bytes() == damaged
     assert beside(path) == []
 
@@ -112,7 +108,7 @@ def test_a_recording_whose_new_one_cannot_be_written_is_left_as_it_is(
     before = path.read_bytes()
     monkeypatch.setattr(Writer, "finish", full)
     with pytest.raises(OSError, match="No space left"):
-        rewrite(path, same)
+        rewrite(path, unchanged)
     assert path.read_bytes() == before
     assert beside(path) == []
 
@@ -131,7 +127,7 @@ def test_of_a_recording_that_breaks_off_all_that_can_be_read_is_kept(path: Path)
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])
     readable = len(list(Recording(path).messages()))
-    rewrite(path, same)
+    rewrite(path, unchanged)
     kept = Recording(path)
     assert len(list(kept.messages())) == readable > 100
     assert not kept.truncated
@@ -152,7 +148,7 @@ def foreign(path: Path, schema: int = 0, channel: int = 1, metadata: bool = True
 
 def test_a_channel_of_a_schema_that_is_not_there_is_copied_without_one(tmp_path: Path) -> None:
     path = foreign(tmp_path / "a.mcap", schema=77)
-    rewrite(path, same)
+    rewrite(path, unchanged)
     assert [message.stamp_ns for message in Recording(path).messages()] == [1]
 
 
@@ -166,9 +162,9 @@ def test_a_message_of_an_unknown_channel_is_told_and_the_file_is_as_it_was(tmp_p
 
 def test_what_is_said_of_a_recording_that_says_nothing_of_itself_is_stored(tmp_path: Path) -> None:
     path = foreign(tmp_path / "a.mcap", metadata=False)
-    rewrite(path, same)
+    rewrite(path, unchanged)
     assert Recording(path).metadata == {}
-    rewrite(path, same, metadata={"mirrored": '["cut-1"]'})
+    rewrite(path, unchanged, metadata={"mirrored": '["cut-1"]'})
     assert Recording(path).metadata == {"mirrored": '["cut-1"]'}
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from actum.recorder import Recorder, StoredRecorder
+from actum.recorder import Recorder, StoredRecorder, unfinished
 from actum.recording import Recording, RecordingError
 from actum.rewriting import finish, rewrite, unchanged
 from empty_messages import skeleton
@@ -60,11 +60,7 @@ def killed(path: Path) -> bytes:
     """What a killed process has left of a recording."""
     with recording(path):
         pass
-    return part_of(path).read_bytes()
-
-
-def part_of(path: Path) -> Path:
-    return path.with_name(f"{path.name}.part")
+    return unfinished(path).read_bytes()
 
 
 def stamps(path: Path) -> list[int | None]:
@@ -82,7 +78,7 @@ def test_what_a_killed_process_left_is_not_overwritten(tmp_path: Path) -> None:
     left = killed(path)
     with pytest.raises(FileExistsError, match=r"a\.mcap\.part is an unfinished recording \(0\.\d MB.*--finish"):
         recorded(path, 1)
-    assert part_of(path).read_bytes() == left
+    assert unfinished(path).read_bytes() == left
 
 
 def test_a_recording_is_not_overwritten(tmp_path: Path) -> None:
@@ -106,7 +102,7 @@ def test_a_file_that_somebody_puts_there_meanwhile_is_not_overwritten(tmp_path: 
         recorder.write(skeleton(1))
         path.write_bytes(b"mine")
     assert path.read_bytes() == b"mine"
-    assert stamps(part_of(path)) == [1]
+    assert stamps(unfinished(path)) == [1]
 
 
 def test_where_there_are_no_hard_links_nothing_is_overwritten_either(
@@ -150,7 +146,7 @@ def test_what_was_stored_before_the_disk_was_full_is_readable(
             if freed:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
             raise
-    found = stamps(part_of(path))
+    found = stamps(unfinished(path))
     assert found == list(range(len(found)))
     assert len(found) > count / 4
 
@@ -170,7 +166,7 @@ def test_who_reads_a_recording_that_has_just_begun_finds_one(tmp_path: Path) -> 
 def test_what_a_killed_process_left_becomes_a_recording(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     killed(path)
-    left = stamps(part_of(path))
+    left = stamps(unfinished(path))
     assert finish(path) == len(left) > 1000
     assert [file.name for file in tmp_path.iterdir()] == ["a.mcap"]
     assert stamps(path) == left
@@ -196,10 +192,10 @@ def test_what_cannot_be_finished_stays_as_it_is(tmp_path: Path) -> None:
         finish(path)
     assert path.read_bytes() == b"mine"
     path.unlink()
-    part_of(path).write_bytes(b"")
+    unfinished(path).write_bytes(b"")
     with pytest.raises(RecordingError, match="the file is not an MCAP file"):
         finish(path)
-    part_of(path).write_bytes(left)
+    unfinished(path).write_bytes(left)
     finish(path)
     with pytest.raises(FileNotFoundError):
         finish(path)
@@ -208,4 +204,4 @@ def test_what_cannot_be_finished_stays_as_it_is(tmp_path: Path) -> None:
 def test_an_unfinished_recording_is_not_edited_under_the_hands_of_who_writes_it(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     with recording(path), pytest.raises(RecordingError, match=r"actum record .*a\.mcap --finish"):
-        rewrite(part_of(path), unchanged)
+        rewrite(unfinished(path), unchanged)

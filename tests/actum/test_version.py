@@ -10,7 +10,7 @@ import yaml
 
 import actum
 from actum.node import Counters
-from actum.runtime.meter import Meter
+from actum.runtime.reporting import Meter
 from actum.settings import ServiceSettings
 
 ROOT = Path(__file__).parents[2]

@@ -28,7 +28,7 @@ from actum.commands import JSON, MSGPACK, Command, NoFields
 from actum.messages import Message
 from actum.node import TICK_NS, Counters, Tick
 from actum.runtime.commanding import Commander
-from actum.runtime.meter import Meter
+from actum.runtime.reporting import Meter
 from actum.settings import ServiceSettings
 from model_trainer.trainer import ModelTrainer
 from node_cases import CASES
@@ -113,7 +113,7 @@ class Desk:
         self._meter = Meter(name, self.node.counters, ServiceSettings())
         self._commander = Commander(
             tuple(self.node.commands), ServiceSettings(), name, self.node.counters, threading.Lock(),
-            lambda: self._failures.append("a bug"),
+            lambda where, error: self._failures.append(f"{where}: {error!r}"),
         )  # fmt: skip
         self._base = keys.commands_key(ServiceSettings().sensor, name)
         self._tick_ns = 0
@@ -122,7 +122,7 @@ class Desk:
     def ask(self, command: str, payload: bytes, encoding: str) -> tuple[bool, dict[str, Any]]:
         question = Question(zenoh.KeyExpr(f"{self._base}/{command}"), encoding, zenoh.ZBytes(payload))
         self._commander._answer(question)  # type: ignore[arg-type]
-        assert not self._failures, f"{command} {payload[:300]!r} met a bug"
+        assert not self._failures, f"{command} {payload[:300]!r} met a bug: {self._failures}"
         [(good, reply, _)] = question.replies
         fields = json.loads(reply, parse_constant=_never) if encoding == JSON else msgpack.unpackb(reply)
         assert good or fields["error"]

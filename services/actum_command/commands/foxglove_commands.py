@@ -9,7 +9,7 @@ import typer
 
 from actum.recording import Recording
 from actum.runtime import Pace, stop_on_signals
-from actum.runtime.waiting import wait_for
+from actum.runtime.stopping import wait_for
 from actum_command.commands.recording_options import refuse_output
 from actum_command.commands.terminal import fail, say
 from actum_command.commands.viewed_streams import RecordingArgument, refuse_without, streams_of, tell_shown

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from actum.runtime import stop_on_signals
-from actum.runtime.waiting import wait_for
+from actum.runtime.stopping import wait_for
 from actum_command.commands.recording_options import refuse_output
 from actum_command.commands.terminal import fail, say
 from actum_command.commands.viewed_streams import RecordingArgument, refuse_without, streams_of, tell_shown

@@ -8,9 +8,8 @@ import imagesize
 import numpy as np
 
 from actum.arrays import Pixels
-from actum.darkness import is_black
-from actum.jpeg import MOST_SCANS, has_too_many_scans
 from actum.messages import Image
+from actum.pictures import MOST_SCANS, has_too_many_scans, is_black
 
 LARGEST_PIXELS = 4096 * 4096
 """Pixels of an image: 16 MB of grey levels, several times what a colour camera gives."""

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.darkness import is_black
 from actum.node import SECOND_NS
+from actum.pictures import is_black
 from sensor_gateway.captured_picture import Picture
 
 FROZEN_NS = SECOND_NS

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import zenoh
 from zenoh import ext
 
-from actum.bridge import Bridge, Foreign, ForeignNode, ForeignTopic
+from actum.bridge import Bridge, Foreign, ForeignTopic
 from actum.messages import Message
 from actum.node import Tick
 from actum.runtime.inbox import ENDING_S, Subscriber, subscribe
@@ -44,7 +44,9 @@ class BridgeService(StepService):
         ]
         for thread in threads:
             thread.start()
-        tokens = [session.liveliness().declare_token(token) for token in _tokens(node)]
+        topic_tokens = [topic.token for topic in (*node.publishes, *node.subscribes)]
+        # the node's token comes first, as the readers of tokens expect
+        tokens = [session.liveliness().declare_token(token) for token in (node.token, *topic_tokens)]
         try:
             super()._work(session, outbox, stop, vacant_s)
         finally:
@@ -72,27 +74,19 @@ class ForeignPublisher:
     def __init__(self, session: zenoh.Session, topic: ForeignTopic) -> None:
         self._topic = topic
         self._count = 0
-        self._publisher = _declared(session, topic)
+        if topic.latched:
+            self._publisher: Publisher = ext.declare_advanced_publisher(
+                session,
+                topic.key,
+                priority=zenoh.Priority.DATA_HIGH,
+                express=True,
+                cache=ext.CacheConfig(max_samples=1),
+                publisher_detection=True,
+            )
+        else:
+            self._publisher = session.declare_publisher(topic.key, priority=zenoh.Priority.DATA_HIGH, express=True)
 
     def put(self, payload: bytes) -> None:
         """Put one payload."""
         self._count += 1
         self._publisher.put(payload, attachment=self._topic.attachment(self._count, time.time_ns()))
-
-
-def _declared(session: zenoh.Session, topic: ForeignTopic) -> Publisher:
-    if not topic.latched:
-        return session.declare_publisher(topic.key, priority=zenoh.Priority.DATA_HIGH, express=True)
-    return ext.declare_advanced_publisher(
-        session,
-        topic.key,
-        priority=zenoh.Priority.DATA_HIGH,
-        express=True,
-        cache=ext.CacheConfig(max_samples=1),
-        publisher_detection=True,
-    )
-
-
-def _tokens(node: ForeignNode) -> list[str]:
-    """List the tokens of a node and of its topics, the node's first, as who reads them expects."""
-    return [node.token, *(topic.token for topic in (*node.publishes, *node.subscribes))]

@@ -3,10 +3,10 @@
 import secrets
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 import zenoh
 from zenoh import ext
@@ -14,12 +14,20 @@ from zenoh import ext
 from actum import keys
 from actum.commands import MSGPACK, Refusal, packed, unpacked
 from actum.messages import Info, Message
-from actum.runtime.inbox import ENDING_S, Subscriber, subscribe, subscribe_recovering
-from actum.runtime.listening import Listening, Received, received
+from actum.runtime.inbox import (
+    ENDING_S,
+    Listening,
+    Received,
+    Subscriber,
+    received,
+    subscribe,
+    subscribe_recovering,
+)
 from actum.runtime.outbox import Outbox
 from actum.runtime.session import RouterUnreachableError, connected, secret_config
 from actum.settings import ServiceSettings
 
+T = TypeVar("T")
 OPEN_S = 5.0
 """How long a program waits for the router (s) by default."""
 ANSWER_S = 10.0
@@ -65,7 +73,14 @@ class Client:
     def __init__(self, settings: ServiceSettings, wait_s: float = OPEN_S, session: zenoh.Session | None = None) -> None:
         self.sensor = settings.sensor
         self.run = secrets.token_hex(6)
-        self._session = session or _open(settings, wait_s)
+        deadline_s = time.monotonic() + wait_s
+        while session is None:
+            try:
+                session = zenoh.open(secret_config(settings))
+            except zenoh.ZError:
+                if time.monotonic() > deadline_s:
+                    raise RouterUnreachableError(settings.connect) from None
+        self._session = session
         self._outbox = Outbox(self._session)
         self._listening: list[Listening] = []
         self._threads: list[threading.Thread] = []
@@ -98,26 +113,30 @@ class Client:
 
     def tap(self, key_expr: str, take: Callable[[zenoh.Sample], None]) -> None:
         """Call `take` with each sample as it arrives, from a thread of its own, until this client is left."""
-        self._start(self.listen(key_expr).drain, take)
+        self._take_each(self.listen(key_expr).samples(), take)
 
     def follow(self, key_expr: str, take: Callable[[Received], None]) -> None:
         """Call `take` with each message as it arrives, from a thread of its own, until this client is left."""
-        self._start(self.listen(key_expr).each, take)
+        self._take_each(self.listen(key_expr), take)
 
     def listen(self, key_expr: str, ring: int = DEEP_RING) -> Listening:
         """Subscribe to what is put from now on on keys."""
         return self._listening_to(subscribe(self._session, key_expr, ring))
 
-    def listen_back(self, key_expr: str, history_s: float, ring: int = DEEP_RING) -> Listening:
+    def listen_back(self, key_expr: str, history_s: float) -> Listening:
         """Subscribe to keys, request what is lost on the way, and what was put in the last `history_s` (s) and is kept.
 
         A service that was started anew offers its last answers once more: the same `segment_id` says the same.
         """
         history = ext.HistoryConfig(detect_late_publishers=True, max_age=history_s)
-        return self._listening_to(subscribe_recovering(self._session, key_expr, ring, history))
+        return self._listening_to(subscribe_recovering(self._session, key_expr, DEEP_RING, history))
 
-    def _start(self, target: Callable[..., None], *args: Any) -> None:
-        thread = threading.Thread(target=target, args=args, daemon=True)
+    def _take_each(self, stream: Iterable[T], take: Callable[[T], None]) -> None:
+        def run() -> None:
+            for item in stream:
+                take(item)
+
+        thread = threading.Thread(target=run, daemon=True)
         thread.start()
         self._threads.append(thread)
 
@@ -198,13 +217,3 @@ def _matches(declared: zenoh.Publisher | zenoh.Querier, timeout_s: float) -> boo
             return False
         threading.Event().wait(POLL_S)
     return True
-
-
-def _open(settings: ServiceSettings, wait_s: float) -> zenoh.Session:
-    deadline = time.monotonic() + wait_s
-    while True:
-        try:
-            return zenoh.open(secret_config(settings))
-        except zenoh.ZError:
-            if time.monotonic() > deadline:
-                raise RouterUnreachableError(settings.connect) from None

@@ -1,6 +1,5 @@
 """Answers the commands that a service is asked by Zenoh queries."""
 
-import logging
 import threading
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -12,8 +11,6 @@ from actum.commands import JSON, MSGPACK, Command, Refusal, described, packed, u
 from actum.node import Counters
 from actum.settings import ServiceSettings
 
-log = logging.getLogger("actum")
-
 
 class Commander:
     """One queryable for all commands of a service.
@@ -24,7 +21,7 @@ class Commander:
         service: its name.
         counters: count what is refused.
         lock: held while a command is carried out.
-        failed: called where a handler raises anything but a refusal, which is a bug.
+        end_at_bug: called with what was done and the exception where a handler raises anything but a refusal.
     """
 
     def __init__(
@@ -34,11 +31,11 @@ class Commander:
         service: str,
         counters: Counters,
         lock: threading.Lock,
-        failed: Callable[[], None],
+        end_at_bug: Callable[[str, BaseException], None],
     ) -> None:
         self._commands = {each.name: each for each in commands}
         self._base = keys.commands_key(settings.sensor, service)
-        self._counters, self._lock, self._failed = counters, lock, failed
+        self._counters, self._lock, self._end_at_bug = counters, lock, end_at_bug
 
     def declare(self, session: zenoh.Session) -> "zenoh.Queryable[None]":
         """Answer queries from now on, until the queryable is undeclared."""
@@ -57,12 +54,11 @@ class Commander:
                 with self._lock:
                     self._counters.reject("refused_command", str(refusal))
                 query.reply_err(packed({"error": str(refusal)}, encoding), encoding=encoding)
-            except Exception:
-                log.exception("a bug occurred while handling the command %s", query.key_expr)
+            except Exception as error:
                 query.reply_err(
                     packed({"error": "a bug occurred in the service: see its log"}, encoding), encoding=encoding
                 )
-                self._failed()
+                self._end_at_bug(f"while handling the command {query.key_expr}", error)
 
     def _asked(self, asked: zenoh.KeyExpr) -> list[str]:
         """Return the command's name as the last chunks of its key; none where the list of commands is asked for.

@@ -1,13 +1,15 @@
-"""Subscribers with rings, each read by a thread of its own, so that no stream can stall another."""
+"""Subscriptions with rings: of a node, a thread for each, so that no stream can stall another; and of programs."""
 
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import zenoh
 from zenoh import ext, handlers
 
 from actum import keys
+from actum.codec import DecodeError, decode
+from actum.messages import Message
 
 Subscriber = zenoh.Subscriber[zenoh.Handler[zenoh.Sample]] | ext.AdvancedSubscriber[zenoh.Handler[zenoh.Sample]]
 
@@ -79,15 +81,17 @@ def subscribe_recovering(
 class Inbox:
     """The subscriptions of one node."""
 
-    def __init__(
-        self, session: zenoh.Session, topics: Iterable[keys.Topic], sensor: str, reach: Reach = Reach()
-    ) -> None:
-        topics = list(topics)
+    def __init__(self, session: zenoh.Session, topics: Sequence[keys.Topic], sensor: str, reach: Reach) -> None:
         answered = [topic for topic in topics if topic in ANSWERED and reach.answered_s < reach.requested_s]
         self._left_out = {
             digest for topic in answered for digest in _kept(session, keys.pattern(topic, sensor), reach.answered_s)
         }
-        self._subscribers = [_subscribed(session, topic, sensor, reach) for topic in topics]
+        self._subscribers: list[Subscriber] = [
+            subscribe_recovering(session, keys.pattern(topic, sensor), topic.ring, reach.history(topic))
+            if topic in (*ANSWERED, *STREAMS)
+            else subscribe(session, keys.pattern(topic, sensor), topic.ring)
+            for topic in topics
+        ]
         self._threads: list[threading.Thread] = []
 
     def start(self, receive: Callable[[zenoh.Sample], None]) -> None:
@@ -115,11 +119,47 @@ class Inbox:
                 receive(sample)
 
 
-def _subscribed(session: zenoh.Session, topic: keys.Topic, sensor: str, reach: Reach) -> Subscriber:
-    pattern = keys.pattern(topic, sensor)
-    if topic in (*ANSWERED, *STREAMS):
-        return subscribe_recovering(session, pattern, topic.ring, reach.history(topic))
-    return subscribe(session, pattern, topic.ring)
+@dataclass(frozen=True)
+class Received:
+    """A sample that was received: its message or the error of decoding it, and the payload's size (bytes)."""
+
+    key: str
+    message: Message | None
+    error: DecodeError | None
+    size: int
+
+
+def received(sample: zenoh.Sample) -> Received:
+    """Decode a sample."""
+    key, payload = str(sample.key_expr), sample.payload.to_bytes()
+    try:
+        return Received(key, decode(key, payload, str(sample.encoding)), None, len(payload))
+    except DecodeError as error:
+        return Received(key, None, error, len(payload))
+
+
+class Listening:
+    """An open subscription: iterate it; `close` ends the iteration from another thread."""
+
+    def __init__(self, subscriber: Subscriber) -> None:
+        self._subscriber = subscriber
+
+    def __iter__(self) -> Iterator[Received]:
+        for sample in self._subscriber:
+            yield received(sample)
+
+    def samples(self) -> Iterable[zenoh.Sample]:
+        """Return the subscription's samples, not decoded, until it is closed."""
+        return self._subscriber
+
+    def take(self) -> Received | None:
+        """Return the next sample if there is one."""
+        sample = self._subscriber.try_recv()
+        return None if sample is None else received(sample)
+
+    def close(self) -> None:
+        """End the subscription."""
+        self._subscriber.undeclare()
 
 
 def _kept(session: zenoh.Session, pattern: str, older_than_s: float) -> set[int]:

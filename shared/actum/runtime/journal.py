@@ -9,6 +9,7 @@ aside, in place of the one before: nothing is read or written anew while a servi
 import errno
 import os
 import struct
+import threading
 import time
 import zlib
 from collections.abc import Iterator
@@ -19,7 +20,7 @@ from typing import BinaryIO
 
 import msgpack
 
-from actum.atomic_file import PRIVATE_FOLDER
+from actum.atomic_file import PRIVATE_FOLDER, store_names
 from actum.codec import UNPACK_ERRORS, Frame
 
 MAGIC = b"act\x01"
@@ -46,7 +47,7 @@ class WrittenAnswer:
 
 
 class Journal:
-    """The answers of one service, read when it starts and added to while it runs; not thread-safe.
+    """The answers of one service, read when it starts and added to while it runs; thread-safe.
 
     What is damaged is left out: the end that a killed process has not written, a record whose checksum is wrong. A file
     that cannot be written is opened anew for the next answer.
@@ -65,6 +66,7 @@ class Journal:
         self.is_new = not contents
         self._begun_ns = next((body for body in found if isinstance(body, int)), time.time_ns())
         self.answers = [body for body in found if isinstance(body, WrittenAnswer) and body.age_s <= KEPT_S]
+        self._lock = threading.RLock()
         self._file: BinaryIO | None = None
         self._is_stored = True
         with suppress(OSError):  # the first answer, or the first report, says so
@@ -75,41 +77,42 @@ class Journal:
         """How long ago the journal was begun (s): all answers since then stand in it, as far as they are kept."""
         return max(time.time_ns() - self._begun_ns, 0) / 1e9
 
-    @property
-    def folder(self) -> Path:
-        """The folder in which the file stands."""
-        return self._path.parent
-
     def add(self, frame: Frame) -> None:
         """Write down an answer that is about to be put.
 
         Raises:
             OSError: it cannot be written, or the full file cannot be set aside; the next answer tries again.
         """
-        file = self._opened()
-        self._write(file, _record(WrittenAnswer(time.time_ns(), frame)))
-        if file.tell() > FULL_BYTES:
-            self.close()
-            self._path.replace(self._set_aside)
+        with self._lock:
+            file = self._opened()
+            self._write(file, _record(WrittenAnswer(time.time_ns(), frame)))
+            if file.tell() > FULL_BYTES:
+                self.close()
+                self._path.replace(self._set_aside)
 
-    def unstored(self) -> int | None:
-        """Return a descriptor of its own for the file if that is to be stored on the disk (fsync), else None.
+    def store(self) -> None:
+        """Have stored on the disk what was written; answers do not wait for it, for a disk may take its time.
 
         Raises:
-            OSError: the file cannot be opened, or is gone with all that stood in it; then another one is begun.
+            OSError: that failed, or the file is gone with all that stood in it; then another one is begun.
         """
-        file = self._opened()
-        if not self._is_in_place(file):
-            self.close()
-            self._begun_ns = time.time_ns()
-            self._opened()
-            raise FileNotFoundError(
-                errno.ENOENT, "the file was deleted, so the answers in it are lost; a new file was created", self._path
-            )
-        if self._is_stored:
-            return None
-        self._is_stored = True
-        return os.dup(file.fileno())
+        with self._lock:
+            file = self._opened()
+            if not self._is_in_place(file):
+                self.close()
+                self._begun_ns = time.time_ns()
+                self._opened()
+                lost = "the file was deleted, so the answers in it are lost; a new file was created"
+                raise FileNotFoundError(errno.ENOENT, lost, self._path)
+            if self._is_stored:
+                return
+            self._is_stored = True
+            written = os.dup(file.fileno())
+        try:
+            os.fsync(written)
+        finally:
+            os.close(written)
+        store_names(self._path.parent)
 
     def close(self) -> None:
         """Have stored what was written, and close the file.
@@ -117,12 +120,13 @@ class Journal:
         Raises:
             OSError: it cannot be stored; it is closed all the same.
         """
-        file, self._file = self._file, None
-        if file is not None:
-            try:
-                os.fsync(file.fileno())
-            finally:
-                file.close()
+        with self._lock:
+            file, self._file = self._file, None
+            if file is not None:
+                try:
+                    os.fsync(file.fileno())
+                finally:
+                    file.close()
 
     def _content(self, file: Path) -> bytes | None:
         """Read a file; None where there is none, or it cannot be read."""

@@ -4,7 +4,7 @@ import threading
 from collections import OrderedDict
 from collections.abc import Callable, Iterable
 from datetime import UTC, datetime
-from typing import Literal
+from typing import Any, Literal
 
 import zenoh
 from zenoh import ext
@@ -93,27 +93,18 @@ class Outbox:
         return self._publishers[key, manner]
 
     def _declared(self, key: str, topic: keys.Topic, manner: Manner) -> Publisher:
+        quality: dict[str, Any] = {
+            "congestion_control": _CONGESTION[topic.congestion],
+            "priority": _PRIORITY[topic.priority],
+            "express": topic.priority in ("interactive_high", "data_high"),
+        }
         if manner == "plain":
-            return self._declare_plain(key, topic)
-        here_alone = zenoh.Locality.SESSION_LOCAL if manner == "recalled" else zenoh.Locality.ANY
-        return self._declare_cached(key, topic, here_alone)
-
-    def _declare_plain(self, key: str, topic: keys.Topic) -> Publisher:
-        return self._session.declare_publisher(
-            key,
-            congestion_control=_CONGESTION[topic.congestion],
-            priority=_PRIORITY[topic.priority],
-            express=topic.priority in ("interactive_high", "data_high"),
-        )
-
-    def _declare_cached(self, key: str, topic: keys.Topic, destination: zenoh.Locality) -> Publisher:
+            return self._session.declare_publisher(key, **quality)
         return ext.declare_advanced_publisher(
             self._session,
             key,
-            congestion_control=_CONGESTION[topic.congestion],
-            priority=_PRIORITY[topic.priority],
-            express=topic.priority in ("interactive_high", "data_high"),
-            allowed_destination=destination,
+            **quality,
+            allowed_destination=zenoh.Locality.SESSION_LOCAL if manner == "recalled" else zenoh.Locality.ANY,
             cache=ext.CacheConfig(topic.cache),
             sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT_S),
             publisher_detection=True,

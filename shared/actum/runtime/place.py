@@ -15,8 +15,8 @@ from dataclasses import replace
 import zenoh
 
 from actum import keys
-from actum.codec import DecodeError, decode
 from actum.messages import Info
+from actum.runtime.inbox import received
 from actum.runtime.session import LEASE_S, connected
 from actum.settings import ServiceSettings
 
@@ -190,10 +190,7 @@ class Place:
         key = keys.key(keys.INFO, self._settings.sensor, self._service)
         replies = self._session.get(key, timeout=ANSWER_S, consolidation=zenoh.ConsolidationMode.NONE)
         for reply in replies:
-            try:
-                info = decode(key, reply.ok.payload.to_bytes(), str(reply.ok.encoding)) if reply.ok else None
-            except DecodeError:
-                continue
+            info = received(reply.ok).message if reply.ok else None
             if isinstance(info, Info) and info.instance == holder.instance:
                 return info
         return None

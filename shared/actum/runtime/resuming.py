@@ -2,10 +2,8 @@
 
 import logging
 import math
-import os
-import threading
 
-from actum.atomic_file import PRIVATE_FOLDER, store_names
+from actum.atomic_file import PRIVATE_FOLDER
 from actum.codec import DecodeError, Frame, decode
 from actum.messages import Message
 from actum.node import Counters, Remembering
@@ -38,7 +36,6 @@ class Resumption:
 
     def __init__(self, node: Remembering, journal: Journal, counters: Counters) -> None:
         self._node, self._journal, self._counters = node, journal, counters
-        self._lock = threading.Lock()
         self._writes = True
 
     @classmethod
@@ -70,25 +67,17 @@ class Resumption:
         return Reach(min(self._journal.age_s + HISTORY_S, RESUMED_S), RESUMED_S, RESUMED_FRAMES_S, depth=None)
 
     def store(self) -> None:
-        """Have stored on the disk what was written; answers do not wait for it, for a disk may take its time.
+        """Have stored on the disk what was written.
 
         Raises:
             OSError: that failed.
         """
-        with self._lock:
-            written = self._journal.unstored()
-        if written is not None:
-            try:
-                os.fsync(written)
-            finally:
-                os.close(written)
-            store_names(self._journal.folder)
+        self._journal.store()
 
     def close(self) -> None:
         """Close the journal; where its end cannot be stored, that is counted."""
         try:
-            with self._lock:
-                self._journal.close()
+            self._journal.close()
         except OSError as error:
             self.report(error)
 
@@ -107,8 +96,7 @@ class Resumption:
     def _keep(self, frame: Frame) -> None:
         """Write down an answer; where that fails it is put all the same, and the failure is counted."""
         try:
-            with self._lock:
-                self._journal.add(frame)
+            self._journal.add(frame)
             self._writes = True
         except OSError as error:
             self.report(error)

@@ -6,16 +6,24 @@ from pathlib import Path
 
 import zenoh
 
+from actum.health import HealthFile
 from actum.runtime.credentials import CERTIFICATE, USERS, check, login_values, router_values
-from actum.runtime.health_file import HealthFile
-from actum.runtime.session import TRANSPORT, insert
-from actum.runtime.waiting import wait_for
+from actum.runtime.session import TRANSPORT, insert, reason_of
+from actum.runtime.stopping import wait_for
 from actum.settings import DEFAULT_ENDPOINT, SettingsError
 
 log = logging.getLogger("actum")
 
 LISTEN = "listen/endpoints"
 """Where Zenoh's configuration has the endpoints that a router listens on."""
+DEFAULTS = {
+    "mode": "router",
+    "scouting/multicast/enabled": False,
+    "scouting/gossip/enabled": False,
+    **TRANSPORT,
+    "adminspace/enabled": True,
+}
+"""The configuration of a router without a file of its own."""
 LOOK_S = 1.0
 """Interval (s) at which a router looks whether it works, and whether its certificate was renewed."""
 
@@ -33,7 +41,9 @@ def router_config(
         zenoh.ZError: the file or the endpoint is refused.
         SettingsError: the credentials cannot be used.
     """
-    config = zenoh.Config.from_file(config_file) if config_file else _default_config()
+    config = zenoh.Config.from_file(config_file) if config_file else zenoh.Config()
+    if not config_file:
+        insert(config, DEFAULTS)
     if listen is None and config.get_json(LISTEN) == zenoh.Config().get_json(LISTEN):
         listen = DEFAULT_ENDPOINT  # Zenoh's own default is every interface
     if listen is not None:
@@ -83,8 +93,7 @@ def _opened(listen: str | None, config_file: Path | None, credentials: Path | No
             insert(config, login_values(credentials))
         return zenoh.open(config)
     except zenoh.ZError as error:
-        reason = " ".join(str(error).partition(" at /")[0].split())
-        raise SettingsError(f"the router cannot start on {listen or config_file}: {reason}") from None
+        raise SettingsError(f"the router cannot start on {listen or config_file}: {reason_of(error)}") from None
 
 
 def _wait_for_change(
@@ -131,16 +140,3 @@ def _usable(config_file: Path | None, credentials: Path | None) -> bool:
     except (OSError, UnicodeDecodeError, zenoh.ZError, SettingsError):
         return False
     return True
-
-
-def _default_config() -> zenoh.Config:
-    config = zenoh.Config()
-    values = {
-        "mode": "router",
-        "scouting/multicast/enabled": False,
-        "scouting/gossip/enabled": False,
-        **TRANSPORT,
-        "adminspace/enabled": True,
-    }
-    insert(config, values)
-    return config

@@ -9,16 +9,16 @@ from contextlib import contextmanager
 import zenoh
 
 from actum import keys
-from actum.bridge import Bridge
 from actum.codec import encode
 from actum.commands import Commanded
-from actum.node import Node, Source
+from actum.node import Servable, Source
 from actum.runtime.commanding import Commander
-from actum.runtime.meter import Meter
 from actum.runtime.outbox import Outbox
 from actum.runtime.place import Place
-from actum.runtime.reporting import Reporter, StateLog
+from actum.runtime.reporting import Meter, Reporter
+from actum.runtime.stopping import Pace, wait_for
 from actum.settings import ServiceSettings
+from actum.states import State
 
 log = logging.getLogger("actum")
 
@@ -26,21 +26,21 @@ log = logging.getLogger("actum")
 class Service(ABC):
     """The part common to nodes and sources: start and end, the one instance per sensor, status and description."""
 
-    def __init__(self, what: Node | Source | Bridge, settings: ServiceSettings) -> None:
+    def __init__(self, what: Servable, settings: ServiceSettings) -> None:
         self.name, counters = what.name, what.counters
         self.failed = False
         self._commands = what.commands if isinstance(what, Commanded) else ()
         self._settings = settings
         self._counters = counters
-        self._state_log = StateLog(counters)
         self._meter = Meter(self.name, counters, settings)
         self._lock = threading.Lock()
+        self._reporter = Reporter(self._meter, counters, settings, self._lock)
 
     def introduce(self) -> None:
         """Log the source that is read, and any problem that there is already."""
         if "source" in self._counters.details:
             log.info("sensor %s: %s", self._settings.sensor, self._counters.details["source"])
-        self._state_log.log_change()
+        self._reporter.log_state()
 
     def serve(self, session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
         """Run until stopped, once for `settling_s` no other instance is seen.
@@ -51,13 +51,9 @@ class Service(ABC):
         place = Place(session, self._settings, self.name)
         if not place.take(stop, settling_s):
             return
-        info = keys.key(keys.INFO, self._settings.sensor, self.name)
-        queryables = [session.declare_queryable(info, lambda query: self._answer_info(query, stop))]
-        if self._commands:
-            queryables.append(self._commander(stop).declare(session))
-        reporter = Reporter(self._meter, self._state_log, self._settings, self._lock)
+        queryables = self._queryables(session, stop)
         told = (session, place, stop, self._healthy, self._store)
-        reporting = threading.Thread(target=reporter.report, args=told, name="reporting", daemon=True)
+        reporting = threading.Thread(target=self._reporter.report, args=told, name="reporting", daemon=True)
         reporting.start()
         try:
             self._work(session, Outbox(session), stop, place.vacant_s)
@@ -100,12 +96,18 @@ class Service(ABC):
         except Exception as error:
             self._end_at_bug(where, error, stop)
 
-    def _commander(self, stop: threading.Event) -> Commander:
-        def failed() -> None:
-            self.failed = True
-            stop.set()
+    def _queryables(self, session: zenoh.Session, stop: threading.Event) -> "list[zenoh.Queryable[None]]":
+        """Declare what answers queries for the description of the service, and for its commands where it has any."""
+        info = keys.key(keys.INFO, self._settings.sensor, self.name)
+        queryables = [session.declare_queryable(info, lambda query: self._answer_info(query, stop))]
+        if self._commands:
 
-        return Commander(self._commands, self._settings, self.name, self._counters, self._lock, failed)
+            def end_at_bug(where: str, error: BaseException) -> None:
+                self._end_at_bug(where, error, stop)
+
+            commander = Commander(self._commands, self._settings, self.name, self._counters, self._lock, end_at_bug)
+            queryables.append(commander.declare(session))
+        return queryables
 
     def _answer_info(self, query: zenoh.Query, stop: threading.Event) -> None:
         with self._ending_at_a_bug("while describing the service", stop), query:
@@ -113,3 +115,27 @@ class Service(ABC):
                 commands = sorted(each.name for each in self._commands)
                 frame = encode(self._meter.info().model_copy(update={"commands": commands}))
             query.reply(frame.key, frame.payload, encoding=frame.encoding)
+
+
+class SourceService(Service):
+    """Runs a source: puts each of its frames when the stamp is due."""
+
+    def __init__(self, source: Source, settings: ServiceSettings) -> None:
+        super().__init__(source, settings)
+        self._source = source
+
+    def _work(self, _session: zenoh.Session, outbox: Outbox, stop: threading.Event, _vacant_s: float) -> None:
+        pace = Pace(speed=1.0)
+        for messages in self._source.frames():
+            if self._source.paced and messages and not pace.wait(messages[0].stamp_ns, stop):
+                return
+            for message in messages:
+                outbox.put(message)
+                with self._lock:
+                    self._meter.count(keys.key_of(message))
+            if stop.is_set():
+                return
+        with self._lock:
+            self._source.counters.state = State.SOURCE_ENDED
+            self._reporter.log_state()
+        wait_for(stop)

@@ -1,4 +1,4 @@
-"""Runs a service: connects, subscribes, steps, reports, and ends cleanly."""
+"""Runs a node, a source or a front as this process's service: connects, serves, and ends cleanly."""
 
 import gc
 import logging
@@ -6,22 +6,24 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager, nullcontext
-from typing import TypeVar
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from typing import Protocol, TypeVar
 
+import zenoh
 from pydantic import ValidationError
 
 from actum.command_line import from_command_line
+from actum.installing import adding
 from actum.node import Node, Source
-from actum.runtime.parent import end_with_parent
+from actum.runtime.client import Client
+from actum.runtime.outbox import Outbox
 from actum.runtime.place import RETURNING_S, SETTLING_S, PlaceTakenError
 from actum.runtime.resuming import check_state_folder
-from actum.runtime.service import Service
+from actum.runtime.service import Service, SourceService
 from actum.runtime.session import RETRY_S, open_session, secret_config
-from actum.runtime.source_service import SourceService
 from actum.runtime.step_service import NodeService
-from actum.runtime.waiting import stop_on_signals
+from actum.runtime.stopping import end_with_parent, stop_on_signals
 from actum.settings import ServiceSettings, SettingsError, complaint
 
 log = logging.getLogger("actum")
@@ -31,6 +33,57 @@ UNUSABLE = 2
 """Exit code of a process whose settings cannot be used."""
 TAKEN = 3
 """Exit code of a process whose service another process runs already."""
+
+
+@contextmanager
+def needs_extra(name: str) -> Iterator[None]:
+    """Return a context in which to import the packages of an extra: if one is missing, say so and exit with code 2.
+
+    Raises:
+        ModuleNotFoundError: a submodule of an installed package is missing, which is a bug.
+    """
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if "." in (error.name or "."):
+            raise
+        print(f"{error.name} is not installed: {adding(name)}", file=sys.stderr)
+        sys.exit(UNUSABLE)
+
+
+class Front(Node, Protocol):
+    """A node with a server of its own, which runs also while there is no router."""
+
+    def serving(self) -> AbstractContextManager[None]:
+        """Serve people until the context is left."""
+        ...
+
+    def attach(self, client: Client | None) -> None:
+        """Take the session by which people's wishes go to other services; None where there is none any more."""
+        ...
+
+    @property
+    def working(self) -> bool:
+        """Whether people are served."""
+        ...
+
+
+class FrontService(NodeService):
+    """Runs a front: gives it messages as any node gets them, and the session to put and ask by."""
+
+    def __init__(self, front: Front, settings: ServiceSettings) -> None:
+        super().__init__(front, settings)
+        self._front = front
+
+    def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
+        self._front.attach(Client(self._settings, session=session))
+        try:
+            super()._work(session, outbox, stop, vacant_s)
+        finally:
+            self._front.attach(None)
+
+    def _healthy(self) -> bool:
+        return super()._healthy() and self._front.working
 
 
 def run(settings_type: type[S], build: Callable[[S], Node], flags: Sequence[str] | None = None) -> None:
@@ -43,6 +96,12 @@ def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
     """Run a source as this process's service until SIGTERM or SIGINT."""
     settings, source = configured(settings_type, build)
     live(SourceService(source, settings), settings)
+
+
+def run_front(settings_type: type[S], build: Callable[[S], Front]) -> None:
+    """Run a front as this process's service until SIGTERM or SIGINT."""
+    settings, front = configured(settings_type, build)
+    live(FrontService(front, settings), settings, front.serving)
 
 
 def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[str] | None = None) -> tuple[S, N]:

@@ -4,7 +4,6 @@ import json
 import logging
 import threading
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import zenoh
@@ -41,6 +40,28 @@ takes 5 s; when it goes on it connects anew, and recovers what it has missed.
 BEFORE_DROP = 2
 """Payloads longer than their key admits are counted by who decodes them, but those this many times as long never come:
 Zenoh drops them before they wait in a ring, where a few hundred may wait. Only the gap in `seq` tells of them."""
+CLIENT = {
+    "mode": "client",
+    "connect/timeout_ms": OPEN_TIMEOUT_MS,
+    "connect/retry": {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2},
+    "listen/endpoints": [],
+    "scouting/multicast/enabled": False,
+    "scouting/gossip/enabled": False,
+    "timestamping/enabled": True,  # late subscribers request messages by age
+    "transport/link/rx/max_message_size": BEFORE_DROP * keys.MOST_IMAGE_BYTES,
+    "low_pass_filter": [
+        {
+            "id": f"{size} bytes",
+            "messages": ["put", "reply"],
+            "flows": ["ingress"],
+            "key_exprs": [keys.pattern(topic) for topic in keys.TOPICS if topic.max_bytes == size],
+            "size_limit": BEFORE_DROP * size,
+        }
+        for size in sorted({topic.max_bytes for topic in keys.TOPICS})
+    ],
+    **TRANSPORT,
+}
+"""The configuration of all our clients but for the router's endpoint. Zenoh drops payloads that are far too large."""
 
 
 class RouterUnreachableError(RuntimeError):
@@ -58,8 +79,13 @@ def client_config(settings: ServiceSettings) -> zenoh.Config:
     Raises:
         SettingsError: the configuration file that it extends, or the credentials, cannot be used.
     """
-    config = _base_config(settings.zenoh_config) if settings.zenoh_config else zenoh.Config()
-    insert(config, _client_values(settings.connect))
+    try:
+        config = zenoh.Config.from_file(settings.zenoh_config) if settings.zenoh_config else zenoh.Config()
+    except zenoh.ZError as error:
+        raise SettingsError(
+            f"zenoh-config: {settings.zenoh_config} is not a Zenoh configuration: {reason_of(error)}"
+        ) from None
+    insert(config, {**CLIENT, "connect/endpoints": [settings.connect]})
     if settings.credentials is not None:
         if not settings.connect.startswith(ENCRYPTED):
             raise SettingsError(
@@ -88,43 +114,9 @@ def secret_config(settings: ServiceSettings) -> zenoh.Config:
     return config
 
 
-def _base_config(file: Path) -> zenoh.Config:
-    try:
-        return zenoh.Config.from_file(file)
-    except zenoh.ZError as error:
-        reason = " ".join(str(error).partition(" at /")[0].split())
-        raise SettingsError(f"zenoh-config: {file} is not a Zenoh configuration: {reason}") from None
-
-
-def _client_values(endpoint: str) -> dict[str, Any]:
-    return {
-        "mode": "client",
-        "connect/endpoints": [endpoint],
-        "connect/timeout_ms": OPEN_TIMEOUT_MS,
-        "connect/retry": {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2},
-        "listen/endpoints": [],
-        "scouting/multicast/enabled": False,
-        "scouting/gossip/enabled": False,
-        "timestamping/enabled": True,  # late subscribers request messages by age
-        "transport/link/rx/max_message_size": BEFORE_DROP * keys.MOST_IMAGE_BYTES,
-        "low_pass_filter": _size_limits(),
-        **TRANSPORT,
-    }
-
-
-def _size_limits() -> list[dict[str, Any]]:
-    """Return Zenoh's rules by which it drops payloads that are far too large, on each topic of the table."""
-    sizes = sorted({topic.max_bytes for topic in keys.TOPICS})
-    return [
-        {
-            "id": f"{size} bytes",
-            "messages": ["put", "reply"],
-            "flows": ["ingress"],
-            "key_exprs": [keys.pattern(topic) for topic in keys.TOPICS if topic.max_bytes == size],
-            "size_limit": BEFORE_DROP * size,
-        }
-        for size in sizes
-    ]
+def reason_of(error: zenoh.ZError) -> str:
+    """Return the text of an error in one line, without the place in Zenoh's source that raised the error."""
+    return " ".join(str(error).partition(" at /")[0].split())
 
 
 def open_session(settings: ServiceSettings, stop: threading.Event) -> zenoh.Session | None:

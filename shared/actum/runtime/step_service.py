@@ -3,16 +3,16 @@
 import threading
 import time
 from abc import abstractmethod
+from collections import OrderedDict
 
 import zenoh
 
 from actum.bridge import Bridge
 from actum.codec import DecodeError, decode, origin_of
-from actum.messages import Message
+from actum.messages import Action, Event, Message
 from actum.node import TICK_NS, Node, Tick
 from actum.runtime.inbox import Inbox, Reach
 from actum.runtime.outbox import Outbox
-from actum.runtime.repetitions import Repetitions
 from actum.runtime.resuming import Resumption
 from actum.runtime.service import Service
 from actum.settings import ServiceSettings
@@ -20,6 +20,8 @@ from actum.settings import ServiceSettings
 LONGEST_TICK_NS = 2 * TICK_NS
 """Most that time goes on from one tick to the next (ns): a process that was stopped first reads what has come
 meanwhile, before it gives up waiting for it."""
+REMEMBERED = 1024
+"""Answers remembered: more than publishers keep for late subscribers on all keys together."""
 
 
 class StepService(Service):
@@ -60,7 +62,7 @@ class StepService(Service):
             message = decode(key, payload, str(sample.encoding))
         except DecodeError as error:
             with self._lock:
-                self._meter.rejected(error.kind, str(error))
+                self._counters.reject(error.kind, str(error))
             return
         with self._ending_at_a_bug(f"while handling a message on {key}", stop):
             with self._lock:
@@ -116,3 +118,24 @@ def _origin(sample: zenoh.Sample) -> str:
     """
     origin = "" if sample.attachment is None else origin_of(sample.attachment.to_bytes())
     return origin or (str(sample.timestamp.get_id()) if sample.timestamp else "")
+
+
+class Repetitions:
+    """The answers received last. After a restart, the service that gave an answer may send it again, byte for byte."""
+
+    def __init__(self) -> None:
+        self._received: OrderedDict[int, None] = OrderedDict()
+
+    def has(self, message: Message, payload: bytes) -> bool:
+        """Tell whether an answer has been received before, and remember it; partial actions and others are not."""
+        if not isinstance(message, Event) and not (isinstance(message, Action) and message.final):
+            return False
+        if message.seq is None:
+            return False
+        digest = hash(payload)
+        repeated = digest in self._received
+        self._received[digest] = None
+        self._received.move_to_end(digest)
+        if len(self._received) > REMEMBERED:
+            self._received.popitem(last=False)
+        return repeated

@@ -2,7 +2,6 @@
 
 import json
 from importlib.resources import files
-from pathlib import Path
 
 from actum.codec import schema_name
 from actum.messages import MESSAGES, Message
@@ -15,20 +14,13 @@ def file_name(message: type[Message]) -> str:
 
 def generated() -> dict[str, str]:
     """Generate the text of every schema file, by the file's name."""
-    return {file_name(message): _text(message) for message in MESSAGES}
+    schemas = {
+        file_name(message): {"$id": schema_name(message), **message.model_json_schema(mode="validation")}
+        for message in MESSAGES
+    }
+    return {name: json.dumps(schema, indent=2, sort_keys=True) + "\n" for name, schema in schemas.items()}
 
 
 def committed(name: str) -> str:
     """Return the text of a schema file in the package."""
     return files(__name__).joinpath(name).read_text()
-
-
-def write(folder: Path) -> None:
-    """Write every schema file into a folder."""
-    for name, text in generated().items():
-        (folder / name).write_text(text)
-
-
-def _text(message: type[Message]) -> str:
-    schema = {"$id": schema_name(message), **message.model_json_schema(mode="validation")}
-    return json.dumps(schema, indent=2, sort_keys=True) + "\n"

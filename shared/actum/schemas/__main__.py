@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
-from actum.schemas import write
+from actum.schemas import generated
 
-write(Path(__file__).parent)
+for name, text in generated().items():
+    (Path(__file__).parent / name).write_text(text)

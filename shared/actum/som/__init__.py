@@ -28,14 +28,13 @@ from actum.som.batch import BatchTraining
 from actum.som.codebook import Codebook
 from actum.som.kernel import adapt_in_numpy
 from actum.som.map import Som
-from actum.som.schedule import Decay, Report, Schedule, Steps
+from actum.som.schedule import Report, Schedule, Steps
 from actum.som.sequential import SequentialTraining
 from actum.som.together import Together
 
 __all__ = [
     "BatchTraining",
     "Codebook",
-    "Decay",
     "Report",
     "Schedule",
     "SequentialTraining",

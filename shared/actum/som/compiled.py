@@ -30,17 +30,12 @@ def compiled_kernel() -> Kernel:
     """Return the compiled kernel; its machine code is cached on disk where Numba finds a place to write to."""
     try:
         kernel: Kernel = njit(_adapt, error_model="numpy", nogil=True, cache=True)
-        _try_out(kernel)
+        for dtype in (np.float32, np.float64):  # compile it now, so that an error of writing the cache is raised here
+            one = np.ones((1, 1), dtype)
+            kernel(np.zeros((1, LANES), dtype), one, one, one)
     except (RuntimeError, OSError):
         return _compiled(_adapt)
     return kernel
-
-
-def _try_out(kernel: Kernel) -> None:
-    """Compile the kernel for both precisions, so that an error of writing its cache is raised here."""
-    for dtype in (np.float32, np.float64):
-        one = np.ones((1, 1), dtype)
-        kernel(np.zeros((1, LANES), dtype), one, one, one)
 
 
 def _adapt(weights: Array, inputs: Array, over_rows: Array, over_cols: Array) -> None:

@@ -84,13 +84,3 @@ def is_complete(vectors: Array) -> bool:
             f"row {np.flatnonzero(empty)[0]} of the vectors contains only NaN: remove the row, or fill in a value"
         )
     return False
-
-
-def check_rows(vectors: Array, dim: int) -> None:
-    """Check that an array is a matrix of `dim` columns.
-
-    Raises:
-        ValueError: it is not; the text names its shape.
-    """
-    if vectors.ndim != 2 or vectors.shape[1] != dim:
-        raise ValueError(f"the vectors have shape {vectors.shape}; expected (number of vectors, {dim})")

@@ -51,18 +51,15 @@ class _Learner:
         """Take one step: find the winner of x (dim,), and move the weights towards x."""
         known = ~np.isnan(x)
         if not known.all():
-            self._adapt_known(x, known, row_gauss, col_gauss)
+            difference = x[known, None] - self._weights[known]
+            self._centre_on(self._winner(difference * difference), row_gauss, col_gauss)
+            self._weights[known] += difference * self._neighbourhood
             return
         np.subtract(x[:, None], self._weights, out=self._difference)
         np.multiply(self._difference, self._difference, out=self._square)
         self._centre_on(self._winner(self._square), row_gauss, col_gauss)
         self._difference *= self._neighbourhood
         self._weights += self._difference
-
-    def _adapt_known(self, x: Array, known: NDArray[np.bool_], row_gauss: Array, col_gauss: Array) -> None:
-        difference = x[known, None] - self._weights[known]
-        self._centre_on(self._winner(difference * difference), row_gauss, col_gauss)
-        self._weights[known] += difference * self._neighbourhood
 
     def _winner(self, squares: Array) -> int:
         """Return the first unit of the least sum; NumPy adds rows one after the other, as the compiled kernel does."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.som import blas
-from actum.som.inputs import check_rows, is_complete
+from actum.som.inputs import is_complete
 
 Array = NDArray[Any]
 Scores = tuple[slice, Array]
@@ -25,6 +25,8 @@ class Lookup:
 
     Attributes:
         centre: (dim,), the point amid the weights.
+        slopes: (dim, nodes), −w relative to the centre, by which an input relative to the centre is multiplied.
+        half_norms2: (nodes,), ½|w|² relative to the centre, which is added to that product.
     """
 
     def __init__(self, weights: Array) -> None:
@@ -39,18 +41,7 @@ class Lookup:
         self._score_matrix[-1] = np.finfo(self.dtype).max / 2
         self._score_matrix[-1, : self.nodes] = 0.5 * np.square(centred).sum(axis=0)
         self._slopes, self._half_norms2 = self._score_matrix[:-1], self._score_matrix[-1]
-
-    @property
-    def slopes(self) -> Array:
-        """−w relative to the centre, by which an input relative to the centre is multiplied, shape (dim, nodes)."""
-        slopes: Array = self._slopes[:, : self.nodes]
-        return slopes
-
-    @property
-    def half_norms2(self) -> Array:
-        """½|w|² relative to the centre, which is added to that product, shape (nodes,)."""
-        half_norms2: Array = self._half_norms2[: self.nodes]
-        return half_norms2
+        self.slopes, self.half_norms2 = self._slopes[:, : self.nodes], self._half_norms2[: self.nodes]
 
     def score(self, x: Array) -> Array:
         """Score one vector (dim,) against all units, shape (stride,) with large values after the last unit.
@@ -78,7 +69,8 @@ class Lookup:
         Raises:
             ValueError: the rows have another length, an infinite component, or no known one.
         """
-        check_rows(vectors, self.dim)
+        if vectors.ndim != 2 or vectors.shape[1] != self.dim:
+            raise ValueError(f"the vectors have shape {vectors.shape}; expected (number of vectors, {self.dim})")
         return self._known_scores(vectors) if is_complete(vectors) else self._partial_scores(vectors)
 
     def winners(self, vectors: Array) -> NDArray[np.intp]:

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,22 +18,6 @@ _LARGEST_RADIUS = 1e150
 
 def silent(done: int, total: int) -> None:
     """Report nothing."""
-
-
-class Decay(Protocol):
-    """What gives α and the radius of each step; `Schedule` and `Steps` do, and anything with this method.
-
-    >>> class Linear:
-    ...     def values(self, steps):
-    ...         return np.linspace(0.5, 0.0, steps), np.linspace(3.0, 1.0, steps)
-    >>> decay: Decay = Linear()
-    >>> decay.values(3)[1].tolist()
-    [3.0, 2.0, 1.0]
-    """
-
-    def values(self, steps: int) -> tuple[Array, Array]:
-        """Return α and radius of each step, each of shape (steps,)."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -93,6 +76,10 @@ class Steps:
                 f"for each of the {steps} steps"
             )
         return alphas, radii
+
+
+Decay = Schedule | Steps
+"""What gives α and the radius of each step."""
 
 
 def falling(first: float, last: float, steps: int) -> Array:

@@ -6,10 +6,7 @@ import numpy as np
 import pytest
 
 from actum.som import BatchTraining, Som
-
-
-def rng(seed: int = 0) -> np.random.Generator:
-    return np.random.default_rng(seed)
+from map_cases import rng
 
 
 def one_epoch(som: Som, vectors: np.ndarray, radius: float) -> np.ndarray:
@@ -68,23 +65,10 @@ def test_the_map_is_ordered(dtype: type) -> None:
     assert trained.topographic_error(vectors) < 0.1
 
 
-def test_the_order_of_the_inputs_does_not_matter() -> None:
-    vectors = rng(1).random((500, 3))
-    som = Som.random(6, 6, 3, rng())
-    straight, reversed_ = (som.train_batch(rows, 5, (3.0, 1.0)).weights for rows in (vectors, vectors[::-1]))
-    np.testing.assert_allclose(straight, reversed_, atol=1e-12)
-
-
 def test_progress_is_reported_to_its_end() -> None:
     reported: list[tuple[int, int]] = []
     Som.random(2, 2, 1, rng()).train_batch([[1.0]], 2, (1.0, 1.0), lambda *progress: reported.append(progress))
     assert reported == [(0, 2), (1, 2), (2, 2)]
-
-
-@pytest.mark.parametrize("vectors", [np.zeros((0, 2)), np.zeros((3, 1)), [[np.inf, 0.0]]])
-def test_inputs_that_do_not_fit_are_refused(vectors: np.ndarray) -> None:
-    with pytest.raises(ValueError, match="cannot train"):
-        Som.random(2, 2, 2, rng()).train_batch(vectors, 1, (1.0, 1.0))
 
 
 @pytest.mark.parametrize("radius", [0.0, -1.0, np.nan, np.inf])

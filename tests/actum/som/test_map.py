@@ -1,25 +1,13 @@
 """The map as it is looked up: hand-computed cases and invariances, in both precisions."""
 
-import pickle
-from collections.abc import Callable
-from copy import copy, deepcopy
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from actum.som import Som
-
-
-def rng(seed: int = 0) -> np.random.Generator:
-    return np.random.default_rng(seed)
-
-
-def line_map() -> Som:
-    """Three neurons in a row at 0, 1 and 10 on the number line."""
-    return Som(1, 3, np.array([[0.0], [1.0], [10.0]]))
+from actum.som import Schedule, Som
+from map_cases import line_map, rng
 
 
 def test_random_weights_are_drawn_from_zero_to_one() -> None:
@@ -101,14 +89,6 @@ def test_where_the_inputs_lie_does_not_matter_even_in_single_precision(offset: f
     np.testing.assert_allclose(here, there, atol=1e-8)
 
 
-def test_the_winner_is_found_where_the_activity_is_too_flat_to_tell() -> None:
-    """With the paper's sigma of a million, neurons at 0.30 and 0.31 m are equally active in single precision."""
-    som = Som(1, 2, np.array([[0.31], [0.30]]))
-    activity = np.exp(-som.weights[:, 0] / 1e6).astype(np.float32)
-    assert activity[0] == activity[1]
-    assert som.bmu(np.zeros(1)) == 1
-
-
 @pytest.mark.parametrize("dim", [1, 4, 130, 300])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_many_vectors_are_answered_like_few(dim: int, dtype: type) -> None:
@@ -151,20 +131,18 @@ def test_lists_and_values_that_are_no_floats_are_looked_up_like_arrays() -> None
     assert pair.bmus([[3.0, None]]).tolist() == pair.bmus([[3.0, np.nan]]).tolist() == [1]
 
 
-@pytest.mark.parametrize("copied", [copy, deepcopy, lambda som: pickle.loads(pickle.dumps(som))])
-def test_copies_are_the_same_map_and_cannot_be_written_either(copied: Callable[[Som], Som]) -> None:
-    som = Som.random(3, 4, 2, rng(), np.float32)
-    som.bmus([[0.5, 0.5]])
-    twin = copied(som)
-    assert (twin.rows, twin.cols, twin.dtype) == (3, 4, np.float32)
-    assert (twin.weights == som.weights).all()
-    assert not twin.weights.flags.writeable
-
-
 def test_where_units_stand_cannot_be_written() -> None:
     coordinates = Som.random(3, 4, 2, rng()).coordinates
     with pytest.raises(ValueError, match="read-only"):
         np.multiply(coordinates, 30, out=coordinates)
+
+
+@pytest.mark.parametrize("vectors", [np.zeros((0, 1)), np.zeros((2, 2)), np.zeros(1), [[np.nan]], [[np.inf]]])
+def test_inputs_that_do_not_fit_are_refused_by_either_training(vectors: np.ndarray) -> None:
+    with pytest.raises(ValueError, match="cannot train"):
+        line_map().train(vectors, 1, Schedule(alpha=(0.5, 0.5), radius=(1.0, 1.0)), rng())
+    with pytest.raises(ValueError, match="cannot train"):
+        line_map().train_batch(vectors, 1, (1.0, 1.0))
 
 
 @pytest.mark.parametrize(("dtype", "allowed", "too_large"), [(np.float32, 1e18, 1e20), (np.float64, 1e150, 1e155)])

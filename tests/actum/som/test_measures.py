@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 
 from actum.som import Som
-
-
-def line_map() -> Som:
-    """Three neurons in a row at 0, 1 and 10 on the number line."""
-    return Som(1, 3, np.array([[0.0], [1.0], [10.0]]))
+from map_cases import line_map
 
 
 def test_quantization_error_is_the_mean_distance_to_the_winner() -> None:

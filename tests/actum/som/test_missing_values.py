@@ -7,12 +7,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from actum.som import BatchTraining, Schedule, SequentialTraining, Som, Steps, adapt_in_numpy
+from map_cases import rng
 
 NAN = np.nan
-
-
-def rng(seed: int = 0) -> np.random.Generator:
-    return np.random.default_rng(seed)
 
 
 def with_gaps(vectors: np.ndarray, seed: int = 3) -> np.ndarray:
@@ -45,14 +42,6 @@ def test_every_lookup_counts_the_known_components_only(vectors: np.ndarray) -> N
         assert distances2[som.bmu(x)] == pytest.approx(distances2.min(), abs=1e-11)
         assert distances2[som.bmus(vectors)[i]] == pytest.approx(distances2.min(), abs=1e-11)
         np.testing.assert_allclose(distances2[som.best_two(vectors)[i]], np.sort(distances2)[:2], atol=1e-11)
-
-
-def test_a_row_without_gaps_is_answered_the_same_beside_rows_with_gaps() -> None:
-    som = Som.random(5, 5, 4, rng())
-    vectors = rng(1).random((40, 4))
-    mixed = np.concatenate([vectors, with_gaps(vectors)])
-    assert (som.bmus(mixed)[:40] == som.bmus(vectors)).all()
-    np.testing.assert_allclose(som.excess2s(mixed)[:40], som.excess2s(vectors), atol=1e-12)
 
 
 def test_a_row_without_any_known_component_is_refused() -> None:

@@ -5,19 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum.som import Decay, Schedule, SequentialTraining, Som, Steps
+from actum.som import Schedule, SequentialTraining, Som, Steps
+from map_cases import line_map, rng
 
 CONSTANT = Schedule(alpha=(0.5, 0.5), radius=(1.0, 1.0))
 FALLING = Schedule(alpha=(0.5, 0.02), radius=(5.0, 0.7))
-
-
-def rng(seed: int = 0) -> np.random.Generator:
-    return np.random.default_rng(seed)
-
-
-def line_map() -> Som:
-    """Three neurons in a row at 0, 1 and 10 on the number line."""
-    return Som(1, 3, np.array([[0.0], [1.0], [10.0]]))
 
 
 def test_schedules_run_from_first_to_last_value_over_the_steps() -> None:
@@ -35,28 +27,6 @@ def test_explicit_steps_are_taken_as_they_are_or_refused_by_number() -> None:
     assert alphas.tolist() == [0.5, 0.25] and radii.tolist() == [2.0, 1.0]
     with pytest.raises(ValueError, match="3 steps"):
         Steps([0.5, 0.25], [2.0, 1.0]).values(3)
-
-
-def test_one_step_by_hand() -> None:
-    """w += α exp(−r²/2σ²) (x − w), with r squared: 1, e^(−1/2), e^(−2) for neurons 0, 1 and 2 away."""
-    x = 2.0
-    trained = line_map().train([[x]], 1, CONSTANT, rng())
-    pull = 0.5 * np.exp([-0.5, 0.0, -0.5])
-    expected = np.array([0.0, 1.0, 10.0]) + pull * (x - np.array([0.0, 1.0, 10.0]))
-    np.testing.assert_allclose(trained.weights[:, 0], expected)
-
-    far = line_map().train([[-1.0]], 1, CONSTANT, rng()).weights[2, 0]
-    assert far == pytest.approx(10 + 0.5 * np.exp(-2.0) * -11)
-
-
-@pytest.mark.parametrize("winner", [0, 10, 17, 34])
-def test_the_neighbourhood_is_round_on_the_grid(winner: int) -> None:
-    weights = np.zeros((35, 1))
-    weights[winner] = 1e-9
-    som = Som(5, 7, weights)
-    trained = som.train([[1.0]], 1, CONSTANT, rng()).weights[:, 0]
-    distances2 = ((som.coordinates - som.coordinates[winner]) ** 2).sum(axis=1)
-    np.testing.assert_allclose(trained, 0.5 * np.exp(-distances2 / 2), atol=1e-9)
 
 
 def test_training_leaves_the_untrained_map_alone_and_is_repeatable() -> None:
@@ -93,22 +63,10 @@ def test_training_orders_the_map(dtype: type) -> None:
     assert trained.topographic_error(vectors) < 0.15
 
 
-def test_training_with_a_wide_radius_goes_to_the_mean() -> None:
-    everywhere = Schedule(alpha=(0.2, 0.001), radius=(1e6, 1e6))
-    trained = Som.random(3, 3, 1, rng()).train([[2.0], [4.0]], 4000, everywhere, rng())
-    np.testing.assert_allclose(trained.weights, 3.0, atol=0.1)
-
-
 def test_progress_is_reported_to_its_end() -> None:
     reported: list[tuple[int, int]] = []
     line_map().train([[1.0]], 2500, CONSTANT, rng(), lambda done, total: reported.append((done, total)))
     assert reported == [(0, 2500), (1000, 2500), (2000, 2500), (2500, 2500)]
-
-
-@pytest.mark.parametrize("vectors", [np.zeros((0, 1)), np.zeros((2, 2)), np.zeros(1), [[np.nan]], [[np.inf]]])
-def test_inputs_that_do_not_fit_are_refused(vectors: np.ndarray) -> None:
-    with pytest.raises(ValueError, match="cannot train"):
-        line_map().train(vectors, 1, CONSTANT, rng())
 
 
 @pytest.mark.parametrize(
@@ -126,7 +84,7 @@ def test_inputs_that_do_not_fit_are_refused(vectors: np.ndarray) -> None:
         ([0], Steps([0.1], [np.inf]), "radii"),
     ],
 )
-def test_steps_that_make_no_sense_are_refused(order: list[float], decay: Decay, problem: str) -> None:
+def test_steps_that_make_no_sense_are_refused(order: list[float], decay: Schedule | Steps, problem: str) -> None:
     with pytest.raises(ValueError, match=problem):
         SequentialTraining(line_map(), [[1.0], [2.0]], order, decay)
 

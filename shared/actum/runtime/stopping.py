@@ -1,12 +1,19 @@
-"""Waits that a signal ends: for a duration, or until a stamp is due."""
+"""How a process ends: by a signal, or with its parent process; and waits that the end of the process cuts short."""
 
 import _thread
+import os
 import signal
 import threading
 import time
 
 from actum.node import SETTLE_NS
 
+PARENT = "ACTUM_PARENT"
+"""The environment variable with the id of the parent process that this one is to end with."""
+LOOK_S = 0.5
+"""Interval (s) at which the parent is checked."""
+LEAVE_S = 5.0
+"""How long (s) a clean end may take after SIGTERM; then the process is ended at once."""
 SLICE_S = 0.1
 """How late (s) a signal may be noticed."""
 
@@ -20,6 +27,21 @@ def stop_on_signals() -> threading.Event:
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: _thread.start_new_thread(stop.set, ()))
     return stop
+
+
+def end_with_parent() -> None:
+    """Send this process SIGTERM once its parent is not the one that `ACTUM_PARENT` names, if that is set."""
+    parent = os.environ.get(PARENT, "")
+
+    def watch() -> None:
+        while os.getppid() == int(parent):
+            time.sleep(LOOK_S)
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(LEAVE_S)
+        os._exit(1)
+
+    if parent.isdecimal():
+        threading.Thread(target=watch, daemon=True).start()
 
 
 def wait_for(stop: threading.Event, seconds: float = float("inf")) -> bool:

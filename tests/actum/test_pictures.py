@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from actum.darkness import is_black
+from actum.pictures import is_black
 
 
 @pytest.mark.parametrize("shape", [(48, 64), (48, 64, 3), (1, 1)])

@@ -1,9 +1,10 @@
+import threading
+
 import pytest
 
 from actum.codec import decode, encode
 from actum.node import Counters
-from actum.runtime.meter import MOST_KEYS, MOST_ORIGINS, Meter
-from actum.runtime.reporting import StateLog
+from actum.runtime.reporting import MOST_KEYS, MOST_ORIGINS, Meter, Reporter
 from actum.settings import ServiceSettings
 from people import STANDING, skeleton
 from scenes import action
@@ -43,7 +44,7 @@ def test_agents_without_end_do_not_fill_the_status() -> None:
     watched = meter()
     for agent in range(3 * MOST_KEYS):
         watched.received("actum/kinect0/skeleton", skeleton(agent, STANDING, seq=agent))
-        watched.put(f"actum/kinect0/posture/{agent}")
+        watched.count(f"actum/kinect0/posture/{agent}")
     status = watched.status()
     assert len(status.handled) == MOST_KEYS
     assert status.handled["actum/kinect0/skeleton"] == 3 * MOST_KEYS, "what goes on is kept"
@@ -68,7 +69,8 @@ def test_gaps_between_final_actions_of_before_are_no_losses() -> None:
 
 def test_a_state_that_quotes_what_somebody_wrote_leaves_the_status_readable(caplog: pytest.LogCaptureFixture) -> None:
     counters = Counters(state="settings name actions that the model does not know: " + "x" * 300_000)
-    status = encode(Meter("som_classifier", counters, ServiceSettings()).status())
+    quoting = Meter("som_classifier", counters, ServiceSettings())
+    status = encode(quoting.status())
     assert decode(status.key, status.payload, status.encoding)
-    StateLog(counters).log_change()
+    Reporter(quoting, counters, ServiceSettings(), threading.Lock()).log_state()
     assert len(caplog.text) < 1000
